@@ -1,0 +1,73 @@
+#include "bindings.h"
+
+#include "shared/scene.h"
+#include "vulkan_error.h"
+
+namespace vkvol {
+
+namespace {
+VkDescriptorType descriptor_type(std::uint32_t binding) {
+    return binding == BINDING_FRAME ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+}
+} // namespace
+
+Bindings::Bindings(const Device& device, const BoundBuffers& buffers)
+    : device_(device),
+      unused_(device, "placeholder", 256, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
+              BufferPlace::device) {
+    std::array<VkDescriptorSetLayoutBinding, BINDING_COUNT> slots{};
+    for (std::uint32_t i = 0; i < BINDING_COUNT; ++i)
+        slots[i] = {i, descriptor_type(i), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
+    VkDescriptorSetLayoutCreateInfo set_layout{};
+    set_layout.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+    set_layout.bindingCount = BINDING_COUNT;
+    set_layout.pBindings = slots.data();
+    VK_CHECK(vkCreateDescriptorSetLayout(device.handle(), &set_layout, nullptr, &set_layout_));
+
+    const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(shared::PassPush)};
+    VkPipelineLayoutCreateInfo layout{};
+    layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+    layout.setLayoutCount = 1;
+    layout.pSetLayouts = &set_layout_;
+    layout.pushConstantRangeCount = 1;
+    layout.pPushConstantRanges = &push;
+    VK_CHECK(vkCreatePipelineLayout(device.handle(), &layout, nullptr, &layout_));
+
+    const std::array<VkDescriptorPoolSize, 2> sizes{
+        {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1}, {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BINDING_COUNT - 1}}};
+    VkDescriptorPoolCreateInfo pool{};
+    pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    pool.maxSets = 1;
+    pool.poolSizeCount = sizes.size();
+    pool.pPoolSizes = sizes.data();
+    VK_CHECK(vkCreateDescriptorPool(device.handle(), &pool, nullptr, &pool_));
+    VkDescriptorSetAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+    allocate.descriptorPool = pool_;
+    allocate.descriptorSetCount = 1;
+    allocate.pSetLayouts = &set_layout_;
+    VK_CHECK(vkAllocateDescriptorSets(device.handle(), &allocate, &set_));
+
+    for (std::uint32_t i = 0; i < BINDING_COUNT; ++i)
+        bind(i, buffers[i] ? *buffers[i] : unused_);
+}
+
+void Bindings::bind(std::uint32_t binding, const Buffer& buffer) {
+    const VkDescriptorBufferInfo info{buffer.handle(), 0, buffer.bytes()};
+    VkWriteDescriptorSet write{};
+    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.dstSet = set_;
+    write.dstBinding = binding;
+    write.descriptorCount = 1;
+    write.descriptorType = descriptor_type(binding);
+    write.pBufferInfo = &info;
+    vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
+}
+
+Bindings::~Bindings() {
+    vkDestroyDescriptorPool(device_.handle(), pool_, nullptr);
+    vkDestroyPipelineLayout(device_.handle(), layout_, nullptr);
+    vkDestroyDescriptorSetLayout(device_.handle(), set_layout_, nullptr);
+}
+
+} // namespace vkvol

@@ -1,0 +1,36 @@
+// The one descriptor set that every pass shares, and the pipeline layout that goes with it.
+#pragma once
+
+#include <array>
+
+#include "buffer.h"
+#include "shared/bindings.h"
+
+namespace vkvol {
+
+// Buffers by binding number. Bindings that a scene has no use for may be left null.
+using BoundBuffers = std::array<const Buffer*, BINDING_COUNT>;
+
+class Bindings {
+public:
+    Bindings(const Device& device, const BoundBuffers& buffers);
+    ~Bindings();
+    Bindings(const Bindings&) = delete;
+    Bindings& operator=(const Bindings&) = delete;
+
+    // Puts `buffer` in place of what was bound there. No submitted work may still use the set.
+    void bind(std::uint32_t binding, const Buffer& buffer);
+
+    VkPipelineLayout layout() const { return layout_; }
+    VkDescriptorSet set() const { return set_; }
+
+private:
+    const Device& device_;
+    Buffer unused_; // stands where a scene needs no buffer
+    VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
+    VkPipelineLayout layout_ = VK_NULL_HANDLE;
+    VkDescriptorPool pool_ = VK_NULL_HANDLE;
+    VkDescriptorSet set_ = VK_NULL_HANDLE;
+};
+
+} // namespace vkvol

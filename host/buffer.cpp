@@ -1,0 +1,63 @@
+#include "buffer.h"
+
+#include <fmt/format.h>
+#include <utility>
+
+#include "vulkan_error.h"
+
+namespace vkvol {
+
+Buffer::Buffer(const Device& device, const std::string& name, VkDeviceSize bytes, VkBufferUsageFlags usage,
+               BufferPlace place)
+    : device_(device), bytes_(bytes) {
+    const VkDeviceSize range = device.limits().maxStorageBufferRange;
+    if ((usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) && bytes > range)
+        throw InputError(fmt::format("the {} takes {:.1f} MiB, but a storage buffer of \"{}\" ends at {:.1f} MiB; "
+                                     "use a smaller or quantised form (Fp8 takes a quarter)",
+                                     name, bytes / 1048576.0, device.info().name, range / 1048576.0));
+    VkBufferCreateInfo create{};
+    create.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+    create.size = bytes;
+    create.usage = usage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    VK_CHECK(vkCreateBuffer(device.handle(), &create, nullptr, &buffer_));
+    VkMemoryRequirements need;
+    vkGetBufferMemoryRequirements(device.handle(), buffer_, &need);
+
+    const VkMemoryPropertyFlags visible = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    int type = -1;
+    // Where device memory is host memory (software drivers, integrated GPUs) one mapping spares every copy.
+    if (place == BufferPlace::host || device.is_cpu())
+        type = device.find_memory_type(need.memoryTypeBits, visible | VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
+    if (place == BufferPlace::host && type < 0)
+        type = device.find_memory_type(need.memoryTypeBits, visible);
+    const bool map = type >= 0;
+    if (type < 0)
+        type = device.find_memory_type(need.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    if (type < 0)
+        type = device.find_memory_type(need.memoryTypeBits, 0);
+
+    VkMemoryAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    allocate.allocationSize = need.size;
+    allocate.memoryTypeIndex = static_cast<std::uint32_t>(type);
+    const VkResult result = vkAllocateMemory(device.handle(), &allocate, nullptr, &memory_);
+    if (result != VK_SUCCESS) {
+        vkDestroyBuffer(device.handle(), buffer_, nullptr);
+        throw RenderError(fmt::format("{} for the {} ({:.1f} MiB) on \"{}\"; use a smaller picture or grid",
+                                      result_name(result), name, bytes / 1048576.0, device.info().name));
+    }
+    VK_CHECK(vkBindBufferMemory(device.handle(), buffer_, memory_, 0));
+    if (map)
+        VK_CHECK(vkMapMemory(device.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_));
+}
+
+Buffer::Buffer(Buffer&& other) noexcept
+    : device_(other.device_), buffer_(std::exchange(other.buffer_, VK_NULL_HANDLE)),
+      memory_(std::exchange(other.memory_, VK_NULL_HANDLE)), bytes_(other.bytes_), mapped_(other.mapped_) {}
+
+Buffer::~Buffer() {
+    vkDestroyBuffer(device_.handle(), buffer_, nullptr);
+    vkFreeMemory(device_.handle(), memory_, nullptr);
+}
+
+} // namespace vkvol

@@ -1,0 +1,104 @@
+#include "commands.h"
+
+#include <algorithm>
+
+#include "vulkan_error.h"
+
+namespace vkvol {
+
+Commands::Commands(const Device& device) : device_(device) {
+    VkCommandPoolCreateInfo pool{};
+    pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+    pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+    pool.queueFamilyIndex = device.queue_family();
+    VK_CHECK(vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_));
+    VkCommandBufferAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+    allocate.commandPool = pool_;
+    allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    allocate.commandBufferCount = 1;
+    VK_CHECK(vkAllocateCommandBuffers(device.handle(), &allocate, &buffer_));
+    VkFenceCreateInfo fence{};
+    fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+    VK_CHECK(vkCreateFence(device.handle(), &fence, nullptr, &fence_));
+}
+
+Commands::~Commands() {
+    vkDestroyFence(device_.handle(), fence_, nullptr);
+    vkDestroyCommandPool(device_.handle(), pool_, nullptr);
+}
+
+void Commands::run(const std::function<void(VkCommandBuffer)>& record) {
+    VkCommandBufferBeginInfo begin{};
+    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    VK_CHECK(vkBeginCommandBuffer(buffer_, &begin));
+    record(buffer_);
+    VK_CHECK(vkEndCommandBuffer(buffer_));
+    VkSubmitInfo submit{};
+    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &buffer_;
+    VK_CHECK(vkQueueSubmit(device_.queue(), 1, &submit, fence_));
+    VK_CHECK(vkWaitForFences(device_.handle(), 1, &fence_, VK_TRUE, UINT64_MAX));
+    VK_CHECK(vkResetFences(device_.handle(), 1, &fence_));
+}
+
+namespace {
+constexpr VkDeviceSize staging_bytes = 16u << 20;
+
+void record_copy(VkCommandBuffer commands, const Buffer& from, VkDeviceSize from_offset, const Buffer& to,
+                 VkDeviceSize to_offset, VkDeviceSize size) {
+    const VkBufferCopy region{from_offset, to_offset, size};
+    record_barrier(commands);
+    vkCmdCopyBuffer(commands, from.handle(), to.handle(), 1, &region);
+    record_barrier(commands);
+}
+} // namespace
+
+void Commands::upload(const Buffer& buffer, std::span<const std::byte> data) {
+    if (buffer.mapped()) {
+        std::copy(data.begin(), data.end(), buffer.view<std::byte>().begin());
+        return;
+    }
+    Buffer staging(device_, "staging buffer", std::min<VkDeviceSize>(staging_bytes, data.size()), 0, BufferPlace::host);
+    for (VkDeviceSize offset = 0; offset < data.size(); offset += staging.bytes()) {
+        const VkDeviceSize size = std::min<VkDeviceSize>(staging.bytes(), data.size() - offset);
+        std::memcpy(staging.mapped(), data.data() + offset, size);
+        run([&](VkCommandBuffer commands) { record_copy(commands, staging, 0, buffer, offset, size); });
+    }
+}
+
+void Commands::download(const Buffer& buffer, std::span<std::byte> data) {
+    if (buffer.mapped()) {
+        std::memcpy(data.data(), buffer.mapped(), data.size());
+        return;
+    }
+    Buffer staging(device_, "staging buffer", std::min<VkDeviceSize>(staging_bytes, data.size()), 0, BufferPlace::host);
+    for (VkDeviceSize offset = 0; offset < data.size(); offset += staging.bytes()) {
+        const VkDeviceSize size = std::min<VkDeviceSize>(staging.bytes(), data.size() - offset);
+        run([&](VkCommandBuffer commands) { record_copy(commands, buffer, offset, staging, 0, size); });
+        std::memcpy(data.data() + offset, staging.mapped(), size);
+    }
+}
+
+void Commands::fill(const Buffer& buffer, std::uint32_t word) {
+    run([&](VkCommandBuffer commands) {
+        vkCmdFillBuffer(commands, buffer.handle(), 0, VK_WHOLE_SIZE, word);
+        record_barrier(commands);
+    });
+}
+
+void record_barrier(VkCommandBuffer commands) {
+    VkMemoryBarrier barrier{};
+    barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+    barrier.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_READ_BIT |
+                            VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT |
+                            VK_ACCESS_HOST_READ_BIT;
+    const VkPipelineStageFlags stages = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+    vkCmdPipelineBarrier(commands, stages, stages | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_HOST_BIT, 0,
+                         1, &barrier, 0, nullptr, 0, nullptr);
+}
+
+} // namespace vkvol

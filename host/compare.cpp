@@ -1,0 +1,250 @@
+#include "compare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fmt/format.h>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "error.h"
+#include "image_io.h"
+
+namespace vkvol {
+
+namespace {
+
+// Quantile of the standard normal distribution, by bisection on erfc: exact to rounding, and fast enough for once.
+double normal_quantile_upper(double tail) {
+    double low = 0.0;
+    double high = 40.0;
+    for (int i = 0; i < 200; ++i) {
+        const double middle = 0.5 * (low + high);
+        (0.5 * std::erfc(middle / std::sqrt(2.0)) > tail ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+// |z| that all of `count` independent standard normals stay below with probability 1 - significance (Sidak).
+double sidak_bound(double significance, std::size_t count) {
+    const double each = -std::expm1(std::log1p(-significance) / double(std::max<std::size_t>(1, count)));
+    return normal_quantile_upper(0.5 * each);
+}
+
+bool finite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool same_bits(const glm::vec3& a, const glm::vec3& b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+void check_windows(const Film& a, const Film& b) {
+    const auto describe = [](const Film& film) {
+        return fmt::format("{}x{} with window {},{},{},{}", film.picture_width, film.picture_height, film.crop.x0,
+                           film.crop.x1, film.crop.y0, film.crop.y1);
+    };
+    if (describe(a) != describe(b))
+        throw InputError(fmt::format("the images cannot be compared: one is {}, the other {}; render the same window",
+                                     describe(a), describe(b)));
+}
+
+// Running sums over the pixels that are finite in both images.
+struct Sums {
+    double squared = 0.0, relative = 0.0, peak = 0.0;
+    std::size_t values = 0;
+    std::array<double, 3> a{}, b{}, variance{};
+};
+
+void add_pixel(const glm::vec3& a, const glm::vec3& b, const glm::vec3& variance, Sums& sums, Comparison& result) {
+    for (int c = 0; c < 3; ++c) {
+        const double difference = double(a[c]) - double(b[c]);
+        sums.squared += difference * difference;
+        sums.relative += difference * difference / (double(b[c]) * b[c] + 0.01);
+        sums.peak = std::max(sums.peak, double(b[c]));
+        sums.a[c] += a[c];
+        sums.b[c] += b[c];
+        sums.variance[c] += variance[c];
+        ++sums.values;
+        result.max_abs_difference = std::max(result.max_abs_difference, std::abs(difference));
+    }
+}
+
+// Standard errors between two values. A relative difference below 1e-5 is what summation in float may do.
+double z_of(double a, double b, double variance) {
+    const double difference = std::abs(a - b);
+    if (difference <= 1e-5 * std::max(std::abs(a), std::abs(b)))
+        return 0.0;
+    return variance > 0.0 ? difference / std::sqrt(variance) : std::numeric_limits<double>::infinity();
+}
+
+// The normal deviate as rare as Student's t with `freedom` degrees (Wallace 1959, within 0.2 % of sigma).
+double normal_of_t(double t, double freedom) {
+    if (!std::isfinite(freedom) || !std::isfinite(t))
+        return t;
+    return (8 * freedom + 1) / (8 * freedom + 3) * std::sqrt(freedom * std::log1p(t * t / freedom));
+}
+
+// Few samples may all miss a rare bright event, and then underestimate mean and variance alike. So both images are
+// given the larger of their two variances per sample; the sample count of its owner gives the degrees of freedom.
+struct Noise {
+    double variance = 0.0; // of the difference
+    double freedom = std::numeric_limits<double>::infinity();
+    bool certain = false; // no variance, and too many samples for that to be chance
+};
+
+Noise noise_of(const Film& a, const Film& b, std::size_t pixel, int channel) {
+    Noise noise;
+    const double own_a = a.variance[pixel][channel];
+    const double own_b = b.variance[pixel][channel];
+    const double n_a = a.samples[pixel];
+    const double n_b = b.samples[pixel];
+    if (n_a < 1 || n_b < 1) { // an image of unknown making
+        noise.variance = own_a + own_b;
+        return noise;
+    }
+    const double per_sample = std::max(own_a * n_a, own_b * n_b);
+    noise.variance = per_sample * (1 / n_a + 1 / n_b);
+    noise.freedom = std::max(1.0, (own_a * n_a >= own_b * n_b ? n_a : n_b) - 1);
+    // All of 16 samples in one image and none of 16 in the other: at most 2^-32 by chance.
+    noise.certain = per_sample == 0.0 && n_a >= 16 && n_b >= 16;
+    return noise;
+}
+
+bool is_tested(const Noise& noise) {
+    return noise.variance > 0.0 || noise.certain;
+}
+
+void add_z(const Film& a, const Film& b, std::size_t pixel, Comparison& result) {
+    for (int c = 0; c < 3; ++c) {
+        const Noise noise = noise_of(a, b, pixel, c);
+        if (!is_tested(noise))
+            continue;
+        const double z = normal_of_t(z_of(a.mean[pixel][c], b.mean[pixel][c], noise.variance), noise.freedom);
+        ++result.tested;
+        ++result.z_histogram[std::size_t(std::min(6.0, z))];
+        if (z > result.z_bound)
+            ++result.beyond_bound;
+    }
+}
+
+void judge(const Film& a, const CompareOptions& options, Comparison& result) {
+    const std::size_t pixels = a.pixel_count();
+    const double mean_bound = sidak_bound(0.5 * options.significance, 3);
+    const double worst_mean = *std::max_element(result.mean_z.begin(), result.mean_z.end());
+    const auto verdict = [&result](bool different, std::string reason) {
+        result.different = different;
+        result.reason = std::move(reason);
+    };
+    if (result.non_finite > 0)
+        return verdict(true, fmt::format("{} values are not finite", result.non_finite));
+    if (options.max_relmse)
+        return verdict(result.relmse > *options.max_relmse,
+                       fmt::format("relMSE {:.6g} against a limit of {:.6g}", result.relmse, *options.max_relmse));
+    if (result.identical_pixels == pixels)
+        return verdict(false, "identical");
+    if (!result.has_variance)
+        return verdict(true, "neither image knows its variance, and they are not identical; --max-relmse sets a limit");
+    if (worst_mean > mean_bound)
+        return verdict(true, fmt::format("the picture means are {:.2f} standard errors apart, more than {:.2f}",
+                                         worst_mean, mean_bound));
+    if (result.beyond_bound > 0)
+        return verdict(true, fmt::format("{} of {} values differ by more than {:.2f} standard errors",
+                                         result.beyond_bound, result.tested, result.z_bound));
+    verdict(false, fmt::format("noise explains the difference (significance {:g})", options.significance));
+}
+
+} // namespace
+
+Comparison compare_films(const Film& a, const Film& b, const CompareOptions& options) {
+    check_windows(a, b);
+    Comparison result;
+    result.pixels = a.pixel_count();
+    const auto variance_of = [&](std::size_t i) { return a.variance[i] + b.variance[i]; };
+    std::size_t testable = 0;
+    for (std::size_t i = 0; i < result.pixels; ++i)
+        for (int c = 0; c < 3; ++c) {
+            testable += is_tested(noise_of(a, b, i, c)) ? 1 : 0;
+            result.has_variance = result.has_variance || variance_of(i)[c] > 0.0f;
+        }
+    // Half of the significance goes to the pixels, half to the three means.
+    result.z_bound = sidak_bound(0.5 * options.significance, testable);
+
+    Sums sums;
+    for (std::size_t i = 0; i < result.pixels; ++i) {
+        if (!finite(a.mean[i]) || !finite(b.mean[i]) || !finite(variance_of(i))) {
+            ++result.non_finite;
+            continue;
+        }
+        result.identical_pixels += same_bits(a.mean[i], b.mean[i]) ? 1 : 0;
+        add_pixel(a.mean[i], b.mean[i], variance_of(i), sums, result);
+        add_z(a, b, i, result);
+    }
+    const double values = std::max(1.0, double(sums.values));
+    result.mse = sums.squared / values;
+    result.relmse = sums.relative / values;
+    result.psnr = result.mse > 0.0 ? 10.0 * std::log10(sums.peak * sums.peak / result.mse)
+                                   : std::numeric_limits<double>::infinity();
+    for (int c = 0; c < 3; ++c) {
+        result.mean_ratio[c] = sums.a[c] == sums.b[c] ? 1.0 : sums.a[c] / sums.b[c];
+        result.mean_z[c] = z_of(sums.a[c], sums.b[c], sums.variance[c]);
+    }
+    judge(a, options, result);
+    return result;
+}
+
+namespace {
+
+void print_text(const Comparison& result) {
+    fmt::print("pixels          {} compared, {} identical\n", result.pixels, result.identical_pixels);
+    fmt::print("MSE             {:.6g}\nrelMSE          {:.6g}\nPSNR            {:.2f} dB\n", result.mse, result.relmse,
+               result.psnr);
+    fmt::print("mean ratio      {:.6f} {:.6f} {:.6f}\n", result.mean_ratio[0], result.mean_ratio[1],
+               result.mean_ratio[2]);
+    fmt::print("max difference  {:.6g}\n", result.max_abs_difference);
+    if (result.has_variance) {
+        fmt::print("mean z          {:.2f} {:.2f} {:.2f}\n", result.mean_z[0], result.mean_z[1], result.mean_z[2]);
+        fmt::print("|z| histogram   {} in steps of 1, the last is 6 and more\n", fmt::join(result.z_histogram, " "));
+        fmt::print("beyond {:5.2f}    {} of {} values\n", result.z_bound, result.beyond_bound, result.tested);
+    }
+    fmt::print("{}: {}\n", result.different ? "DIFFERENT" : "same", result.reason);
+}
+
+// JSON has no infinity; null stands for it.
+void print_json(const Comparison& result) {
+    const auto number = [](double value) { return std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr; };
+    nlohmann::ordered_json json;
+    json["different"] = result.different;
+    json["reason"] = result.reason;
+    json["pixels"] = result.pixels;
+    json["identicalPixels"] = result.identical_pixels;
+    json["nonFinite"] = result.non_finite;
+    json["mse"] = number(result.mse);
+    json["relMSE"] = number(result.relmse);
+    json["psnr"] = number(result.psnr);
+    for (const double ratio : result.mean_ratio)
+        json["meanRatio"].push_back(number(ratio));
+    json["maxAbsDifference"] = number(result.max_abs_difference);
+    if (result.has_variance) {
+        for (const double z : result.mean_z)
+            json["meanZ"].push_back(number(z));
+        json["zHistogram"] = result.z_histogram;
+        json["zBound"] = result.z_bound;
+        json["beyondBound"] = result.beyond_bound;
+        json["tested"] = result.tested;
+    }
+    fmt::print("{}\n", json.dump(2));
+}
+
+} // namespace
+
+int run_compare(const CompareOptions& options) {
+    const Comparison result = compare_films(read_exr(options.a), read_exr(options.b), options);
+    if (options.json)
+        print_json(result);
+    else
+        print_text(result);
+    return result.different ? exit_different : exit_done;
+}
+
+} // namespace vkvol

@@ -1,0 +1,39 @@
+// A density grid ready for lookup: NanoVDB bytes, checked and cleaned, with a table of its leaves.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "nvdb_file.h"
+#include "scene.h"
+
+namespace vkvol {
+
+struct DensityField {
+    GridBytes bytes;
+    int type = 0; // GRID_FLOAT, GRID_FP4, ...
+    glm::dmat4 index_to_world{1.0};
+    std::uint64_t active_voxels = 0; // 0: the field is 0 everywhere, and what follows is meaningless
+    glm::ivec3 voxel_min{0};         // box of active voxels, inclusive; density outside is 0
+    glm::ivec3 voxel_max{0};
+    // One word per aligned 8^3 block from leaf_min on, z fastest; see shaders/include/density.glsl.
+    glm::ivec3 leaf_min{0};
+    glm::ivec3 leaf_dims{0};
+    std::vector<std::uint32_t> leaf_table;
+    std::uint64_t cleaned = 0; // values that were NaN, infinite or negative and count as 0
+
+    // Decoded value of a voxel, >= 0; 0 outside the box of active voxels.
+    float value(glm::ivec3 ijk) const;
+    // True if the block that holds this voxel of the box is one constant 0.
+    bool is_empty_block(glm::ivec3 ijk) const;
+    // World units per voxel: |det|^(1/3) of index_to_world.
+    double voxel_size() const;
+};
+
+// Throws InputError naming file, grid, what is wrong and the remedy.
+DensityField load_density_field(const GridFile& file);
+
+// From a NanoVDB grid in memory; `place` stands in messages.
+DensityField make_density_field(GridBytes bytes, const std::string& place);
+
+} // namespace vkvol

@@ -1,0 +1,293 @@
+#include "device.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <fmt/format.h>
+#include <optional>
+
+#include "vulkan_error.h"
+
+namespace vkvol {
+
+namespace {
+
+constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
+
+std::string version_text(std::uint32_t version) {
+    return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
+                       VK_API_VERSION_PATCH(version));
+}
+
+const char* type_name(VkPhysicalDeviceType type) {
+    switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+        return "discrete";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+        return "integrated";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+        return "virtual";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+        return "cpu";
+    default:
+        return "other";
+    }
+}
+
+// Lower is better: a real GPU before a software driver.
+int preference(const DeviceInfo& info) {
+    constexpr std::array order = {"discrete", "integrated", "virtual", "other", "cpu"};
+    return static_cast<int>(std::find(order.begin(), order.end(), info.type) - order.begin());
+}
+
+std::optional<std::uint32_t> find_compute_family(VkPhysicalDevice physical, bool* timestamps = nullptr) {
+    std::uint32_t count = 0;
+    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
+    std::vector<VkQueueFamilyProperties> families(count);
+    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) {
+            if (timestamps)
+                *timestamps = families[i].timestampValidBits >= 36;
+            return i;
+        }
+    }
+    return std::nullopt;
+}
+
+std::string find_rejection(VkPhysicalDevice physical, const VkPhysicalDeviceProperties& properties) {
+    if (properties.apiVersion < VK_API_VERSION_1_2)
+        return fmt::format("it offers Vulkan {}, at least 1.2 is needed", version_text(properties.apiVersion));
+    if (!find_compute_family(physical))
+        return "it has no compute queue";
+    VkPhysicalDeviceVulkan12Features features12{};
+    features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    VkPhysicalDeviceFeatures2 features{};
+    features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+    features.pNext = &features12;
+    vkGetPhysicalDeviceFeatures2(physical, &features);
+    if (!features12.scalarBlockLayout)
+        return "it lacks the feature scalarBlockLayout";
+    return "";
+}
+
+DeviceInfo describe(VkPhysicalDevice physical, int index) {
+    VkPhysicalDeviceVulkan12Properties properties12{};
+    properties12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES;
+    VkPhysicalDeviceIDProperties id{};
+    id.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ID_PROPERTIES;
+    id.pNext = &properties12;
+    VkPhysicalDeviceProperties2 properties{};
+    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+    properties.pNext = &id;
+    vkGetPhysicalDeviceProperties2(physical, &properties);
+    DeviceInfo info;
+    info.index = index;
+    info.name = properties.properties.deviceName;
+    info.type = type_name(properties.properties.deviceType);
+    info.api = version_text(properties.properties.apiVersion);
+    info.driver = fmt::format("{} {}", properties12.driverName, properties12.driverInfo);
+    info.storage_range = properties.properties.limits.maxStorageBufferRange;
+    for (std::uint8_t byte : id.deviceUUID)
+        info.uuid += fmt::format("{:02x}", byte);
+    VkPhysicalDeviceMemoryProperties memory;
+    vkGetPhysicalDeviceMemoryProperties(physical, &memory);
+    for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
+        if (memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)
+            info.memory += memory.memoryHeaps[i].size;
+    info.rejection = find_rejection(physical, properties.properties);
+    return info;
+}
+
+std::vector<VkPhysicalDevice> enumerate(VkInstance instance) {
+    std::uint32_t count = 0;
+    VK_CHECK(vkEnumeratePhysicalDevices(instance, &count, nullptr));
+    std::vector<VkPhysicalDevice> devices(count);
+    VK_CHECK(vkEnumeratePhysicalDevices(instance, &count, devices.data()));
+    return devices;
+}
+
+VkBool32 VKAPI_PTR on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                              const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+    static_cast<std::vector<std::string>*>(user)->push_back(data->pMessage);
+    return VK_FALSE;
+}
+
+template <class Function> Function instance_function(VkInstance instance, const char* name) {
+    return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance, name));
+}
+
+bool has_layer(const char* name) {
+    std::uint32_t count = 0;
+    vkEnumerateInstanceLayerProperties(&count, nullptr);
+    std::vector<VkLayerProperties> layers(count);
+    vkEnumerateInstanceLayerProperties(&count, layers.data());
+    return std::any_of(layers.begin(), layers.end(),
+                       [&](const VkLayerProperties& layer) { return std::strcmp(layer.layerName, name) == 0; });
+}
+
+VkInstance make_instance(bool validate, VkDebugUtilsMessengerCreateInfoEXT* messenger) {
+    VkApplicationInfo application{};
+    application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+    application.pApplicationName = "vkvol";
+    application.apiVersion = VK_API_VERSION_1_2;
+    const VkValidationFeatureEnableEXT enabled = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+    VkValidationFeaturesEXT features{};
+    features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
+    features.pNext = messenger;
+    features.enabledValidationFeatureCount = 1;
+    features.pEnabledValidationFeatures = &enabled;
+    const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+    VkInstanceCreateInfo create{};
+    create.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+    create.pApplicationInfo = &application;
+    if (validate) {
+        create.pNext = &features;
+        create.enabledLayerCount = 1;
+        create.ppEnabledLayerNames = &validation_layer;
+        create.enabledExtensionCount = 1;
+        create.ppEnabledExtensionNames = &extension;
+    }
+    VkInstance instance = VK_NULL_HANDLE;
+    const VkResult result = vkCreateInstance(&create, nullptr, &instance);
+    if (result != VK_SUCCESS)
+        throw DeviceError(fmt::format("no Vulkan driver answers ({}); on Debian, `apt install mesa-vulkan-drivers` "
+                                      "brings a software driver that runs anywhere",
+                                      result_name(result)));
+    return instance;
+}
+
+bool matches(const DeviceInfo& info, const std::string& choice) {
+    if (choice == "auto")
+        return true;
+    if (choice == "cpu")
+        return info.type == "cpu";
+    if (std::all_of(choice.begin(), choice.end(), [](unsigned char c) { return std::isdigit(c); }) && choice.size() < 4)
+        return info.index == std::stoi(choice);
+    const auto lower = [](std::string text) {
+        std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+        return text;
+    };
+    std::string plain = lower(choice);
+    if (lower(info.name).find(plain) != std::string::npos)
+        return true;
+    plain.erase(std::remove(plain.begin(), plain.end(), '-'), plain.end());
+    return info.uuid == plain;
+}
+
+} // namespace
+
+std::vector<DeviceInfo> list_devices() {
+    VkInstance instance = make_instance(false, nullptr);
+    std::vector<DeviceInfo> infos;
+    for (VkPhysicalDevice physical : enumerate(instance))
+        infos.push_back(describe(physical, static_cast<int>(infos.size())));
+    vkDestroyInstance(instance, nullptr);
+    return infos;
+}
+
+Device::Device(const DeviceOptions& options) {
+    try {
+        create_instance(options);
+        choose_physical(options.choice);
+        create_device(options);
+    } catch (...) {
+        destroy();
+        throw;
+    }
+}
+
+void Device::create_instance(const DeviceOptions& options) {
+    if (!options.validate) {
+        instance_ = make_instance(false, nullptr);
+        return;
+    }
+    if (!has_layer(validation_layer))
+        throw DeviceError("--validate needs the Khronos validation layer; on Debian, "
+                          "`apt install vulkan-validationlayers` brings it");
+    VkDebugUtilsMessengerCreateInfoEXT messenger{};
+    messenger.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+    messenger.messageSeverity =
+        VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
+    messenger.pfnUserCallback = on_message;
+    messenger.pUserData = &messages_;
+    instance_ = make_instance(true, &messenger);
+    const auto create =
+        instance_function<PFN_vkCreateDebugUtilsMessengerEXT>(instance_, "vkCreateDebugUtilsMessengerEXT");
+    VK_CHECK(create(instance_, &messenger, nullptr, &messenger_));
+}
+
+void Device::choose_physical(const std::string& choice) {
+    const std::vector<VkPhysicalDevice> devices = enumerate(instance_);
+    std::string reasons;
+    int best = -1;
+    for (int i = 0; i < static_cast<int>(devices.size()); ++i) {
+        const DeviceInfo info = describe(devices[i], i);
+        std::string reason = info.rejection;
+        if (reason.empty() && !matches(info, choice))
+            reason = fmt::format("it does not match --device {}", choice);
+        if (!reason.empty())
+            reasons += fmt::format("; {} \"{}\": {}", i, info.name, reason);
+        else if (best < 0 || preference(info) < preference(info_)) {
+            best = i;
+            info_ = info;
+        }
+    }
+    if (best < 0)
+        throw DeviceError(devices.empty() ? "no Vulkan device found; on Debian, `apt install mesa-vulkan-drivers` "
+                                            "brings a software driver that runs anywhere"
+                                          : fmt::format("no usable device for --device {}{}; `vkvol devices` lists "
+                                                        "what there is",
+                                                        choice, reasons));
+    physical_ = devices[best];
+    vkGetPhysicalDeviceProperties(physical_, &properties_);
+    vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
+}
+
+void Device::create_device(const DeviceOptions& options) {
+    queue_family_ = find_compute_family(physical_, &timestamps_).value();
+    const float priority = 1.0f;
+    VkDeviceQueueCreateInfo queue{};
+    queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+    queue.queueFamilyIndex = queue_family_;
+    queue.queueCount = 1;
+    queue.pQueuePriorities = &priority;
+    VkPhysicalDeviceVulkan12Features features12{};
+    features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    features12.scalarBlockLayout = VK_TRUE;
+    VkPhysicalDeviceFeatures2 features{};
+    features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+    features.pNext = &features12;
+    features.features.robustBufferAccess = options.robust;
+    VkDeviceCreateInfo create{};
+    create.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+    create.pNext = &features;
+    create.queueCreateInfoCount = 1;
+    create.pQueueCreateInfos = &queue;
+    VK_CHECK(vkCreateDevice(physical_, &create, nullptr, &device_));
+    vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+}
+
+Device::~Device() {
+    destroy();
+}
+
+void Device::destroy() {
+    if (device_)
+        vkDestroyDevice(device_, nullptr);
+    if (messenger_)
+        instance_function<PFN_vkDestroyDebugUtilsMessengerEXT>(instance_, "vkDestroyDebugUtilsMessengerEXT")(
+            instance_, messenger_, nullptr);
+    if (instance_)
+        vkDestroyInstance(instance_, nullptr);
+}
+
+int Device::find_memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const {
+    for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
+        if ((allowed >> i & 1u) && (memory_.memoryTypes[i].propertyFlags & wanted) == wanted)
+            return static_cast<int>(i);
+    return -1;
+}
+
+} // namespace vkvol

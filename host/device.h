@@ -1,0 +1,76 @@
+// A Vulkan instance with one chosen device and one compute queue.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+#include <vulkan/vulkan.h>
+
+namespace vkvol {
+
+struct DeviceOptions {
+    std::string choice = "auto"; // auto | index | part of the name | uuid | cpu
+    bool validate = false;       // validation layer with synchronization validation
+    bool robust = false;         // robustBufferAccess
+};
+
+// One physical device as `vkvol devices` lists it. `rejection` is empty if it can be used.
+struct DeviceInfo {
+    int index = 0;
+    std::string name;
+    std::string type;                // discrete | integrated | virtual | cpu | other
+    std::string driver;              // name and version
+    std::string uuid;                // 32 hexadecimal digits
+    std::string api;                 // "1.3.230"
+    std::uint64_t memory = 0;        // bytes, device-local heaps
+    std::uint64_t storage_range = 0; // bytes one storage buffer may span
+    std::string rejection;
+};
+
+// Everything that answers to Vulkan, usable or not. Throws DeviceError if there is no Vulkan loader or driver.
+std::vector<DeviceInfo> list_devices();
+
+class Device {
+public:
+    // Throws DeviceError naming every device and the reason why it was not taken.
+    explicit Device(const DeviceOptions& options);
+    ~Device();
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+
+    VkDevice handle() const { return device_; }
+    VkQueue queue() const { return queue_; }
+    std::uint32_t queue_family() const { return queue_family_; }
+    const DeviceInfo& info() const { return info_; }
+    const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
+    const VkPhysicalDeviceProperties& properties() const { return properties_; }
+    bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+    bool has_timestamps() const { return timestamps_; }
+
+    // Index of a memory type in `allowed` with all `wanted` properties, or -1.
+    int find_memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const;
+
+    // What the validation layer has said so far; empty without --validate.
+    const std::vector<std::string>& validation_messages() const { return messages_; }
+
+private:
+    void create_instance(const DeviceOptions& options);
+    void choose_physical(const std::string& choice);
+    void create_device(const DeviceOptions& options);
+    void destroy();
+
+    VkInstance instance_ = VK_NULL_HANDLE;
+    VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    VkPhysicalDevice physical_ = VK_NULL_HANDLE;
+    VkDevice device_ = VK_NULL_HANDLE;
+    VkQueue queue_ = VK_NULL_HANDLE;
+    std::uint32_t queue_family_ = 0;
+    bool timestamps_ = false;
+    VkPhysicalDeviceProperties properties_{};
+    VkPhysicalDeviceMemoryProperties memory_{};
+    DeviceInfo info_;
+    std::vector<std::string> messages_;
+};
+
+} // namespace vkvol

@@ -1,0 +1,23 @@
+#include "film.h"
+
+#include <cmath>
+
+namespace vkvol {
+
+double relative_noise(const Film& film) {
+    double sum = 0.0;
+    std::size_t counted = 0;
+    const glm::dvec3 luminance(0.2126, 0.7152, 0.0722);
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        const double mean = glm::dot(luminance, glm::dvec3(film.mean[i]));
+        // Channels of one pixel vary together: the standard deviations add, not the variances.
+        const double deviation = glm::dot(luminance, glm::sqrt(glm::dvec3(film.variance[i])));
+        if (film.samples[i] < 2 || mean <= 1e-6)
+            continue;
+        sum += deviation * deviation / (mean * mean);
+        ++counted;
+    }
+    return counted > 0 ? std::sqrt(sum / static_cast<double>(counted)) : 0.0;
+}
+
+} // namespace vkvol

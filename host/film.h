@@ -1,0 +1,35 @@
+// The developed image on the host: what a render returns and what image files hold.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "scene.h"
+
+namespace vkvol {
+
+// Pixels of the crop window, rows top to bottom. A pixel without samples has mean and variance 0.
+struct Film {
+    int picture_width = 0; // the whole picture (EXR display window)
+    int picture_height = 0;
+    Crop crop;                          // the part held here (EXR data window)
+    std::vector<glm::vec3> mean;        // radiance, linear Rec.709
+    std::vector<glm::vec3> variance;    // of the mean: s^2 / n with the unbiased s^2; 0 if n < 2
+    std::vector<std::uint32_t> samples; // per pixel
+
+    int width() const { return crop.x1 - crop.x0; }
+    int height() const { return crop.y1 - crop.y0; }
+    std::size_t pixel_count() const { return mean.size(); }
+};
+
+// Root of the mean over pixels of variance / mean^2 (of luminance, dark pixels left out): the picture's relative
+// standard error.
+double relative_noise(const Film& film);
+
+// Key "vkvol/seed" etc. -> value; written into EXR headers, read back by merge and compare.
+using Metadata = std::map<std::string, std::variant<int, float, std::string>>;
+
+} // namespace vkvol

@@ -1,0 +1,256 @@
+#include "image_io.h"
+
+#include <OpenImageIO/imageio.h>
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <functional>
+#include <memory>
+#include <unistd.h>
+
+#include "error.h"
+
+namespace vkvol {
+
+namespace {
+
+using std::filesystem::path;
+
+constexpr int channel_count = 7;
+const std::vector<std::string> channel_names = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "samples"};
+
+// In the target's directory, so that the rename is atomic; with the target's extension, which names the format.
+path temporary_name(const path& target) {
+    path name = target;
+    name.replace_filename(fmt::format(".{}.{}.tmp{}", target.stem().string(), getpid(), target.extension().string()));
+    return name;
+}
+
+// A device or pipe (/dev/stdout, say) is written to, never replaced by a file.
+bool is_special(const path& target) {
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(target, ignored);
+    return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+           !std::filesystem::is_directory(status);
+}
+
+// Runs `write` on a temporary name, then renames. Nothing is left behind when it fails.
+void write_atomically(const path& name, const std::function<void(const path&)>& write) {
+    std::error_code ignored;
+    // A link stays a link: the file behind it is replaced.
+    const path target = std::filesystem::is_symlink(name, ignored) && std::filesystem::exists(name, ignored)
+                            ? std::filesystem::canonical(name)
+                            : name;
+    const path temporary = temporary_name(target);
+    try {
+        if (is_special(target))
+            return write(target);
+        write(temporary);
+        std::filesystem::rename(temporary, target);
+    } catch (const std::filesystem::filesystem_error& error) {
+        std::filesystem::remove(temporary, ignored);
+        throw RenderError(fmt::format("{}: cannot be written: {}; name another place with -o", target.string(),
+                                      error.code().message()));
+    } catch (const std::exception& error) {
+        std::filesystem::remove(temporary, ignored);
+        throw RenderError(fmt::format("{}: cannot be written: {}; check free space and permissions, or name another "
+                                      "place with -o",
+                                      target.string(), error.what()));
+    }
+}
+
+std::string one_line(std::string text) {
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    while (!text.empty() && text.back() == ' ')
+        text.pop_back();
+    return text.empty() ? "unknown reason" : text;
+}
+
+void write_pixels(const path& file, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels) {
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(file.string());
+    if (!output)
+        throw std::runtime_error(one_line(OIIO::geterror()));
+    if (!output->open(file.string(), spec) || !output->write_image(type, pixels) || !output->close())
+        throw std::runtime_error(one_line(output->geterror()));
+}
+
+void set_attributes(OIIO::ImageSpec& spec, const Metadata& metadata) {
+    for (const auto& [key, value] : metadata)
+        std::visit([&spec, &key = key](const auto& held) { spec.attribute(key, held); }, value);
+}
+
+// What we or the pixels themselves say already; the rest of a file's attributes is its metadata.
+bool is_structural(const std::string& key) {
+    static const char* const known[] = {"oiio:",        "openexr:", "compression", "worldToCamera", "PixelAspectRatio",
+                                        "screenWindow", "nuke/",    "DateTime",    "capDate"};
+    return std::any_of(std::begin(known), std::end(known),
+                       [&key](const char* prefix) { return key.compare(0, std::strlen(prefix), prefix) == 0; });
+}
+
+void get_attributes(const OIIO::ImageSpec& spec, Metadata& metadata) {
+    for (const OIIO::ParamValue& value : spec.extra_attribs) {
+        const std::string key = value.name().string();
+        if (is_structural(key))
+            continue;
+        if (value.type() == OIIO::TypeInt)
+            metadata[key] = value.get_int();
+        else if (value.type() == OIIO::TypeFloat)
+            metadata[key] = value.get_float();
+        else if (value.type() == OIIO::TypeString)
+            metadata[key] = value.get_string();
+    }
+}
+
+void check_consistent(const Film& film) {
+    const Crop& crop = film.crop;
+    const std::size_t pixels = crop.x1 > crop.x0 && crop.y1 > crop.y0 ? std::size_t(film.width()) * film.height() : 0;
+    if (pixels == 0 || film.mean.size() != pixels || film.variance.size() != pixels || film.samples.size() != pixels)
+        throw std::runtime_error(fmt::format("the film of {}x{} pixels holds {} means, {} variances and {} counts",
+                                             film.width(), film.height(), film.mean.size(), film.variance.size(),
+                                             film.samples.size()));
+}
+
+std::vector<float> interleaved(const Film& film) {
+    std::vector<float> pixels;
+    pixels.reserve(film.pixel_count() * channel_count);
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        for (int c = 0; c < 3; ++c)
+            pixels.push_back(film.mean[i][c]);
+        for (int c = 0; c < 3; ++c)
+            pixels.push_back(film.variance[i][c]);
+        pixels.push_back(static_cast<float>(film.samples[i]));
+    }
+    return pixels;
+}
+
+Film film_of(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, const path& file) {
+    const auto channel = [&](const char* name) {
+        const auto found = std::find(spec.channelnames.begin(), spec.channelnames.end(), name);
+        return found == spec.channelnames.end() ? -1 : int(found - spec.channelnames.begin());
+    };
+    const int color[3] = {channel("R"), channel("G"), channel("B")};
+    const int variance[3] = {channel("variance.R"), channel("variance.G"), channel("variance.B")};
+    const int samples = channel("samples");
+    if (*std::min_element(color, color + 3) < 0)
+        throw InputError(fmt::format("{}: has channels {}; R, G and B are needed", file.string(),
+                                     fmt::join(spec.channelnames, ", ")));
+    Film film;
+    film.picture_width = spec.full_width;
+    film.picture_height = spec.full_height;
+    film.crop.x0 = spec.x - spec.full_x;
+    film.crop.y0 = spec.y - spec.full_y;
+    film.crop.x1 = film.crop.x0 + spec.width;
+    film.crop.y1 = film.crop.y0 + spec.height;
+    const std::size_t count = std::size_t(spec.width) * spec.height;
+    film.mean.resize(count);
+    film.variance.resize(count, glm::vec3(0));
+    film.samples.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const float* pixel = &pixels[i * spec.nchannels];
+        for (int c = 0; c < 3; ++c) {
+            film.mean[i][c] = pixel[color[c]];
+            if (variance[c] >= 0)
+                film.variance[i][c] = pixel[variance[c]];
+        }
+        if (samples >= 0 && pixel[samples] > 0.0f && pixel[samples] < 4294967296.0f)
+            film.samples[i] = static_cast<std::uint32_t>(pixel[samples]);
+    }
+    return film;
+}
+
+} // namespace
+
+void check_writable(const path& target) {
+    const std::string extension = target.extension().string();
+    if (extension != ".exr" && extension != ".png")
+        throw InputError(fmt::format("{}: unknown kind of picture '{}'; expected .exr or .png", target.string(),
+                                     extension.empty() ? target.filename().string() : extension));
+    check_directory_writable(target);
+}
+
+void check_directory_writable(const path& target) {
+    const path directory = target.has_parent_path() ? target.parent_path() : path(".");
+    std::error_code error;
+    if (!std::filesystem::exists(directory, error))
+        throw InputError(
+            fmt::format("{}: the directory {} does not exist; make it first", target.string(), directory.string()));
+    if (std::filesystem::is_directory(target, error))
+        throw InputError(fmt::format("{}: is a directory; expected the name of a file", target.string()));
+    if (is_special(target))
+        return;
+    // Only making a file tells: permissions, read-only file systems and quotas all have a say.
+    const path probe = temporary_name(target);
+    const int descriptor = open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (descriptor < 0)
+        throw InputError(fmt::format("{}: no file can be made in {}: {}; name another place", target.string(),
+                                     directory.string(), std::strerror(errno)));
+    close(descriptor);
+    unlink(probe.c_str());
+}
+
+void write_image(const path& target, const Film& film, const Metadata& metadata, const ToneMapping& mapping) {
+    if (target.extension() == ".png")
+        write_png(target, film, mapping);
+    else
+        write_exr(target, film, metadata);
+}
+
+void write_exr(const path& target, const Film& film, const Metadata& metadata) {
+    write_atomically(target, [&](const path& file) {
+        check_consistent(film);
+        OIIO::ImageSpec spec(film.width(), film.height(), channel_count, OIIO::TypeDesc::FLOAT);
+        spec.channelnames = channel_names;
+        spec.x = film.crop.x0;
+        spec.y = film.crop.y0;
+        spec.full_width = film.picture_width;
+        spec.full_height = film.picture_height;
+        spec.attribute("compression", "zip");
+        spec.attribute("oiio:ColorSpace", "Linear"); // Rec.709 primaries, D65
+        const float chromaticities[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
+        spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
+        set_attributes(spec, metadata);
+        write_pixels(file, spec, OIIO::TypeDesc::FLOAT, interleaved(film).data());
+    });
+}
+
+void write_png(const path& target, const Film& film, const ToneMapping& mapping) {
+    write_atomically(target, [&](const path& file) {
+        check_consistent(film);
+        OIIO::ImageSpec spec(film.width(), film.height(), 3, OIIO::TypeDesc::UINT8);
+        spec.attribute("oiio:ColorSpace", "sRGB");
+        const std::vector<std::uint8_t> pixels = tone_map(film, mapping);
+        write_pixels(file, spec, OIIO::TypeDesc::UINT8, pixels.data());
+    });
+}
+
+Film read_exr(const path& file, Metadata* metadata) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error))
+        throw InputError(fmt::format("{}: no such file", file.string()));
+    if (file.extension() != ".exr")
+        throw InputError(fmt::format("{}: expected an .exr file", file.string()));
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
+    if (!input)
+        throw InputError(fmt::format("{}: cannot be read: {}", file.string(), one_line(OIIO::geterror())));
+    const OIIO::ImageSpec& spec = input->spec();
+    std::vector<float> pixels(std::size_t(spec.width) * spec.height * spec.nchannels);
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()))
+        throw InputError(
+            fmt::format("{}: cannot be read: {}; is it complete?", file.string(), one_line(input->geterror())));
+    if (metadata)
+        get_attributes(spec, *metadata);
+    return film_of(spec, pixels, file);
+}
+
+void write_text(const path& target, const std::string& text) {
+    write_atomically(target, [&](const path& file) {
+        const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "wb"), std::fclose);
+        if (!stream || std::fwrite(text.data(), 1, text.size(), stream.get()) != text.size() ||
+            std::fflush(stream.get()) != 0)
+            throw std::runtime_error(std::strerror(errno));
+    });
+}
+
+} // namespace vkvol

@@ -1,0 +1,36 @@
+// Image files: EXR for data (mean, variance, samples, metadata), PNG for looking at.
+#pragma once
+
+#include <filesystem>
+
+#include "film.h"
+#include "tone_map.h"
+
+namespace vkvol {
+
+// Every writer fills a temporary file in the same directory and renames it: a file of this name is never half written.
+// Failures throw RenderError with path, reason and remedy.
+
+// Throws InputError unless `path` ends in .exr or .png and a file can be made there. Leaves nothing behind.
+void check_writable(const std::filesystem::path& path);
+
+// The same for any file (a report): only that it can be made.
+void check_directory_writable(const std::filesystem::path& path);
+
+// By extension: .exr or .png.
+void write_image(const std::filesystem::path& path, const Film& film, const Metadata& metadata,
+                 const ToneMapping& mapping);
+
+// Float, ZIP; channels R, G, B, variance.R, variance.G, variance.B, samples. Data window = crop, display = picture.
+void write_exr(const std::filesystem::path& path, const Film& film, const Metadata& metadata);
+
+// 8 bit sRGB; the crop alone.
+void write_png(const std::filesystem::path& path, const Film& film, const ToneMapping& mapping);
+
+// R, G and B are required; a file without variance or samples gives zeros there. Throws InputError.
+Film read_exr(const std::filesystem::path& path, Metadata* metadata = nullptr);
+
+// Writes text the same atomic way.
+void write_text(const std::filesystem::path& path, const std::string& text);
+
+} // namespace vkvol

@@ -1,0 +1,37 @@
+#include "interrupt.h"
+
+#include <csignal>
+#include <unistd.h>
+
+#include "error.h"
+
+namespace vkvol {
+
+namespace {
+
+// Lock-free and async-signal-safe, unlike most else.
+volatile std::sig_atomic_t signals_seen = 0;
+
+void on_signal(int) {
+    if (signals_seen)
+        _exit(exit_interrupted);
+    signals_seen = 1;
+}
+
+} // namespace
+
+void install_interrupt_handler() {
+    signals_seen = 0;
+    struct sigaction action {};
+    action.sa_handler = on_signal;
+    action.sa_flags = SA_RESTART; // reads and writes under way go on
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+}
+
+bool interrupted() {
+    return signals_seen != 0;
+}
+
+} // namespace vkvol

@@ -1,0 +1,12 @@
+// Ctrl-C and SIGTERM end a render early but in order: what was rendered so far is written.
+#pragma once
+
+namespace vkvol {
+
+// The first signal sets the flag below; the second ends the process at once with exit code 130.
+void install_interrupt_handler();
+
+// Asked by the render loop between batches.
+bool interrupted();
+
+} // namespace vkvol

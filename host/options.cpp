@@ -1,0 +1,391 @@
+#include "options.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "error.h"
+#include "nearest_name.h"
+#include "options_help.h"
+#include "scene_xml.h"
+
+namespace vkvol {
+
+namespace {
+
+constexpr std::uint32_t max_samples = 2147483647;
+
+[[noreturn]] void fail(const std::string& message) {
+    throw InputError("command line: " + message);
+}
+
+double parse_number(const std::string& text, const std::string& what) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+        fail(fmt::format("{}: '{}' is not a number", what, text));
+    return value;
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    std::size_t start = 0;
+    for (std::size_t end; (end = text.find(separator, start)) != std::string::npos; start = end + 1)
+        parts.push_back(text.substr(start, end - start));
+    parts.push_back(text.substr(start));
+    return parts;
+}
+
+CropRequest parse_crop(const std::string& text) {
+    const std::vector<std::string> parts = split(text, ',');
+    if (parts.size() != 4)
+        fail(fmt::format("--crop: '{}' has {} numbers; expected x0,x1,y0,y1", text, parts.size()));
+    CropRequest request;
+    bool all_below_one = true;
+    for (std::size_t i = 0; i < 4; ++i) {
+        request.window[i] = parse_number(parts[i], "--crop");
+        all_below_one = all_below_one && request.window[i] <= 1.0;
+    }
+    request.fractions = all_below_one && text.find('.') != std::string::npos;
+    for (const double value : request.window)
+        if (!request.fractions && value != std::floor(value))
+            fail(fmt::format("--crop: '{}': pixels are whole numbers, and fractions are all at most 1", text));
+    return request;
+}
+
+void add_define(std::map<std::string, std::string>& defines, const std::string& text) {
+    const std::size_t equals = text.find('=');
+    const std::string key = text.substr(0, equals);
+    const bool is_name = !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+    });
+    if (equals == std::string::npos || !is_name)
+        fail(fmt::format("-D: '{}' is not of the form key=value, key of letters, digits and _", text));
+    if (!defines.emplace(key, text.substr(equals + 1)).second)
+        fail(fmt::format("-D: {} given twice", key));
+}
+
+template <typename T>
+T choose(const char* option, const std::string& name, const std::vector<std::pair<std::string, T>>& choices) {
+    std::vector<std::string> names;
+    for (const auto& [known, value] : choices) {
+        if (known == name)
+            return value;
+        names.push_back(known);
+    }
+    fail(fmt::format("{}: unknown value '{}'{}", option, name, name_hint(name, names)));
+}
+
+ToneCurve tone_curve(const std::string& name) {
+    return choose<ToneCurve>("--tonemap", name,
+                             {{"srgb", ToneCurve::srgb},
+                              {"aces", ToneCurve::aces},
+                              {"agx", ToneCurve::agx},
+                              {"reinhard", ToneCurve::reinhard}});
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options()) {
+        for (const std::string& name : option->get_lnames())
+            names.push_back("--" + name);
+        for (const std::string& name : option->get_snames())
+            names.push_back("-" + name);
+    }
+    return names;
+}
+
+// Parses, and turns what CLI11 throws into one line. False: help was asked for and is in options.text.
+bool run_parser(CLI::App& app, const std::vector<std::string>& arguments, Options& options) {
+    app.allow_extras(); // so that the hint can be ours
+    app.get_formatter()->column_width(34);
+    try {
+        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::CallForHelp&) {
+        options.command = Command::print;
+        options.text = app.help();
+        return false;
+    } catch (const CLI::ParseError& error) {
+        std::string message = error.what();
+        std::replace(message.begin(), message.end(), '\n', ' ');
+        fail(fmt::format("{}; see {} --help", message, app.get_name()));
+    }
+    const std::vector<std::string> rest = app.remaining();
+    for (const std::string& argument : rest)
+        if (argument.size() > 1 && argument[0] == '-') {
+            const std::string name = argument.substr(0, argument.find('='));
+            const std::string nearest = nearest_name(name, option_names(app));
+            fail(fmt::format("unknown option {}{}; see {} --help", name,
+                             nearest.empty() ? "" : "; did you mean " + nearest + "?", app.get_name()));
+        }
+    if (!rest.empty())
+        fail(fmt::format("unexpected argument '{}'; see {} --help", rest.front(), app.get_name()));
+    return true;
+}
+
+struct ToneTexts {
+    std::string curve = "srgb";
+
+    void add(CLI::App& app, ToneMapping& mapping) {
+        app.add_option("--tonemap", curve, "Curve for PNG: srgb, aces, agx, or reinhard (the original's)")
+            ->option_text("CURVE [srgb]")
+            ->group("Picture");
+        app.add_option("--exposure", mapping.exposure, "Brightness of PNG in stops: 1 doubles, -1 halves")
+            ->check(CLI::Range(-100.0, 100.0))
+            ->option_text("EV [0]")
+            ->group("Picture");
+    }
+};
+
+template <typename T> CLI::Option* add_list(CLI::App& app, const char* name, std::vector<T>& list, const char* help) {
+    return app.add_option(name, list, help)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+// The options of `render` that need a second look after CLI11 has read them.
+struct RenderTexts {
+    std::string time, crop, progress = "auto";
+    std::vector<std::string> defines;
+    std::vector<std::string> outputs;
+    ToneTexts tone;
+    bool version = false;
+};
+
+void add_picture_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
+    const char* group = "Picture";
+    add_list(app, "-o,--output", texts.outputs, "Where to write, .exr or .png; may be given several times")
+        ->option_text("FILE [SCENE.exr and SCENE.png here]")
+        ->group(group);
+    app.add_option("--width", render.width, "Pixels across; the view stays, and the shape too if given alone")
+        ->check(CLI::Range(1, 65536))
+        ->option_text("W [scene]")
+        ->group(group);
+    app.add_option("--height", render.height, "Pixels down; likewise")
+        ->check(CLI::Range(1, 65536))
+        ->option_text("H [scene]")
+        ->group(group);
+    app.add_option("--crop", texts.crop,
+                   "Render only this window of the picture: pixels, x1 and y1 excluded; or fractions if written with "
+                   "a dot and all at most 1")
+        ->option_text("X0,X1,Y0,Y1")
+        ->group(group);
+    texts.tone.add(app, render.tone_mapping);
+}
+
+void add_sampling_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
+    const char* group = "Sampling";
+    app.add_option("--spp", render.spp, "Samples per pixel, in place of rayPerPixelCount")
+        ->check(CLI::Range(1u, max_samples))
+        ->option_text("N [scene]")
+        ->group(group);
+    app.add_option("--time", texts.time, "Stop after this time if the samples are not done: 30s, 5m, 2h, or seconds")
+        ->option_text("T")
+        ->group(group);
+    app.add_option("--seed", render.seed, "Another seed gives another, independent noise pattern")
+        ->option_text("S [0]")
+        ->group(group);
+    app.add_option("--sample-offset", render.sample_offset,
+                   "Number of the first sample; runs with the same seed and disjoint ranges can be merged")
+        ->check(CLI::Range(0u, max_samples))
+        ->option_text("K [0]")
+        ->group(group);
+    app.add_option("--integrator", render.integrator,
+                   fmt::format("{}, in place of the scene's", fmt::join(integrator_names(), " or ")))
+        ->option_text("NAME [scene]")
+        ->group(group);
+    app.add_option("--grid", render.grid, "A .nvdb or .vdb file in place of the scene's density field")
+        ->option_text("FILE [scene]")
+        ->group(group);
+    add_list(app, "-D,--define", texts.defines, "Fills $KEY in the scene; may be given several times")
+        ->option_text("KEY=VALUE")
+        ->group(group);
+}
+
+void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
+    app.add_option("--device", render.device, "auto, a number from vkvol devices, part of a name, a UUID, or cpu")
+        ->option_text("DEVICE [auto]")
+        ->group("Device");
+    app.add_flag("--robust", render.robust, "Robust buffer access: out-of-range reads give zero")->group("Device");
+    app.add_flag("--validate", render.validate, "Switch the Vulkan validation layer on")->group("Device");
+    app.add_flag("--no-cache", render.no_cache, "Neither read nor write the pipeline cache")->group("Device");
+
+    app.add_option("--report", render.report, "Write what was done and how long it took, as JSON")
+        ->option_text("FILE.json")
+        ->group("Output");
+    app.add_option("--progress", texts.progress,
+                   "On standard error: auto (a bar on a terminal), json (a line each), none")
+        ->option_text("STYLE [auto]")
+        ->group("Output");
+    app.add_flag("-q,--quiet", render.quiet, "Print errors only")->group("Output");
+    app.add_flag("--strict", render.strict, "End with code 5 if a cap was hit or a sample was not finite")
+        ->group("Output");
+    app.add_flag("--version", texts.version, "Print the version")->group("Output");
+}
+
+void finish_render(RenderOptions& render, const RenderTexts& texts) {
+    if (render.scene.empty())
+        fail("no scene given; e.g. vkvol scenes/demo.xml, or see vkvol --help");
+    render.outputs.assign(texts.outputs.begin(), texts.outputs.end());
+    if (render.outputs.empty())
+        render.outputs = {render.scene.stem().string() + ".exr", render.scene.stem().string() + ".png"};
+    if (!texts.time.empty())
+        render.time_limit = parse_duration(texts.time);
+    if (!texts.crop.empty())
+        render.crop = parse_crop(texts.crop);
+    for (const std::string& define : texts.defines)
+        add_define(render.defines, define);
+    render.progress = choose<ProgressStyle>(
+        "--progress", texts.progress,
+        {{"auto", ProgressStyle::automatic}, {"json", ProgressStyle::json}, {"none", ProgressStyle::none}});
+    render.tone_mapping.curve = tone_curve(texts.tone.curve);
+    if (render.integrator)
+        try {
+            check_integrator(*render.integrator);
+        } catch (const InputError& error) {
+            fail(fmt::format("--integrator: {}", error.what()));
+        }
+}
+
+void parse_render(const std::vector<std::string>& arguments, Options& options) {
+    CLI::App app(render_description, "vkvol");
+    RenderTexts texts;
+    app.add_option("scene", options.render.scene, "Scene file; see scenes/README.md")->option_text("SCENE.xml");
+    add_picture_options(app, options.render, texts);
+    add_sampling_options(app, options.render, texts);
+    add_run_options(app, options.render, texts);
+    app.footer(render_footer);
+    if (!run_parser(app, arguments, options))
+        return;
+    if (texts.version) {
+        options.command = Command::print;
+        options.text = fmt::format("vkvol {}\n", version);
+        return;
+    }
+    finish_render(options.render, texts);
+}
+
+void parse_devices(const std::vector<std::string>& arguments, Options& options) {
+    CLI::App app("Lists the Vulkan devices, and why those that cannot be used cannot.", "vkvol devices");
+    app.add_flag("--json", options.devices_json, "For machines");
+    run_parser(app, arguments, options);
+}
+
+void parse_info(const std::vector<std::string>& arguments, Options& options) {
+    CLI::App app("Says what is in a density file: grids, types, bounds, transform, value range.", "vkvol info");
+    app.add_option("file", options.info_file, "The file")->option_text("FILE.nvdb|.vdb");
+    if (run_parser(app, arguments, options) && options.info_file.empty())
+        fail("info: no file given; e.g. vkvol info cloud.nvdb");
+}
+
+void parse_compare(const std::vector<std::string>& arguments, Options& options) {
+    CompareOptions& compare = options.compare;
+    CLI::App app(compare_description, "vkvol compare");
+    app.add_option("a", compare.a, "The image under test")->option_text("A.exr");
+    app.add_option("b", compare.b, "The reference")->option_text("B.exr");
+    app.add_option("--significance", compare.significance,
+                   "Chance that two renders of the same picture are called different")
+        ->check(CLI::Range(1e-12, 0.5))
+        ->option_text("P [0.01]");
+    app.add_option("--max-relmse", compare.max_relmse, "Judge by relMSE <= X alone, without statistics")
+        ->check(CLI::NonNegativeNumber)
+        ->option_text("X");
+    app.add_flag("--json", compare.json, "For machines");
+    app.footer(compare_footer);
+    if (run_parser(app, arguments, options) && compare.b.empty())
+        fail("compare: two images are needed; e.g. vkvol compare new.exr reference.exr");
+}
+
+void parse_merge(const std::vector<std::string>& arguments, Options& options) {
+    MergeOptions& merge = options.merge;
+    CLI::App app(merge_description, "vkvol merge");
+    std::vector<std::string> inputs, outputs;
+    ToneTexts tone;
+    app.add_option("images", inputs, "Renders of one picture")->option_text("A.exr B.exr ...");
+    add_list(app, "-o,--output", outputs, "Where to write, .exr or .png; may be given several times")
+        ->option_text("FILE")
+        ->group("Picture");
+    tone.add(app, merge.tone_mapping);
+    app.add_flag("-q,--quiet", merge.quiet, "Print errors only");
+    if (!run_parser(app, arguments, options))
+        return;
+    if (inputs.empty() || outputs.empty())
+        fail("merge: images and an output are needed; e.g. vkvol merge a.exr b.exr -o all.exr");
+    merge.inputs.assign(inputs.begin(), inputs.end());
+    merge.outputs.assign(outputs.begin(), outputs.end());
+    merge.tone_mapping.curve = tone_curve(tone.curve);
+}
+
+// A misspelt command would be taken for a scene.
+void check_command_spelling(const std::string& word, const std::vector<std::string>& commands) {
+    std::error_code ignored;
+    const std::filesystem::path path(word);
+    if (word.empty() || word[0] == '-' || path.has_extension() || std::filesystem::exists(path, ignored))
+        return;
+    if (const std::string nearest = nearest_name(word, commands); !nearest.empty())
+        fail(fmt::format("unknown command '{}'; did you mean {}?", word, nearest));
+}
+
+} // namespace
+
+Options parse_options(int argc, const char* const* argv) {
+    std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+    using Parser = void (*)(const std::vector<std::string>&, Options&);
+    const std::vector<std::pair<std::string, std::pair<Command, Parser>>> commands = {
+        {"render", {Command::render, parse_render}},
+        {"devices", {Command::devices, parse_devices}},
+        {"info", {Command::info, parse_info}},
+        {"compare", {Command::compare, parse_compare}},
+        {"merge", {Command::merge, parse_merge}}};
+    Options options;
+    Parser parse = parse_render;
+    if (!arguments.empty()) {
+        std::vector<std::string> names;
+        bool found = false;
+        for (const auto& [name, command] : commands) {
+            names.push_back(name);
+            if (name != arguments.front())
+                continue;
+            found = true;
+            options.command = command.first;
+            parse = command.second;
+        }
+        if (found)
+            arguments.erase(arguments.begin());
+        else
+            check_command_spelling(arguments.front(), names);
+    }
+    parse(arguments, options);
+    return options;
+}
+
+Crop resolve_crop(const std::optional<CropRequest>& request, const Picture& picture) {
+    if (!request)
+        return {0, picture.width, 0, picture.height};
+    std::array<double, 4> window = request->window;
+    if (request->fractions) // rounded, so that neighbouring windows meet without gap or overlap
+        window = {std::round(window[0] * picture.width), std::round(window[1] * picture.width),
+                  std::round(window[2] * picture.height), std::round(window[3] * picture.height)};
+    const bool inside = window[0] >= 0 && window[1] <= picture.width && window[2] >= 0 && window[3] <= picture.height;
+    if (!inside || window[0] >= window[1] || window[2] >= window[3])
+        fail(fmt::format("--crop {}: expected 0 <= x0 < x1 <= {} and 0 <= y0 < y1 <= {}", fmt::join(window, ","),
+                         picture.width, picture.height));
+    return {int(window[0]), int(window[1]), int(window[2]), int(window[3])};
+}
+
+double parse_duration(const std::string& text) {
+    double unit = 1.0;
+    std::string number = text;
+    if (!text.empty() && std::isalpha(static_cast<unsigned char>(text.back()))) {
+        const char suffix = text.back();
+        if (suffix != 's' && suffix != 'm' && suffix != 'h')
+            fail(fmt::format("--time: '{}' has an unknown unit; expected e.g. 30s, 5m or 2h", text));
+        unit = suffix == 'h' ? 3600.0 : suffix == 'm' ? 60.0 : 1.0;
+        number.pop_back();
+    }
+    const double seconds = parse_number(number, "--time") * unit;
+    if (!(seconds > 0.0))
+        fail(fmt::format("--time: '{}' is no time to render in; expected e.g. 30s, 5m or 2h", text));
+    return seconds;
+}
+
+} // namespace vkvol

@@ -1,0 +1,83 @@
+// The command line as plain data.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene.h"
+#include "tone_map.h"
+
+namespace vkvol {
+
+enum class Command { render, devices, info, compare, merge, print };
+enum class ProgressStyle { automatic, json, none };
+
+// x0, x1, y0, y1: pixels of the picture, or fractions of it.
+struct CropRequest {
+    std::array<double, 4> window{};
+    bool fractions = false;
+};
+
+struct RenderOptions {
+    std::filesystem::path scene;
+    std::vector<std::filesystem::path>
+        outputs; // never empty: the scene's stem with .exr and .png if none was asked for
+    std::optional<std::uint32_t> spp;
+    std::uint32_t seed = 0;
+    std::uint32_t sample_offset = 0; // the first sample's number: disjoint ranges of one seed can be merged
+    std::optional<std::string> integrator;
+    std::optional<double> time_limit; // seconds
+    std::optional<int> width, height;
+    std::optional<CropRequest> crop;
+    std::optional<std::filesystem::path> grid;
+    std::map<std::string, std::string> defines;
+    std::string device = "auto";
+    std::optional<std::filesystem::path> report;
+    ProgressStyle progress = ProgressStyle::automatic;
+    ToneMapping tone_mapping;
+    bool quiet = false;    // errors only
+    bool strict = false;   // caps hit or non-finite samples: exit code 5
+    bool robust = false;   // robust buffer access
+    bool validate = false; // validation layer
+    bool no_cache = false; // neither read nor write the pipeline cache
+};
+
+struct CompareOptions {
+    std::filesystem::path a, b; // b is the reference
+    std::optional<double> max_relmse;
+    double significance = 0.01; // chance that two equal renders are called different
+    bool json = false;
+};
+
+struct MergeOptions {
+    std::vector<std::filesystem::path> inputs;
+    std::vector<std::filesystem::path> outputs;
+    ToneMapping tone_mapping;
+    bool quiet = false;
+};
+
+struct Options {
+    Command command = Command::render;
+    RenderOptions render;
+    CompareOptions compare;
+    MergeOptions merge;
+    std::filesystem::path info_file;
+    bool devices_json = false;
+    std::string text; // Command::print: help or version, for standard output
+};
+
+// Throws InputError: one line with a hint.
+Options parse_options(int argc, const char* const* argv);
+
+// The window in pixels; the whole picture without a request. Throws InputError if it is empty or leaves the picture.
+Crop resolve_crop(const std::optional<CropRequest>& request, const Picture& picture);
+
+// "30s", "5m", "2h" or plain seconds. Throws InputError.
+double parse_duration(const std::string& text);
+
+} // namespace vkvol

@@ -1,0 +1,40 @@
+// The prose of the command line's help.
+#pragma once
+
+namespace vkvol {
+
+inline constexpr const char* version = VKVOL_VERSION;
+
+inline constexpr const char* render_description =
+    "Renders participating media: clouds, smoke, fog. Any Vulkan device will do.";
+
+inline constexpr const char* render_footer = R"(Other commands (each has its own --help):
+  vkvol devices               the Vulkan devices of this machine
+  vkvol info FILE.nvdb        what is in a density file
+  vkvol compare A.exr B.exr   are these renders of the same picture?
+  vkvol merge A.exr B.exr -o OUT.exr   one image of all their samples
+
+Examples:
+  vkvol scenes/demo.xml                            writes demo.exr and demo.png here
+  vkvol cloud.xml --width 480 --spp 4 -o look.png  a quick look
+  vkvol cloud.xml --time 5m -o cloud.exr           the best picture of five minutes
+  vkvol cloud.xml --spp 64 --sample-offset 64 -o part2.exr   samples 64 to 127, for merge
+  vkvol sweep.xml -D g=0.8 -o g0.8.exr             fills $g in the scene
+
+Exit codes: 0 done; 1 the render failed; 2 bad command line, scene or asset; 3 no usable device;
+4 compare found a difference; 5 caps hit or non-finite samples under --strict; 130 interrupted
+(what was rendered so far is written).)";
+
+inline constexpr const char* compare_description =
+    "Compares two renders: error figures, and whether noise alone explains the difference.";
+
+inline constexpr const char* compare_footer =
+    R"(Images with variance are judged by statistics: no pixel may differ by more standard errors than the
+most extreme of that many equal pixels would, nor may the picture means. Images without variance must
+be equal. Exit codes: 0 the same; 4 different; 2 the images cannot be compared.)";
+
+inline constexpr const char* merge_description =
+    "Merges renders of one picture: disjoint sample ranges or seeds of the same window, weighted by samples per "
+    "pixel, or disjoint windows side by side.";
+
+} // namespace vkvol

@@ -1,0 +1,102 @@
+#include "progress.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace vkvol {
+
+namespace {
+
+std::string duration_text(double seconds) {
+    const long long s = std::llround(std::min(seconds, 3.6e6));
+    if (s >= 3600)
+        return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+    return fmt::format("{}:{:02}", s / 60, s % 60);
+}
+
+int terminal_width(std::FILE* out) {
+    winsize size{};
+    return ioctl(fileno(out), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+} // namespace
+
+Progress::Progress(ProgressStyle style, bool quiet, std::uint32_t total, std::optional<double> time_limit,
+                   std::FILE* out)
+    : total_(total), time_limit_(time_limit), out_(out), start_(Clock::now()), last_draw_(start_) {
+    if (quiet || style == ProgressStyle::none)
+        mode_ = Mode::none;
+    else if (style == ProgressStyle::json)
+        mode_ = Mode::json;
+    else
+        mode_ = isatty(fileno(out)) ? Mode::bar : Mode::lines;
+}
+
+Progress::~Progress() {
+    finish();
+}
+
+void Progress::update(std::uint32_t samples, std::optional<double> noise) {
+    if (mode_ == Mode::none)
+        return;
+    const Clock::time_point now = Clock::now();
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    double fraction = total_ > 0 ? double(samples) / total_ : 0.0;
+    if (time_limit_ && *time_limit_ > 0.0)
+        fraction = std::max(fraction, seconds / *time_limit_);
+    fraction = std::min(fraction, 1.0);
+    const double remaining = fraction > 0.0 ? seconds * (1.0 - fraction) / fraction : 0.0;
+    const bool know_noise = noise && std::isfinite(*noise);
+
+    if (mode_ == Mode::json) {
+        fmt::print(out_,
+                   R"({{"progress": {:.4f}, "samples": {}, "total": {}, "seconds": {:.3f}, "remaining": {:.1f}, )",
+                   fraction, samples, total_, seconds, remaining);
+        fmt::print(out_, "\"noise\": {}}}\n", know_noise ? fmt::format("{:.6g}", *noise) : "null");
+        std::fflush(out_);
+        return;
+    }
+    const std::string status =
+        fmt::format("{}/{} samples, {} left{}", samples, total_, fraction > 0.0 ? duration_text(remaining) : "?",
+                    know_noise ? fmt::format(", noise {:.2g} %", 100.0 * *noise) : "");
+    if (mode_ == Mode::lines) {
+        if (const int tenth = static_cast<int>(fraction * 10.0); tenth > last_tenth_) {
+            last_tenth_ = tenth;
+            fmt::print(out_, "{:3.0f} %  {}\n", 100.0 * fraction, status);
+            std::fflush(out_);
+        }
+        return;
+    }
+    // Ten redraws a second are enough for eyes and cheap over slow connections.
+    if (drawn_ && fraction < 1.0 && now - last_draw_ < std::chrono::milliseconds(100))
+        return;
+    last_draw_ = now;
+    draw_bar(fraction, status);
+}
+
+void Progress::draw_bar(double fraction, const std::string& status) {
+    const int room = terminal_width(out_) - static_cast<int>(status.size()) - 10;
+    std::string line = fmt::format("\r\033[K{:3.0f} % ", 100.0 * fraction);
+    if (room >= 10) {
+        const int cells = std::min(room, 40);
+        const int full = static_cast<int>(fraction * cells);
+        line += fmt::format("[{:#<{}}{:.<{}}] ", "", full, "", cells - full);
+    }
+    line += status.substr(0, std::size_t(std::max(0, terminal_width(out_) - 8)));
+    fmt::print(out_, "{}", line);
+    std::fflush(out_);
+    drawn_ = true;
+}
+
+void Progress::finish() {
+    if (drawn_) {
+        fmt::print(out_, "\r\033[K");
+        std::fflush(out_);
+    }
+    drawn_ = false;
+}
+
+} // namespace vkvol

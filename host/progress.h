@@ -1,0 +1,48 @@
+// What is shown on standard error while a render runs.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <string>
+
+#include "options.h"
+
+namespace vkvol {
+
+// automatic: a bar that redraws itself on a terminal, else one line per ten percent. json: one object a line,
+// {"progress": 0.25, "samples": 16, "total": 64, "seconds": 1.5, "remaining": 4.5, "noise": 0.03}. none: nothing.
+class Progress {
+public:
+    // `total` in samples per pixel. With a time limit (seconds) whichever of the two is further along counts.
+    Progress(ProgressStyle style, bool quiet, std::uint32_t total, std::optional<double> time_limit = std::nullopt,
+             std::FILE* out = stderr);
+    ~Progress(); // finishes
+
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    // `noise`: present relative standard error of the picture, e.g. the root of the mean relative variance.
+    void update(std::uint32_t samples, std::optional<double> noise = std::nullopt);
+
+    // Removes the bar, so that other lines can be printed. Called twice it does nothing.
+    void finish();
+
+private:
+    enum class Mode { bar, lines, json, none };
+    using Clock = std::chrono::steady_clock;
+
+    void draw_bar(double fraction, const std::string& status);
+
+    Mode mode_;
+    std::uint32_t total_;
+    std::optional<double> time_limit_;
+    std::FILE* out_;
+    Clock::time_point start_;
+    Clock::time_point last_draw_;
+    int last_tenth_ = -1;
+    bool drawn_ = false;
+};
+
+} // namespace vkvol

@@ -1,0 +1,109 @@
+#include "report.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include "options_help.h"
+#include "scene_hash.h"
+
+namespace vkvol {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::uint64_t peak_host_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+Json seconds_json(const RenderResult& r, double write_seconds) {
+    Json passes;
+    for (std::size_t pass = 0; pass < pass_names.size(); ++pass)
+        passes[pass_names[pass]] = r.pass_seconds[pass];
+    return {{"load", r.load_seconds},     {"upload", r.upload_seconds}, {"pipeline", r.pipeline_seconds},
+            {"render", r.render_seconds}, {"write", write_seconds},     {"passes", passes}};
+}
+
+Json counts_json(const RenderResult& r) {
+    const RenderCounts& c = r.counts;
+    return {{"paths", c.paths},
+            {"realCollisions", c.real_collisions},
+            {"nullCollisions", c.null_collisions},
+            {"densityLookups", c.lookups()},
+            {"majorantCells", c.cells},
+            {"shadowRays", c.shadow_rays}};
+}
+
+Json caps_json(const RenderResult& r) {
+    const RenderCounts& c = r.counts;
+    Json samples = Json::array();
+    for (const NonFiniteSample& s : r.non_finite)
+        samples.push_back({{"x", s.x}, {"y", s.y}, {"sample", s.sample}});
+    return {{"depth", c.depth_caps},
+            {"steps", c.step_caps},
+            {"majorantViolations", c.majorant_violations},
+            {"queueOverflows", c.queue_overflows},
+            {"nonFiniteSamples", c.non_finite},
+            {"nonFiniteExamples", samples},
+            {"cleanedVoxels", c.cleaned_voxels}};
+}
+
+} // namespace
+
+Metadata make_metadata(const RenderOptions& options, const Scene& scene, const Device& device,
+                       const RenderResult& result) {
+    const auto most = std::max_element(result.film.samples.begin(), result.film.samples.end());
+    return {{"Software", std::string("vkvol ") + version},
+            {"samplesPerPixel", static_cast<int>(*most)},
+            {"renderTimeSeconds", static_cast<float>(result.render_seconds)},
+            {"vkvol/version", std::string(version)},
+            {"vkvol/sceneHash", scene_hash(scene)},
+            {"vkvol/integrator", result.integrator},
+            {"vkvol/specialization", result.specialization},
+            {"vkvol/seed", std::to_string(options.seed)},
+            {"vkvol/sampleOffset", static_cast<int>(options.sample_offset)},
+            {"vkvol/device", device.info().name},
+            {"vkvol/driver", device.info().driver},
+            {"vkvol/capsHit", result.counts.any_cap() ? 1 : 0},
+            {"vkvol/nonFiniteSamples", static_cast<int>(result.counts.non_finite)}};
+}
+
+std::string make_report(const RenderOptions& options, const Scene& scene, const Device& device,
+                        const RenderResult& result, double write_seconds) {
+    const auto [least, most] = std::minmax_element(result.film.samples.begin(), result.film.samples.end());
+    const double seconds = std::max(result.render_seconds, 1e-9);
+    Json report;
+    report["version"] = version;
+    report["scene"] = options.scene.string();
+    report["sceneHash"] = scene_hash(scene);
+    report["integrator"] = result.integrator;
+    report["specialization"] = result.specialization;
+    report["device"] = {{"name", device.info().name},
+                        {"type", device.info().type},
+                        {"driver", device.info().driver},
+                        {"vulkan", device.info().api}};
+    report["picture"] = {
+        {"width", scene.picture.width},
+        {"height", scene.picture.height},
+        {"crop", {result.film.crop.x0, result.film.crop.x1, result.film.crop.y0, result.film.crop.y1}}};
+    report["seed"] = options.seed;
+    report["sampleOffset"] = options.sample_offset;
+    report["samplesPerPixel"] = {{"least", *least}, {"most", *most}};
+    report["interrupted"] = result.interrupted;
+    report["seconds"] = seconds_json(result, write_seconds);
+    report["counts"] = counts_json(result);
+    report["perSecond"] = {{"samples", static_cast<double>(result.counts.paths) / seconds},
+                           {"tentativeCollisions", static_cast<double>(result.counts.lookups()) / seconds}};
+    report["caps"] = caps_json(result);
+    const double noise = relative_noise(result.film);
+    report["meanRelativeVariance"] = noise * noise;
+    report["memory"] = {{"peakHostBytes", peak_host_bytes()}, {"deviceBytes", result.device_bytes}};
+    report["warnings"] = scene.warnings;
+    return report.dump(2) + "\n";
+}
+
+} // namespace vkvol

@@ -1,0 +1,20 @@
+// What a render was and did, for machines: the JSON of --report and the metadata of an EXR.
+#pragma once
+
+#include <string>
+
+#include "device.h"
+#include "film.h"
+#include "options.h"
+#include "renderer.h"
+
+namespace vkvol {
+
+Metadata make_metadata(const RenderOptions& options, const Scene& scene, const Device& device,
+                       const RenderResult& result);
+
+// JSON text; the fields are documented in the README. `write_seconds`: spent on image files.
+std::string make_report(const RenderOptions& options, const Scene& scene, const Device& device,
+                        const RenderResult& result, double write_seconds);
+
+} // namespace vkvol

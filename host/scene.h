@@ -1,0 +1,103 @@
+// The authored scene as plain data: what the XML says, before any grid is opened or any device chosen.
+// World space is right-handed with y up. Lengths are world units, angles degrees, radiance linear Rec.709.
+// The CPU reference reads these structs too, so nothing here may depend on Vulkan.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace vkvol {
+
+using Rgb = glm::dvec3; // linear Rec.709, >= 0
+
+// Looks along -z at zero rotation. Direction of a camera-space d: Rz(roll) * Ry(yaw) * Rx(pitch) * d.
+struct Camera {
+    glm::dvec3 position{0.0};
+    double pitch = 0.0; // degrees, + looks up
+    double yaw = 0.0;   // degrees, + turns left
+    double roll = 0.0;  // degrees, + counter-clockwise about world z
+    double fov = 90.0;  // degrees, the full vertical angle of the reference frame, in (0, 180)
+};
+
+// The picture is a window of `width` x `height` pixels at (start_x, start_y) of a virtual reference frame.
+// Pixel (i, j) of the picture, row 0 on top, has its centre at u = (start_x + i + 1/2) / reference_width, likewise v.
+// Starts and references are real numbers so that a picture can be resized without changing its view.
+struct Picture {
+    int width = 400;
+    int height = 400;
+    double start_x = 0.0;
+    double start_y = 0.0;
+    double reference_width = 400.0;
+    double reference_height = 400.0;
+};
+
+// Half-open pixel window [x0, x1) x [y0, y1) of the picture: the part that is rendered.
+struct Crop {
+    int x0 = 0, x1 = 0, y0 = 0, y1 = 0;
+};
+
+struct Sphere {
+    glm::dvec3 center{0.0};
+    double radius = 1.0; // > 0
+};
+
+struct Box {
+    glm::dvec3 center{0.0};
+    glm::dvec3 size{1.0}; // full edge lengths, > 0
+};
+
+struct GridFile {
+    std::filesystem::path path; // .nvdb or .vdb
+    std::string grid = "density";
+};
+
+// What "per length" in sigma_a and sigma_s means: per index-space unit of the grid, or per world unit.
+// For a grid whose transform is M (index -> world) one voxel is |det M|^(1/3) world units long.
+enum class CoefficientUnit { voxel, world };
+
+// A participating medium filling a shape. Coefficients multiply the density, which is 1 in a sphere or box.
+struct Volume {
+    std::variant<Sphere, Box, GridFile> shape;
+    double sigma_a = 0.5;                          // absorption, >= 0 [1/unit]
+    double sigma_s = 0.5;                          // scattering, >= 0 [1/unit]
+    CoefficientUnit unit = CoefficientUnit::voxel; // without meaning for spheres and boxes: always world
+    double density_scale = 1.0;                    // >= 0, multiplies the density
+    double g = 0.0;                                // Henyey-Greenstein mean cosine, in (-1, 1), + is forward
+    Rgb Le{0.0};                                   // radiance emitted per absorption event: emission is sigma_a * Le
+};
+
+struct DirectionalLight {
+    glm::dvec3 direction{0.0, 1.0, 0.0}; // unit, from the scene towards the light
+    Rgb irradiance{0.0};                 // on a plane perpendicular to `direction`
+};
+
+// How the density between voxel centres is looked up. `stochastic` takes one of the eight corners with the
+// probability of its trilinear weight: exact in expectation wherever the density enters linearly.
+enum class Filter { nearest, trilinear, stochastic };
+
+struct RenderSettings {
+    std::string integrator;                 // empty: the best unbiased choice for the scene
+    std::uint32_t spp = 1;                  // samples per pixel, >= 1
+    std::optional<std::uint32_t> max_depth; // scattering events per path; none: unlimited
+    double roulette_threshold = 0.1;        // path weight below which Russian roulette is played; 0: never
+    Filter filter = Filter::stochastic;
+    double majorant_scale = 1.0; // >= 1 leaves every unbiased estimator unbiased; < 1 violates the majorant on purpose
+    int majorant_cell = 0;       // voxels along an edge of a majorant cell; 0: automatic
+};
+
+struct Scene {
+    Camera camera;
+    Picture picture;
+    std::vector<Volume> volumes;
+    std::vector<DirectionalLight> lights;
+    Rgb background{0.0}; // constant radiance from every direction
+    RenderSettings settings;
+    std::vector<std::string> warnings; // "file:line:column: ..." for what was understood but is not honoured
+};
+
+} // namespace vkvol

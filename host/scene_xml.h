@@ -1,0 +1,40 @@
+// Scene files: XML with root <options>, the vocabulary of scenes/README.md.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene.h"
+
+namespace vkvol {
+
+// Values for `$key` in attribute values and text.
+using Defines = std::map<std::string, std::string>;
+
+// What the command line puts in the place of the scene's own; known while loading so that checks and warnings fit.
+struct SceneOverrides {
+    std::optional<std::filesystem::path> grid; // instead of the density field, sphere or box, with its coefficients
+    std::optional<std::string> integrator;
+};
+
+// Throws InputError, "file:line:column: what is wrong; what would be right". What the scene asks for and this
+// renderer does not do ends up in Scene::warnings. Grid files are named here, not opened.
+Scene load_scene(const std::filesystem::path& file, const Defines& defines = {}, const SceneOverrides& overrides = {});
+
+// The same from text already in memory; `file` names it in messages, and relative paths start from its directory.
+Scene parse_scene(const std::string& xml, const std::filesystem::path& file, const Defines& defines = {},
+                  const SceneOverrides& overrides = {});
+
+// The same view in `width` x `height` pixels; with only one given the aspect is kept. Start and reference scale along.
+void resize_picture(Picture& picture, std::optional<int> width, std::optional<int> height);
+
+// The integrators of this version, for help and hints.
+std::vector<std::string> integrator_names();
+
+// Throws InputError (its message has no place) unless `name` is one of integrator_names().
+void check_integrator(const std::string& name);
+
+} // namespace vkvol

@@ -1,0 +1,25 @@
+// From linear radiance to 8-bit pictures.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "film.h"
+
+namespace vkvol {
+
+// srgb: clip, then the sRGB curve. aces: Narkowicz' fit of the ACES filmic curve, then sRGB. agx: Sobotka's AgX in the
+// polynomial form of Wrensch. reinhard: the original renderer's curve, v (1 + v/w^2) / (1 + v) with w the
+// brightest channel value of the picture, and no sRGB encoding.
+enum class ToneCurve { srgb, aces, agx, reinhard };
+
+struct ToneMapping {
+    ToneCurve curve = ToneCurve::srgb;
+    double exposure = 0.0; // stops: radiance is multiplied by 2^exposure first
+};
+
+// Three bytes a pixel, rows top to bottom. Values that are not finite become black.
+std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping);
+
+} // namespace vkvol

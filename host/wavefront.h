@@ -1,0 +1,80 @@
+// The wavefront: which passes run, in which order, over which queues.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "commands.h"
+#include "compute_pass.h"
+#include "pipeline_cache.h"
+#include "shared/items.h"
+
+namespace vkvol {
+
+// Sizes of the machine, none of which changes the picture.
+struct Tuning {
+    std::uint32_t slots = 0;          // paths in flight
+    std::uint32_t lanes = 0;          // invocations that share the track queue
+    std::uint32_t budget = 0;         // steps after which a lane takes no further item
+    std::uint32_t step_limit = 0;     // steps after which a flight is cut, and counted
+    double submit_seconds = 0.08;     // aimed at; no submit should hold a device much longer
+    std::uint32_t steps_per_look = 0; // tracking steps between two looks at what they led to
+};
+
+// What suits the device; fields of `wish` that are not 0 win.
+Tuning tune(const Device& device, const Tuning& wish = {});
+
+// Places in each queue.
+std::uint32_t queue_capacity(const Tuning& tuning);
+
+constexpr std::array pass_names = {"sky", "generate", "track", "accumulate"};
+using PassSeconds = std::array<double, pass_names.size()>;
+
+class Wavefront {
+public:
+    // `most_pixels`: of any film that will be bound.
+    Wavefront(const Device& device, const BoundBuffers& scene_buffers, std::uint32_t most_pixels,
+              const Specialization& specialization, const Tuning& tuning, VkPipelineCache cache);
+    ~Wavefront();
+    Wavefront(const Wavefront&) = delete;
+    Wavefront& operator=(const Wavefront&) = delete;
+
+    void bind_film(const Buffer& film);
+
+    // Samples [begin, end) of pixels [0, pixels) of the bound film. Then call advance() until it returns true.
+    void begin_batch(std::uint32_t begin, std::uint32_t end, std::uint32_t pixels);
+    // Hands out no further pixels; those begun are finished.
+    void stop_handing_out() { push_.stop = 1; }
+    // One submit of as many rounds as fit its time. True when no path is in flight any more.
+    bool advance();
+
+    std::uint64_t bytes() const; // of its buffers
+
+    // What happened in the last submit.
+    const shared::Counters& counters() const { return counters_; }
+    const PassSeconds& pass_seconds() const { return pass_seconds_; }
+
+private:
+    void record_round(VkCommandBuffer commands, std::uint32_t round);
+    void sort_pixels(std::uint32_t pixels);
+    void record_pass(VkCommandBuffer commands, std::uint32_t queue, const ComputePass& pass, std::uint32_t lanes);
+    void record_timestamp(VkCommandBuffer commands, std::uint32_t round, std::uint32_t mark);
+    void record_readback(VkCommandBuffer commands);
+    void read_timestamps();
+    void adapt_rounds(double seconds);
+
+    const Device& device_;
+    Tuning tuning_;
+    Commands commands_;
+    Buffer paths_, queue_items_, queues_, work_, counter_buffer_, readback_;
+    Bindings bindings_;
+    std::unique_ptr<ComputePass> begin_, sky_, prepare_, generate_, track_, accumulate_;
+    VkQueryPool timestamps_ = VK_NULL_HANDLE;
+    shared::PassPush push_{};
+    shared::Counters counters_{};
+    PassSeconds pass_seconds_{};
+    double sky_seconds_ = 0.0; // of this batch, reported with its first submit
+    std::uint32_t rounds_ = 1;
+};
+
+} // namespace vkvol

@@ -1,0 +1,313 @@
+#include "xml_reader.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fmt/format.h>
+
+#include "error.h"
+#include "nearest_name.h"
+
+namespace vkvol {
+
+namespace {
+
+const char* const spaces = " \t\r\n";
+
+std::string trimmed(const std::string& text) {
+    const std::size_t first = text.find_first_not_of(spaces);
+    if (first == std::string::npos)
+        return "";
+    return text.substr(first, text.find_last_not_of(spaces) - first + 1);
+}
+
+// For messages: one line of sane length, whatever the file holds.
+std::string quoted(std::string text) {
+    if (text.size() > 60)
+        text = text.substr(0, 57) + "...";
+    for (char& c : text)
+        if (std::iscntrl(static_cast<unsigned char>(c)))
+            c = ' ';
+    return "'" + text + "'";
+}
+
+bool is_text(pugi::xml_node node) {
+    return node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata;
+}
+
+bool is_key_character(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+}
+
+bool inside(double value, const Limits& limits) {
+    const bool above = limits.low_included ? value >= limits.low : value > limits.low;
+    const bool below = limits.high_included ? value <= limits.high : value < limits.high;
+    return above && below; // false for NaN
+}
+
+// Empty when `text` is a number within the limits, else what is wrong with it.
+std::string read_number(const std::string& text, const Limits& limits, double& value) {
+    const char* first = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
+    const char* last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(first, last, value);
+    if (text.empty())
+        return fmt::format("is empty; expected {}", limits.expected);
+    if (error == std::errc::result_out_of_range)
+        return fmt::format("{} is out of range; expected {}", quoted(text), limits.expected);
+    if (error != std::errc() || end != last || !std::isfinite(value))
+        return fmt::format("{} is not a number; expected {}", quoted(text), limits.expected);
+    if (!inside(value, limits))
+        return fmt::format("{} is out of range; expected {}", quoted(text), limits.expected);
+    return "";
+}
+
+std::string read_integer(const std::string& text, long long low, long long high, long long& value) {
+    const std::string expected = fmt::format("expected a whole number from {} to {}", low, high);
+    const char* first = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
+    const char* last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(first, last, value);
+    if (text.empty())
+        return "is empty; " + expected;
+    if (error == std::errc::invalid_argument || end != last)
+        return fmt::format("{} is not a whole number; {}", quoted(text), expected);
+    if (error != std::errc() || value < low || value > high)
+        return fmt::format("{} is out of range; {}", quoted(text), expected);
+    return "";
+}
+
+std::string element_hint(const std::string& name, const std::string& parent, std::vector<std::string> known) {
+    if (known.empty())
+        return fmt::format("; <{}> has no elements inside", parent);
+    for (std::string& candidate : known)
+        candidate = "<" + candidate + ">";
+    return name_hint("<" + name + ">", known);
+}
+
+} // namespace
+
+XmlDocument::XmlDocument(const std::string& text, std::filesystem::path file,
+                         const std::map<std::string, std::string>& defines, const std::string& root)
+    : text_(text), buffer_(text.begin(), text.end()), file_(std::move(file)), defines_(defines) {
+    parse();
+    find_root(root);
+    // Depth first without recursion, so that nesting is no danger. Positions come first: filling in moves strings.
+    struct Visitor : pugi::xml_tree_walker {
+        XmlDocument* self = nullptr;
+        bool for_each(pugi::xml_node& node) override {
+            if (node.type() == pugi::node_element)
+                self->record_position(node);
+            self->fill_in(node);
+            return true;
+        }
+    } visitor;
+    visitor.self = this;
+    document_.traverse(visitor);
+    check_defines_used();
+}
+
+void XmlDocument::parse() {
+    const pugi::xml_parse_result result =
+        document_.load_buffer_inplace(buffer_.data(), buffer_.size(), pugi::parse_default, pugi::encoding_utf8);
+    if (!result) {
+        std::string reason = result.description();
+        reason[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(reason[0])));
+        throw InputError(fmt::format("{}: malformed XML: {}", place_of_offset(result.offset), reason));
+    }
+}
+
+void XmlDocument::find_root(const std::string& name) {
+    for (const pugi::xml_node node : document_.children()) {
+        if (node.type() != pugi::node_element)
+            continue;
+        record_position(node);
+        if (root_)
+            throw InputError(
+                fmt::format("{}: a second root element <{}>; a scene has one <{}>", place(node), node.name(), name));
+        root_ = node;
+    }
+    if (root_.name() != name)
+        throw InputError(
+            fmt::format("{}: the root element is <{}>; a scene has <{}>", place(root_), root_.name(), name));
+}
+
+void XmlDocument::record_position(pugi::xml_node node) {
+    Position position;
+    position.offset = std::max<std::ptrdiff_t>(0, node.name() - buffer_.data() - 1);
+    position.text_offset = position.offset;
+    for (const pugi::xml_node child : node.children()) {
+        if (!is_text(child) || trimmed(child.value()).empty())
+            continue;
+        position.text_offset = child.value() - buffer_.data() + std::ptrdiff_t(std::strspn(child.value(), spaces));
+        break;
+    }
+    positions_[node.internal_object()] = position;
+}
+
+void XmlDocument::fill_in(pugi::xml_node node) {
+    if (is_text(node) && std::strchr(node.value(), '$'))
+        node.set_value(substitute(node.value(), text_place(node.parent())).c_str());
+    std::set<std::string> seen;
+    for (pugi::xml_attribute attribute : node.attributes()) {
+        if (!seen.insert(attribute.name()).second)
+            throw InputError(fmt::format("{}: attribute {} given twice in <{}>; remove one", place(attribute),
+                                         attribute.name(), node.name()));
+        if (std::strchr(attribute.value(), '$'))
+            attribute.set_value(substitute(attribute.value(), place(attribute)).c_str());
+    }
+}
+
+std::string XmlDocument::substitute(const std::string& raw, const std::string& place) {
+    std::string result;
+    for (std::size_t i = 0; i < raw.size();) {
+        if (raw[i] != '$') {
+            result += raw[i++];
+            continue;
+        }
+        if (i + 1 < raw.size() && raw[i + 1] == '$') { // $$ is a dollar sign
+            result += '$';
+            i += 2;
+            continue;
+        }
+        const bool braced = i + 1 < raw.size() && raw[i + 1] == '{';
+        const std::size_t first = i + (braced ? 2 : 1);
+        std::size_t last = first;
+        while (last < raw.size() && is_key_character(raw[last]))
+            ++last;
+        const std::string key = raw.substr(first, last - first);
+        if (key.empty() || (braced && (last == raw.size() || raw[last] != '}')))
+            throw InputError(place + ": a $ that names no key; write $key, ${key}, or $$ for a dollar sign");
+        keys_.insert(key);
+        const auto value = defines_.find(key);
+        if (value == defines_.end())
+            throw InputError(fmt::format("{}: ${} has no value; give it with -D {}=VALUE", place, key, key));
+        result += value->second;
+        i = last + (braced ? 1 : 0);
+    }
+    return result;
+}
+
+void XmlDocument::check_defines_used() const {
+    for (const auto& [key, value] : defines_) {
+        if (keys_.count(key))
+            continue;
+        const std::vector<std::string> known(keys_.begin(), keys_.end());
+        const std::string hint = known.empty() ? "; the scene has no $keys" : name_hint(key, known);
+        throw InputError(fmt::format("{}: -D {}={} is used nowhere in the scene{}", file_.string(), key, value, hint));
+    }
+}
+
+std::string XmlDocument::place_of_offset(std::ptrdiff_t offset) const {
+    const auto end = text_.begin() + std::clamp<std::ptrdiff_t>(offset, 0, std::ptrdiff_t(text_.size()));
+    const auto line = 1 + std::count(text_.begin(), end, '\n');
+    const auto line_start = std::find(std::make_reverse_iterator(end), text_.rend(), '\n').base();
+    // UTF-8 continuation bytes belong to the character before them.
+    const auto column = 1 + std::count_if(line_start, end, [](char c) { return (c & 0xC0) != 0x80; });
+    return fmt::format("{}:{}:{}", file_.string(), line, column);
+}
+
+std::string XmlDocument::place(pugi::xml_node element) const {
+    const auto position = positions_.find(element.internal_object());
+    return place_of_offset(position == positions_.end() ? 0 : position->second.offset);
+}
+
+std::string XmlDocument::place(pugi::xml_attribute attribute) const {
+    return place_of_offset(attribute.name() - buffer_.data());
+}
+
+std::string XmlDocument::text_place(pugi::xml_node element) const {
+    const auto position = positions_.find(element.internal_object());
+    return place_of_offset(position == positions_.end() ? 0 : position->second.text_offset);
+}
+
+void XmlElement::allow(const std::vector<std::string>& attributes, bool text,
+                       const std::vector<std::string>& children) const {
+    for (const pugi::xml_attribute attribute : node_.attributes()) {
+        if (std::find(attributes.begin(), attributes.end(), attribute.name()) != attributes.end())
+            continue;
+        const std::string hint = attributes.empty() ? "; it has none" : name_hint(attribute.name(), attributes);
+        throw InputError(fmt::format("{}: unknown attribute {} of <{}>{}", document_->place(attribute),
+                                     quoted(attribute.name()), name(), hint));
+    }
+    for (const pugi::xml_node child : node_.children()) {
+        if (child.type() == pugi::node_element &&
+            std::find(children.begin(), children.end(), child.name()) == children.end())
+            throw InputError(fmt::format("{}: unknown element <{}>{}", document_->place(child), child.name(),
+                                         element_hint(child.name(), name(), children)));
+        if (!text && is_text(child) && !trimmed(child.value()).empty())
+            fail_text(fmt::format("unexpected text {} in <{}>; its values are {}", quoted(trimmed(child.value())),
+                                  name(), children.empty() ? "attributes" : "elements"));
+    }
+}
+
+std::string XmlElement::text() const {
+    std::string joined;
+    for (const pugi::xml_node child : node_.children())
+        if (is_text(child))
+            joined += child.value();
+    return trimmed(joined);
+}
+
+double XmlElement::number(double fallback, const Limits& limits) const {
+    double value = fallback;
+    if (exists())
+        if (const std::string wrong = read_number(text(), limits, value); !wrong.empty())
+            fail_text(fmt::format("<{}> {}", name(), wrong));
+    return value;
+}
+
+long long XmlElement::integer(long long fallback, long long low, long long high) const {
+    long long value = fallback;
+    if (exists())
+        if (const std::string wrong = read_integer(text(), low, high, value); !wrong.empty())
+            fail_text(fmt::format("<{}> {}", name(), wrong));
+    return value;
+}
+
+bool XmlElement::boolean(bool fallback) const {
+    if (!exists())
+        return fallback;
+    const std::string value = text();
+    if (!value.empty() && std::strchr("1tTyY", value[0]))
+        return true;
+    if (!value.empty() && std::strchr("0fFnN", value[0]))
+        return false;
+    fail_text(fmt::format("<{}> {} is neither true nor false", name(), value.empty() ? "(empty)" : quoted(value)));
+}
+
+std::string XmlElement::attribute(const char* attribute_name, const std::string& fallback) const {
+    const pugi::xml_attribute found = node_.attribute(attribute_name);
+    return found ? trimmed(found.value()) : fallback;
+}
+
+double XmlElement::attribute_number(const char* attribute_name, double fallback, const Limits& limits) const {
+    double value = fallback;
+    if (has(attribute_name))
+        if (const std::string wrong = read_number(attribute(attribute_name), limits, value); !wrong.empty())
+            fail_attribute(attribute_name, fmt::format("<{}> {}: {}", name(), attribute_name, wrong));
+    return value;
+}
+
+long long XmlElement::attribute_integer(const char* attribute_name, long long fallback, long long low,
+                                        long long high) const {
+    long long value = fallback;
+    if (has(attribute_name))
+        if (const std::string wrong = read_integer(attribute(attribute_name), low, high, value); !wrong.empty())
+            fail_attribute(attribute_name, fmt::format("<{}> {}: {}", name(), attribute_name, wrong));
+    return value;
+}
+
+void XmlElement::fail(const std::string& message) const {
+    throw InputError(place() + ": " + message);
+}
+
+void XmlElement::fail_text(const std::string& message) const {
+    throw InputError(document_->text_place(node_) + ": " + message);
+}
+
+void XmlElement::fail_attribute(const char* attribute_name, const std::string& message) const {
+    throw InputError(document_->place(node_.attribute(attribute_name)) + ": " + message);
+}
+
+} // namespace vkvol

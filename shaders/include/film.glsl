@@ -1,0 +1,31 @@
+// Adding samples to a film entry. A slot owns its pixel while it has paths in flight, so no atomics; a pixel's samples
+// arrive in order, so its sums have the same bits however the work was scheduled.
+#ifndef FILM_GLSL
+#define FILM_GLSL
+#include "buffers.glsl"
+
+// high + low += x, the rounding error of high kept in low (Knuth's TwoSum; `precise` forbids the compiler to undo it).
+void add_compensated(inout vec3 high, inout vec3 low, vec3 x) {
+    precise vec3 sum = high + x;
+    precise vec3 part = sum - high;
+    precise vec3 error = (high - (sum - part)) + (x - part);
+    high = sum;
+    low += error;
+}
+
+// A sample that is not finite is dropped, counted, and its pixel and number recorded.
+void film_add(inout FilmPixel pixel, vec3 radiance, uint index, uint sample_index) {
+    if (any(isnan(radiance)) || any(isinf(radiance))) {
+        uint record = atomicAdd(counters.non_finite, 1u);
+        if (record < NON_FINITE_RECORDS) {
+            counters.non_finite_pixel[record] = index;
+            counters.non_finite_sample[record] = sample_index;
+        }
+        return;
+    }
+    add_compensated(pixel.sum, pixel.sum_low, radiance);
+    add_compensated(pixel.square, pixel.square_low, radiance * radiance);
+    pixel.count += 1u;
+}
+
+#endif

@@ -1,0 +1,9 @@
+// What every pass begins with: its group size and push constants.
+#ifndef PASS_GLSL
+#define PASS_GLSL
+#include "buffers.glsl"
+
+layout(local_size_x = WORKGROUP_SIZE) in;
+layout(scalar, push_constant) uniform PushBlock { PassPush push; };
+
+#endif

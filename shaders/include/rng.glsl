@@ -1,0 +1,60 @@
+// Counter-based random numbers, keyed by (pixel, sample, draw): no state but the draw counter, so a result does not
+// depend on scheduling. This comment is the specification; the CPU reference is written from it.
+//
+//   key   = (x | y << 16, sample, draw, seed)         x, y: pixel of the picture (not of the crop), 16 bits each
+//   words = pcg4d(key)                                 Jarzynski & Olano, "Hash Functions for GPU Rendering", 2020
+//   u_i   = (words_i >> 8) * 2^-24                     in [0, 1); distances come from -log(1 - u), at most 16.64
+//   tap   = ((words_z >> 8), (words_w >> 8), low bytes of words_x, words_y, words_z as one 24-bit number) * 2^-24
+//
+// Order of draws along a path; each draw yields four words:
+//   camera                 x, y: position in the pixel; z: first free flight
+//   tentative collision    x: next distance; y: event or roulette; tap: stochastic filtering
+//   shadow ray             x: first distance
+//   scattering             x: next free flight; y, z: phase function; w: roulette
+#ifndef RNG_GLSL
+#define RNG_GLSL
+
+struct Rng {
+    uint pixel; // x | y << 16
+    uint sample_index;
+    uint draw; // the next draw
+    uint seed;
+};
+
+uvec4 pcg4d(uvec4 v) {
+    v = v * 1664525u + 1013904223u;
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    v ^= v >> 16u;
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    return v;
+}
+
+uvec4 next_words(inout Rng rng) {
+    uvec4 words = pcg4d(uvec4(rng.pixel, rng.sample_index, rng.draw, rng.seed));
+    rng.draw += 1u;
+    return words;
+}
+
+// [0, 1), a multiple of 2^-24
+vec4 to_uniform(uvec4 words) {
+    return vec4(words >> 8u) * 5.9604644775390625e-8;
+}
+
+// Three numbers in [0, 1) that share no bits with the x and y of to_uniform(words).
+vec3 to_tap(uvec4 words) {
+    uint low_bytes = ((words.x & 255u) << 16u) | ((words.y & 255u) << 8u) | (words.z & 255u);
+    return vec3(uvec3(words.z >> 8u, words.w >> 8u, low_bytes)) * 5.9604644775390625e-8;
+}
+
+// Unit exponential variate, in [0, 16.64].
+float to_exponential(float u) {
+    return -log(1.0 - u);
+}
+
+#endif

@@ -1,0 +1,18 @@
+// Begin a batch: every slot is free, and no work is listed yet.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "../include/pass.glsl"
+
+void main() {
+    uint slot = gl_GlobalInvocationID.x;
+    if (slot >= frame.slots)
+        return;
+    paths[slot].pixel = NO_PIXEL;
+    queue_items[QUEUE_GENERATE * frame.queue_capacity + slot] = slot;
+    if (slot == 0u) {
+        for (uint queue = 0u; queue < QUEUE_COUNT; ++queue)
+            queues[queue] = QueueHeader(0u, queue == QUEUE_GENERATE ? frame.slots : 0u, 0u, 0u, 0u, 1u, 1u);
+        counters.next_work = 0u;
+        counters.work_count = 0u;
+    }
+}

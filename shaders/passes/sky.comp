@@ -1,0 +1,29 @@
+// Sort the batch's pixels: one whose every sample misses the medium gets its background here and now, in registers;
+// the others are listed as work for paths. So the empty part of a picture costs no path, no queue and no waiting.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "../include/pass.glsl"
+
+#include "../include/camera.glsl"
+#include "../include/film.glsl"
+#include "../include/shape.glsl"
+
+void main() {
+    uint pixel = push.pixel_begin + gl_GlobalInvocationID.x;
+    if (pixel >= push.pixel_end)
+        return;
+    FilmPixel entry = film[pixel];
+    bool hit = false;
+    for (uint i = push.sample_begin; i < push.sample_end && !hit; ++i) {
+        vec2 t;
+        Ray ray = to_medium(frame.volume, frame.camera.position, camera_direction(pixel, i));
+        hit = intersect_volume(frame.volume, ray, t);
+        film_add(entry, frame.background, pixel, i);
+    }
+    if (hit) {
+        work[atomicAdd(counters.work_count, 1u)] = pixel;
+    } else {
+        film[pixel] = entry;
+        atomicAdd(counters.paths, push.sample_end - push.sample_begin);
+    }
+}

@@ -1,0 +1,68 @@
+// The scene as the kernels see it. Render space has the axes and unit of world space and its origin amid the medium,
+// so that single precision is spent on the medium, not on where the world's origin happens to be.
+#ifndef SHARED_SCENE_H
+#define SHARED_SCENE_H
+#include "prologue.h"
+
+SHARED_BEGIN
+
+// Direction through the picture at (x, y) pixels from its top left corner: normalize(corner + x * right + y * down).
+struct CameraParams {
+    vec3 position; // render space
+    vec3 corner;
+    vec3 right; // per pixel
+    vec3 down;  // per pixel
+};
+
+// Medium space: index space for a grid, voxel centres at integers; the unit ball or the cube [-1, 1]^3 for shapes.
+struct VolumeParams {
+    vec4 to_medium[3]; // rows of the affine map render -> medium
+    vec3 bounds_min;   // medium space; where the filtered density can differ from 0
+    vec3 bounds_max;
+    ivec3 voxel_min; // active voxels, inclusive; 0 outside
+    ivec3 voxel_max;
+    ivec3 leaf_min; // first 8^3 block of the leaf table
+    ivec3 leaf_dims;
+    ivec3 cell_dims; // majorant cells, the first begins at bounds_min
+    float cell_size; // edge of a cell, voxels
+    float sigma_t;   // extinction at density 1 [1 / world unit], > 0
+    float albedo;    // sigma_s / sigma_t
+    float g;
+    vec3 emission; // (1 - albedo) * Le: radiance added at each real collision
+};
+
+struct LightParams {
+    vec3 direction; // unit, towards the light
+    vec3 irradiance;
+};
+
+struct FrameParams {
+    CameraParams camera;
+    VolumeParams volume;
+    LightParams light;
+    vec3 background;
+    float roulette_threshold;
+    uint max_depth;
+    uint seed;
+    uint crop_x; // the crop's first pixel within the picture
+    uint crop_y;
+    uint crop_width;
+    uint slots;          // paths in flight
+    uint queue_capacity; // a power of two, at least 2 * slots; see queue.glsl
+};
+
+// The same for all passes.
+struct PassPush {
+    uint queue;        // prepare: the queue whose consumer comes next
+    uint lanes;        // prepare: how many invocations may share the queue
+    uint sample_begin; // of the batch
+    uint sample_end;
+    uint pixel_begin; // sky: range of film entries
+    uint pixel_end;
+    uint stop;       // generate: hand out no further pixels
+    uint budget;     // loop iterations after which a lane takes no further item
+    uint step_limit; // steps after which a flight is cut, counted as a cap
+};
+
+SHARED_END
+#endif

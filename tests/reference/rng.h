@@ -1,0 +1,61 @@
+// Counter-based random numbers, written from the specification in the comment of shaders/include/rng.glsl:
+// a hash of (pixel, sample, draw, seed), so that a path can be repeated alone.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+namespace reference {
+
+// Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020.
+inline std::array<std::uint32_t, 4> pcg4d(std::array<std::uint32_t, 4> key) {
+    auto [x, y, z, w] = key;
+    for (std::uint32_t* v : {&x, &y, &z, &w})
+        *v = *v * 1664525u + 1013904223u;
+    const auto mix = [&] {
+        x += y * w;
+        y += z * x;
+        z += x * y;
+        w += y * z;
+    };
+    mix();
+    for (std::uint32_t* v : {&x, &y, &z, &w})
+        *v ^= *v >> 16;
+    mix();
+    return {x, y, z, w};
+}
+
+// The four words of one draw.
+struct Draw {
+    std::array<std::uint32_t, 4> words;
+
+    double uniform(int i) const { return (words[i] >> 8) * 0x1p-24; } // [0, 1)
+    double x() const { return uniform(0); }
+    double y() const { return uniform(1); }
+    double z() const { return uniform(2); }
+    double w() const { return uniform(3); }
+
+    // Three more numbers in [0, 1) that share no bits with x() and y().
+    glm::dvec3 tap() const {
+        const std::uint32_t low_bytes = (words[0] & 255u) << 16 | (words[1] & 255u) << 8 | (words[2] & 255u);
+        return glm::dvec3(words[2] >> 8, words[3] >> 8, low_bytes) * 0x1p-24;
+    }
+};
+
+struct Rng {
+    std::uint32_t pixel; // x | y << 16, of the picture
+    std::uint32_t sample;
+    std::uint32_t seed;
+    std::uint32_t draw = 0; // the next draw
+
+    Draw next() { return {pcg4d({pixel, sample, draw++, seed})}; }
+};
+
+// Unit exponential variate.
+inline double to_exponential(double u) {
+    return -std::log(1.0 - u);
+}
+
+} // namespace reference

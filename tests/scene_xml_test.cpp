@@ -1,0 +1,377 @@
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "error.h"
+#include "nearest_name.h"
+#include "scene_hash.h"
+#include "scene_xml.h"
+
+using namespace vkvol;
+
+namespace {
+
+const std::filesystem::path scenes = std::filesystem::path(VKVOL_SOURCE_DIR) / "scenes";
+
+Scene parse(const std::string& body, const Defines& defines = {}, const SceneOverrides& overrides = {}) {
+    return parse_scene("<options>" + body + "</options>", "s.xml", defines, overrides);
+}
+
+std::string error_of_text(const std::string& xml, const Defines& defines = {}) {
+    try {
+        parse_scene(xml, "s.xml", defines);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+// `body` starts at line 2, column 1.
+std::string error_of(const std::string& body, const Defines& defines = {}) {
+    return error_of_text("<options>\n" + body + "\n</options>", defines);
+}
+
+const GridFile& grid_of(const Scene& scene) {
+    return std::get<GridFile>(scene.volumes.at(0).shape);
+}
+
+bool warns(const Scene& scene, const std::string& words) {
+    return std::any_of(scene.warnings.begin(), scene.warnings.end(),
+                       [&](const std::string& warning) { return warning.find(words) != std::string::npos; });
+}
+
+} // namespace
+
+TEST_CASE("an empty scene has the defaults of the documentation", "[cpu][scene_xml]") {
+    const Scene scene = parse("");
+    CHECK(scene.volumes.empty());
+    CHECK(scene.lights.empty());
+    CHECK(scene.warnings.empty());
+    CHECK(scene.settings.integrator.empty());
+    CHECK_FALSE(scene.settings.max_depth);
+    CHECK(scene.settings.spp == 1);
+    CHECK(scene.picture.width == 400);
+    CHECK(scene.picture.reference_height == 400.0);
+    CHECK(scene.camera.fov == 90.0);
+}
+
+TEST_CASE("every element of the vocabulary is read", "[cpu][scene_xml]") {
+    const Scene scene = parse(R"(
+        <densityField baseDir="..\fields\" grid="smoke">cloud.nvdb</densityField>
+        <sigma_a unit="world"> 0.25 </sigma_a><sigma_s unit="world">4</sigma_s>
+        <heyneygreenstein_g>-0.3</heyneygreenstein_g>
+        <medium r="1" g=".5" b="0" multiplier="2"/>
+        <light x="0" y="3" z="4" r="1" g="2" b="3" multiplier="10"/>
+        <backgroundColor r="0.1" g="0.2" b="0.3" multiplier="2"/>
+        <camera x="1" y="2" z="+3" pitch="-19" yaw="-8" roll="5" fov="60"/>
+        <width startOffset="54" reference="216">108</width><height startOffset="27" reference="108">54</height>
+        <rayPerPixelCount>64</rayPerPixelCount><maxDepth>0</maxDepth><integrator>ratioTracking</integrator>
+        <filter>trilinear</filter><russianRoulette threshold="0.05"/><majorant scale="1.5" cell="16"/>
+        <lightRayDensityMultiplier>2.5</lightRayDensityMultiplier>
+        <shadowRayDensityMultiplier>2.5</shadowRayDensityMultiplier>
+        <multiThreaded freeThreads="1">true</multiThreaded><multiThreadedChunkSize>20</multiThreadedChunkSize>)");
+    CHECK(scene.warnings.empty());
+    REQUIRE(scene.volumes.size() == 1);
+    const Volume& volume = scene.volumes[0];
+    CHECK(grid_of(scene).path == "../fields/cloud.nvdb");
+    CHECK(grid_of(scene).grid == "smoke");
+    CHECK(volume.sigma_a == 0.25);
+    CHECK(volume.sigma_s == 4.0);
+    CHECK(volume.unit == CoefficientUnit::world);
+    CHECK(volume.g == -0.3);
+    CHECK(volume.Le == Rgb(2, 1, 0));
+    CHECK(volume.density_scale == 2.5);
+    REQUIRE(scene.lights.size() == 1);
+    CHECK(scene.lights[0].direction.y == Approx(0.6));
+    CHECK(scene.lights[0].direction.z == Approx(0.8));
+    CHECK(scene.lights[0].irradiance == Rgb(10, 20, 30));
+    CHECK(scene.background.z == Approx(0.6));
+    CHECK(scene.camera.position == glm::dvec3(1, 2, 3));
+    CHECK(scene.camera.pitch == -19.0);
+    CHECK(scene.camera.yaw == -8.0);
+    CHECK(scene.camera.roll == 5.0);
+    CHECK(scene.camera.fov == 60.0);
+    CHECK(scene.picture.width == 108);
+    CHECK(scene.picture.start_x == 54.0);
+    CHECK(scene.picture.reference_width == 216.0);
+    CHECK(scene.picture.height == 54);
+    CHECK(scene.picture.start_y == 27.0);
+    CHECK(scene.picture.reference_height == 108.0);
+    CHECK(scene.settings.spp == 64);
+    CHECK(scene.settings.max_depth.value() == 0);
+    CHECK(scene.settings.integrator == "ratioTracking");
+    CHECK(scene.settings.filter == Filter::trilinear);
+    CHECK(scene.settings.roulette_threshold == 0.05);
+    CHECK(scene.settings.majorant_scale == 1.5);
+    CHECK(scene.settings.majorant_cell == 16);
+}
+
+TEST_CASE("spheres and boxes hold homogeneous media", "[cpu][scene_xml]") {
+    const Scene ball = parse(R"(<sphere x="1" y="2" z="3" radius="4"/><sigma_a>1</sigma_a>)");
+    CHECK(std::get<Sphere>(ball.volumes.at(0).shape).center == glm::dvec3(1, 2, 3));
+    CHECK(std::get<Sphere>(ball.volumes.at(0).shape).radius == 4.0);
+    CHECK(ball.volumes[0].unit == CoefficientUnit::world);
+    CHECK(ball.warnings.empty());
+    const Scene box = parse(R"(<box width="2" height="3" depth="4"/>)");
+    CHECK(std::get<Box>(box.volumes.at(0).shape).size == glm::dvec3(2, 3, 4));
+}
+
+TEST_CASE("the report's own scenes load unmodified", "[cpu][scene_xml]") {
+    const std::map<std::string, double> g = {{"bunny-deltaTracking", 0.2},
+                                             {"explosion-deltaTracking", 0.8},
+                                             {"bunny-ratioTracking", 0.8},
+                                             {"explosion-ratioTracking", 0.8}};
+    for (const auto& [name, expected] : g) {
+        INFO(name);
+        const Scene scene = load_scene(scenes / "thesis" / (name + ".xml"));
+        REQUIRE(scene.volumes.size() == 1);
+        CHECK(scene.volumes[0].g == expected);
+        CHECK(grid_of(scene).path.string().find('\\') == std::string::npos);
+        CHECK(grid_of(scene).path.parent_path() == (scenes / "DensityFields").lexically_normal());
+        CHECK(scene.settings.max_depth.value() == 16);
+        CHECK(scene.picture.height == 1080);
+        CHECK(scene.lights.size() == (name.find("ratio") != std::string::npos ? 1 : 0));
+        CHECK(scene.warnings.size() == 2); // stepSize and emission
+        CHECK(warns(scene, "stepSize"));
+        CHECK(warns(scene, "emission"));
+    }
+}
+
+TEST_CASE("what is not rendered is said, with its place", "[cpu][scene_xml]") {
+    const auto warning = [](const std::string& body) {
+        const Scene scene = parse_scene("<options>\n" + body + "\n<sphere/></options>", "s.xml");
+        return scene.warnings.size() == 1 ? scene.warnings[0] : std::to_string(scene.warnings.size()) + " warnings";
+    };
+    CHECK_THAT(warning("  <importanceSampling>true</importanceSampling>"), Catch::StartsWith("s.xml:2:3: importance"));
+    CHECK_THAT(warning(R"(<stepSize min=".1" max="1"/>)"), Catch::StartsWith("s.xml:2:1: stepSize"));
+    CHECK_THAT(warning("<shadowRayDensityMultiplier>4</shadowRayDensityMultiplier>"),
+               Catch::Contains("lightRayDensityMultiplier, 1"));
+    CHECK_THAT(warning(R"(<emission r="1" multiplier="5"/>)"), Catch::Contains("not rendered"));
+    CHECK_THAT(warning(R"(<models><model baseDir="..\M\">a.obj</model></models>)"), Catch::StartsWith("s.xml:2:9: "));
+    CHECK_THAT(warning("<diffuseRebounds><rebound>5</rebound></diffuseRebounds>"), Catch::Contains("without effect"));
+    CHECK_THAT(warning("<fileName>x.png</fileName>"), Catch::Contains("-o"));
+    CHECK_THAT(warning("<intersectionHandler>diffuse</intersectionHandler>"), Catch::Contains("<integrator>"));
+    CHECK_THAT(warning("<width startOffset=\"3\">640</width>"), Catch::Contains("640 pixels"));
+    CHECK_THAT(warning("<sigma_a unit=\"voxel\">1</sigma_a>"), Catch::Contains("world unit"));
+    CHECK_THAT(warning(R"(<integrator>deltaTracking</integrator><light y="1" r="1"/>)"),
+               Catch::Contains("ratioTracking renders it"));
+    CHECK(warns(parse("<sigma_a>1</sigma_a>"), "without effect"));
+}
+
+TEST_CASE("a scene that is rendered as asked warns of nothing", "[cpu][scene_xml]") {
+    CHECK(parse(R"(<sphere/><width>640</width><height>480</height><importanceSampling>no</importanceSampling>
+                   <light x="0" y="0" z="0" r="1" multiplier="0"/><emission r="1" multiplier="0"/><models/>
+                   <densityField baseDir=""/><fileName/><integrator/>)")
+              .warnings.empty());
+}
+
+TEST_CASE("unknown names are errors with the nearest known name", "[cpu][scene_xml]") {
+    CHECK(error_of("    <sigma_b>1</sigma_b>") == "s.xml:2:5: unknown element <sigma_b>; did you mean <sigma_a>?");
+    CHECK(error_of("<Camera/>") == "s.xml:2:1: unknown element <Camera>; did you mean <camera>?");
+    CHECK_THAT(error_of("<zzz/>"), Catch::StartsWith("s.xml:2:1: unknown element <zzz>; known are <densityField>, "));
+    CHECK(error_of(R"(<camera x="1" pich="2"/>)") ==
+          "s.xml:2:15: unknown attribute 'pich' of <camera>; did you mean pitch?");
+    CHECK(error_of(R"(<maxDepth unit="x">3</maxDepth>)") ==
+          "s.xml:2:11: unknown attribute 'unit' of <maxDepth>; it has none");
+    CHECK(error_of("<camera><x>1</x></camera>") == "s.xml:2:9: unknown element <x>; <camera> has no elements inside");
+    CHECK(error_of("<camera>1 2 3</camera>") ==
+          "s.xml:2:9: unexpected text '1 2 3' in <camera>; its values are attributes");
+    CHECK(error_of("hello") == "s.xml:2:1: unexpected text 'hello' in <options>; its values are elements");
+    CHECK(error_of("<filter>\n trilinar</filter>") == "s.xml:3:2: unknown filter 'trilinar'; did you mean trilinear?");
+    CHECK(error_of("<integrator>ratiotracking</integrator>") ==
+          "s.xml:2:13: unknown integrator 'ratiotracking'; did you mean ratioTracking?");
+    for (const char* name : {"densitySampling", "homogeneousRayMarcherNEE", "homogeneousRayMarcherImproved",
+                             "heterogeneousPerlinNoise", "nanoVDBSimple", "nanoVDBEmission"})
+        CHECK_THAT(error_of(std::string("<integrator>") + name + "</integrator>"),
+                   Catch::StartsWith("s.xml:2:13: ") && Catch::Contains("not available in this version; use "));
+}
+
+TEST_CASE("values must be what they claim to be", "[cpu][scene_xml]") {
+    CHECK(error_of("<sigma_a>thick</sigma_a>") ==
+          "s.xml:2:10: <sigma_a> 'thick' is not a number; expected a number >= 0");
+    CHECK(error_of("<sigma_a>1.5f</sigma_a>") ==
+          "s.xml:2:10: <sigma_a> '1.5f' is not a number; expected a number >= 0");
+    CHECK(error_of("<sigma_s>-1</sigma_s>") == "s.xml:2:10: <sigma_s> '-1' is out of range; expected a number >= 0");
+    CHECK(error_of("<sigma_s/>") == "s.xml:2:1: <sigma_s> is empty; expected a number >= 0");
+    for (const char* value :
+         {"nan", "inf", "-inf", "1e999", "0x10", "1,5", "1 2", "--1", "+-1", "+", "-", "1e", "NaN(1)"})
+        CHECK_THAT(error_of(std::string("<sigma_s>") + value + "</sigma_s>"),
+                   Catch::StartsWith("s.xml:2:10: <sigma_s>"));
+    for (const char* value : {"1", "-1", "1.5", "nan"})
+        CHECK_THAT(error_of(std::string("<heyneygreenstein_g>") + value + "</heyneygreenstein_g>"),
+                   Catch::StartsWith("s.xml:2:21: ") &&
+                       Catch::EndsWith("expected a number between -1 and 1, both excluded"));
+    CHECK(error_of("<rayPerPixelCount>0</rayPerPixelCount>") == "s.xml:2:19: <rayPerPixelCount> '0' is out of range; "
+                                                                "expected a whole number from 1 to 2147483647");
+    CHECK_THAT(error_of("<rayPerPixelCount>1.5</rayPerPixelCount>"), Catch::Contains("not a whole number"));
+    CHECK_THAT(error_of("<rayPerPixelCount>99999999999999999999</rayPerPixelCount>"), Catch::Contains("out of range"));
+    CHECK_THAT(error_of("<maxDepth>-1</maxDepth>"), Catch::Contains("from 0 to"));
+    for (const char* value : {"0", "-5", "65537"})
+        CHECK_THAT(error_of(std::string("<width>") + value + "</width>"),
+                   Catch::StartsWith("s.xml:2:8: ") && Catch::EndsWith("from 1 to 65536"));
+    for (const char* value : {"0", "180", "-10", "360"})
+        CHECK_THAT(error_of(std::string("<camera fov=\"") + value + "\"/>"),
+                   Catch::StartsWith("s.xml:2:9: <camera> fov: ") && Catch::Contains("between 0 and 180"));
+    CHECK_THAT(error_of(R"(<light x="0" y="0" z="0" r="1"/>)"),
+               Catch::StartsWith("s.xml:2:1: <light> has no direction"));
+    CHECK_THAT(error_of(R"(<light y="1" r="-1"/>)"), Catch::StartsWith("s.xml:2:14: <light> r: '-1' is out of range"));
+    CHECK_THAT(error_of(R"(<sphere radius="0"/>)"), Catch::StartsWith("s.xml:2:9: <sphere> radius: "));
+    CHECK_THAT(error_of(R"(<majorant cell="2.5"/>)"), Catch::StartsWith("s.xml:2:11: <majorant> cell: "));
+    CHECK_THAT(error_of(R"(<sigma_a unit="metre">1</sigma_a>)"),
+               Catch::StartsWith("s.xml:2:10: ") && Catch::Contains("voxel or world"));
+    CHECK_THAT(error_of("<importanceSampling>maybe</importanceSampling>"), Catch::Contains("neither true nor false"));
+    CHECK_THAT(error_of(R"(<densityField baseDir="x/"/>)"),
+               Catch::StartsWith("s.xml:2:1: <densityField> names no file"));
+    CHECK_THAT(error_of("<densityField>a.nvdb</densityField><sigma_a unit=\"world\">1</sigma_a><sigma_s>1</sigma_s>"),
+               Catch::Contains("different units"));
+}
+
+TEST_CASE("nothing is given twice", "[cpu][scene_xml]") {
+    CHECK(error_of("<sigma_a>1</sigma_a>\n  <sigma_a>2</sigma_a>") ==
+          "s.xml:3:3: a second <sigma_a>, after the one at s.xml:2:1; remove one");
+    CHECK_THAT(error_of("<heyneygreenstein_g>0</heyneygreenstein_g><heynegreenstein_g>0</heynegreenstein_g>"),
+               Catch::StartsWith("s.xml:2:43: a second <heynegreenstein_g>"));
+    CHECK(error_of(R"(<camera x="1" x="2"/>)") == "s.xml:2:15: attribute x given twice in <camera>; remove one");
+    CHECK_THAT(error_of("<sphere/>\n<box/>"), Catch::StartsWith("s.xml:3:1: a <box> beside the <sphere> at s.xml:2:1"));
+    CHECK_THAT(error_of("<sphere/>\n<densityField>a.nvdb</densityField>"), Catch::Contains("one medium"));
+}
+
+TEST_CASE("malformed XML is located", "[cpu][scene_xml]") {
+    CHECK_THAT(error_of_text("<options>\n  <camera></light>\n</options>"),
+               Catch::StartsWith("s.xml:2:") && Catch::Contains("malformed XML"));
+    CHECK_THAT(error_of_text("<options>"), Catch::Contains("malformed XML"));
+    CHECK_THAT(error_of_text(""), Catch::StartsWith("s.xml:1:1: malformed XML: no document element found"));
+    CHECK_THAT(error_of_text("<scene/>"), Catch::StartsWith("s.xml:1:1: the root element is <scene>"));
+    CHECK_THAT(error_of_text("<options/>\n<options/>"), Catch::StartsWith("s.xml:2:1: a second root element"));
+    CHECK_THAT(error_of_text("<!-- \xc3\xa4\xc3\xb6 --><options><x/></options>"), Catch::StartsWith("s.xml:1:21: "));
+}
+
+TEST_CASE("garbage never gets further than an InputError", "[cpu][scene_xml]") {
+    const std::string seed = "<options><camera x=\"1\" fov=\"$f\"/><sigma_a unit='world'>1</sigma_a><sphere/>"
+                             "<width startOffset=\"1\" reference=\"3\">10</width><![CDATA[x]]>&amp;&#0;</options>";
+    std::mt19937 random(1);
+    for (int i = 0; i < 5000; ++i) {
+        std::string text = seed;
+        for (int edits = 1 + int(random() % 6); edits > 0 && !text.empty(); --edits) {
+            const std::size_t at = random() % text.size();
+            switch (random() % 3) {
+            case 0:
+                text[at] = char(random());
+                break;
+            case 1:
+                text.erase(at, 1 + random() % 8);
+                break;
+            default:
+                text.insert(at, text.substr(random() % text.size(), 1 + random() % 8));
+            }
+        }
+        CHECK_NOTHROW(error_of_text(text, {{"f", "20"}}));
+    }
+    CHECK_NOTHROW(error_of_text(std::string(100000, '<')));
+    std::string deep;
+    for (int i = 0; i < 200000; ++i)
+        deep += "<options>";
+    CHECK_NOTHROW(error_of_text(deep));
+    for (int i = 0; i < 200000; ++i)
+        deep += "</options>";
+    CHECK_THAT(error_of_text(deep), Catch::StartsWith("s.xml:1:10: unknown element <options>"));
+}
+
+TEST_CASE("$keys are filled in", "[cpu][scene_xml]") {
+    const Scene scene =
+        parse(R"(<sphere radius="${r}"/><sigma_s>$s</sigma_s><camera x="1${r}5"/>)", {{"r", "2"}, {"s", "0.5"}});
+    CHECK(std::get<Sphere>(scene.volumes.at(0).shape).radius == 2.0);
+    CHECK(scene.volumes[0].sigma_s == 0.5);
+    CHECK(scene.camera.position.x == 125.0);
+    CHECK(grid_of(parse("<densityField>a$$b.nvdb</densityField>")).path == "a$b.nvdb");
+    CHECK(error_of("<sigma_s> $s</sigma_s>") == "s.xml:2:11: $s has no value; give it with -D s=VALUE");
+    CHECK(error_of(R"(<camera x="$x"/>)") == "s.xml:2:9: $x has no value; give it with -D x=VALUE");
+    CHECK_THAT(error_of(R"(<camera x="${x"/>)", {{"x", "1"}}), Catch::Contains("names no key"));
+    CHECK_THAT(error_of(R"(<camera x="$"/>)"), Catch::Contains("names no key"));
+    CHECK(error_of(R"(<camera x="$size"/>)", {{"size", "1"}, {"sise", "2"}}) ==
+          "s.xml: -D sise=2 is used nowhere in the scene; did you mean size?");
+    CHECK_THAT(error_of("", {{"k", "2"}}), Catch::Contains("the scene has no $keys"));
+    CHECK_THAT(error_of("<sigma_s>$s</sigma_s>", {{"s", "-1"}}), Catch::StartsWith("s.xml:2:10: <sigma_s> '-1'"));
+    CHECK_THAT(error_of("<sigma_s>$s</sigma_s>", {{"s", "<a/>"}}), Catch::Contains("not a number"));
+}
+
+TEST_CASE("paths start from the scene file", "[cpu][scene_xml]") {
+    const auto path = [](const std::string& element) {
+        return grid_of(parse_scene("<options>" + element + "</options>", "/scenes/a/s.xml")).path.string();
+    };
+    CHECK(path("<densityField>f.nvdb</densityField>") == "/scenes/a/f.nvdb");
+    CHECK(path("<densityField baseDir=\"..\\fields\\\">x\\f.nvdb</densityField>") == "/scenes/fields/x/f.nvdb");
+    CHECK(path("<densityField baseDir=\"fields\">f.nvdb</densityField>") == "/scenes/a/fields/f.nvdb");
+    CHECK(path("<densityField baseDir=\"/data/\">f.nvdb</densityField>") == "/data/f.nvdb");
+}
+
+TEST_CASE("the command line's grid and integrator replace the scene's", "[cpu][scene_xml]") {
+    SceneOverrides overrides;
+    overrides.grid = "other.vdb";
+    const Scene grid = parse("<densityField grid=\"d\">a.nvdb</densityField><sigma_s>3</sigma_s>", {}, overrides);
+    CHECK(grid_of(grid).path == "other.vdb");
+    CHECK(grid_of(grid).grid == "d");
+    CHECK(grid.volumes[0].sigma_s == 3.0);
+    CHECK(grid_of(parse("<sphere/>", {}, overrides)).grid == "density");
+    CHECK(grid_of(parse("", {}, overrides)).path == "other.vdb");
+    overrides = {};
+    overrides.integrator = "ratioTracking";
+    const Scene scene = parse("<integrator>nanoVDBSimple</integrator><sphere/><light y=\"1\" r=\"1\"/>", {}, overrides);
+    CHECK(scene.settings.integrator == "ratioTracking");
+    CHECK(scene.warnings.empty());
+}
+
+TEST_CASE("scene files that cannot be read", "[cpu][scene_xml]") {
+    CHECK_THROWS_WITH(load_scene("no/such.xml"), "no/such.xml: no such scene file");
+    CHECK_THROWS_WITH(load_scene(scenes), Catch::Contains("is a directory"));
+    CHECK_THROWS_AS(load_scene("/dev/zero"), InputError);
+}
+
+TEST_CASE("a resized picture keeps its view", "[cpu][scene_xml]") {
+    Picture picture{1080, 540, 540, 270, 2160, 1080};
+    resize_picture(picture, 270, std::nullopt);
+    CHECK(picture.width == 270);
+    CHECK(picture.height == 135);
+    CHECK(picture.start_x == 135.0);
+    CHECK(picture.reference_width == 540.0);
+    CHECK(picture.start_y == 67.5);
+    CHECK(picture.reference_height == 270.0);
+    resize_picture(picture, 100, 100);
+    CHECK(picture.width == 100);
+    CHECK(picture.height == 100);
+    CHECK(picture.start_x / picture.reference_width == Approx(0.25));
+    CHECK_THROWS_AS(resize_picture(picture, 0, std::nullopt), InputError);
+    CHECK_THROWS_AS(resize_picture(picture, std::nullopt, 70000), InputError);
+}
+
+TEST_CASE("nearest names", "[cpu][scene_xml]") {
+    CHECK(edit_distance("kitten", "sitting") == 3);
+    CHECK(edit_distance("", "abc") == 3);
+    CHECK(edit_distance("ab", "ba") == 1);
+    CHECK(nearest_name("hight", {"width", "height"}) == "height");
+    CHECK(nearest_name("xyz", {"width", "height"}).empty());
+}
+
+TEST_CASE("the scene hash follows what the picture depends on", "[cpu][scene_xml]") {
+    const std::string hash = scene_hash(parse("<sphere/>"));
+    CHECK(hash.size() == 16);
+    CHECK(scene_hash(parse("<sphere/><rayPerPixelCount>9</rayPerPixelCount><filter>trilinear</filter>")) == hash);
+    for (const char* change :
+         {"<sigma_a>1</sigma_a>", "<maxDepth>3</maxDepth>", "<camera x=\"1\"/>", "<width>401</width>",
+          "<heyneygreenstein_g>.1</heyneygreenstein_g>", "<filter>nearest</filter>", "<light y=\"1\" r=\"1\"/>",
+          "<backgroundColor r=\"1\"/>", "<medium r=\"1\"/>"})
+        CHECK(scene_hash(parse(std::string("<sphere/>") + change)) != hash);
+    CHECK(scene_hash(parse("<box/>")) != hash);
+    CHECK(scene_hash(parse_scene("<options><densityField>f.nvdb</densityField></options>", "/a/s.xml")) ==
+          scene_hash(parse_scene("<options><densityField>f.nvdb</densityField></options>", "/b/s.xml")));
+}
+
+TEST_CASE("the schema knows every integrator", "[cpu][scene_xml]") {
+    std::ifstream stream(scenes / "vkvol.xsd");
+    const std::string schema((std::istreambuf_iterator<char>(stream)), {});
+    for (const std::string& name : integrator_names())
+        CHECK_THAT(schema, Catch::Contains("\"" + name + "\""));
+}

@@ -1,0 +1,33 @@
+#include "recipes.h"
+
+#include "error.h"
+
+namespace vkvol {
+
+const std::vector<Recipe>& recipes() {
+    static const std::vector<Recipe> all{
+        {"constant", "a cube of density 1, SIZE samples wide", 16, make_constant},
+        {"sphere", "a ball of density 1 with a soft edge, in a cube of SIZE samples", 32, make_sphere},
+        {"ramp", "density (i + 1) / SIZE in a cube of SIZE samples: linear in x", 16, make_ramp},
+        {"checker", "cubes of 4 samples, alternately 0 and 1, and one tile, SIZE samples wide", 32, make_checker},
+        {"voxel", "a single sample of density 1 at a negative, odd index", 0, make_voxel},
+        {"spike", "a ball of density 0.05 that hides one sample of 20, in a cube of SIZE samples", 32, make_spike},
+        {"tiles", "active tiles of 128^3 and 8^3 samples beside one leaf of samples", 0, make_tiles},
+        {"empty", "a grid without active samples", 0, make_empty},
+        {"cumulus", "a cumulus cloud 60 units wide, SIZE samples wide", 320, make_cumulus},
+        {"explosion", "a rising fireball: density and temperature, SIZE samples wide", 160, make_explosion},
+    };
+    return all;
+}
+
+const Recipe& find_recipe(std::string_view name) {
+    std::string names;
+    for (const Recipe& recipe : recipes()) {
+        if (recipe.name == name)
+            return recipe;
+        names += (names.empty() ? "" : ", ") + std::string(recipe.name);
+    }
+    throw InputError("there is no field '" + std::string(name) + "'; the fields are " + names);
+}
+
+} // namespace vkvol
