@@ -56,7 +56,7 @@ struct Sums {
     std::array<double, 3> a{}, b{}, variance{};
 };
 
-void add_pixel(const glm::vec3& a, const glm::vec3& b, const glm::vec3& variance, Sums& sums, Comparison& result) {
+void add_pixel(const glm::vec3& a, const glm::vec3& b, Sums& sums, Comparison& result) {
     for (int c = 0; c < 3; ++c) {
         const double difference = double(a[c]) - double(b[c]);
         sums.squared += difference * difference;
@@ -64,7 +64,6 @@ void add_pixel(const glm::vec3& a, const glm::vec3& b, const glm::vec3& variance
         sums.peak = std::max(sums.peak, double(b[c]));
         sums.a[c] += a[c];
         sums.b[c] += b[c];
-        sums.variance[c] += variance[c];
         ++sums.values;
         result.max_abs_difference = std::max(result.max_abs_difference, std::abs(difference));
     }
@@ -86,7 +85,8 @@ double normal_of_t(double t, double freedom) {
 }
 
 // Few samples may all miss a rare bright event, and then underestimate mean and variance alike. So both images are
-// given the larger of their two variances per sample; the sample count of its owner gives the degrees of freedom.
+// given the larger of their two variances per sample, and the smaller sample count gives the degrees of freedom: a
+// mean of few skewed samples is far from normal, however well the variance is known.
 struct Noise {
     double variance = 0.0; // of the difference
     double freedom = std::numeric_limits<double>::infinity();
@@ -105,10 +105,21 @@ Noise noise_of(const Film& a, const Film& b, std::size_t pixel, int channel) {
     }
     const double per_sample = std::max(own_a * n_a, own_b * n_b);
     noise.variance = per_sample * (1 / n_a + 1 / n_b);
-    noise.freedom = std::max(1.0, (own_a * n_a >= own_b * n_b ? n_a : n_b) - 1);
+    noise.freedom = std::max(1.0, std::min(n_a, n_b) - 1);
     // All of 16 samples in one image and none of 16 in the other: at most 2^-32 by chance.
     noise.certain = per_sample == 0.0 && n_a >= 16 && n_b >= 16;
     return noise;
+}
+
+// For sums over many pixels: unbiased, where noise_of is cautious. One sample has no variance of its own.
+double plain_variance(const Film& a, const Film& b, std::size_t pixel, int channel) {
+    const double own_a = a.variance[pixel][channel];
+    const double own_b = b.variance[pixel][channel];
+    const double n_a = a.samples[pixel];
+    const double n_b = b.samples[pixel];
+    if (n_a == 1)
+        return own_b * n_b + own_b;
+    return n_b == 1 ? own_a + own_a * n_a : own_a + own_b;
 }
 
 bool is_tested(const Noise& noise) {
@@ -177,7 +188,9 @@ Comparison compare_films(const Film& a, const Film& b, const CompareOptions& opt
             continue;
         }
         result.identical_pixels += same_bits(a.mean[i], b.mean[i]) ? 1 : 0;
-        add_pixel(a.mean[i], b.mean[i], variance_of(i), sums, result);
+        add_pixel(a.mean[i], b.mean[i], sums, result);
+        for (int c = 0; c < 3; ++c)
+            sums.variance[c] += plain_variance(a, b, i, c);
         add_z(a, b, i, result);
     }
     const double values = std::max(1.0, double(sums.values));

@@ -1,10 +1,13 @@
 #include "majorant_grid.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace vkvol {
 
 namespace {
+
+constexpr std::int64_t most_cells = std::int64_t{1} << 24;
 
 glm::ivec3 cell_dims(const DensityField& field, int cell) {
     const glm::ivec3 extent = field.voxel_max - field.voxel_min + 2;
@@ -41,12 +44,10 @@ void raise_block(MajorantGrid& grid, const DensityField& field, glm::ivec3 first
                     raise(grid, glm::ivec3(x, y, z) - grid.origin, value);
 }
 
-} // namespace
-
-MajorantGrid make_majorant_grid(const DensityField& field, int cell) {
+MajorantGrid build(const DensityField& field, int cell) {
     MajorantGrid grid;
-    grid.cell = cell > 0 ? cell : 8;
-    while (count(cell_dims(field, grid.cell)) > (std::int64_t{1} << 24))
+    grid.cell = cell;
+    while (count(cell_dims(field, grid.cell)) > most_cells)
         grid.cell *= 2;
     grid.origin = field.voxel_min - 1;
     grid.dims = cell_dims(field, grid.cell);
@@ -57,6 +58,42 @@ MajorantGrid make_majorant_grid(const DensityField& field, int cell) {
             for (block.z = 0; block.z < field.leaf_dims.z; ++block.z)
                 raise_block(grid, field, (field.leaf_min + block) * 8);
     return grid;
+}
+
+// Cells of twice the edge. The corners of a large cell are those of the eight it is made of.
+MajorantGrid merge_cells(const MajorantGrid& fine) {
+    MajorantGrid coarse;
+    coarse.cell = 2 * fine.cell;
+    coarse.origin = fine.origin;
+    coarse.dims = (fine.dims + 1) / 2;
+    coarse.bounds.assign(static_cast<std::size_t>(count(coarse.dims)), 0.0f);
+    std::size_t i = 0;
+    for (int x = 0; x < fine.dims.x; ++x)
+        for (int y = 0; y < fine.dims.y; ++y)
+            for (int z = 0; z < fine.dims.z; ++z) {
+                float& bound = coarse.bounds[(std::size_t(x / 2) * coarse.dims.y + y / 2) * coarse.dims.z + z / 2];
+                bound = std::max(bound, fine.bounds[i++]);
+            }
+    return coarse;
+}
+
+// Steps per voxel of a ray's length, averaged over the grid's box and all directions: a ray meets a face every
+// cell / 1.5 voxels, 1.5 being the mean of |x| + |y| + |z| over unit vectors.
+double steps_per_voxel(const MajorantGrid& grid, double sigma_t) {
+    const double sum = std::accumulate(grid.bounds.begin(), grid.bounds.end(), 0.0);
+    return sigma_t * sum / static_cast<double>(grid.bounds.size()) + 1.5 / grid.cell;
+}
+
+} // namespace
+
+MajorantGrid make_majorant_grid(const DensityField& field, int cell, double sigma_t) {
+    if (cell > 0)
+        return build(field, cell);
+    MajorantGrid best = build(field, 4);
+    for (MajorantGrid next = merge_cells(best); next.cell <= 64; next = merge_cells(next))
+        if (steps_per_voxel(next, sigma_t) < steps_per_voxel(best, sigma_t))
+            best = next;
+    return best;
 }
 
 } // namespace vkvol

@@ -25,8 +25,8 @@ class Reader {
 public:
     explicit Reader(const std::filesystem::path& file) : file_(file), stream_(file, std::ios::binary) {
         if (!stream_)
-            throw InputError(fmt::format("{}: cannot be opened: {}; check the path (it is taken relative to the scene "
-                                         "file, or to the current directory on the command line)",
+            throw InputError(fmt::format("{}: cannot be opened: {}; check the path in the scene (it starts from the "
+                                         "scene file's directory), or name another file with --grid",
                                          file.string(), std::strerror(errno)));
         std::error_code error;
         size_ = std::filesystem::file_size(file, error);

@@ -2,11 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
-#include <cmath>
 #include <fmt/format.h>
 
 #include "error.h"
 #include "nearest_name.h"
+#include "option_values.h"
 #include "options_help.h"
 #include "scene_xml.h"
 
@@ -16,56 +16,6 @@ namespace {
 
 constexpr std::uint32_t max_samples = 2147483647;
 
-[[noreturn]] void fail(const std::string& message) {
-    throw InputError("command line: " + message);
-}
-
-double parse_number(const std::string& text, const std::string& what) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-        fail(fmt::format("{}: '{}' is not a number", what, text));
-    return value;
-}
-
-std::vector<std::string> split(const std::string& text, char separator) {
-    std::vector<std::string> parts;
-    std::size_t start = 0;
-    for (std::size_t end; (end = text.find(separator, start)) != std::string::npos; start = end + 1)
-        parts.push_back(text.substr(start, end - start));
-    parts.push_back(text.substr(start));
-    return parts;
-}
-
-CropRequest parse_crop(const std::string& text) {
-    const std::vector<std::string> parts = split(text, ',');
-    if (parts.size() != 4)
-        fail(fmt::format("--crop: '{}' has {} numbers; expected x0,x1,y0,y1", text, parts.size()));
-    CropRequest request;
-    bool all_below_one = true;
-    for (std::size_t i = 0; i < 4; ++i) {
-        request.window[i] = parse_number(parts[i], "--crop");
-        all_below_one = all_below_one && request.window[i] <= 1.0;
-    }
-    request.fractions = all_below_one && text.find('.') != std::string::npos;
-    for (const double value : request.window)
-        if (!request.fractions && value != std::floor(value))
-            fail(fmt::format("--crop: '{}': pixels are whole numbers, and fractions are all at most 1", text));
-    return request;
-}
-
-void add_define(std::map<std::string, std::string>& defines, const std::string& text) {
-    const std::size_t equals = text.find('=');
-    const std::string key = text.substr(0, equals);
-    const bool is_name = !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
-        return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
-    });
-    if (equals == std::string::npos || !is_name)
-        fail(fmt::format("-D: '{}' is not of the form key=value, key of letters, digits and _", text));
-    if (!defines.emplace(key, text.substr(equals + 1)).second)
-        fail(fmt::format("-D: {} given twice", key));
-}
-
 template <typename T>
 T choose(const char* option, const std::string& name, const std::vector<std::pair<std::string, T>>& choices) {
     std::vector<std::string> names;
@@ -74,7 +24,7 @@ T choose(const char* option, const std::string& name, const std::vector<std::pai
             return value;
         names.push_back(known);
     }
-    fail(fmt::format("{}: unknown value '{}'{}", option, name, name_hint(name, names)));
+    fail_command_line(fmt::format("{}: unknown value '{}'{}", option, name, name_hint(name, names)));
 }
 
 ToneCurve tone_curve(const std::string& name) {
@@ -109,19 +59,31 @@ bool run_parser(CLI::App& app, const std::vector<std::string>& arguments, Option
     } catch (const CLI::ParseError& error) {
         std::string message = error.what();
         std::replace(message.begin(), message.end(), '\n', ' ');
-        fail(fmt::format("{}; see {} --help", message, app.get_name()));
+        fail_command_line(fmt::format("{}; see {} --help", message, app.get_name()));
     }
     const std::vector<std::string> rest = app.remaining();
     for (const std::string& argument : rest)
         if (argument.size() > 1 && argument[0] == '-') {
             const std::string name = argument.substr(0, argument.find('='));
             const std::string nearest = nearest_name(name, option_names(app));
-            fail(fmt::format("unknown option {}{}; see {} --help", name,
-                             nearest.empty() ? "" : "; did you mean " + nearest + "?", app.get_name()));
+            fail_command_line(fmt::format("unknown option {}{}; see {} --help", name,
+                                          nearest.empty() ? "" : "; did you mean " + nearest + "?", app.get_name()));
         }
     if (!rest.empty())
-        fail(fmt::format("unexpected argument '{}'; see {} --help", rest.front(), app.get_name()));
+        fail_command_line(fmt::format("unexpected argument '{}'; see {} --help", rest.front(), app.get_name()));
     return true;
+}
+
+// CLI::Range lets NaN pass.
+CLI::Validator in_range(double low, double high) {
+    return CLI::Validator(
+        [low, high](std::string& text) {
+            double value = 0.0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+            const bool good = error == std::errc() && end == text.data() + text.size() && value >= low && value <= high;
+            return good ? "" : fmt::format("'{}' is not a number from {:g} to {:g}", text, low, high);
+        },
+        "");
 }
 
 struct ToneTexts {
@@ -132,14 +94,17 @@ struct ToneTexts {
             ->option_text("CURVE [srgb]")
             ->group("Picture");
         app.add_option("--exposure", mapping.exposure, "Brightness of PNG in stops: 1 doubles, -1 halves")
-            ->check(CLI::Range(-100.0, 100.0))
+            ->check(in_range(-100.0, 100.0))
             ->option_text("EV [0]")
             ->group("Picture");
     }
 };
 
 template <typename T> CLI::Option* add_list(CLI::App& app, const char* name, std::vector<T>& list, const char* help) {
-    return app.add_option(name, list, help)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    return app.add_option(name, list, help)
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
 // The options of `render` that need a second look after CLI11 has read them.
@@ -178,7 +143,8 @@ void add_sampling_options(CLI::App& app, RenderOptions& render, RenderTexts& tex
         ->check(CLI::Range(1u, max_samples))
         ->option_text("N [scene]")
         ->group(group);
-    app.add_option("--time", texts.time, "Stop after this time if the samples are not done: 30s, 5m, 2h, or seconds")
+    app.add_option("--time", texts.time,
+                   "Render for this long: 30s, 5m, 2h, or seconds; with --spp, whichever is reached first")
         ->option_text("T")
         ->group(group);
     app.add_option("--seed", render.seed, "Another seed gives another, independent noise pattern")
@@ -224,7 +190,7 @@ void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
 
 void finish_render(RenderOptions& render, const RenderTexts& texts) {
     if (render.scene.empty())
-        fail("no scene given; e.g. vkvol scenes/demo.xml, or see vkvol --help");
+        fail_command_line("no scene given; e.g. vkvol scenes/demo.xml, or see vkvol --help");
     render.outputs.assign(texts.outputs.begin(), texts.outputs.end());
     if (render.outputs.empty())
         render.outputs = {render.scene.stem().string() + ".exr", render.scene.stem().string() + ".png"};
@@ -242,7 +208,7 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
         try {
             check_integrator(*render.integrator);
         } catch (const InputError& error) {
-            fail(fmt::format("--integrator: {}", error.what()));
+            fail_command_line(fmt::format("--integrator: {}", error.what()));
         }
 }
 
@@ -274,7 +240,7 @@ void parse_info(const std::vector<std::string>& arguments, Options& options) {
     CLI::App app("Says what is in a density file: grids, types, bounds, transform, value range.", "vkvol info");
     app.add_option("file", options.info_file, "The file")->option_text("FILE.nvdb|.vdb");
     if (run_parser(app, arguments, options) && options.info_file.empty())
-        fail("info: no file given; e.g. vkvol info cloud.nvdb");
+        fail_command_line("info: no file given; e.g. vkvol info cloud.nvdb");
 }
 
 void parse_compare(const std::vector<std::string>& arguments, Options& options) {
@@ -284,15 +250,15 @@ void parse_compare(const std::vector<std::string>& arguments, Options& options) 
     app.add_option("b", compare.b, "The reference")->option_text("B.exr");
     app.add_option("--significance", compare.significance,
                    "Chance that two renders of the same picture are called different")
-        ->check(CLI::Range(1e-12, 0.5))
+        ->check(in_range(1e-12, 0.5))
         ->option_text("P [0.01]");
     app.add_option("--max-relmse", compare.max_relmse, "Judge by relMSE <= X alone, without statistics")
-        ->check(CLI::NonNegativeNumber)
+        ->check(in_range(0.0, 1e300))
         ->option_text("X");
     app.add_flag("--json", compare.json, "For machines");
     app.footer(compare_footer);
     if (run_parser(app, arguments, options) && compare.b.empty())
-        fail("compare: two images are needed; e.g. vkvol compare new.exr reference.exr");
+        fail_command_line("compare: two images are needed; e.g. vkvol compare new.exr reference.exr");
 }
 
 void parse_merge(const std::vector<std::string>& arguments, Options& options) {
@@ -309,7 +275,7 @@ void parse_merge(const std::vector<std::string>& arguments, Options& options) {
     if (!run_parser(app, arguments, options))
         return;
     if (inputs.empty() || outputs.empty())
-        fail("merge: images and an output are needed; e.g. vkvol merge a.exr b.exr -o all.exr");
+        fail_command_line("merge: images and an output are needed; e.g. vkvol merge a.exr b.exr -o all.exr");
     merge.inputs.assign(inputs.begin(), inputs.end());
     merge.outputs.assign(outputs.begin(), outputs.end());
     merge.tone_mapping.curve = tone_curve(tone.curve);
@@ -322,7 +288,7 @@ void check_command_spelling(const std::string& word, const std::vector<std::stri
     if (word.empty() || word[0] == '-' || path.has_extension() || std::filesystem::exists(path, ignored))
         return;
     if (const std::string nearest = nearest_name(word, commands); !nearest.empty())
-        fail(fmt::format("unknown command '{}'; did you mean {}?", word, nearest));
+        fail_command_line(fmt::format("unknown command '{}'; did you mean {}?", word, nearest));
 }
 
 } // namespace
@@ -356,36 +322,6 @@ Options parse_options(int argc, const char* const* argv) {
     }
     parse(arguments, options);
     return options;
-}
-
-Crop resolve_crop(const std::optional<CropRequest>& request, const Picture& picture) {
-    if (!request)
-        return {0, picture.width, 0, picture.height};
-    std::array<double, 4> window = request->window;
-    if (request->fractions) // rounded, so that neighbouring windows meet without gap or overlap
-        window = {std::round(window[0] * picture.width), std::round(window[1] * picture.width),
-                  std::round(window[2] * picture.height), std::round(window[3] * picture.height)};
-    const bool inside = window[0] >= 0 && window[1] <= picture.width && window[2] >= 0 && window[3] <= picture.height;
-    if (!inside || window[0] >= window[1] || window[2] >= window[3])
-        fail(fmt::format("--crop {}: expected 0 <= x0 < x1 <= {} and 0 <= y0 < y1 <= {}", fmt::join(window, ","),
-                         picture.width, picture.height));
-    return {int(window[0]), int(window[1]), int(window[2]), int(window[3])};
-}
-
-double parse_duration(const std::string& text) {
-    double unit = 1.0;
-    std::string number = text;
-    if (!text.empty() && std::isalpha(static_cast<unsigned char>(text.back()))) {
-        const char suffix = text.back();
-        if (suffix != 's' && suffix != 'm' && suffix != 'h')
-            fail(fmt::format("--time: '{}' has an unknown unit; expected e.g. 30s, 5m or 2h", text));
-        unit = suffix == 'h' ? 3600.0 : suffix == 'm' ? 60.0 : 1.0;
-        number.pop_back();
-    }
-    const double seconds = parse_number(number, "--time") * unit;
-    if (!(seconds > 0.0))
-        fail(fmt::format("--time: '{}' is no time to render in; expected e.g. 30s, 5m or 2h", text));
-    return seconds;
 }
 
 } // namespace vkvol

@@ -111,13 +111,14 @@ void add_counts(RenderCounts& total, const shared::Counters& c) {
     total.queue_overflows += c.queue_overflows;
 }
 
-std::string describe(const Specialization& s) {
+std::string describe(const Specialization& s, const LoadedVolume& volume) {
     constexpr std::array media = {"no medium", "homogeneous sphere", "homogeneous box", "grid"};
     constexpr std::array types = {"float", "Fp4", "Fp8", "Fp16", "FpN"};
     constexpr std::array filters = {"nearest", "trilinear", "stochastic"};
     std::string text = media[s[SPEC_MEDIUM]];
     if (s[SPEC_MEDIUM] == MEDIUM_GRID)
-        text += fmt::format(" {}, {} filter", types[s[SPEC_GRID_TYPE]], filters[s[SPEC_FILTER]]);
+        text += fmt::format(" {}, {} filter, majorant cells of {} voxels", types[s[SPEC_GRID_TYPE]],
+                            filters[s[SPEC_FILTER]], volume.majorants->cell);
     text += s[SPEC_FREE_FLIGHT] == FREE_FLIGHT_ANALYTIC ? ", analytic free flight" : ", delta free flight";
     if (s[SPEC_NEE] != NEE_NONE)
         text += s[SPEC_TRANSMITTANCE] == TRANSMITTANCE_ANALYTIC ? ", light with analytic transmittance"
@@ -139,7 +140,7 @@ public:
         result_.counts.cleaned_voxels = volume.field ? volume.field->cleaned : 0;
         const Specialization specialization = specialize(scene, volume, integrator);
         result_.integrator = integrator.name;
-        result_.specialization = describe(specialization);
+        result_.specialization = describe(specialization, volume);
         buffers_.emplace(device, commands_, volume);
         frame_ = make_frame(scene, volume, job.crop, job.seed);
         volume = {};

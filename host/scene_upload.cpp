@@ -37,6 +37,12 @@ int medium_kind(const Scene& scene, const LoadedVolume& loaded) {
     return loaded.field ? MEDIUM_GRID : MEDIUM_NONE;
 }
 
+// Extinction at density 1 [1 / world unit].
+double world_sigma_t(const Volume& volume, const DensityField* field) {
+    const double sigma_t = (volume.sigma_a + volume.sigma_s) * volume.density_scale;
+    return field && volume.unit == CoefficientUnit::voxel ? sigma_t / field->voxel_size() : sigma_t;
+}
+
 // Medium space -> world: a ball, a cube, or the grid's own index space.
 glm::dmat4 medium_to_world(const Volume& volume, const LoadedVolume& loaded) {
     const auto placed = [](glm::dvec3 center, glm::dvec3 half) {
@@ -83,11 +89,8 @@ shared::VolumeParams make_volume(const Volume& volume, const LoadedVolume& loade
     params.bounds_max = bounds.high;
     if (loaded.field)
         fill_grid(params, loaded);
-    double sigma_t = (volume.sigma_a + volume.sigma_s) * volume.density_scale;
-    if (loaded.field && volume.unit == CoefficientUnit::voxel)
-        sigma_t /= loaded.field->voxel_size();
     const double albedo = volume.sigma_s > 0.0 ? volume.sigma_s / (volume.sigma_a + volume.sigma_s) : 0.0;
-    params.sigma_t = static_cast<float>(sigma_t);
+    params.sigma_t = static_cast<float>(world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr));
     params.albedo = static_cast<float>(albedo);
     params.g = static_cast<float>(volume.g);
     params.emission = glm::vec3((1.0 - albedo) * volume.Le);
@@ -130,7 +133,8 @@ LoadedVolume load_volume(const Scene& scene) {
     DensityField field = load_density_field(*file);
     if (field.active_voxels == 0)
         return loaded;
-    loaded.majorants = make_majorant_grid(field, scene.settings.majorant_cell);
+    const double voxel_sigma_t = world_sigma_t(*volume, &field) * field.voxel_size() * scene.settings.majorant_scale;
+    loaded.majorants = make_majorant_grid(field, scene.settings.majorant_cell, voxel_sigma_t);
     for (float& bound : loaded.majorants->bounds)
         bound *= static_cast<float>(scene.settings.majorant_scale);
     loaded.field = std::move(field);

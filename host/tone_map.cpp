@@ -86,8 +86,9 @@ std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping)
         const Vec3 v = exposed(mean, gain);
         white = std::max({white, v.x, v.y, v.z});
     }
-    // The original cut to bytes; the other curves round to the nearest.
-    const double rounding = mapping.curve == ToneCurve::reinhard ? 0.0 : 0.5;
+    // The original cut to bytes (1e-6: but white, computed as 1 - 1 ulp, is white); the other curves round to the
+    // nearest.
+    const double rounding = mapping.curve == ToneCurve::reinhard ? 1e-6 : 0.5;
     std::vector<std::uint8_t> bytes;
     bytes.reserve(film.mean.size() * 3);
     for (const glm::vec3& mean : film.mean) {

@@ -45,7 +45,7 @@ bool warns(const Scene& scene, const std::string& words) {
 
 } // namespace
 
-TEST_CASE("an empty scene has the defaults of the documentation", "[cpu][scene_xml]") {
+TEST_CASE("an empty scene has the defaults of the documentation", "[cpu][xml]") {
     const Scene scene = parse("");
     CHECK(scene.volumes.empty());
     CHECK(scene.lights.empty());
@@ -58,7 +58,7 @@ TEST_CASE("an empty scene has the defaults of the documentation", "[cpu][scene_x
     CHECK(scene.camera.fov == 90.0);
 }
 
-TEST_CASE("every element of the vocabulary is read", "[cpu][scene_xml]") {
+TEST_CASE("every element of the vocabulary is read", "[cpu][xml]") {
     const Scene scene = parse(R"(
         <densityField baseDir="..\fields\" grid="smoke">cloud.nvdb</densityField>
         <sigma_a unit="world"> 0.25 </sigma_a><sigma_s unit="world">4</sigma_s>
@@ -109,7 +109,7 @@ TEST_CASE("every element of the vocabulary is read", "[cpu][scene_xml]") {
     CHECK(scene.settings.majorant_cell == 16);
 }
 
-TEST_CASE("spheres and boxes hold homogeneous media", "[cpu][scene_xml]") {
+TEST_CASE("spheres and boxes hold homogeneous media", "[cpu][xml]") {
     const Scene ball = parse(R"(<sphere x="1" y="2" z="3" radius="4"/><sigma_a>1</sigma_a>)");
     CHECK(std::get<Sphere>(ball.volumes.at(0).shape).center == glm::dvec3(1, 2, 3));
     CHECK(std::get<Sphere>(ball.volumes.at(0).shape).radius == 4.0);
@@ -119,7 +119,7 @@ TEST_CASE("spheres and boxes hold homogeneous media", "[cpu][scene_xml]") {
     CHECK(std::get<Box>(box.volumes.at(0).shape).size == glm::dvec3(2, 3, 4));
 }
 
-TEST_CASE("the report's own scenes load unmodified", "[cpu][scene_xml]") {
+TEST_CASE("the report's own scenes load unmodified", "[cpu][xml]") {
     const std::map<std::string, double> g = {{"bunny-deltaTracking", 0.2},
                                              {"explosion-deltaTracking", 0.8},
                                              {"bunny-ratioTracking", 0.8},
@@ -140,7 +140,7 @@ TEST_CASE("the report's own scenes load unmodified", "[cpu][scene_xml]") {
     }
 }
 
-TEST_CASE("what is not rendered is said, with its place", "[cpu][scene_xml]") {
+TEST_CASE("what is not rendered is said, with its place", "[cpu][xml]") {
     const auto warning = [](const std::string& body) {
         const Scene scene = parse_scene("<options>\n" + body + "\n<sphere/></options>", "s.xml");
         return scene.warnings.size() == 1 ? scene.warnings[0] : std::to_string(scene.warnings.size()) + " warnings";
@@ -161,14 +161,14 @@ TEST_CASE("what is not rendered is said, with its place", "[cpu][scene_xml]") {
     CHECK(warns(parse("<sigma_a>1</sigma_a>"), "without effect"));
 }
 
-TEST_CASE("a scene that is rendered as asked warns of nothing", "[cpu][scene_xml]") {
+TEST_CASE("a scene that is rendered as asked warns of nothing", "[cpu][xml]") {
     CHECK(parse(R"(<sphere/><width>640</width><height>480</height><importanceSampling>no</importanceSampling>
                    <light x="0" y="0" z="0" r="1" multiplier="0"/><emission r="1" multiplier="0"/><models/>
                    <densityField baseDir=""/><fileName/><integrator/>)")
               .warnings.empty());
 }
 
-TEST_CASE("unknown names are errors with the nearest known name", "[cpu][scene_xml]") {
+TEST_CASE("unknown names are errors with the nearest known name", "[cpu][xml]") {
     CHECK(error_of("    <sigma_b>1</sigma_b>") == "s.xml:2:5: unknown element <sigma_b>; did you mean <sigma_a>?");
     CHECK(error_of("<Camera/>") == "s.xml:2:1: unknown element <Camera>; did you mean <camera>?");
     CHECK_THAT(error_of("<zzz/>"), Catch::StartsWith("s.xml:2:1: unknown element <zzz>; known are <densityField>, "));
@@ -189,7 +189,7 @@ TEST_CASE("unknown names are errors with the nearest known name", "[cpu][scene_x
                    Catch::StartsWith("s.xml:2:13: ") && Catch::Contains("not available in this version; use "));
 }
 
-TEST_CASE("values must be what they claim to be", "[cpu][scene_xml]") {
+TEST_CASE("values must be what they claim to be", "[cpu][xml]") {
     CHECK(error_of("<sigma_a>thick</sigma_a>") ==
           "s.xml:2:10: <sigma_a> 'thick' is not a number; expected a number >= 0");
     CHECK(error_of("<sigma_a>1.5f</sigma_a>") ==
@@ -229,7 +229,7 @@ TEST_CASE("values must be what they claim to be", "[cpu][scene_xml]") {
                Catch::Contains("different units"));
 }
 
-TEST_CASE("nothing is given twice", "[cpu][scene_xml]") {
+TEST_CASE("nothing is given twice", "[cpu][xml]") {
     CHECK(error_of("<sigma_a>1</sigma_a>\n  <sigma_a>2</sigma_a>") ==
           "s.xml:3:3: a second <sigma_a>, after the one at s.xml:2:1; remove one");
     CHECK_THAT(error_of("<heyneygreenstein_g>0</heyneygreenstein_g><heynegreenstein_g>0</heynegreenstein_g>"),
@@ -239,7 +239,7 @@ TEST_CASE("nothing is given twice", "[cpu][scene_xml]") {
     CHECK_THAT(error_of("<sphere/>\n<densityField>a.nvdb</densityField>"), Catch::Contains("one medium"));
 }
 
-TEST_CASE("malformed XML is located", "[cpu][scene_xml]") {
+TEST_CASE("malformed XML is located", "[cpu][xml]") {
     CHECK_THAT(error_of_text("<options>\n  <camera></light>\n</options>"),
                Catch::StartsWith("s.xml:2:") && Catch::Contains("malformed XML"));
     CHECK_THAT(error_of_text("<options>"), Catch::Contains("malformed XML"));
@@ -249,7 +249,7 @@ TEST_CASE("malformed XML is located", "[cpu][scene_xml]") {
     CHECK_THAT(error_of_text("<!-- \xc3\xa4\xc3\xb6 --><options><x/></options>"), Catch::StartsWith("s.xml:1:21: "));
 }
 
-TEST_CASE("garbage never gets further than an InputError", "[cpu][scene_xml]") {
+TEST_CASE("garbage never gets further than an InputError", "[cpu][xml]") {
     const std::string seed = "<options><camera x=\"1\" fov=\"$f\"/><sigma_a unit='world'>1</sigma_a><sphere/>"
                              "<width startOffset=\"1\" reference=\"3\">10</width><![CDATA[x]]>&amp;&#0;</options>";
     std::mt19937 random(1);
@@ -280,7 +280,7 @@ TEST_CASE("garbage never gets further than an InputError", "[cpu][scene_xml]") {
     CHECK_THAT(error_of_text(deep), Catch::StartsWith("s.xml:1:10: unknown element <options>"));
 }
 
-TEST_CASE("$keys are filled in", "[cpu][scene_xml]") {
+TEST_CASE("$keys are filled in", "[cpu][xml]") {
     const Scene scene =
         parse(R"(<sphere radius="${r}"/><sigma_s>$s</sigma_s><camera x="1${r}5"/>)", {{"r", "2"}, {"s", "0.5"}});
     CHECK(std::get<Sphere>(scene.volumes.at(0).shape).radius == 2.0);
@@ -298,7 +298,7 @@ TEST_CASE("$keys are filled in", "[cpu][scene_xml]") {
     CHECK_THAT(error_of("<sigma_s>$s</sigma_s>", {{"s", "<a/>"}}), Catch::Contains("not a number"));
 }
 
-TEST_CASE("paths start from the scene file", "[cpu][scene_xml]") {
+TEST_CASE("paths start from the scene file", "[cpu][xml]") {
     const auto path = [](const std::string& element) {
         return grid_of(parse_scene("<options>" + element + "</options>", "/scenes/a/s.xml")).path.string();
     };
@@ -308,7 +308,7 @@ TEST_CASE("paths start from the scene file", "[cpu][scene_xml]") {
     CHECK(path("<densityField baseDir=\"/data/\">f.nvdb</densityField>") == "/data/f.nvdb");
 }
 
-TEST_CASE("the command line's grid and integrator replace the scene's", "[cpu][scene_xml]") {
+TEST_CASE("the command line's grid and integrator replace the scene's", "[cpu][xml]") {
     SceneOverrides overrides;
     overrides.grid = "other.vdb";
     const Scene grid = parse("<densityField grid=\"d\">a.nvdb</densityField><sigma_s>3</sigma_s>", {}, overrides);
@@ -324,13 +324,13 @@ TEST_CASE("the command line's grid and integrator replace the scene's", "[cpu][s
     CHECK(scene.warnings.empty());
 }
 
-TEST_CASE("scene files that cannot be read", "[cpu][scene_xml]") {
+TEST_CASE("scene files that cannot be read", "[cpu][xml]") {
     CHECK_THROWS_WITH(load_scene("no/such.xml"), "no/such.xml: no such scene file");
     CHECK_THROWS_WITH(load_scene(scenes), Catch::Contains("is a directory"));
     CHECK_THROWS_AS(load_scene("/dev/zero"), InputError);
 }
 
-TEST_CASE("a resized picture keeps its view", "[cpu][scene_xml]") {
+TEST_CASE("a resized picture keeps its view", "[cpu][xml]") {
     Picture picture{1080, 540, 540, 270, 2160, 1080};
     resize_picture(picture, 270, std::nullopt);
     CHECK(picture.width == 270);
@@ -347,7 +347,7 @@ TEST_CASE("a resized picture keeps its view", "[cpu][scene_xml]") {
     CHECK_THROWS_AS(resize_picture(picture, std::nullopt, 70000), InputError);
 }
 
-TEST_CASE("nearest names", "[cpu][scene_xml]") {
+TEST_CASE("nearest names", "[cpu][xml]") {
     CHECK(edit_distance("kitten", "sitting") == 3);
     CHECK(edit_distance("", "abc") == 3);
     CHECK(edit_distance("ab", "ba") == 1);
@@ -355,7 +355,7 @@ TEST_CASE("nearest names", "[cpu][scene_xml]") {
     CHECK(nearest_name("xyz", {"width", "height"}).empty());
 }
 
-TEST_CASE("the scene hash follows what the picture depends on", "[cpu][scene_xml]") {
+TEST_CASE("the scene hash follows what the picture depends on", "[cpu][xml]") {
     const std::string hash = scene_hash(parse("<sphere/>"));
     CHECK(hash.size() == 16);
     CHECK(scene_hash(parse("<sphere/><rayPerPixelCount>9</rayPerPixelCount><filter>trilinear</filter>")) == hash);
@@ -369,7 +369,7 @@ TEST_CASE("the scene hash follows what the picture depends on", "[cpu][scene_xml
           scene_hash(parse_scene("<options><densityField>f.nvdb</densityField></options>", "/b/s.xml")));
 }
 
-TEST_CASE("the schema knows every integrator", "[cpu][scene_xml]") {
+TEST_CASE("the schema knows every integrator", "[cpu][xml]") {
     std::ifstream stream(scenes / "vkvol.xsd");
     const std::string schema((std::istreambuf_iterator<char>(stream)), {});
     for (const std::string& name : integrator_names())

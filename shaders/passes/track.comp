@@ -55,8 +55,11 @@ vec3 analytic_sun(VolumeParams v, PathState path) {
 }
 
 uint step_segment(VolumeParams v, inout Walk walk, inout Rng rng, bool seeing, inout float T, inout Tally tally) {
-    if (FREE_FLIGHT == FREE_FLIGHT_ANALYTIC)
-        return analytic_flight(v, walk);
+    if (FREE_FLIGHT == FREE_FLIGHT_ANALYTIC) {
+        uint flown = analytic_flight(v, walk);
+        tally.real_collisions += flown == EVENT_COLLIDED ? 1u : 0u;
+        return flown;
+    }
     Collision c;
     uint event = next_collision(v, walk, rng, tally, c);
     if (event == EVENT_COLLIDED)

@@ -75,6 +75,8 @@ Field make_tiles(int, std::uint32_t) {
     return one_grid(0.25, {-16.0, 0.0, 0.0}, std::move(grid));
 }
 
-Field make_empty(int, std::uint32_t) { return one_grid(1.0, glm::dvec3(0.0), FieldGrid{}); }
+Field make_empty(int, std::uint32_t) {
+    return one_grid(1.0, glm::dvec3(0.0), FieldGrid{});
+}
 
 } // namespace vkvol

@@ -7,7 +7,9 @@
 namespace vkvol {
 namespace {
 
-int floor_to_brick(int i) { return i & ~(brick_width - 1); }
+int floor_to_brick(int i) {
+    return i & ~(brick_width - 1);
+}
 
 std::vector<glm::ivec3> brick_origins(const IndexBox& box) {
     std::vector<glm::ivec3> origins;

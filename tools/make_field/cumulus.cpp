@@ -1,5 +1,5 @@
-// A cumulus cloud: lobes on lobes on lobes, roughened by billows, cut flat at the condensation level, frayed at the base.
-// Lengths are world units; the cloud is 60 wide and stands on y = 0.
+// A cumulus cloud: lobes on lobes on lobes, roughened by billows, cut flat at the condensation level, frayed at the
+// base. Lengths are world units; the cloud is about 60 wide and stands on y = 0.
 #include <algorithm>
 #include <cmath>
 
@@ -11,8 +11,8 @@
 namespace vkvol {
 namespace {
 
-constexpr double width = 60.0, height = 42.0;
-constexpr double reach = 4.0; // how far from the lobes noise can move the surface
+constexpr double width = 64.0, height = 42.0; // of the index box: a margin around the cloud
+constexpr double reach = 4.0;                 // how far from the lobes noise can move the surface
 
 // The body: a broad foot of overlapping domes, and turrets that climb above a few of them.
 std::vector<Lobe> body(std::uint32_t seed) {
@@ -26,23 +26,24 @@ std::vector<Lobe> body(std::uint32_t seed) {
     add(-3, 6, 0, 9.5);
     add(8, 5.5, -2, 8.5);
     add(-13, 5, 1, 7.5);
-    add(16.5, 4.2, 1.5, 6.5);
-    add(-21.5, 3, -1.5, 5.0);
-    add(23.5, 2.8, -1, 4.4);
+    add(17, 5.5, 1, 7.0);
+    add(-21.5, 3.8, -1.5, 5.6);
+    add(23.5, 3.2, -1, 4.8);
     add(1, 4.5, 9, 7.0);
     add(-8, 4.5, 8, 6.0);
     add(9.5, 4, 7.5, 5.5);
     add(-4, 4.5, -9, 7.0);
     add(7, 4.5, -9.5, 6.5);
     // The main turret, leaning with the wind, and two lower ones.
-    add(-4, 15, -0.5, 8.0);
-    add(-2, 22, 0.5, 6.8);
-    add(1, 28.5, -0.5, 5.4);
-    add(3.2, 33, 0, 3.6);
-    add(10.5, 13, -2, 6.4);
-    add(13, 18.5, -1.5, 4.4);
-    add(-14, 11.5, 0, 5.2);
-    add(-15.5, 15.5, 0.5, 3.4);
+    add(-4, 14, -0.5, 9.0);
+    add(-3.5, 20.5, 0.5, 7.8);
+    add(-1, 26, -0.5, 6.6);
+    add(2, 29.5, 0, 5.0);
+    add(10, 13, -2, 7.2);
+    add(13, 18.5, -1.5, 5.6);
+    add(15, 21.5, -1, 3.8);
+    add(-14, 11, 0, 6.2);
+    add(-16.5, 15, 0.5, 4.2);
     // Domes half way up, in front and behind.
     add(2.5, 12, 6.5, 5.2);
     add(-7.5, 13, 5.5, 4.6);
@@ -52,10 +53,11 @@ std::vector<Lobe> body(std::uint32_t seed) {
 
 std::vector<Lobe> skeleton(std::uint32_t seed) {
     const std::vector<Lobe> first = body(seed);
-    const std::vector<Lobe> second =
-        bud(first, {.children = 20, .smallest = 0.28, .largest = 0.5, .upward = 0.4, .sunk = 0.2, .lowest = 0.5}, seed + 1);
+    const std::vector<Lobe> second = bud(
+        first, {.children = 20, .smallest = 0.28, .largest = 0.5, .upward = 0.4, .sunk = 0.2, .lowest = 0.5}, seed + 1);
     const std::vector<Lobe> third =
-        bud(second, {.children = 16, .smallest = 0.28, .largest = 0.48, .upward = 0.3, .sunk = 0.25, .lowest = 0.3}, seed + 2);
+        bud(second, {.children = 16, .smallest = 0.28, .largest = 0.48, .upward = 0.3, .sunk = 0.25, .lowest = 0.3},
+            seed + 2);
     std::vector<Lobe> all = first;
     all.insert(all.end(), second.begin(), second.end());
     all.insert(all.end(), third.begin(), third.end());
@@ -92,9 +94,13 @@ private:
         const glm::dvec3 b = q + 0.35 * noise_vector(p / 1.7, 2, seed_ + 20);
         const double vigour = 0.65 + 0.5 * gradient_noise(p / 9.0, seed_ + 30);
         d -= vigour * (1.30 * (billow(b / 3.1, seed_ + 41) - 0.62) + 0.72 * (billow(b / 1.45, seed_ + 42) - 0.62) +
-                       0.38 * (billow(b / 0.72, seed_ + 43) - 0.62));
+                       0.44 * (billow(b / 0.72, seed_ + 43) - 0.62));
         const double age = 1.0 - smooth_step(0.5, 8.0, p.y);
-        d += age * 1.3 * fbm(p / 2.6, 4, seed_ + 50) + 0.12 * fbm(p / 0.9, 2, seed_ + 60);
+        d += 0.12 * fbm(p / 0.9, 2, seed_ + 60);
+        if (age > 0.0)
+            d += age * 1.3 * fbm(p / 2.6, 4, seed_ + 50);
+        if (p.y > 12.0) // far above the base
+            return d;
         const double base = 1.2 + 0.9 * fbm({p.x / 7.0, 0.0, p.z / 7.0}, 3, seed_ + 70);
         return smooth_max(d, base - p.y, 1.6);
     }

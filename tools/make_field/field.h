@@ -33,8 +33,8 @@ struct FieldGrid {
 };
 
 struct Field {
-    double voxel_size = 1.0;   // world units
-    glm::dvec3 origin{0.0};    // world position of index (0, 0, 0)
+    double voxel_size = 1.0;      // world units
+    glm::dvec3 origin{0.0};       // world position of index (0, 0, 0)
     std::vector<FieldGrid> grids; // share the transform
 };
 

@@ -15,7 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-openvdb::Coord to_coord(glm::ivec3 index) { return {index.x, index.y, index.z}; }
+openvdb::Coord to_coord(glm::ivec3 index) {
+    return {index.x, index.y, index.z};
+}
 
 openvdb::FloatGrid::Ptr to_openvdb(const FieldGrid& grid, const Field& field) {
     auto result = openvdb::FloatGrid::create(0.0f);
@@ -99,8 +101,7 @@ void write_openvdb(const openvdb::GridPtrVec& grids, const fs::path& path, Codec
     if (type != SampleType::float32 && type != SampleType::half)
         throw InputError("OpenVDB has no samples of type fp4, fp8, fp16 or fpn: use --type half, or an output that "
                          "ends in .nvdb");
-    const std::uint32_t codecs[] = {openvdb::io::COMPRESS_NONE, openvdb::io::COMPRESS_ZIP,
-                                    openvdb::io::COMPRESS_BLOSC};
+    const std::uint32_t codecs[] = {openvdb::io::COMPRESS_NONE, openvdb::io::COMPRESS_ZIP, openvdb::io::COMPRESS_BLOSC};
     for (const auto& grid : grids)
         grid->setSaveFloatAsHalf(type == SampleType::half);
     openvdb::io::File file(path.string());

@@ -59,8 +59,11 @@ std::vector<Lobe> LobeUnion::near(glm::dvec3 center, double half_width) const {
 double LobeUnion::distance(const std::vector<Lobe>& near, glm::dvec3 p) const {
     double result = 4.0 * reach_;
     for (const Lobe& lobe : near) {
-        const double d = glm::distance(p, lobe.center) - lobe.radius;
-        result = smooth_min(result, d, smoothing_ * lobe.radius);
+        const glm::dvec3 to = p - lobe.center;
+        const double square = glm::dot(to, to), k = smoothing_ * lobe.radius;
+        const double limit = result + lobe.radius + k; // from here on the lobe changes nothing
+        if (limit > 0.0 && square < limit * limit)
+            result = smooth_min(result, std::sqrt(square) - lobe.radius, k);
     }
     return result;
 }

@@ -6,7 +6,9 @@
 namespace vkvol {
 namespace {
 
-double fade(double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); }
+double fade(double t) {
+    return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+}
 
 // Dot product of d with one of the twelve edge directions of a cube (four of them twice).
 double gradient_dot(std::uint32_t hash, glm::dvec3 d) {

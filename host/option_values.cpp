@@ -1,0 +1,98 @@
+#include "option_values.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "error.h"
+
+namespace vkvol {
+
+namespace {
+
+double parse_number(const std::string& text, const std::string& what) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+        fail_command_line(fmt::format("{}: '{}' is not a number", what, text));
+    return value;
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    std::size_t start = 0;
+    for (std::size_t end; (end = text.find(separator, start)) != std::string::npos; start = end + 1)
+        parts.push_back(text.substr(start, end - start));
+    parts.push_back(text.substr(start));
+    return parts;
+}
+
+} // namespace
+
+void fail_command_line(const std::string& message) {
+    throw InputError("command line: " + message);
+}
+
+CropRequest parse_crop(const std::string& text) {
+    const std::vector<std::string> parts = split(text, ',');
+    if (parts.size() != 4)
+        fail_command_line(fmt::format("--crop: '{}' has {} numbers; expected x0,x1,y0,y1", text, parts.size()));
+    CropRequest request;
+    bool all_below_one = true;
+    for (std::size_t i = 0; i < 4; ++i) {
+        request.window[i] = parse_number(parts[i], "--crop");
+        all_below_one = all_below_one && request.window[i] <= 1.0;
+    }
+    request.fractions = all_below_one && text.find('.') != std::string::npos;
+    for (const double value : request.window)
+        if (!request.fractions && value != std::floor(value))
+            fail_command_line(
+                fmt::format("--crop: '{}': pixels are whole numbers, and fractions are all at most 1", text));
+    return request;
+}
+
+void add_define(std::map<std::string, std::string>& defines, const std::string& text) {
+    const std::size_t equals = text.find('=');
+    const std::string key = text.substr(0, equals);
+    const bool is_name = !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+    });
+    if (equals == std::string::npos || !is_name)
+        fail_command_line(fmt::format("-D: '{}' is not of the form key=value, key of letters, digits and _", text));
+    if (!defines.emplace(key, text.substr(equals + 1)).second)
+        fail_command_line(fmt::format("-D: {} given twice", key));
+}
+
+Crop resolve_crop(const std::optional<CropRequest>& request, const Picture& picture) {
+    if (!request)
+        return {0, picture.width, 0, picture.height};
+    std::array<double, 4> window = request->window;
+    if (request->fractions) // rounded, so that neighbouring windows meet without gap or overlap
+        window = {std::round(window[0] * picture.width), std::round(window[1] * picture.width),
+                  std::round(window[2] * picture.height), std::round(window[3] * picture.height)};
+    const bool inside = window[0] >= 0 && window[1] <= picture.width && window[2] >= 0 && window[3] <= picture.height;
+    if (!inside || window[0] >= window[1] || window[2] >= window[3])
+        fail_command_line(fmt::format("--crop {}: expected 0 <= x0 < x1 <= {} and 0 <= y0 < y1 <= {}",
+                                      fmt::join(window, ","), picture.width, picture.height));
+    return {int(window[0]), int(window[1]), int(window[2]), int(window[3])};
+}
+
+double parse_duration(const std::string& text) {
+    double unit = 1.0;
+    std::string number = text;
+    if (!text.empty() && std::isalpha(static_cast<unsigned char>(text.back()))) {
+        const char suffix = text.back();
+        if (suffix != 's' && suffix != 'm' && suffix != 'h')
+            fail_command_line(fmt::format("--time: '{}' has an unknown unit; expected e.g. 30s, 5m or 2h", text));
+        unit = suffix == 'h' ? 3600.0 : suffix == 'm' ? 60.0 : 1.0;
+        number.pop_back();
+    }
+    const double seconds = parse_number(number, "--time") * unit;
+    if (!(seconds > 0.0))
+        fail_command_line(fmt::format("--time: '{}' is no time to render in; expected e.g. 30s, 5m or 2h", text));
+    return seconds;
+}
+
+} // namespace vkvol

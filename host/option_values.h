@@ -1,0 +1,20 @@
+// Values on the command line that are more than a number or a name.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "options.h"
+
+namespace vkvol {
+
+// Throws InputError, "command line: " and the message.
+[[noreturn]] void fail_command_line(const std::string& message);
+
+// "x0,x1,y0,y1": fractions if all are at most 1 and a dot is among them, else pixels.
+CropRequest parse_crop(const std::string& text);
+
+// Adds "key=value".
+void add_define(std::map<std::string, std::string>& defines, const std::string& text);
+
+} // namespace vkvol

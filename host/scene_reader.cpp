@@ -1,0 +1,221 @@
+#include "scene_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "error.h"
+#include "integrators.h"
+#include "nearest_name.h"
+#include "shared/bindings.h"
+
+namespace vkvol {
+
+namespace {
+
+const std::vector<std::string> vocabulary = {
+    "densityField", "sphere", "box", "sigma_a", "sigma_s", "heyneygreenstein_g", "medium", "emission", "light",
+    "backgroundColor", "camera", "width", "height", "rayPerPixelCount", "maxDepth", "integrator", "filter",
+    "russianRoulette", "majorant", "lightRayDensityMultiplier", "shadowRayDensityMultiplier", "stepSize",
+    "importanceSampling", "models", "fileName", "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds",
+    // Names that are read for old files' sake: a misspelling in the original's report, and the old name of integrator.
+    "heynegreenstein_g", "intersectionHandler"};
+
+} // namespace
+
+Scene SceneReader::read() {
+    XmlElement(document_, document_.root()).allow({"xmlns:xsi", "xsi:noNamespaceSchemaLocation"}, false, vocabulary);
+    Scene scene;
+    scene.settings = settings();
+    scene.camera = camera();
+    scene.picture = picture();
+    const XmlElement background = one("backgroundColor");
+    background.allow(color_attributes);
+    scene.background = color(background);
+    read_light(scene);
+    if (const std::optional<Volume> medium = volume())
+        scene.volumes.push_back(*medium);
+    read_without_effect();
+    read_bookkeeping();
+    scene.warnings = document_.warnings();
+    return scene;
+}
+
+// The element of one of these names (they are spellings of the same thing); missing if there is none.
+XmlElement SceneReader::one(std::initializer_list<const char*> names) const {
+    pugi::xml_node found;
+    for (const pugi::xml_node child : document_.root().children()) {
+        const bool matches = std::any_of(names.begin(), names.end(),
+                                         [&](const char* name) { return std::string(name) == child.name(); });
+        if (!matches)
+            continue;
+        if (found)
+            throw InputError(fmt::format("{}: a second <{}>, after the one at {}; remove one", document_.place(child),
+                                         child.name(), document_.place(found)));
+        found = child;
+    }
+    return XmlElement(document_, found);
+}
+
+std::string SceneReader::integrator() const {
+    const XmlElement element = one("integrator");
+    const XmlElement legacy = one("intersectionHandler");
+    legacy.allow({}, true);
+    if (legacy.exists())
+        legacy.warn("<intersectionHandler> is without effect, as in the original renderer; write <integrator>");
+    element.allow({}, true);
+    if (overrides_.integrator) {
+        check_integrator(*overrides_.integrator);
+        return *overrides_.integrator;
+    }
+    const std::string name = element.text();
+    if (name.empty())
+        return "";
+    try {
+        check_integrator(name);
+    } catch (const InputError& error) {
+        element.fail_text(error.what());
+    }
+    return name;
+}
+
+RenderSettings SceneReader::settings() const {
+    RenderSettings settings;
+    settings.integrator = integrator();
+    const XmlElement spp = one("rayPerPixelCount");
+    spp.allow({}, true);
+    settings.spp = static_cast<std::uint32_t>(spp.integer(settings.spp, 1, max_integer));
+    const XmlElement depth = one("maxDepth");
+    depth.allow({}, true);
+    if (depth.exists())
+        settings.max_depth = static_cast<std::uint32_t>(depth.integer(0, 0, max_integer));
+    const XmlElement roulette = one("russianRoulette");
+    roulette.allow({"threshold"});
+    settings.roulette_threshold = roulette.attribute_number("threshold", settings.roulette_threshold,
+                                                            {0, 1, true, true, "a number from 0 (never) to 1"});
+    const XmlElement majorant = one("majorant");
+    majorant.allow({"scale", "cell"});
+    settings.majorant_scale = majorant.attribute_number("scale", settings.majorant_scale, positive);
+    settings.majorant_cell = static_cast<int>(majorant.attribute_integer("cell", settings.majorant_cell, 0, 1024));
+
+    const XmlElement filter = one("filter");
+    filter.allow({}, true);
+    if (const std::string name = filter.text(); name == "nearest")
+        settings.filter = Filter::nearest;
+    else if (name == "trilinear")
+        settings.filter = Filter::trilinear;
+    else if (filter.exists() && name != "stochastic")
+        filter.fail_text(
+            fmt::format("unknown filter '{}'{}", name, name_hint(name, {"nearest", "trilinear", "stochastic"})));
+    return settings;
+}
+
+Camera SceneReader::camera() const {
+    const XmlElement element = one("camera");
+    element.allow({"x", "y", "z", "pitch", "yaw", "roll", "fov"});
+    const auto number = [&](const char* name) { return element.attribute_number(name, 0.0, any_number); };
+    Camera camera;
+    camera.position = {number("x"), number("y"), number("z")};
+    camera.pitch = number("pitch");
+    camera.yaw = number("yaw");
+    camera.roll = number("roll");
+    camera.fov = element.attribute_number("fov", camera.fov,
+                                          {0, 180, false, false, "an angle between 0 and 180 degrees, both excluded"});
+    return camera;
+}
+
+void SceneReader::read_edge(const char* name, int& size, double& start, double& reference) const {
+    const XmlElement element = one(name);
+    element.allow({"startOffset", "reference"}, true);
+    size = static_cast<int>(element.integer(size, 1, max_edge));
+    start = element.attribute_number("startOffset", 0.0, any_number);
+    reference = element.attribute_number("reference", 0.0, not_negative);
+    if (reference > 0.0)
+        return;
+    reference = size;
+    if (start != 0.0)
+        element.warn(
+            fmt::format("startOffset without a reference; the reference frame is taken to be {} pixels", size));
+}
+
+Picture SceneReader::picture() const {
+    Picture picture;
+    read_edge("width", picture.width, picture.start_x, picture.reference_width);
+    read_edge("height", picture.height, picture.start_y, picture.reference_height);
+    return picture;
+}
+
+Rgb SceneReader::color(const XmlElement& element) const {
+    const auto channel = [&](const char* name) { return element.attribute_number(name, 0.0, not_negative); };
+    const double multiplier = element.attribute_number("multiplier", 1.0, not_negative);
+    return Rgb(channel("r"), channel("g"), channel("b")) * multiplier;
+}
+
+void SceneReader::read_light(Scene& scene) const {
+    const XmlElement element = one("light");
+    element.allow({"x", "y", "z", "r", "g", "b", "multiplier"});
+    const auto number = [&](const char* name) { return element.attribute_number(name, 0.0, any_number); };
+    const glm::dvec3 direction(number("x"), number("y"), number("z"));
+    const Rgb irradiance = color(element);
+    if (irradiance == Rgb(0.0))
+        return;
+    const double largest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+    if (largest == 0.0)
+        element.fail(
+            "<light> has no direction; x, y, z point from the scene towards the light, e.g. x=\"0\" y=\"1\" z=\"0\"");
+    scene.lights.push_back({glm::normalize(direction / largest), irradiance});
+    if (!scene.settings.integrator.empty() && find_integrator(scene.settings.integrator)->nee == NEE_NONE)
+        element.warn(fmt::format("{} cannot see a directional light, which is left out; ratioTracking renders it",
+                                 scene.settings.integrator));
+}
+
+// What asks for something that this renderer does not do, each with what is done in its place.
+void SceneReader::read_without_effect() const {
+    const XmlElement emission = one("emission");
+    emission.allow(color_attributes);
+    if (color(emission) != Rgb(0.0))
+        emission.warn("emission by a temperature grid is not rendered in this version; <medium> glows uniformly");
+
+    const XmlElement step = one("stepSize");
+    step.allow({"min", "max", "multiplier"});
+    for (const char* name : {"min", "max", "multiplier"})
+        step.attribute_number(name, 0.0, not_negative);
+    if (step.exists())
+        step.warn("stepSize is without effect: free flights are sampled exactly, without steps");
+
+    const XmlElement sampling = one("importanceSampling");
+    sampling.allow({}, true);
+    if (sampling.boolean(false))
+        sampling.warn("importanceSampling is without effect: the original's weights were wrong; paths are sampled by "
+                      "the phase function");
+
+    const XmlElement models = one("models");
+    models.allow({}, false, {"model"});
+    for (const pugi::xml_node node : document_.root().child("models").children("model")) {
+        const XmlElement model(document_, node);
+        model.allow({"baseDir"}, true);
+        model.warn("OBJ models are not rendered in this version; <sphere> and <box> hold homogeneous media");
+    }
+
+    const XmlElement rebounds = one("diffuseRebounds");
+    rebounds.allow({}, false, {"rebound"});
+    if (rebounds.exists())
+        rebounds.warn("diffuseRebounds is without effect, as in the original renderer");
+}
+
+// How the original organised its work: nothing in the picture depends on it.
+void SceneReader::read_bookkeeping() const {
+    const XmlElement threaded = one("multiThreaded");
+    threaded.allow({"freeThreads"}, true);
+    threaded.boolean(true);
+    threaded.attribute_integer("freeThreads", 0, 0, max_integer);
+    const XmlElement chunk = one("multiThreadedChunkSize");
+    chunk.allow({}, true);
+    chunk.integer(0, 0, max_integer);
+    const XmlElement file_name = one("fileName");
+    file_name.allow({}, true);
+    if (!file_name.text().empty())
+        file_name.warn("fileName is without effect, as in the original renderer; -o names the picture");
+}
+
+} // namespace vkvol

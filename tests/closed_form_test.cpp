@@ -1,0 +1,218 @@
+// Pictures with closed forms.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+#include "support/images.h"
+#include "support/scenes.h"
+#include "support/statistics.h"
+#include "tests/reference/reference.h"
+
+using namespace vkvol;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Rgb sky{0.25, 0.5, 2.0};
+
+#define CHECK_AGREEMENT(expression)                                                                                    \
+    do {                                                                                                               \
+        const Agreement agreement = (expression);                                                                      \
+        INFO(agreement.report);                                                                                        \
+        CHECK(agreement.ok);                                                                                           \
+    } while (false)
+
+// The mean of `value` over each pixel, by the midpoint rule on grid x grid points.
+template <class Function> auto pixel_means(const Scene& scene, int grid, const Function& value) {
+    std::vector<decltype(value(reference::Ray{}))> means;
+    for (int y = 0; y < scene.picture.height; ++y)
+        for (int x = 0; x < scene.picture.width; ++x) {
+            decltype(value(reference::Ray{})) sum(0.0);
+            for (int k = 0; k < grid * grid; ++k)
+                sum += value(reference::camera_ray(scene.camera, scene.picture, x + (k % grid + 0.5) / grid,
+                                                   y + (k / grid + 0.5) / grid));
+            means.push_back(sum / double(grid * grid));
+        }
+    return means;
+}
+
+std::vector<double> escapes(const Scene& scene, int grid) {
+    const reference::Medium medium = reference::load(scene.volumes.front(), scene.settings.filter);
+    return pixel_means(scene, grid, [&](const reference::Ray& ray) {
+        return reference::transmittance_quadrature(medium, ray, 0.0, infinity);
+    });
+}
+
+// One pixel whose rays are all but parallel to -z, through (x, y).
+Scene beam(const Volume& volume, glm::dvec3 position, std::uint32_t samples) {
+    Scene scene = scene_of(volume, 1e-6, 1);
+    scene.camera.position = position;
+    scene.background = sky;
+    scene.settings.spp = samples;
+    return scene;
+}
+
+// A wide box of thickness 1, its top at z = 0.
+Volume slab(double tau, double albedo) {
+    return medium(Box{{0.0, 0.0, -0.5}, {2e4, 2e4, 1.0}}, tau, albedo);
+}
+
+} // namespace
+
+// Where the tau of a pixel's chord varies, 32 x 32 points per pixel are off by less than 1e-4 at the silhouette,
+// a twentieth of the standard error of 1024 samples.
+TEST_CASE("absorbing shapes transmit exp(-tau) and emit Le (1 - exp(-tau))", "[gpu][hard][closed_form]") {
+    const double tau = GENERATE(0.1, 1.0, 10.0);
+    const bool emits = GENERATE(false, true);
+    for (const auto& shape :
+         std::vector<decltype(Volume::shape)>{Sphere{{0.1, 0.2, -0.1}, 1.0}, Box{{0.1, -0.2, 0.0}, {1.0, 1.5, 2.0}}}) {
+        Volume volume = medium(shape, 0.5 * tau, 0.0);
+        volume.Le = emits ? Rgb(4.0, 2.0, 1.0) : Rgb(0.0);
+        Scene scene = scene_of(volume, 2.6, 24, 6.0, glm::dvec3(0.0), {-20.0, 40.0, 15.0});
+        scene.background = sky;
+        scene.settings.spp = 1024;
+        CHECK_AGREEMENT(agree_with_escapes(render_here(scene, 6).film, escapes(scene, 32), sky, volume.Le,
+                                           fmt::format("absorbing shape {}, tau {}", shape.index(), tau)));
+    }
+}
+
+TEST_CASE("the camera may be inside an absorber", "[gpu][hard][closed_form]") {
+    Scene scene = scene_of(medium(Sphere{{5.0, 6.0, 7.0}, 2.0}, 0.6, 0.0), 1.0, 24);
+    scene.background = sky;
+    scene.settings.spp = 256;
+    scene.camera.fov = 150.0;
+    scene.camera.position = {5.0, 6.0, 7.0}; // exp(-sigma r) in every direction
+    CHECK_AGREEMENT(agree_with_escapes(render_here(scene, 7).film, std::vector<double>(24 * 24, std::exp(-1.2)), sky,
+                                       Rgb(0.0), "camera in the centre"));
+    scene.camera.position = {5.0, 8.0, 7.0}; // on the boundary
+    CHECK_AGREEMENT(
+        agree_with_escapes(render_here(scene, 8).film, escapes(scene, 32), sky, Rgb(0.0), "camera on the boundary"));
+    scene.volumes.front() = medium(write_grid(cloud_grid()), 0.6, 0.0);
+    scene.camera.position = {0.3, 0.1, -0.2};
+    CHECK_AGREEMENT(
+        agree_with_escapes(render_here(scene, 9).film, escapes(scene, 12), sky, Rgb(0.0), "camera in a grid"));
+}
+
+// Free flights are at most 16.64 optical depths long: nothing comes through more, and nothing is NaN.
+TEST_CASE("opaque slabs are black", "[gpu][hard][closed_form]") {
+    const double tau = GENERATE(80.0, 87.0, 88.0, 104.0, 1e4);
+    const Film film = render_here(beam(slab(tau, 0.0), {0.0, 0.0, 3.0}, 256), 10).film;
+    CHECK(film.mean[0] == glm::vec3(0.0f));
+    CHECK(film.variance[0] == glm::vec3(0.0f));
+    CHECK(film.samples[0] == 256);
+}
+
+TEST_CASE("a thin slab scatters what the closed form says", "[gpu][hard][closed_form]") {
+    constexpr double tau = 1e-3;
+    Scene scene = scene_of(slab(tau, 0.8), 1e-6, 32);
+    scene.settings.spp = 2048;
+    scene.lights = {sunlight()};
+    const double mu0 = scene.lights[0].direction.z;
+    const double L =
+        3.0 * reference::slab_single_reflection(0.8, reference::hg_eval(0.0, 0.0), tau, mu0, 1.0); // 1e-3 of it: twice
+    RunningMean mean;
+    for (const glm::vec3& pixel : render_here(scene, 11).film.mean)
+        mean.add(pixel.x);
+    CAPTURE(mean.mean(), mean.standard_error(), L);
+    CHECK(t_test_p(mean, L, 2e-3 * L) > 1e-4);
+}
+
+// Collisions in a slab of tau 1e-6 are Poisson; a uniform variate of 24 bits makes 17 of 2^24 of them collide,
+// 1.0133e-6. P(more than 14 | 4.2 expected) = 3e-5.
+TEST_CASE("a slab of optical depth 1e-6 is met by a millionth of the paths", "[gpu][hard][closed_form]") {
+    Scene scene = scene_of(slab(1e-6, 0.8), 1e-6, 32);
+    scene.settings.spp = 4096;
+    scene.lights = {sunlight(Rgb(1.0))};
+    const RenderResult result = render_here(scene, 12);
+    const auto lit = std::count_if(result.film.mean.begin(), result.film.mean.end(), [](auto m) { return m.x > 0.0f; });
+    CAPTURE(lit);
+    CHECK(lit <= 14);
+    CHECK(result.counts.paths == 32u * 32u * 4096u);
+}
+
+// A beam along the normal, seen back along the beam; and, by reciprocity, the plane albedo as the radiance of a medium
+// in a uniform sky. The slab is 60 mean free paths thick: less than 1e-3 of the largest albedo's light comes that far.
+TEST_CASE("a semi-infinite medium reflects as Chandrasekhar says", "[gpu][hard][closed_form]") {
+    const double albedo = GENERATE(0.5, 0.9);
+    Scene scene = scene_of(slab(60.0, albedo), 1e-6, 16);
+    scene.settings.spp = 1024;
+    const auto check = [&](double expected) {
+        RunningMean mean;
+        for (const glm::vec3& pixel : render_here(scene, 13).film.mean)
+            mean.add(pixel.x);
+        CAPTURE(albedo, mean.mean(), mean.standard_error(), expected);
+        CHECK(t_test_p(mean, expected) > 1e-4);
+    };
+    scene.background = Rgb(1.0);
+    check(reference::plane_albedo(albedo));
+    scene.background = Rgb(0.0);
+    scene.lights = {{{0.0, 0.0, 1.0}, Rgb(1.0)}};
+    check(reference::normal_reflection(albedo));
+}
+
+// Every pixel meets the medium in most of its samples, so that the normal limit holds.
+TEST_CASE("single scattering equals the quadrature", "[gpu][hard][closed_form]") {
+    const double g = GENERATE(0.5, -0.6);
+    struct Case {
+        decltype(Volume::shape) shape;
+        double sigma_t, width;
+        int grid;
+    };
+    for (const Case& c : {Case{Sphere{}, 1.0, 1.2, 4}, Case{Box{{0, 0, 0}, {2.0, 2.0, 1.0}}, 1.0, 1.2, 4},
+                          Case{write_grid(cloud_grid()), 0.5, 4.0, 3}})
+        for (const Filter filter : {Filter::stochastic, Filter::trilinear, Filter::nearest}) {
+            const bool is_grid = std::holds_alternative<GridFile>(c.shape);
+            if (!is_grid && filter != Filter::stochastic)
+                continue;
+            Scene scene = scene_of(medium(c.shape, c.sigma_t, 0.9, g), c.width, 12, 20.0, {}, {10.0, -20.0, 0.0});
+            scene.settings.filter = filter;
+            scene.settings.spp = 2048;
+            scene.settings.max_depth = 1;
+            scene.lights = {sunlight()};
+            const reference::Medium medium = reference::load(scene.volumes.front(), filter);
+            const auto means = pixel_means(scene, c.grid, [&](const reference::Ray& ray) {
+                return reference::single_scattering_quadrature(medium, scene.lights.front(), ray);
+            });
+            CHECK_AGREEMENT(agree_with_means(
+                render_here(scene, 14).film, means,
+                fmt::format("single scattering, shape {}, filter {}, g {}", c.shape.index(), int(filter), g)));
+        }
+}
+
+// A lone voxel v is a hat of area v h under trilinear lookup along an axis, and a step of the same area under nearest.
+TEST_CASE("a lone voxel absorbs as its hat", "[gpu][hard][closed_form]") {
+    const Filter filter = GENERATE(Filter::nearest, Filter::trilinear, Filter::stochastic);
+    constexpr double value = 3.0, h = 0.5, sigma = 0.8;
+    TestGrid spike{{-9, -9, -9}, {9, 9, 9}, [](glm::ivec3 i) { return i == glm::ivec3(0) ? float(value) : 0.0f; }};
+    spike.linear = glm::dmat3(h);
+    const GridFile file = write_grid(spike);
+    const double tau = sigma * value * h;
+    for (const int cell : {1, 4, 16, 64})
+        for (const double scale : {1.0, 4.0, 100.0}) {
+            Scene scene = beam(medium(file, sigma, 0.0), {0.0, 0.0, 10.0}, 8192);
+            scene.settings.filter = filter;
+            scene.settings.majorant_cell = cell;
+            scene.settings.majorant_scale = scale;
+            CHECK_AGREEMENT(agree_with_escapes(
+                render_here(scene, 15).film, {std::exp(-tau)}, sky, Rgb(0.0),
+                fmt::format("spike, filter {}, cell {}, majorant scale {}", int(filter), cell, scale)));
+        }
+}
+
+// tau = sigma v N h along an axis, wherever between the outermost voxel centres: on centres, faces and edges alike.
+TEST_CASE("a constant grid has the optical depth of its voxels", "[gpu][hard][closed_form]") {
+    const Filter filter = GENERATE(Filter::nearest, Filter::trilinear, Filter::stochastic);
+    TestGrid grid{{-3, 2, 5}, {6, 11, 14}, [](glm::ivec3) { return 2.0f; }};
+    grid.linear = glm::dmat3(0.25);
+    const GridFile file = write_grid(grid);
+    const double tau = 0.3 * 2.0 * 10 * 0.25;
+    for (const glm::dvec2 at : {glm::dvec2(0, 5), glm::dvec2(0.5, 5.5), glm::dvec2(-1, 2), glm::dvec2(4, 9.99),
+                                glm::dvec2(-2.5, 10.5), glm::dvec2(1.37, 7.81)}) {
+        Scene scene = beam(medium(file, 0.3, 0.0), {0.25 * at.x, 0.25 * at.y, 20.0}, 8192);
+        scene.settings.filter = filter;
+        CHECK_AGREEMENT(agree_with_escapes(render_here(scene, 16).film, {std::exp(-tau)}, sky, Rgb(0.0),
+                                           fmt::format("constant grid at {}, {}", at.x, at.y)));
+    }
+}

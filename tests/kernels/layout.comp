@@ -1,0 +1,39 @@
+// Writes the words of every field of every shared struct, in the order of layout_fields.h. Arrays are read at index 1,
+// so that a wrong stride shows too.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "kernel.glsl"
+TEST_IO(uint, uint)
+
+uint count = 0u;
+
+void put(uint word) {
+    outputs[count] = word;
+    count += 1u;
+}
+void put(float x) { put(floatBitsToUint(x)); }
+void put(vec3 v) {
+    put(v.x);
+    put(v.y);
+    put(v.z);
+}
+void put(ivec3 v) {
+    put(uint(v.x));
+    put(uint(v.y));
+    put(uint(v.z));
+}
+void put(vec4 v) {
+    put(v.xyz);
+    put(v.w);
+}
+
+#define path paths[1]
+#define header queues[1]
+#define entry film[1]
+#define PUT(field) put(field);
+
+void main() {
+    if (gl_GlobalInvocationID.x != 0u)
+        return;
+#include "layout_fields.h"
+}

@@ -1,0 +1,21 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "kernel.glsl"
+
+#include "include/rng.glsl"
+TEST_IO(uvec4, RngOutput)
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= push.lanes)
+        return;
+    uvec4 key = inputs[i];
+    Rng rng = Rng(key.x, key.y, key.z, key.w);
+    RngOutput o;
+    o.words = next_words(rng);
+    o.u = to_uniform(o.words);
+    o.tap = to_tap(o.words);
+    o.exponential = to_exponential(o.u.x);
+    o.draw = rng.draw;
+    outputs[i] = o;
+}

@@ -1,0 +1,74 @@
+// Inputs and outputs of the test kernels.
+#ifndef TEST_ITEMS_H
+#define TEST_ITEMS_H
+#include "shared/prologue.h"
+
+SHARED_BEGIN
+
+struct RngOutput {
+    uvec4 words;
+    vec4 u;
+    vec3 tap;
+    float exponential; // from u.x
+    uint draw;         // the counter afterwards
+};
+
+struct DensityInput {
+    vec3 p; // index space
+    vec3 tap;
+};
+struct DensityOutput {
+    float filtered; // as SPEC_FILTER says
+    float voxel;    // at floor(p)
+    float nearest;
+    float trilinear;
+    float stochastic;
+};
+
+struct RayInput {
+    vec3 origin;
+    vec3 direction;
+    uint key; // of the random numbers
+};
+struct WalkStep {
+    ivec3 cell; // passed in this step
+    float t;    // after it
+    float sigma_maj;
+    float tau; // left after it
+    uint event;
+};
+struct FlightOutput {
+    uint event;
+    float t; // world units from the ray's origin
+    float T; // transmittance kernels
+    uint steps;
+};
+
+struct PhaseInput {
+    float g;
+    vec3 direction;
+    vec2 u;
+};
+struct PhaseOutput {
+    vec3 direction;
+    float one_minus_mu; // as drawn
+    float eval;         // hg_eval of it
+    vec3 tangent;
+    vec3 bitangent;
+};
+
+struct ShapeInput {
+    vec3 origin;
+    vec3 direction;
+    vec3 low;
+    vec3 high;
+};
+struct ShapeOutput {
+    uint box_hit;
+    vec2 box;
+    uint ball_hit;
+    vec2 ball;
+};
+
+SHARED_END
+#endif

@@ -1,0 +1,239 @@
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "compare.h"
+#include "error.h"
+#include "merge.h"
+
+using namespace vkvol;
+
+namespace {
+
+constexpr int edge = 32;
+
+// Sample k of a pixel, channel c: skewed, and dark most of the time, like sunlight found by chance.
+double sample_value(std::mt19937& random, double brightness) {
+    const double u = std::generate_canonical<double, 32>(random);
+    return brightness * (u < 0.9 ? 0.2 * u : 10.0 * u);
+}
+
+struct Samples {
+    std::vector<std::vector<std::array<double, 3>>> of_pixel;
+};
+
+Samples draw(unsigned seed, int count, double brightness = 1.0, std::size_t pixels = edge * edge) {
+    std::mt19937 random(seed);
+    Samples samples;
+    samples.of_pixel.resize(pixels);
+    for (auto& pixel : samples.of_pixel)
+        for (int k = 0; k < count; ++k)
+            pixel.push_back(
+                {sample_value(random, brightness), sample_value(random, brightness), sample_value(random, brightness)});
+    return samples;
+}
+
+// The statistics by their definition.
+Film film_of(const Samples& samples, Crop crop = {0, edge, 0, edge}) {
+    Film film;
+    film.picture_width = film.picture_height = edge;
+    film.crop = crop;
+    for (const auto& pixel : samples.of_pixel) {
+        const double n = double(pixel.size());
+        glm::dvec3 mean(0), squares(0);
+        for (const auto& sample : pixel)
+            mean += glm::dvec3(sample[0], sample[1], sample[2]) / n;
+        for (const auto& sample : pixel) {
+            const glm::dvec3 d = glm::dvec3(sample[0], sample[1], sample[2]) - mean;
+            squares += d * d;
+        }
+        film.mean.emplace_back(mean);
+        film.variance.emplace_back(n > 1 ? squares / (n * (n - 1)) : glm::dvec3(0));
+        film.samples.push_back(std::uint32_t(pixel.size()));
+    }
+    return film;
+}
+
+MergeInput input(const std::string& name, const Film& film, int offset, int spp, int seed = 0) {
+    return {name,
+            film,
+            {{"vkvol/sceneHash", "abc"},
+             {"vkvol/integrator", "ratioTracking"},
+             {"vkvol/seed", seed},
+             {"vkvol/sampleOffset", offset},
+             {"samplesPerPixel", spp},
+             {"renderTimeSeconds", 1.5f}}};
+}
+
+CompareOptions options_at(double significance = 0.01) {
+    CompareOptions options;
+    options.significance = significance;
+    return options;
+}
+
+void check_same_statistics(const Film& merged, const Film& expected) {
+    REQUIRE(merged.pixel_count() == expected.pixel_count());
+    CHECK(merged.samples == expected.samples);
+    double worst_mean = 0.0, worst_variance = 0.0;
+    for (std::size_t i = 0; i < merged.pixel_count(); ++i)
+        for (int c = 0; c < 3; ++c) {
+            const double mean = expected.mean[i][c], variance = expected.variance[i][c];
+            worst_mean = std::max(worst_mean, std::abs(merged.mean[i][c] / mean - 1));
+            worst_variance =
+                std::max(worst_variance, variance > 0 ? std::abs(merged.variance[i][c] / variance - 1) : 0.0);
+        }
+    CHECK(worst_mean < 3e-7); // rounding to float, once in the inputs and once in the result
+    CHECK(worst_variance < 2e-6);
+}
+
+} // namespace
+
+TEST_CASE("merging unequal sample counts equals pooling the samples", "[cpu][merge]") {
+    const Samples a = draw(1, 3), b = draw(2, 17), c = draw(3, 1);
+    Samples all = a;
+    for (std::size_t i = 0; i < all.of_pixel.size(); ++i)
+        for (const Samples* more : {&b, &c})
+            all.of_pixel[i].insert(all.of_pixel[i].end(), more->of_pixel[i].begin(), more->of_pixel[i].end());
+    const MergeResult merged =
+        merge_films({input("a", film_of(a), 0, 3), input("b", film_of(b), 3, 17), input("c", film_of(c), 20, 1)});
+    check_same_statistics(merged.film, film_of(all));
+    CHECK((merged.metadata.at("samplesPerPixel") == Metadata::mapped_type(21)));
+    CHECK((merged.metadata.at("vkvol/sampleOffset") == Metadata::mapped_type(0)));
+    CHECK((merged.metadata.at("vkvol/seed") == Metadata::mapped_type(0)));
+    CHECK((merged.metadata.at("renderTimeSeconds") == Metadata::mapped_type(4.5f)));
+}
+
+TEST_CASE("merging two single samples by hand", "[cpu][merge]") {
+    Samples a = draw(1, 1, 1.0, 1), b = a;
+    a.of_pixel[0][0] = {1, 2, 3};
+    b.of_pixel[0][0] = {3, 2, 7};
+    const Crop one{0, 1, 0, 1};
+    const Film film = merge_films({input("a", film_of(a, one), 0, 1), input("b", film_of(b, one), 1, 1)}).film;
+    CHECK(film.mean[0] == glm::vec3(2, 2, 5));
+    CHECK(film.variance[0] == glm::vec3(1, 0, 4)); // s^2 = 2, 0, 8; over n = 2
+    CHECK(film.samples[0] == 2);
+}
+
+TEST_CASE("disjoint windows are put side by side", "[cpu][merge]") {
+    const Samples whole = draw(4, 5);
+    const auto window = [&](Crop crop) {
+        Samples part;
+        for (int y = crop.y0; y < crop.y1; ++y)
+            for (int x = crop.x0; x < crop.x1; ++x)
+                part.of_pixel.push_back(whole.of_pixel[std::size_t(y * edge + x)]);
+        return film_of(part, crop);
+    };
+    const MergeResult merged =
+        merge_films({input("a", window({0, 10, 0, edge}), 0, 5), input("b", window({10, edge, 0, 7}), 0, 5),
+                     input("c", window({10, edge, 7, edge}), 0, 5)});
+    check_same_statistics(merged.film, film_of(whole));
+    CHECK((merged.metadata.at("samplesPerPixel") == Metadata::mapped_type(5)));
+    CHECK_THROWS_WITH(
+        merge_films({input("a", window({0, 10, 0, edge}), 0, 5), input("b", window({9, edge, 0, edge}), 0, 5)}),
+        Catch::Contains("windows overlap"));
+}
+
+TEST_CASE("what does not belong together is not merged", "[cpu][merge]") {
+    const Film film = film_of(draw(1, 4));
+    const MergeInput a = input("a.exr", film, 0, 4);
+    const auto with = [&](const char* key, const Metadata::mapped_type& value) {
+        MergeInput b = input("b.exr", film, 4, 4);
+        b.metadata[key] = value;
+        return b;
+    };
+    CHECK_NOTHROW(merge_films({a, input("b.exr", film, 4, 4)}));
+    CHECK_NOTHROW(merge_films({a, input("b.exr", film, 0, 4, 1)}));
+    CHECK_THROWS_WITH(merge_films({a, with("vkvol/sceneHash", "other")}),
+                      "a.exr and b.exr do not belong together: vkvol/sceneHash is 'abc' and 'other'");
+    CHECK_THROWS_WITH(merge_films({a, with("vkvol/integrator", "deltaTracking")}), Catch::Contains("vkvol/integrator"));
+    CHECK_THROWS_WITH(merge_films({a, with("vkvol/sampleOffset", 3)}), Catch::Contains("the same samples"));
+    CHECK_THROWS_WITH(merge_films({a, a}), Catch::Contains("the same samples"));
+    MergeInput larger = input("b.exr", film, 4, 4);
+    larger.film.picture_width = 64;
+    CHECK_THROWS_WITH(merge_films({a, larger}), Catch::Contains("32x32 and 64x32"));
+    MergeInput unknown = input("b.exr", film, 4, 4);
+    unknown.film.samples.assign(film.pixel_count(), 0);
+    CHECK_THROWS_WITH(merge_films({a, unknown}), Catch::Contains("how many samples"));
+    CHECK_THROWS_AS(merge_films({}), InputError);
+    // A merged image remembers its range: its parts cannot be merged into it again.
+    const MergeResult both = merge_films({a, input("b.exr", film, 4, 4)});
+    CHECK_THROWS_WITH(merge_films({{"both", both.film, both.metadata}, a}), Catch::Contains("the same samples"));
+}
+
+TEST_CASE("compare: error figures by hand", "[cpu][merge][compare]") {
+    Film a;
+    a.picture_width = 2;
+    a.picture_height = 1;
+    a.crop = {0, 2, 0, 1};
+    a.mean = {{1, 1, 1}, {2, 2, 2}};
+    a.variance.resize(2);
+    a.samples = {1, 1};
+    Film b = a;
+    b.mean = {{1, 1, 1}, {1, 2, 4}};
+    const Comparison result = compare_films(a, b, options_at());
+    CHECK(result.mse == Approx((1.0 + 4.0) / 6));
+    CHECK(result.relmse == Approx((1 / 1.01 + 4 / 16.01) / 6));
+    CHECK(result.psnr == Approx(10 * std::log10(16.0 / (5.0 / 6))));
+    CHECK(result.max_abs_difference == 2.0);
+    CHECK(result.mean_ratio[0] == Approx(1.5));
+    CHECK(result.mean_ratio[1] == 1.0);
+    CHECK(result.mean_ratio[2] == Approx(0.6));
+    CHECK(result.identical_pixels == 1);
+    CHECK_FALSE(result.has_variance);
+    CHECK(result.different);
+    CHECK_FALSE(compare_films(a, a, options_at()).different);
+    CompareOptions loose;
+    loose.max_relmse = 0.3;
+    CHECK_FALSE(compare_films(a, b, loose).different);
+    loose.max_relmse = 0.2;
+    CHECK(compare_films(a, b, loose).different);
+}
+
+TEST_CASE("compare: noise alone is no difference", "[cpu][merge][compare]") {
+    // At significance 0.01 one of a hundred pairs may be called different; more than 4 of 100 happen once in 300.
+    for (const auto& [n_a, n_b] : {std::pair{4, 4}, {16, 16}, {8, 256}, {2, 32}, {64, 1}}) {
+        int different = 0;
+        for (unsigned i = 0; i < 100; ++i)
+            different += compare_films(film_of(draw(1000 + i, n_a, 1.0, 256), {0, 16, 0, 16}),
+                                       film_of(draw(5000 + i, n_b, 1.0, 256), {0, 16, 0, 16}), options_at())
+                                 .different
+                             ? 1
+                             : 0;
+        INFO(n_a << " against " << n_b);
+        CHECK(different <= 4);
+    }
+}
+
+TEST_CASE("compare: real differences are found", "[cpu][merge][compare]") {
+    const Film reference = film_of(draw(1, 256));
+    CHECK(compare_films(film_of(draw(2, 64, 1.05)), reference, options_at()).different); // 5 % brighter
+    Film spot = film_of(draw(3, 64));
+    CHECK_FALSE(compare_films(spot, reference, options_at()).different);
+    spot.mean[77].y += 10.0f; // one pixel
+    const Comparison result = compare_films(spot, reference, options_at());
+    CHECK(result.different);
+    CHECK(result.beyond_bound == 1);
+    // Without any noise in both: 64 samples of the same value each.
+    Film flat = reference, other = reference;
+    flat.variance.assign(flat.pixel_count(), glm::vec3(0));
+    other.variance = flat.variance;
+    other.variance[0] = glm::vec3(1);
+    other.mean[5].x += 0.01f;
+    CHECK(compare_films(flat, other, options_at()).beyond_bound == 1);
+    Film broken = reference;
+    broken.mean[3].z = std::numeric_limits<float>::quiet_NaN();
+    CHECK(compare_films(broken, reference, options_at()).different);
+    CHECK(compare_films(broken, reference, options_at()).non_finite == 1);
+}
+
+TEST_CASE("compare: only equal windows", "[cpu][merge][compare]") {
+    const Film a = film_of(draw(1, 2));
+    Film b = a;
+    b.picture_width = 33;
+    CHECK_THROWS_WITH(compare_films(a, b, options_at()), Catch::Contains("cannot be compared"));
+    b = a;
+    b.crop = {1, edge + 1, 0, edge};
+    CHECK_THROWS_AS(compare_films(a, b, options_at()), InputError);
+}

@@ -1,0 +1,142 @@
+// Random numbers: bit by bit what the specification says, uniform, and independent of their neighbours.
+// Seeds are fixed. Each case states its significance; a case of n comparisons divides it by Sidak's formula.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "kernels/test_items.h"
+#include "rng.spv.h"
+#include "support/kernel_runner.h"
+#include "support/statistics.h"
+#include "tests/reference/rng.h"
+
+using namespace vkvol;
+using shared::RngOutput;
+
+namespace {
+
+std::vector<RngOutput> draw_on_device(const std::vector<glm::uvec4>& keys) {
+    return KernelRunner(rng_spv).run<RngOutput>(keys);
+}
+
+// Pixels of a 32 x 32 square, 16 samples, 8 draws: keys as neighbourly as a render's.
+constexpr std::uint32_t side = 32, samples = 16, draws = 8;
+std::size_t key_index(std::uint32_t x, std::uint32_t y, std::uint32_t sample, std::uint32_t draw) {
+    return ((y * side + x) * samples + sample) * draws + draw;
+}
+std::vector<RngOutput> draw_neighbours() {
+    std::vector<glm::uvec4> keys;
+    for (std::uint32_t y = 0; y < side; ++y)
+        for (std::uint32_t x = 0; x < side; ++x)
+            for (std::uint32_t sample = 0; sample < samples; ++sample)
+                for (std::uint32_t draw = 0; draw < draws; ++draw)
+                    keys.emplace_back(x | y << 16, sample, draw, 7);
+    return draw_on_device(keys);
+}
+
+// The numbers of a draw: u, then tap.
+constexpr int components = 7;
+double component(const RngOutput& o, int i) {
+    return i < 4 ? o.u[i] : o.tap[i - 4];
+}
+
+// p-value of the correlation of a and b: for independent uniforms z = sqrt(n) * 12 * mean((a - 1/2)(b - 1/2)) is
+// standard normal, since the product has variance 1 / 144.
+class Correlation {
+public:
+    void add(double a, double b) {
+        sum_ += (a - 0.5) * (b - 0.5);
+        count_ += 1.0;
+    }
+    double p() const { return normal_p(12.0 * sum_ / std::sqrt(count_)); }
+
+private:
+    double sum_ = 0.0, count_ = 0.0;
+};
+
+} // namespace
+
+TEST_CASE("random numbers equal the reference bit by bit", "[gpu][rng]") {
+    std::mt19937 engine(1);
+    std::vector<glm::uvec4> keys = {{0, 0, 0, 0}, {~0u, ~0u, ~0u, ~0u}, {0, 0, ~0u, 0}};
+    while (keys.size() < 100000)
+        keys.emplace_back(engine(), engine(), engine(), engine());
+    const std::vector<RngOutput> outputs = draw_on_device(keys);
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const glm::uvec4 k = keys[i];
+        const reference::Draw draw{reference::pcg4d({k.x, k.y, k.z, k.w})};
+        const RngOutput& o = outputs[i];
+        INFO("key " << k.x << ' ' << k.y << ' ' << k.z << ' ' << k.w);
+        REQUIRE((o.words == glm::uvec4(draw.words[0], draw.words[1], draw.words[2], draw.words[3])));
+        for (int c = 0; c < 4; ++c) // floats hold multiples of 2^-24 exactly
+            REQUIRE(double(o.u[c]) == draw.uniform(c));
+        REQUIRE((glm::dvec3(o.tap) == draw.tap()));
+        REQUIRE(o.draw == k.z + 1u);
+        // 1 - u is exact; Vulkan lets log err by 3 ulp outside [0.5, 2] and by 2^-21 within it.
+        REQUIRE(std::abs(o.exponential - reference::to_exponential(draw.x())) <= 0x1p-21 + 3 * 0x1p-23 * o.exponential);
+    }
+}
+
+TEST_CASE("random numbers are uniform in [0, 1)", "[gpu][rng]") {
+    const std::vector<RngOutput> outputs = draw_neighbours();
+    constexpr int bins = 256;
+    const double significance = sidak(1e-3, components);
+    for (int c = 0; c < components; ++c) {
+        std::vector<double> observed(bins, 0.0);
+        for (const RngOutput& o : outputs) {
+            const double u = component(o, c);
+            REQUIRE((u >= 0.0 && u < 1.0));
+            observed[static_cast<int>(u * bins)] += 1.0;
+        }
+        const std::vector<double> expected(bins, outputs.size() / double(bins));
+        CAPTURE(c);
+        CHECK(chi_square_test_p(observed, expected) > significance);
+    }
+}
+
+TEST_CASE("the numbers of one draw are independent of each other", "[gpu][rng]") {
+    const std::vector<RngOutput> outputs = draw_neighbours();
+    const double significance = sidak(1e-3, 2 * components * (components - 1) / 2);
+    for (int a = 0; a < components; ++a)
+        for (int b = a + 1; b < components; ++b) {
+            // u.z and tap.x are the same bits, and u.w and tap.y: no use takes both (see the order of draws).
+            if ((a == 2 && b == 4) || (a == 3 && b == 5))
+                continue;
+            Correlation correlation;
+            std::vector<double> observed(16 * 16, 0.0);
+            for (const RngOutput& o : outputs) {
+                const double u = component(o, a), v = component(o, b);
+                correlation.add(u, v);
+                observed[static_cast<int>(16 * u) * 16 + static_cast<int>(16 * v)] += 1.0;
+            }
+            CAPTURE(a, b);
+            CHECK(correlation.p() > significance);
+            CHECK(chi_square_test_p(observed, std::vector<double>(256, outputs.size() / 256.0)) > significance);
+        }
+}
+
+TEST_CASE("neighbouring pixels, samples and draws are independent", "[gpu][rng]") {
+    const std::vector<RngOutput> outputs = draw_neighbours();
+    struct Step {
+        const char* name;
+        std::uint32_t x, y, sample, draw;
+    };
+    const Step step = GENERATE(Step{"x", 1, 0, 0, 0}, Step{"y", 0, 1, 0, 0}, Step{"diagonal", 1, 1, 0, 0},
+                               Step{"sample", 0, 0, 1, 0}, Step{"draw", 0, 0, 0, 1}, Step{"two draws", 0, 0, 0, 2});
+    const double significance = sidak(1e-3, 6 * components * components);
+    for (int a = 0; a < components; ++a)
+        for (int b = 0; b < components; ++b) {
+            Correlation correlation;
+            for (std::uint32_t y = 0; y + step.y < side; ++y)
+                for (std::uint32_t x = 0; x + step.x < side; ++x)
+                    for (std::uint32_t s = 0; s + step.sample < samples; ++s)
+                        for (std::uint32_t d = 0; d + step.draw < draws; ++d)
+                            correlation.add(
+                                component(outputs[key_index(x, y, s, d)], a),
+                                component(outputs[key_index(x + step.x, y + step.y, s + step.sample, d + step.draw)],
+                                          b));
+            INFO("step in " << step.name << ", components " << a << ' ' << b);
+            CHECK(correlation.p() > significance);
+        }
+}

@@ -1,0 +1,187 @@
+#include "images.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <fmt/format.h>
+#include <limits>
+#include <thread>
+
+#include "image_io.h"
+#include "statistics.h"
+#include "test_device.h"
+#include "tests/reference/reference.h"
+
+namespace vkvol {
+
+namespace {
+
+constexpr double significance = 0.01;
+constexpr double most_comparisons = 200.0;
+
+// Single precision: a sample of a path with some tens of multiplications is known to 1e-6, the film's mean to 6e-8.
+constexpr double rounding = 1e-5;
+
+// Gathers z per pixel and channel, and their sum over the picture.
+class Judge {
+public:
+    explicit Judge(const Film& like) : z_(like) {
+        std::fill(z_.mean.begin(), z_.mean.end(), glm::vec3(0.0f));
+        std::fill(z_.variance.begin(), z_.variance.end(), glm::vec3(0.0f));
+    }
+
+    // `p`: of a difference at least as large, from the difference and the variance that is expected of it.
+    void add(std::size_t pixel, int channel, double difference, double variance, double scale, double p) {
+        z_.mean[pixel][channel] = static_cast<float>(difference / std::sqrt(variance + 1e-30));
+        difference_[channel] += difference;
+        variance_[channel] += variance;
+        scale_[channel] += scale;
+        tests_ += 1.0;
+        if (!(p >= worst_p_)) { // NaN too
+            worst_p_ = p;
+            worst_ = pixel;
+        }
+    }
+
+    void add(std::size_t pixel, int channel, double difference, double variance, double scale) {
+        const double excess = std::abs(difference) - rounding * scale;
+        const double z = excess > 0.0 ? excess / std::sqrt(variance) : std::isnan(difference) ? NAN : 0.0;
+        add(pixel, channel, difference, variance, scale, normal_p(z));
+    }
+
+    Agreement judge(const std::string& name, const Film& film, const Film* other) const {
+        const double share = sidak(significance, most_comparisons);
+        const double pixel_limit = sidak(share, 2.0 * tests_), mean_limit = sidak(share, 6.0);
+        Agreement result;
+        result.ok = worst_p_ >= pixel_limit;
+        result.report = fmt::format("{}: worst pixel ({}, {}) z {:.2f}, p {:.2g} of at least {:.2g}; mean z", name,
+                                    film.crop.x0 + int(worst_) % film.width(),
+                                    film.crop.y0 + int(worst_) / film.width(), worst_z(), worst_p_, pixel_limit);
+        for (int channel = 0; channel < 3; ++channel) {
+            const double excess = std::abs(difference_[channel]) - rounding * scale_[channel];
+            const double z = excess > 0.0 ? excess / std::sqrt(variance_[channel]) : 0.0;
+            result.ok = result.ok && normal_p(z) >= mean_limit;
+            result.report += fmt::format(" {:.2f}", std::copysign(z, difference_[channel]));
+        }
+        result.report += fmt::format(", p at least {:.2g}", mean_limit);
+        if (!result.ok)
+            result.report += "; images: " + leave_images(name, film, other);
+        return result;
+    }
+
+private:
+    double worst_z() const {
+        const glm::vec3 z = z_.mean[worst_];
+        const int channel = std::abs(z.x) >= std::abs(z.y) && std::abs(z.x) >= std::abs(z.z) ? 0
+                            : std::abs(z.y) >= std::abs(z.z)                                 ? 1
+                                                                                             : 2;
+        return z[channel];
+    }
+
+    std::string leave_images(std::string name, const Film& film, const Film* other) const {
+        std::replace_if(
+            name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c) && c != '.'; }, '_');
+        const std::filesystem::path directory = std::filesystem::absolute("failed_images");
+        std::filesystem::create_directories(directory);
+        write_exr(directory / (name + ".device.exr"), film, {});
+        if (other)
+            write_exr(directory / (name + ".expected.exr"), *other, {});
+        write_exr(directory / (name + ".z.exr"), z_, {});
+        return (directory / (name + ".*.exr")).string();
+    }
+
+    Film z_;
+    glm::dvec3 difference_{0.0}, variance_{0.0}, scale_{0.0};
+    double tests_ = 0.0;
+    double worst_p_ = 1.0;
+    std::size_t worst_ = 0;
+};
+
+// n KL(q || p), the relative entropy of binomials.
+double binomial_divergence(double n, double q, double p) {
+    const auto term = [](double a, double b) { return a > 0.0 ? a * std::log(a / b) : 0.0; };
+    return n * std::max(0.0, term(q, p) + term(1.0 - q, 1.0 - p));
+}
+
+} // namespace
+
+RenderResult render_here(const Scene& scene, std::uint32_t seed, RenderJob job) {
+    job.seed = seed;
+    job.disk_cache = false;
+    if (job.crop.x1 == 0)
+        job.crop = {0, scene.picture.width, 0, scene.picture.height};
+    RenderResult result = render(test_device(), scene, job);
+    CHECK(result.counts.step_caps == 0);
+    CHECK(result.counts.majorant_violations == 0);
+    CHECK(result.counts.non_finite == 0);
+    CHECK(result.counts.queue_overflows == 0);
+    return result;
+}
+
+Film render_reference(const Scene& scene, std::uint32_t seed) {
+    const Crop whole{0, scene.picture.width, 0, scene.picture.height};
+    return reference::render(scene, whole, scene.settings.spp, seed, std::thread::hardware_concurrency());
+}
+
+Agreement agree(const Film& film, const Film& other, const std::string& name) {
+    REQUIRE(film.pixel_count() == other.pixel_count());
+    Judge judge(film);
+    for (std::size_t i = 0; i < film.pixel_count(); ++i)
+        for (int channel = 0; channel < 3; ++channel) {
+            const double a = film.mean[i][channel], b = other.mean[i][channel];
+            judge.add(i, channel, a - b, double(film.variance[i][channel]) + other.variance[i][channel],
+                      std::max(std::abs(a), std::abs(b)));
+        }
+    return judge.judge(name, film, &other);
+}
+
+Agreement agree_with_means(const Film& film, const std::vector<Rgb>& means, const std::string& name) {
+    REQUIRE(film.pixel_count() == means.size());
+    Judge judge(film);
+    Film expected = film;
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        expected.mean[i] = means[i];
+        for (int channel = 0; channel < 3; ++channel)
+            judge.add(i, channel, film.mean[i][channel] - means[i][channel], film.variance[i][channel],
+                      std::abs(means[i][channel]));
+    }
+    return judge.judge(name, film, &expected);
+}
+
+Agreement agree_with_escapes(const Film& film, const std::vector<double>& p, const Rgb& if_escaped,
+                             const Rgb& otherwise, const std::string& name) {
+    REQUIRE(film.pixel_count() == p.size());
+    Judge judge(film);
+    Film expected = film;
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        expected.mean[i] = p[i] * if_escaped + (1.0 - p[i]) * otherwise;
+        const double n = film.samples[i];
+        for (int channel = 0; channel < 3; ++channel) {
+            const double span = if_escaped[channel] - otherwise[channel];
+            if (span == 0.0)
+                continue;
+            // An exact count but for the film's rounding.
+            const double escapes = std::round((film.mean[i][channel] - otherwise[channel]) / span * n);
+            judge.add(i, channel, escapes / n - p[i], p[i] * (1.0 - p[i]) / n, 1.0,
+                      2.0 * std::exp(-binomial_divergence(n, escapes / n, p[i])));
+        }
+    }
+    return judge.judge(name, film, &expected);
+}
+
+bool same_bits(const Film& a, const Film& b) {
+    const auto same = [](const auto& x, const auto& y) {
+        return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0;
+    };
+    return same(a.mean, b.mean) && same(a.variance, b.variance) && same(a.samples, b.samples);
+}
+
+double mean_of(const Film& film) {
+    double sum = 0.0;
+    for (const glm::vec3& pixel : film.mean)
+        sum += double(pixel.x) + pixel.y + pixel.z;
+    return sum / (3.0 * static_cast<double>(film.pixel_count()));
+}
+
+} // namespace vkvol

@@ -1,0 +1,134 @@
+#include "scenes.h"
+
+#include <nanovdb/util/GridBuilder.h>
+#include <nanovdb/util/IO.h>
+
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+#include <unistd.h>
+
+#include "tests/reference/camera.h"
+#include "tests/reference/rng.h"
+
+namespace vkvol {
+
+namespace {
+
+// Exists as long as the program.
+class TemporaryDirectory {
+public:
+    TemporaryDirectory() : path_(std::filesystem::temp_directory_path() / fmt::format("vkvol-tests-{}", ::getpid())) {
+        std::filesystem::create_directories(path_);
+    }
+    ~TemporaryDirectory() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+template <class Build> void write_as(const TestGrid& grid, const std::filesystem::path& path) {
+    nanovdb::GridBuilder<float, Build> builder(0.0f, nanovdb::GridClass::FogVolume);
+    auto accessor = builder.getAccessor();
+    for (int i = grid.first.x; i <= grid.last.x; ++i)
+        for (int j = grid.first.y; j <= grid.last.y; ++j)
+            for (int k = grid.first.z; k <= grid.last.z; ++k)
+                accessor.setValue(nanovdb::Coord(i, j, k), grid.value({i, j, k}));
+    nanovdb::Map map;
+    map.set(grid.linear, glm::inverse(grid.linear), grid.translation, 1.0);
+    nanovdb::io::writeGrid(path.string(), builder.getHandle(map, "density"));
+}
+
+double hash(glm::ivec3 i, std::uint32_t octave) {
+    return reference::pcg4d({std::uint32_t(i.x), std::uint32_t(i.y), std::uint32_t(i.z), octave})[0] * 0x1p-32;
+}
+
+// Random values at the integers, interpolated.
+double value_noise(glm::dvec3 p, std::uint32_t octave) {
+    const glm::dvec3 base = glm::floor(p), f = p - base;
+    double sum = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::ivec3 c(corner & 1, corner >> 1 & 1, corner >> 2);
+        const glm::dvec3 weight = glm::mix(1.0 - f, f, glm::dvec3(c));
+        sum += weight.x * weight.y * weight.z * hash(glm::ivec3(base) + c, octave);
+    }
+    return sum;
+}
+
+} // namespace
+
+glm::dvec3 TestGrid::center() const {
+    return linear * (glm::dvec3(first + last) / 2.0) + translation;
+}
+
+GridFile write_grid(const TestGrid& grid) {
+    static const TemporaryDirectory directory;
+    static int count = 0;
+    const std::filesystem::path path = directory.path() / fmt::format("{}.nvdb", count++);
+    switch (grid.storage) {
+    case Storage::f32:
+        write_as<float>(grid, path);
+        break;
+    case Storage::fp4:
+        write_as<nanovdb::Fp4>(grid, path);
+        break;
+    case Storage::fp8:
+        write_as<nanovdb::Fp8>(grid, path);
+        break;
+    case Storage::fp16:
+        write_as<nanovdb::Fp16>(grid, path);
+        break;
+    case Storage::fpn:
+        write_as<nanovdb::FpN>(grid, path);
+        break;
+    }
+    return {path, "density"};
+}
+
+float cloud_noise(glm::ivec3 voxel) {
+    double sum = 0.0;
+    for (std::uint32_t octave = 0; octave < 4; ++octave)
+        sum += value_noise(glm::dvec3(voxel) / double(16 >> octave), octave) * std::ldexp(1.0, -int(octave) - 1);
+    return static_cast<float>(std::max(0.0, std::min(1.0, (sum - 0.4) * 3.0)));
+}
+
+TestGrid cloud_grid(Storage storage) {
+    TestGrid grid{{-17, -12, -19}, {14, 15, 10}, cloud_noise, glm::dmat3(0.3), glm::dvec3(0.0), storage};
+    grid.translation = -grid.center();
+    return grid;
+}
+
+Volume medium(decltype(Volume::shape) shape, double sigma_t, double albedo, double g) {
+    Volume volume;
+    volume.shape = std::move(shape);
+    volume.sigma_a = sigma_t * (1.0 - albedo);
+    volume.sigma_s = sigma_t * albedo;
+    volume.unit = CoefficientUnit::world;
+    volume.g = g;
+    return volume;
+}
+
+Scene scene_of(const Volume& volume, double width, int pixels, double distance, glm::dvec3 target,
+               glm::dvec3 pitch_yaw_roll) {
+    Scene scene;
+    scene.picture = {pixels, pixels, 0.0, 0.0, double(pixels), double(pixels)};
+    scene.camera.fov = 2.0 * std::atan(0.5 * width / distance) * 180.0 / std::numbers::pi;
+    scene.camera.pitch = pitch_yaw_roll.x;
+    scene.camera.yaw = pitch_yaw_roll.y;
+    scene.camera.roll = pitch_yaw_roll.z;
+    scene.camera.position = glm::dvec3(0.0);
+    const reference::Ray middle = reference::camera_ray(scene.camera, scene.picture, 0.5 * pixels, 0.5 * pixels);
+    scene.camera.position = target - distance * middle.direction;
+    scene.volumes = {volume};
+    return scene;
+}
+
+DirectionalLight sunlight(Rgb irradiance) {
+    return {glm::normalize(glm::dvec3(1.0, 1.5, 1.0)), irradiance};
+}
+
+} // namespace vkvol

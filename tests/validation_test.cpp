@@ -1,0 +1,48 @@
+// The validation layer, with synchronization validation, has nothing to say about any pass over any medium.
+#include <catch2/catch.hpp>
+
+#include "support/images.h"
+#include "support/scenes.h"
+#include "support/test_device.h"
+
+using namespace vkvol;
+
+namespace {
+
+void check_silent(Scene scene) {
+    scene.lights = {sunlight()};
+    scene.background = Rgb(0.5);
+    scene.settings.spp = 2;
+    for (const char* integrator : {"deltaTracking", "ratioTracking"})
+        for (const Filter filter : {Filter::nearest, Filter::trilinear, Filter::stochastic}) {
+            if (scene.volumes.empty() || !std::holds_alternative<GridFile>(scene.volumes.front().shape))
+                if (filter != Filter::stochastic)
+                    continue; // nothing to filter
+            scene.settings.integrator = integrator;
+            scene.settings.filter = filter;
+            CAPTURE(integrator, int(filter));
+            const std::size_t before = test_device_messages().size();
+            const RenderResult result = render_here(scene, 1);
+            CHECK(result.samples == scene.settings.spp);
+            const std::vector<std::string> messages = test_device_messages();
+            CHECK(std::vector<std::string>(messages.begin() + std::ptrdiff_t(before), messages.end()).empty());
+        }
+}
+
+} // namespace
+
+TEST_CASE("validation is silent for homogeneous media and for none", "[gpu][validation]") {
+    Volume ember = medium(Sphere{}, 1.0, 0.5);
+    ember.Le = Rgb(1.0);
+    check_silent(scene_of(ember, 2.0, 5));
+    check_silent(scene_of(medium(Box{}, 1.0, 0.5), 2.0, 5));
+    Scene nothing = scene_of(ember, 2.0, 5);
+    nothing.volumes.clear();
+    check_silent(nothing);
+}
+
+TEST_CASE("validation is silent for every type of grid", "[gpu][validation]") {
+    const Storage storage = GENERATE(Storage::f32, Storage::fp4, Storage::fp8, Storage::fp16, Storage::fpn);
+    CAPTURE(int(storage));
+    check_silent(scene_of(medium(write_grid(cloud_grid(storage)), 1.0, 0.5), 8.0, 5, 20.0));
+}

@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and runs every test on the devices there are (Mesa's software driver where there
+# is no GPU).
+#   tools/test.sh              the release build
+#   tools/test.sh --sanitize   host code under AddressSanitizer and UndefinedBehaviorSanitizer
+#   tools/test.sh ... ARGS     further arguments go to ctest, e.g. -R density
+set -eu
+source "$(dirname "$0")/setup.sh"
+
+preset=release
+if [ "${1:-}" = --sanitize ]; then
+    preset=sanitize
+    shift
+fi
+start=$SECONDS
+install_packages
+build "$preset"
+
+say "Scene files against their schema"
+find "$vkvol_root/scenes" -name '*.xml' -print0 |
+    xargs -0 xmllint --noout --schema "$vkvol_root/scenes/vkvol.xsd" 2>&1 | grep -v ' validates$' && die "a scene does not validate"
+
+say "Tests ($preset)"
+directory=$vkvol_root/build
+[ "$preset" = release ] || directory=$vkvol_root/build-$preset
+# Drivers keep memory until the process ends: leaks are looked for in our code by other means.
+ASAN_OPTIONS=detect_leaks=0 ctest --test-dir "$directory" --output-on-failure "$@" || die "tests failed"
+say "All tests passed ($((SECONDS - start)) s in all)"
