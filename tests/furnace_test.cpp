@@ -34,10 +34,9 @@ void check_equals_background(const Scene& scene) {
 
 // About the world's origin, 2.7 units across, optical depth about 6.
 Volume cloud(Storage storage, double g) {
-    TestGrid grid = cloud_grid(storage);
-    grid.linear = glm::dmat3(0.09);
-    grid.translation = glm::dvec3(0.0);
-    grid.translation = -grid.center();
+    GridRecipe grid = cloud_grid(storage);
+    grid.linear *= 0.3;
+    grid.translation *= 0.3;
     return medium(write_grid(grid), 8.0, 1.0, g);
 }
 
@@ -52,7 +51,7 @@ TEST_CASE("a homogeneous furnace shows its background exactly", "[gpu][hard][fur
 
 TEST_CASE("a furnace with a grid shows its background exactly", "[gpu][hard][furnace]") {
     const double g = GENERATE(0.0, 0.8, -0.8);
-    const Storage storage = GENERATE(Storage::f32, Storage::fp8);
+    const Storage storage = GENERATE(Storage::float32, Storage::fp8);
     const Filter filter = GENERATE(Filter::nearest, Filter::trilinear, Filter::stochastic);
     CAPTURE(g, int(storage), int(filter));
     Scene scene = furnace(cloud(storage, g), 4);
@@ -61,7 +60,8 @@ TEST_CASE("a furnace with a grid shows its background exactly", "[gpu][hard][fur
 }
 
 TEST_CASE("a furnace seen from inside shows its background exactly", "[gpu][hard][furnace]") {
-    for (const Volume& volume : {medium(Sphere{}, 3.0, 1.0, 0.5), medium(Box{}, 3.0, 1.0), cloud(Storage::f32, 0.5)}) {
+    for (const Volume& volume :
+         {medium(Sphere{}, 3.0, 1.0, 0.5), medium(Box{}, 3.0, 1.0), cloud(Storage::float32, 0.5)}) {
         Scene scene = furnace(volume);
         scene.camera.position = glm::dvec3(0.05, -0.1, 0.07);
         scene.camera.fov = 120.0;
@@ -71,7 +71,7 @@ TEST_CASE("a furnace seen from inside shows its background exactly", "[gpu][hard
 
 // Paths that would scatter more than D times are lost: L = L_b (1 - P[more than D scatterings]).
 TEST_CASE("a depth limit darkens a furnace by the paths it ends", "[gpu][hard][furnace]") {
-    for (const Volume& volume : {medium(Sphere{}, 2.0, 1.0, 0.5), cloud(Storage::f32, 0.5)})
+    for (const Volume& volume : {medium(Sphere{}, 2.0, 1.0, 0.5), cloud(Storage::float32, 0.5)})
         for (const std::uint32_t depth : {0u, 1u, 4u}) {
             Scene scene = furnace(volume, 256);
             scene.settings.max_depth = depth;

@@ -42,7 +42,7 @@ TEST_CASE("validation is silent for homogeneous media and for none", "[gpu][vali
 }
 
 TEST_CASE("validation is silent for every type of grid", "[gpu][validation]") {
-    const Storage storage = GENERATE(Storage::f32, Storage::fp4, Storage::fp8, Storage::fp16, Storage::fpn);
-    CAPTURE(int(storage));
+    const Storage storage = GENERATE(from_range(std::begin(all_storages), std::end(all_storages)));
+    CAPTURE(storage_name(storage));
     check_silent(scene_of(medium(write_grid(cloud_grid(storage)), 1.0, 0.5), 8.0, 5, 20.0));
 }

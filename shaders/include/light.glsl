@@ -5,9 +5,7 @@
 #include "phase.glsl"
 
 vec3 sun_contribution(VolumeParams v, LightParams light, vec3 direction, float beta) {
-    // |a - b|^2 / 2 is 1 - a.b for unit vectors, with all digits where they nearly agree.
-    vec3 apart = direction - light.direction;
-    return beta * hg_eval(v.g, 0.5 * dot(apart, apart)) * light.irradiance;
+    return beta * hg_eval(v.g, hg_from_peak(v.g, direction, light.direction)) * light.irradiance;
 }
 
 #endif

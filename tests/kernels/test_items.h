@@ -1,7 +1,7 @@
 // Inputs and outputs of the test kernels.
 #ifndef TEST_ITEMS_H
 #define TEST_ITEMS_H
-#include "shared/prologue.h"
+#include "shared/items.h"
 
 SHARED_BEGIN
 
@@ -29,6 +29,7 @@ struct RayInput {
     vec3 origin;
     vec3 direction;
     uint key; // of the random numbers
+    float u;  // of the first free flight
 };
 struct WalkStep {
     ivec3 cell; // passed in this step
@@ -40,8 +41,8 @@ struct WalkStep {
 struct FlightOutput {
     uint event;
     float t; // world units from the ray's origin
-    float T; // transmittance kernels
-    uint steps;
+    float T; // transmittance
+    uint nulls;
 };
 
 struct PhaseInput {
@@ -51,8 +52,9 @@ struct PhaseInput {
 };
 struct PhaseOutput {
     vec3 direction;
-    float one_minus_mu; // as drawn
-    float eval;         // hg_eval of it
+    float from_peak; // as drawn
+    float eval;      // hg_eval of it
+    float eval_pair; // hg_eval of the directions before and after
     vec3 tangent;
     vec3 bitangent;
 };
@@ -68,6 +70,13 @@ struct ShapeOutput {
     vec2 box;
     uint ball_hit;
     vec2 ball;
+};
+
+struct FilmInput {
+    FilmPixel pixel;
+    vec3 radiance; // added as it is if random is 0
+    uint random;   // else as many times a number that differs each time
+    uint first;    // key of the first
 };
 
 SHARED_END

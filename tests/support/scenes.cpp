@@ -1,9 +1,10 @@
 #include "scenes.h"
 
-#include <nanovdb/util/GridBuilder.h>
 #include <nanovdb/util/IO.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <fmt/format.h>
 #include <numbers>
 #include <unistd.h>
@@ -31,18 +32,6 @@ private:
     std::filesystem::path path_;
 };
 
-template <class Build> void write_as(const TestGrid& grid, const std::filesystem::path& path) {
-    nanovdb::GridBuilder<float, Build> builder(0.0f, nanovdb::GridClass::FogVolume);
-    auto accessor = builder.getAccessor();
-    for (int i = grid.first.x; i <= grid.last.x; ++i)
-        for (int j = grid.first.y; j <= grid.last.y; ++j)
-            for (int k = grid.first.z; k <= grid.last.z; ++k)
-                accessor.setValue(nanovdb::Coord(i, j, k), grid.value({i, j, k}));
-    nanovdb::Map map;
-    map.set(grid.linear, glm::inverse(grid.linear), grid.translation, 1.0);
-    nanovdb::io::writeGrid(path.string(), builder.getHandle(map, "density"));
-}
-
 double hash(glm::ivec3 i, std::uint32_t octave) {
     return reference::pcg4d({std::uint32_t(i.x), std::uint32_t(i.y), std::uint32_t(i.z), octave})[0] * 0x1p-32;
 }
@@ -61,32 +50,19 @@ double value_noise(glm::dvec3 p, std::uint32_t octave) {
 
 } // namespace
 
-glm::dvec3 TestGrid::center() const {
-    return linear * (glm::dvec3(first + last) / 2.0) + translation;
-}
-
-GridFile write_grid(const TestGrid& grid) {
+GridFile write_grid(const GridRecipe& grid) {
     static const TemporaryDirectory directory;
     static int count = 0;
     const std::filesystem::path path = directory.path() / fmt::format("{}.nvdb", count++);
-    switch (grid.storage) {
-    case Storage::f32:
-        write_as<float>(grid, path);
-        break;
-    case Storage::fp4:
-        write_as<nanovdb::Fp4>(grid, path);
-        break;
-    case Storage::fp8:
-        write_as<nanovdb::Fp8>(grid, path);
-        break;
-    case Storage::fp16:
-        write_as<nanovdb::Fp16>(grid, path);
-        break;
-    case Storage::fpn:
-        write_as<nanovdb::FpN>(grid, path);
-        break;
-    }
+    const GridBytes bytes = make_grid_bytes(grid);
+    auto buffer = nanovdb::HostBuffer::create(bytes.size());
+    std::memcpy(buffer.data(), bytes.data(), bytes.size());
+    nanovdb::io::writeGrid(path.string(), nanovdb::GridHandle<>(std::move(buffer)));
     return {path, "density"};
+}
+
+glm::dvec3 center_of(const GridRecipe& grid) {
+    return grid.linear * (glm::dvec3(grid.first + grid.last) / 2.0) + grid.translation;
 }
 
 float cloud_noise(glm::ivec3 voxel) {
@@ -96,9 +72,10 @@ float cloud_noise(glm::ivec3 voxel) {
     return static_cast<float>(std::max(0.0, std::min(1.0, (sum - 0.4) * 3.0)));
 }
 
-TestGrid cloud_grid(Storage storage) {
-    TestGrid grid{{-17, -12, -19}, {14, 15, 10}, cloud_noise, glm::dmat3(0.3), glm::dvec3(0.0), storage};
-    grid.translation = -grid.center();
+GridRecipe cloud_grid(Storage storage) {
+    GridRecipe grid{{-17, -12, -19}, {14, 15, 10}, cloud_noise, storage};
+    grid.linear = glm::dmat3(0.3);
+    grid.translation = -center_of(grid);
     return grid;
 }
 

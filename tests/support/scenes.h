@@ -1,34 +1,21 @@
 // Small scenes built in code, and small grids in temporary files that renderer and reference both open.
 #pragma once
 
-#include <functional>
-
-#include "scene.h"
+#include "test_grids.h"
 
 namespace vkvol {
 
-enum class Storage { f32, fp4, fp8, fp16, fpn };
-
-// Every voxel of [first, last] is active, whatever its value. world = linear * index + translation.
-struct TestGrid {
-    glm::ivec3 first{0};
-    glm::ivec3 last{0};
-    std::function<float(glm::ivec3)> value;
-    glm::dmat3 linear{1.0};
-    glm::dvec3 translation{0.0};
-    Storage storage = Storage::f32;
-
-    glm::dvec3 center() const; // world
-};
-
 // A file of its own, removed when the tests end.
-GridFile write_grid(const TestGrid& grid);
+GridFile write_grid(const GridRecipe& grid);
+
+// Of its voxels, in world space.
+glm::dvec3 center_of(const GridRecipe& grid);
 
 // Four octaves of value noise, a third of it cut to 0; in [0, 1].
 float cloud_noise(glm::ivec3 voxel);
 
 // 32 x 28 x 30 voxels of cloud_noise, index origin negative, voxels 0.3 world units long, about the world's origin.
-TestGrid cloud_grid(Storage storage = Storage::f32);
+GridRecipe cloud_grid(Storage storage = Storage::float32);
 
 // sigma_t and albedo instead of the two coefficients; per world unit.
 Volume medium(decltype(Volume::shape) shape, double sigma_t, double albedo, double g = 0.0);

@@ -1,0 +1,133 @@
+// Scenes that are the same picture in different words.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "support/images.h"
+#include "support/scenes.h"
+
+using namespace vkvol;
+
+namespace {
+
+#define CHECK_AGREEMENT(expression)                                                                                    \
+    do {                                                                                                               \
+        const Agreement agreement = (expression);                                                                      \
+        INFO(agreement.report);                                                                                        \
+        CHECK(agreement.ok);                                                                                           \
+    } while (false)
+
+Scene lit(const Volume& volume, double width, double distance, glm::dvec3 target = glm::dvec3(0.0)) {
+    Scene scene = scene_of(volume, width, 20, distance, target, {15.0, -35.0, 5.0});
+    scene.background = {0.3, 0.5, 0.9};
+    scene.lights = {sunlight()};
+    scene.settings.spp = 64;
+    return scene;
+}
+
+// The cloud, everything `scale` times as large and seen as before.
+Scene scaled_cloud(double scale, glm::dvec3 shift = glm::dvec3(0.0)) {
+    GridRecipe grid = cloud_grid();
+    grid.linear *= scale;
+    grid.translation = grid.translation * scale + shift;
+    return lit(medium(write_grid(grid), 1.5 / scale, 0.9, 0.4), 10.0 * scale, 25.0 * scale, shift);
+}
+
+Scene scaled_ball(double scale) {
+    return lit(medium(Sphere{glm::dvec3(0.2, 0.1, -0.3) * scale, scale}, 3.0 / scale, 0.9, 0.4), 2.6 * scale,
+               5.0 * scale);
+}
+
+} // namespace
+
+TEST_CASE("a medium of density zero is no medium, bit for bit", "[gpu][hard][invariance]") {
+    Scene nothing = lit(medium(Sphere{}, 0.0, 0.0), 2.0, 5.0);
+    nothing.volumes.clear();
+    const Film empty = render_here(nothing, 20).film;
+    GridRecipe zeros{{-3, -4, -5}, {6, 7, 8}, [](glm::ivec3) { return 0.0f; }};
+    const GridFile inactive = write_grid(zeros);
+    zeros.background = 1.0f;
+    const GridFile active = write_grid(zeros);
+    for (const Volume& volume : {medium(Sphere{}, 0.0, 0.0), medium(Box{}, 0.0, 0.0), medium(inactive, 2.0, 0.5),
+                                 medium(active, 2.0, 0.5), medium(active, 0.0, 0.5)}) {
+        Scene scene = nothing;
+        scene.volumes = {volume};
+        CHECK(same_bits(render_here(scene, 20).film, empty));
+        scene.volumes.front().sigma_s = 1.0;
+        scene.volumes.front().density_scale = 0.0;
+        CHECK(same_bits(render_here(scene, 20).film, empty));
+    }
+}
+
+// Nearest lookup makes it a box that ends half a voxel beyond the outermost voxel centres.
+TEST_CASE("a constant grid is a homogeneous box", "[gpu][hard][invariance]") {
+    GridRecipe grid{{2, -4, 5}, {11, 3, 10}, [](glm::ivec3) { return 2.0f; }};
+    grid.linear = glm::dmat3(0.2);
+    grid.translation = -center_of(grid);
+    Scene voxels = lit(medium(write_grid(grid), 1.5, 0.9, 0.4), 2.6, 6.0);
+    voxels.settings.filter = Filter::nearest;
+    voxels.settings.spp = 256;
+    Scene box = voxels;
+    box.volumes = {medium(Box{glm::dvec3(0.0), glm::dvec3(10, 8, 6) * 0.2}, 3.0, 0.9, 0.4)};
+    for (const char* integrator : {"deltaTracking", "ratioTracking"}) {
+        voxels.settings.integrator = box.settings.integrator = integrator;
+        CHECK_AGREEMENT(agree(render_here(voxels, 21).film, render_here(box, 22).film,
+                              fmt::format("constant grid and box, {}", integrator)));
+    }
+}
+
+TEST_CASE("a scene a power of two larger has the same bits", "[gpu][hard][invariance]") {
+    const Film ball = render_here(scaled_ball(1.0), 23).film;
+    const Film cloud = render_here(scaled_cloud(1.0), 23).film;
+    for (const int exponent : {-16, -3, 1, 20}) {
+        CAPTURE(exponent);
+        CHECK(same_bits(render_here(scaled_ball(std::ldexp(1.0, exponent)), 23).film, ball));
+        CHECK(same_bits(render_here(scaled_cloud(std::ldexp(1.0, exponent)), 23).film, cloud));
+    }
+}
+
+TEST_CASE("the unit of length does not matter", "[gpu][hard][invariance]") {
+    const double scale = GENERATE(1e-5, 1e-3, 1e3, 1e6);
+    CHECK_AGREEMENT(agree(render_here(scaled_ball(scale), 24).film, render_here(scaled_ball(1.0), 25).film,
+                          fmt::format("sphere at scale {}", scale)));
+    CHECK_AGREEMENT(agree(render_here(scaled_cloud(scale), 24).film, render_here(scaled_cloud(1.0), 25).film,
+                          fmt::format("cloud at scale {}", scale)));
+}
+
+// Render space has its origin amid the medium. What is left is the rounding of doubles, 1e6 * 2^-53, which may put a
+// float one unit in the last place off: few paths differ, so with the same seed the pictures differ by less than noise.
+TEST_CASE("a scene far from the origin looks the same", "[gpu][hard][invariance]") {
+    const glm::dvec3 shift =
+        GENERATE(glm::dvec3(1e4, -1e4, 1e4), glm::dvec3(1e5, 1e5, -1e5), glm::dvec3(-1e6, 1e6, 1e6));
+    const RenderResult far = render_here(scaled_cloud(1.0, shift), 26), near = render_here(scaled_cloud(1.0), 26);
+    CHECK_AGREEMENT(agree(far.film, near.film, fmt::format("cloud at {}", shift.x)));
+    CHECK(double(far.counts.lookups()) == Approx(double(near.counts.lookups())).epsilon(0.01));
+    const auto moved = [&] {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < far.film.pixel_count(); ++i)
+            count += far.film.mean[i] != near.film.mean[i];
+        return count;
+    }();
+    CAPTURE(moved);
+    CHECK(mean_of(far.film) == Approx(mean_of(near.film)).epsilon(0.01));
+}
+
+TEST_CASE("grids may be rotated, sheared, stretched and mirrored", "[gpu][hard][invariance]") {
+    const auto [name, linear] = GENERATE(table<std::string, glm::dmat3>({
+        {"rotated", glm::dmat3({0.18, 0.24, 0.0}, {-0.24, 0.18, 0.0}, {0.0, 0.0, 0.3})},
+        {"sheared and mirrored", skewed * 0.6},
+        {"mirrored", glm::dmat3({-0.3, 0, 0}, {0, 0.3, 0}, {0, 0, 0.3})},
+        {"stretched", glm::dmat3({0.1, 0, 0}, {0, 0.5, 0}, {0, 0, 0.3})},
+    }));
+    const CoefficientUnit unit = GENERATE(CoefficientUnit::world, CoefficientUnit::voxel);
+    GridRecipe grid = cloud_grid();
+    grid.linear = linear;
+    grid.translation = glm::dvec3(0.0);
+    grid.translation = -center_of(grid);
+    Scene scene = lit(medium(write_grid(grid), 1.0, 0.9, 0.4), 10.0, 30.0);
+    scene.volumes.front().unit = unit;
+    scene.settings.filter = Filter::trilinear;
+    scene.settings.spp = 128;
+    CHECK_AGREEMENT(agree(render_here(scene, 27).film, render_reference(scene, 28), name + " grid"));
+}

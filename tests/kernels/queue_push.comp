@@ -1,0 +1,12 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "kernel.glsl"
+
+#include "include/queue.glsl"
+TEST_IO(uint, uint)
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i < push.lanes)
+        push_item(push.queue, inputs[i]);
+}
