@@ -66,9 +66,9 @@ struct Band {
     Buffer film;
 };
 
-std::list<Band> make_bands(const Device& device, const Crop& crop) {
+std::list<Band> make_bands(const Device& device, const Crop& crop, std::uint64_t most_bytes) {
     const std::uint64_t row_bytes = std::uint64_t(crop.x1 - crop.x0) * sizeof(shared::FilmPixel);
-    const std::uint64_t most = std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30) / row_bytes;
+    const std::uint64_t most = most_bytes / row_bytes;
     const auto height = static_cast<std::uint32_t>(crop.y1 - crop.y0);
     std::list<Band> bands;
     for (std::uint32_t row = 0; row < height;) {
@@ -144,11 +144,11 @@ public:
         buffers_.emplace(device, commands_, volume);
         frame_ = make_frame(scene, volume, job.crop, job.seed);
         volume = {};
-        bands_ = make_bands(device, job.crop);
+        const Tuning tuning = tune(device, job.tuning);
+        bands_ = make_bands(device, job.crop, tuning.most_film_bytes);
         for (const Band& band : bands_)
             commands_.fill(band.film, 0);
         result_.upload_seconds = watch.lap();
-        const Tuning tuning = tune(device, job.tuning);
         frame_.slots = tuning.slots;
         frame_.queue_capacity = queue_capacity(tuning);
         PipelineCache cache(device, job.disk_cache);

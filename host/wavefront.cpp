@@ -51,6 +51,8 @@ Tuning tune(const Device& device, const Tuning& wish) {
     tuning.budget = pick(wish.budget, 1024u);
     tuning.step_limit = pick(wish.step_limit, 32768u);
     tuning.steps_per_look = pick(wish.steps_per_look, 4u);
+    tuning.most_film_bytes =
+        pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
     return tuning;
 }
 

@@ -13,12 +13,13 @@ namespace vkvol {
 
 // Sizes of the machine, none of which changes the picture.
 struct Tuning {
-    std::uint32_t slots = 0;          // paths in flight
-    std::uint32_t lanes = 0;          // invocations that share the track queue
-    std::uint32_t budget = 0;         // steps after which a lane takes no further item
-    std::uint32_t step_limit = 0;     // steps after which a flight is cut, and counted
-    double submit_seconds = 0.08;     // aimed at; no submit should hold a device much longer
-    std::uint32_t steps_per_look = 0; // tracking steps between two looks at what they led to
+    std::uint32_t slots = 0;           // paths in flight
+    std::uint32_t lanes = 0;           // invocations that share the track queue
+    std::uint32_t budget = 0;          // steps after which a lane takes no further item
+    std::uint32_t step_limit = 0;      // steps after which a flight is cut, and counted
+    double submit_seconds = 0.08;      // aimed at; no submit should hold a device much longer
+    std::uint32_t steps_per_look = 0;  // tracking steps between two looks at what they led to
+    std::uint64_t most_film_bytes = 0; // in one buffer; a larger film lies in several
 };
 
 // What suits the device; fields of `wish` that are not 0 win.

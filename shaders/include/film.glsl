@@ -24,7 +24,13 @@ void film_add(inout FilmPixel pixel, vec3 radiance, uint index, uint sample_inde
         return;
     }
     add_compensated(pixel.sum, pixel.sum_low, radiance);
-    add_compensated(pixel.square, pixel.square_low, radiance * radiance);
+    // x^2 = head^2 + 2 head tail + tail^2, each of them exact with 12 significant bits in the head: so that a variance
+    // far below the mean is not lost in the rounding of squares.
+    vec3 head = uintBitsToFloat(floatBitsToUint(radiance) & 0xfffff000u);
+    vec3 tail = radiance - head;
+    add_compensated(pixel.square, pixel.square_low, head * head);
+    add_compensated(pixel.square, pixel.square_low, 2.0 * head * tail);
+    pixel.square_low += tail * tail;
     pixel.count += 1u;
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 struct Options {
     std::string name, output, all;
-    bool list = false;
+    bool list = false, if_missing = false;
     int size = 0;
     std::uint32_t seed = 1;
     Codec codec = Codec::blosc;
@@ -44,14 +44,17 @@ void make(const Recipe& recipe, const std::filesystem::path& path, const Options
     std::fflush(stdout);
 }
 
+void make_if_missing(const Recipe& recipe, const std::filesystem::path& path, const Options& options) {
+    if (std::filesystem::exists(path))
+        fmt::print("{}: there already, kept\n", path.string());
+    else
+        make(recipe, path, options);
+}
+
 void make_all(const Options& options) {
-    for (const Recipe& recipe : recipes()) {
-        const auto path = std::filesystem::path(options.all) / (std::string(recipe.name) + ".nvdb");
-        if (std::filesystem::exists(path))
-            fmt::print("{}: there already, kept\n", path.string());
-        else
-            make(recipe, path, options);
-    }
+    std::filesystem::create_directories(options.all);
+    for (const Recipe& recipe : recipes())
+        make_if_missing(recipe, std::filesystem::path(options.all) / (std::string(recipe.name) + ".nvdb"), options);
 }
 
 void list() {
@@ -73,6 +76,7 @@ void add_options(CLI::App& app, Options& options) {
     app.add_option("--type", options.type, "float (default), fp4, fp8, fp16, fpn; half for .vdb only")
         ->transform(CLI::Transformer(types));
     app.add_flag("--list", options.list, "list the fields");
+    app.add_flag("--if-missing", options.if_missing, "keep the output if it is there already");
     app.add_option("--all", options.all, "make each field that this folder lacks");
 }
 
@@ -82,7 +86,8 @@ void run(const Options& options) {
     else if (!options.all.empty() && options.size == 0 && options.output.empty() && options.name.empty())
         make_all(options);
     else if (options.all.empty() && !options.name.empty())
-        make(find_recipe(options.name), options.output.empty() ? options.name + ".nvdb" : options.output, options);
+        (options.if_missing ? make_if_missing : make)(
+            find_recipe(options.name), options.output.empty() ? options.name + ".nvdb" : options.output, options);
     else
         throw InputError("give the NAME of a field, --all DIR alone, or --list");
 }

@@ -1,0 +1,207 @@
+// The same scene, seed and samples give the same bits, however the work is cut up and scheduled.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+
+#include "merge.h"
+#include "support/images.h"
+#include "support/scenes.h"
+
+using namespace vkvol;
+
+namespace {
+
+// Sun, sky and emission; part of the picture misses the cloud. The sample count is no power of two.
+Scene cloud(std::uint32_t samples = 11) {
+    static const GridFile file = write_grid(cloud_grid());
+    Scene scene = scene_of(medium(file, 2.0, 0.9, 0.5), 13.0, 40, 25.0, glm::dvec3(1.0, 0.0, 0.0), {10.0, 25.0, -5.0});
+    scene.background = {0.3, 0.5, 0.9};
+    scene.lights = {sunlight()};
+    scene.volumes.front().Le = {0.5, 0.2, 0.1};
+    scene.settings.spp = samples;
+    return scene;
+}
+
+RenderJob with_tuning(std::uint32_t slots, std::uint32_t lanes, std::uint32_t budget, std::uint32_t steps_per_look) {
+    RenderJob job;
+    job.tuning.slots = slots;
+    job.tuning.lanes = lanes;
+    job.tuning.budget = budget;
+    job.tuning.steps_per_look = steps_per_look;
+    return job;
+}
+
+// The pixels of `whole` that lie in `crop`.
+Film cut(const Film& whole, const Crop& crop) {
+    Film film = whole;
+    film.crop = crop;
+    film.mean.clear();
+    film.variance.clear();
+    film.samples.clear();
+    for (int y = crop.y0; y < crop.y1; ++y)
+        for (int x = crop.x0; x < crop.x1; ++x) {
+            const std::size_t i = std::size_t(y) * whole.width() + x;
+            film.mean.push_back(whole.mean[i]);
+            film.variance.push_back(whole.variance[i]);
+            film.samples.push_back(whole.samples[i]);
+        }
+    return film;
+}
+
+// Each pixel holds exactly its first samples[pixel] samples: the bits of a render of that many.
+void check_samples_are_true(const Scene& scene, std::uint32_t seed, const Film& film) {
+    std::map<std::uint32_t, Film> full;
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        const std::uint32_t n = film.samples[i];
+        if (n == 0) {
+            wrong += film.mean[i] != glm::vec3(0.0f) || film.variance[i] != glm::vec3(0.0f);
+            continue;
+        }
+        if (!full.count(n)) {
+            Scene shorter = scene;
+            shorter.settings.spp = n;
+            full[n] = render_here(shorter, seed).film;
+        }
+        wrong += film.mean[i] != full[n].mean[i] || film.variance[i] != full[n].variance[i];
+    }
+    CAPTURE(full.size());
+    CHECK(wrong == 0);
+}
+
+} // namespace
+
+TEST_CASE("the sizes of the machine change no bit", "[gpu][determinism]") {
+    for (const char* integrator : {"deltaTracking", "ratioTracking"}) {
+        Scene scene = cloud();
+        scene.settings.integrator = integrator;
+        const Film usual = render_here(scene, 30).film;
+        CHECK(same_bits(render_here(scene, 30).film, usual)); // again
+        const Film other_seed = render_here(scene, 31).film;
+        CHECK_FALSE(same_bits(other_seed, usual));
+        for (const std::uint32_t slots : {256u, 4096u}) // the picture has 1600 pixels
+            for (const std::uint32_t lanes : {64u, 512u})
+                for (const std::uint32_t budget : {16u, 1024u}) {
+                    CAPTURE(integrator, slots, lanes, budget);
+                    const std::uint32_t steps = slots == 256 ? (lanes == 64 ? 1 : 8) : (budget == 16 ? 2 : 4);
+                    CHECK(same_bits(render_here(scene, 30, with_tuning(slots, lanes, budget, steps)).film, usual));
+                }
+    }
+}
+
+TEST_CASE("a homogeneous picture does not depend on the sizes of the machine", "[gpu][determinism]") {
+    Scene scene = scene_of(medium(Sphere{}, 5.0, 0.9, 0.5), 3.0, 33);
+    scene.lights = {sunlight()};
+    scene.settings.spp = 7;
+    const Film usual = render_here(scene, 32).film;
+    CHECK(same_bits(render_here(scene, 32, with_tuning(256, 64, 16, 1)).film, usual));
+    CHECK(same_bits(render_here(scene, 32, with_tuning(4096, 512, 64, 8)).film, usual));
+}
+
+TEST_CASE("tiles are parts of the whole picture, bit for bit", "[gpu][determinism]") {
+    const Scene scene = cloud();
+    const Film whole = render_here(scene, 33).film;
+    for (const Crop& crop : {Crop{0, 13, 0, 40}, Crop{13, 40, 0, 17}, Crop{13, 40, 17, 40}, Crop{39, 40, 39, 40}}) {
+        CAPTURE(crop.x0, crop.x1, crop.y0, crop.y1);
+        RenderJob job;
+        job.crop = crop;
+        const Film tile = render_here(scene, 33, job).film;
+        CHECK(tile.crop.x0 == crop.x0);
+        CHECK(same_bits(tile, cut(whole, crop)));
+    }
+}
+
+TEST_CASE("a film in several storage buffers has the same bits", "[gpu][determinism]") {
+    const Scene scene = cloud();
+    const Film whole = render_here(scene, 34).film;
+    for (const std::uint64_t rows : {7, 17, 39}) {
+        CAPTURE(rows);
+        RenderJob job;
+        job.tuning.most_film_bytes = rows * 40 * sizeof(shared::FilmPixel);
+        CHECK(same_bits(render_here(scene, 34, job).film, whole));
+    }
+}
+
+// Both sums are exact to some 2^-48; mean and variance are rounded to single precision once before and once after
+// merging: 2 units in the last place, 2^-22 relative, and for the variance that of the mean's square besides.
+TEST_CASE("two ranges of samples merged are one run", "[gpu][determinism]") {
+    const Film whole = render_here(cloud(16), 35).film;
+    std::vector<MergeInput> parts;
+    for (const std::uint32_t begin : {0u, 5u}) {
+        Scene scene = cloud(begin == 0 ? 5 : 11);
+        RenderJob job;
+        job.sample_offset = begin;
+        MergeInput part;
+        part.name = std::to_string(begin);
+        part.film = render_here(scene, 35, job).film;
+        part.metadata = {
+            {"vkvol/seed", 35}, {"vkvol/sampleOffset", int(begin)}, {"samplesPerPixel", int(scene.settings.spp)}};
+        parts.push_back(std::move(part));
+    }
+    const Film merged = merge_films(parts).film;
+    REQUIRE(merged.samples == whole.samples);
+    double worst_mean = 0.0, worst_variance = 0.0;
+    for (std::size_t i = 0; i < whole.pixel_count(); ++i)
+        for (int channel = 0; channel < 3; ++channel) {
+            const double mean = whole.mean[i][channel], variance = whole.variance[i][channel];
+            worst_mean = std::max(worst_mean, std::abs(merged.mean[i][channel] - mean) / mean);
+            worst_variance =
+                std::max(worst_variance, std::abs(merged.variance[i][channel] - variance) /
+                                             (variance + mean * std::sqrt(variance / 16) + 1e-9 * mean * mean));
+        }
+    CAPTURE(worst_mean, worst_variance);
+    CHECK(worst_mean < 0x1p-22);
+    CHECK(worst_variance < 0x1p-20);
+}
+
+// s^2 / n for two samples is (a - b)^2 / 4. The film's sums of squares are exact to 2^-45 of themselves, and the result
+// is rounded to single precision.
+TEST_CASE("the variance is that of the mean", "[gpu][determinism]") {
+    const Film both = render_here(cloud(2), 36).film;
+    RenderJob second;
+    second.sample_offset = 1;
+    const Film a = render_here(cloud(1), 36).film, b = render_here(cloud(1), 36, second).film;
+    std::size_t wrong = 0, varying = 0;
+    for (std::size_t i = 0; i < both.pixel_count(); ++i)
+        for (int channel = 0; channel < 3; ++channel) {
+            const double difference = double(a.mean[i][channel]) - b.mean[i][channel];
+            const double expected = difference * difference / 4.0;
+            varying += expected > 0.0;
+            const double mean = both.mean[i][channel];
+            wrong += std::abs(both.variance[i][channel] - expected) > 1e-6 * expected + 0x1p-44 * mean * mean;
+            CHECK(a.variance[i][channel] == 0.0f);
+        }
+    CHECK(wrong == 0);
+    CHECK(varying > 1000);
+}
+
+TEST_CASE("an interrupted render keeps true sample counts", "[gpu][determinism]") {
+    const Scene scene = cloud(64);
+    for (const int patience : {0, 3, 20, 60}) {
+        CAPTURE(patience);
+        RenderJob job = with_tuning(256, 64, 16, 1);
+        job.tuning.submit_seconds = 1e-6; // one round per submit
+        int asked = 0;
+        job.interrupted = [&] { return asked++ >= patience; };
+        const RenderResult result = render_here(scene, 37, job);
+        CHECK(result.interrupted);
+        CHECK(result.samples < 64);
+        CHECK(*std::min_element(result.film.samples.begin(), result.film.samples.end()) >= result.samples);
+        std::uint64_t paths = 0;
+        for (const std::uint32_t n : result.film.samples)
+            paths += n;
+        CHECK(result.counts.paths == paths);
+        check_samples_are_true(scene, 37, result.film);
+    }
+}
+
+TEST_CASE("a render stopped by its time limit keeps true sample counts", "[gpu][determinism]") {
+    const Scene scene = cloud(1u << 20);
+    RenderJob job;
+    job.time_limit = 0.3;
+    const RenderResult result = render_here(scene, 38, job);
+    CHECK_FALSE(result.interrupted);
+    CHECK(result.samples < scene.settings.spp);
+    check_samples_are_true(scene, 38, result.film);
+}

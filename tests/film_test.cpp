@@ -1,0 +1,109 @@
+// Sums of samples that neither stall nor drift, and samples that are no number.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "film_sum.spv.h"
+#include "kernels/test_items.h"
+#include "support/kernel_runner.h"
+#include "tests/reference/rng.h"
+
+using namespace vkvol;
+using shared::FilmInput;
+using shared::FilmPixel;
+
+namespace {
+
+// `dispatches` times `samples` samples into each pixel; a kernel's loop may not be long (see Tuning::step_limit).
+void add_samples(KernelRunner& runner, std::vector<FilmInput>& pixels, std::uint32_t dispatches,
+                 std::uint32_t samples) {
+    runner.push.budget = samples;
+    for (std::uint32_t i = 0; i < dispatches; ++i) {
+        const auto sums = runner.run<FilmPixel>(pixels);
+        for (std::size_t k = 0; k < pixels.size(); ++k) {
+            pixels[k].pixel = sums[k];
+            pixels[k].first += samples;
+        }
+    }
+}
+
+double sum(const FilmPixel& p, int channel) {
+    return double(p.sum[channel]) + p.sum_low[channel];
+}
+double square(const FilmPixel& p, int channel) {
+    return double(p.square[channel]) + p.square_low[channel];
+}
+
+} // namespace
+
+TEST_CASE("33 million samples of value 1 have the mean 1 exactly", "[gpu][film][hard]") {
+    // A plain float sum stalls at 2^24.
+    KernelRunner runner(film_sum_spv);
+    std::vector<FilmInput> pixels(1);
+    pixels[0].radiance = {1.0f, 3.0f, 0.1f};
+    add_samples(runner, pixels, 1024, 1u << 15);
+    const FilmPixel& p = pixels[0].pixel;
+    const double n = 0x1p25;
+    REQUIRE(p.count == 1u << 25);
+    CHECK(sum(p, 0) / n == 1.0);
+    CHECK(square(p, 0) / n == 1.0);
+    CHECK(sum(p, 1) / n == 3.0);
+    CHECK(square(p, 1) / n == 9.0);
+    // 0.1f is no short binary fraction: every addition rounds, by 2^-25 of the sum at most, and `low` gathers those
+    // errors exactly but for its own rounding, 2^-25 of low, where low <= n 2^-25 sum: n^2 2^-50 relative in the worst
+    // case, one part in 2^26 of which shows when errors are of either sign. Asked for: better than one ulp of float.
+    CHECK(sum(p, 2) / n == Approx(double(0.1f)).epsilon(0x1p-24));
+    CHECK(square(p, 2) / n == Approx(double(0.1f) * 0.1f).epsilon(0x1p-23)); // the square itself is rounded
+}
+
+TEST_CASE("sums of random samples equal those in double precision", "[gpu][film]") {
+    KernelRunner runner(film_sum_spv);
+    constexpr std::uint32_t pixels_count = 64, dispatches = 20, samples = 5000;
+    std::vector<FilmInput> pixels(pixels_count);
+    for (std::uint32_t i = 0; i < pixels_count; ++i) {
+        pixels[i].radiance = glm::vec3(1.0f, 1e-3f, 1e6f) * float(i + 1);
+        pixels[i].random = 1;
+    }
+    const std::vector<FilmInput> first = pixels;
+    add_samples(runner, pixels, dispatches, samples);
+    for (std::uint32_t i = 0; i < pixels_count; ++i) {
+        reference::Rng rng{i, 0, 0};
+        glm::dvec3 expected(0.0), squares(0.0);
+        for (std::uint32_t k = 0; k < dispatches * samples; ++k) {
+            const glm::vec3 value = static_cast<float>(rng.next().x()) * first[i].radiance;
+            expected += glm::dvec3(value);
+            squares += glm::dvec3(value * value);
+        }
+        REQUIRE(pixels[i].pixel.count == dispatches * samples);
+        for (int c = 0; c < 3; ++c) {
+            CAPTURE(i, c);
+            // TwoSum is exact; low, below n 2^-24 / 2 of the sum, is itself a plain float sum of n = 1e5 terms of
+            // either sign, with a standard error of sqrt(n) 2^-25 of low: 300 * 3e-8 * 3e-3 = 3e-8 at 1 sigma of a
+            // bound that is never near.
+            CHECK(sum(pixels[i].pixel, c) == Approx(expected[c]).epsilon(1e-9));
+            CHECK(square(pixels[i].pixel, c) == Approx(squares[c]).epsilon(1e-9));
+        }
+    }
+}
+
+TEST_CASE("samples that are not finite are dropped, counted and recorded", "[gpu][film][hard]") {
+    constexpr float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    KernelRunner runner(film_sum_spv);
+    std::vector<FilmInput> pixels(3);
+    pixels[0].radiance = {1.0f, nan, 1.0f};
+    pixels[1].radiance = {1.0f, 2.0f, -infinity};
+    pixels[2].radiance = {1.0f, 2.0f, 3.0f};
+    add_samples(runner, pixels, 1, 3);
+    const shared::Counters counters = runner.counters();
+    CHECK(counters.non_finite == 6u);
+    for (int i = 0; i < NON_FINITE_RECORDS; ++i) {
+        CHECK((counters.non_finite_pixel[i] == 100u || counters.non_finite_pixel[i] == 101u));
+        CHECK(counters.non_finite_sample[i] < 3u);
+    }
+    CHECK(pixels[0].pixel.count == 0u);
+    CHECK(pixels[1].pixel.count == 0u);
+    CHECK((pixels[1].pixel.sum == glm::vec3(0.0f)));
+    CHECK(pixels[2].pixel.count == 3u);
+    CHECK((pixels[2].pixel.sum == glm::vec3(3.0f, 6.0f, 9.0f)));
+    CHECK((pixels[2].pixel.square == glm::vec3(3.0f, 12.0f, 27.0f)));
+}
