@@ -81,9 +81,7 @@ TEST_CASE("a depth limit darkens a furnace by the paths it ends", "[gpu][hard][f
             for (const glm::vec3& pixel : result.film.mean)
                 above += glm::any(glm::greaterThan(pixel, glm::vec3(glow)));
             CHECK(above == 0);
-            const Agreement agreement = agree(result.film, render_reference(scene, 5),
-                                              fmt::format("furnace {}, depth {}", volume.shape.index(), depth));
-            INFO(agreement.report);
-            CHECK(agreement.ok);
+            CHECK_AGREEMENT(agree(result.film, render_reference(scene, 5),
+                                  fmt::format("furnace {}, depth {}", volume.shape.index(), depth)));
         }
 }

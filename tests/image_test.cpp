@@ -12,13 +12,6 @@ namespace {
 
 constexpr Rgb sky{0.3, 0.5, 0.9};
 
-#define CHECK_AGREEMENT(expression)                                                                                    \
-    do {                                                                                                               \
-        const Agreement agreement = (expression);                                                                      \
-        INFO(agreement.report);                                                                                        \
-        CHECK(agreement.ok);                                                                                           \
-    } while (false)
-
 Scene picture_of(const Volume& volume, double width, std::uint32_t samples) {
     Scene scene = scene_of(volume, width, 24, 25.0, glm::dvec3(0.0), {10.0, 25.0, -5.0});
     scene.background = sky;

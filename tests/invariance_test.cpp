@@ -11,13 +11,6 @@ using namespace vkvol;
 
 namespace {
 
-#define CHECK_AGREEMENT(expression)                                                                                    \
-    do {                                                                                                               \
-        const Agreement agreement = (expression);                                                                      \
-        INFO(agreement.report);                                                                                        \
-        CHECK(agreement.ok);                                                                                           \
-    } while (false)
-
 Scene lit(const Volume& volume, double width, double distance, glm::dvec3 target = glm::dvec3(0.0)) {
     Scene scene = scene_of(volume, width, 20, distance, target, {15.0, -35.0, 5.0});
     scene.background = {0.3, 0.5, 0.9};

@@ -4,13 +4,17 @@
 #define FILM_GLSL
 #include "buffers.glsl"
 
-// high + low += x, the rounding error of high kept in low (Knuth's TwoSum; `precise` forbids the compiler to undo it).
+// high + low += x. The rounding error of high + x (Knuth's TwoSum) goes into low, and what of low has grown into the
+// digits of high goes back there (Dekker's FastTwoSum): else low in its turn would stall. `precise` forbids the compiler
+// to undo it.
 void add_compensated(inout vec3 high, inout vec3 low, vec3 x) {
     precise vec3 sum = high + x;
     precise vec3 part = sum - high;
-    precise vec3 error = (high - (sum - part)) + (x - part);
-    high = sum;
-    low += error;
+    precise vec3 rest = low + ((high - (sum - part)) + (x - part));
+    precise vec3 total = sum + rest;
+    precise vec3 left = rest - (total - sum);
+    high = total;
+    low = left;
 }
 
 // A sample that is not finite is dropped, counted, and its pixel and number recorded.

@@ -1,7 +1,6 @@
 #include "images.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>
@@ -51,6 +50,7 @@ public:
     }
 
     Agreement judge(const std::string& name, const Film& film, const Film* other) const {
+        // Half of the share for the pixels, half for the means.
         const double share = sidak(significance, most_comparisons);
         const double pixel_limit = sidak(share, 2.0 * tests_), mean_limit = sidak(share, 6.0);
         Agreement result;

@@ -5,6 +5,7 @@
 // fixed, so on one device a comparison passes always or never.
 #pragma once
 
+#include <catch2/catch.hpp>
 #include <string>
 
 #include "renderer.h"
@@ -21,6 +22,13 @@ struct Agreement {
     bool ok = false;
     std::string report; // the numbers
 };
+
+#define CHECK_AGREEMENT(expression)                                                                                    \
+    do {                                                                                                               \
+        const Agreement agreement = (expression);                                                                      \
+        INFO(agreement.report);                                                                                        \
+        CHECK(agreement.ok);                                                                                           \
+    } while (false)
 
 // Two estimates of one picture, made with different seeds. Per pixel and channel, z = difference / standard error of
 // the difference; the mean over the picture likewise. Equal numbers of samples make the difference symmetric however

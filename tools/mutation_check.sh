@@ -1,0 +1,124 @@
+#!/bin/bash
+# Tests the tests: makes one error at a time in a copy of the sources, rebuilds, and requires that the tests named for
+# it fail. Prints which error was caught by what. Fails if an error survives, if the text that it replaces is no longer
+# in the sources, or if the tests fail without any error.
+#
+#   tools/mutation_check.sh [WORD]     WORD: only the errors whose name contains it
+#   MUTATION_DIR=DIR                   where the copy and its build are kept, so that the next run builds little
+set -euo pipefail
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+only=${1:-}
+work=${MUTATION_DIR:-${TMPDIR:-/tmp}/vkvol-mutation}
+copy=$work/source
+build=$work/build
+
+# name ~ file ~ text ~ replacement ~ tests (a Catch2 specification). "^" parts several texts and their replacements.
+mutations() {
+    cat <<'END'
+albedo + 2 % ~ host/scene_upload.cpp ~ static_cast<float>(albedo); ~ static_cast<float>(1.02 * albedo); ~ [image]
+g sign in sampling ~ shaders/passes/track.comp ~ hg_sample(v.g, ~ hg_sample(-v.g, ~ [image]
+g sign toward the light ~ shaders/include/light.glsl ~ hg_eval(v.g, ~ hg_eval(-v.g, ~ [image]
+light direction reversed in phase ~ shaders/include/light.glsl ~ direction - light.direction; ~ direction + light.direction; ~ [image]
+1 / 4 pi missing ~ shaders/include/phase.glsl ~ return INV_4PI * ( ~ return ( ~ [image]
+majorant x 0.9 ~ host/majorant_grid.cpp ~ bound = std::max(bound, value); ~ bound = std::max(bound, 0.9f * value); ~ [image]
+majorant not dilated ~ host/majorant_grid.cpp ~ glm::max((relative - 1) / grid.cell, glm::ivec3(0)); ~ high; ~ [image]
+lookup half a voxel off ~ shaders/include/collision.glsl ~ w.origin + w.t * w.direction ~ w.origin + w.t * w.direction + 0.5 ~ [image]
+roulette weight missing ~ shaders/passes/track.comp ~ beta = frame.roulette_threshold; ~ ; ~ [image]
+shadow roulette weight missing ~ shaders/include/transmittance.glsl ~ sign(T) * SHADOW_ROULETTE ~ T ~ [image]
+last cell left out ~ shaders/include/majorant.glsl ~ inside != next; ~ inside != next || next + (next - w.cell) != clamp(next + (next - w.cell), ivec3(0), v.cell_dims - 1); ~ [image]
+film variance / n for / (n - 1) ~ host/renderer.cpp ~ / (n - 1.0) ~ / n ~ [determinism]
+voxel length inverted ~ host/scene_upload.cpp ~ sigma_t / field->voxel_size() ~ sigma_t * field->voxel_size() ~ [invariance]
+camera rows flipped ~ host/scene_upload.cpp ~ dy = -2.0 * s ^ dx, s + picture.start_y ~ dy = 2.0 * s ^ dx, -s + picture.start_y ~ [image]
+nearest lookup truncates ~ shaders/include/density.glsl ~ floor(p + 0.5) ~ floor(p) ~ [image]
+stochastic corner reversed ~ shaders/include/density.glsl ~ lessThan(tap, p - base) ~ greaterThan(tap, p - base) ~ [image]
+depth limit off by one ~ shaders/passes/track.comp ~ path.depth >= frame.max_depth ~ path.depth > frame.max_depth ~ [image]
+emission without its albedo ~ host/scene_upload.cpp ~ (1.0 - albedo) * volume.Le ~ volume.Le ~ [image]
+random numbers used twice ~ shaders/include/rng.glsl ~ rng.draw += 1u; ~ rng.draw += rng.draw % 2u == 0u ? 1u : 0u; ~ [image]
+crop forgotten in random numbers ~ shaders/include/camera.glsl ~ frame.crop_x + pixel ~ pixel ~ [determinism]
+END
+}
+
+# Changed files only, with a new time, so that what was built of an earlier error is built again.
+refresh_copy() {
+    mkdir -p "$copy"
+    local file
+    while IFS= read -r -d '' file; do
+        [ -f "$root/$file" ] || continue
+        cmp -s "$root/$file" "$copy/$file" && continue
+        mkdir -p "$copy/$(dirname "$file")"
+        cp "$root/$file" "$copy/$file"
+    done < <(git -C "$root" ls-files -z --cached --others --exclude-standard)
+    (cd "$copy" && find . -type f -print0) | while IFS= read -r -d '' file; do
+        [ -f "$root/$file" ] || rm "$copy/$file"
+    done
+}
+
+# replace FILE TEXT REPLACEMENT: all places; fails if there is none.
+replace() {
+    python3 - "$@" <<'END'
+import sys
+path, texts, replacements = sys.argv[1:]
+content = open(path).read()
+for text, replacement in zip(texts.split(" ^ "), replacements.split(" ^ "), strict=True):
+    if text not in content:
+        sys.exit(f"{path}: no longer contains \"{text}\"; bring the table up to date")
+    content = content.replace(text, replacement)
+open(path, "w").write(content)
+END
+}
+
+build_tests() {
+    cmake --build "$build" --target vkvol_tests </dev/null >"$work/build.log" 2>&1 || {
+        tail -30 "$work/build.log" >&2
+        echo "the copy does not build: $work/build.log" >&2
+        return 1
+    }
+}
+
+run_tests() { # SPECIFICATION: 0 if they pass
+    (cd "$build" && timeout 600 ./vkvol_tests "$1" --abort </dev/null >"$work/tests.log" 2>&1)
+}
+
+# The first test that failed, in the words of Catch2's console reporter.
+first_failure() {
+    grep -q "FAILED:" "$work/tests.log" || return 1
+    awk '/^-{70}/ { getline; name = $0 } /FAILED:/ { print name; exit }' "$work/tests.log"
+}
+
+row() { printf '%-36s %s\n' "$1" "$2"; }
+
+mkdir -p "$work"
+git -C "$root" rev-parse >/dev/null
+refresh_copy
+[ -f "$build/build.ninja" ] || cmake -S "$copy" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release >"$work/build.log"
+build_tests
+if ! run_tests "[image],[determinism],[invariance]"; then
+    tail -30 "$work/tests.log" >&2
+    echo "the tests fail without any error made: $work/tests.log" >&2
+    exit 1
+fi
+
+bad=0
+row "error" "caught by"
+while IFS= read -r line; do
+    IFS=$'\t' read -r name file text replacement tests <<<"${line// ~ /$'\t'}"
+    [[ "$name" == *"$only"* ]] || continue
+    if ! replace "$copy/$file" "$text" "$replacement"; then
+        row "$name" "NOT MADE"
+        bad=1
+    elif ! build_tests; then
+        row "$name" "NOT BUILT"
+        bad=1
+    elif run_tests "$tests"; then
+        row "$name" "NOTHING: $tests passed"
+        bad=1
+    elif caught_by=$(first_failure); then
+        row "$name" "$caught_by"
+    else
+        row "$name" "NO TEST: the program failed, $work/tests.log"
+        bad=1
+    fi
+    cp "$root/$file" "$copy/$file"
+done < <(mutations)
+exit $bad
