@@ -56,16 +56,18 @@ void record_copy(VkCommandBuffer commands, const Buffer& from, VkDeviceSize from
 }
 } // namespace
 
-void Commands::upload(const Buffer& buffer, std::span<const std::byte> data) {
+void Commands::upload(const Buffer& buffer, std::span<const std::byte> data, VkDeviceSize begin) {
+    if (data.empty())
+        return;
     if (buffer.mapped()) {
-        std::copy(data.begin(), data.end(), buffer.view<std::byte>().begin());
+        std::memcpy(buffer.view<std::byte>().data() + begin, data.data(), data.size());
         return;
     }
     Buffer staging(device_, "staging buffer", std::min<VkDeviceSize>(staging_bytes, data.size()), 0, BufferPlace::host);
     for (VkDeviceSize offset = 0; offset < data.size(); offset += staging.bytes()) {
         const VkDeviceSize size = std::min<VkDeviceSize>(staging.bytes(), data.size() - offset);
         std::memcpy(staging.mapped(), data.data() + offset, size);
-        run([&](VkCommandBuffer commands) { record_copy(commands, staging, 0, buffer, offset, size); });
+        run([&](VkCommandBuffer commands) { record_copy(commands, staging, 0, buffer, begin + offset, size); });
     }
 }
 

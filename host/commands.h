@@ -18,7 +18,8 @@ public:
     // Records, submits and waits until the device is done.
     void run(const std::function<void(VkCommandBuffer)>& record);
 
-    void upload(const Buffer& buffer, std::span<const std::byte> data);
+    // `data` to the buffer from byte `begin` on.
+    void upload(const Buffer& buffer, std::span<const std::byte> data, VkDeviceSize begin = 0);
     void download(const Buffer& buffer, std::span<std::byte> data);
     void fill(const Buffer& buffer, std::uint32_t word);
 

@@ -252,6 +252,17 @@ std::string list_names(const std::vector<std::string>& names) {
     return text.empty() ? "no grid" : text;
 }
 
+std::vector<std::string> grid_names(const std::filesystem::path& file) {
+    std::vector<std::string> names;
+    if (file.extension() == ".vdb")
+        for (const VdbEntry& entry : read_vdb_entries(file))
+            names.push_back(entry.name);
+    else
+        for (const GridEntry& entry : read_nvdb_entries(file))
+            names.push_back(entry.name);
+    return names;
+}
+
 [[noreturn]] void no_such_grid(const GridFile& file, const std::vector<std::string>& names) {
     const std::string nearest = nearest_name(file.grid, names);
     throw InputError(fmt::format("{}: has no grid \"{}\"{}; it holds {}", file.path.string(), file.grid,
@@ -260,20 +271,14 @@ std::string list_names(const std::vector<std::string>& names) {
 }
 
 GridBytes read_grid(const GridFile& file) {
-    std::vector<std::string> names;
-    if (file.path.extension() == ".vdb") {
-        for (const VdbEntry& entry : read_vdb_entries(file.path))
-            names.push_back(entry.name);
-        if (std::find(names.begin(), names.end(), file.grid) == names.end())
-            no_such_grid(file, names);
+    const std::vector<std::string> names = grid_names(file.path);
+    if (std::find(names.begin(), names.end(), file.grid) == names.end())
+        no_such_grid(file, names);
+    if (file.path.extension() == ".vdb")
         return read_vdb_grid(file.path, file.grid);
-    }
-    for (const GridEntry& entry : read_nvdb_entries(file.path)) {
-        names.push_back(entry.name);
-        if (entry.name == file.grid)
-            return read_nvdb_grid(file.path, entry);
-    }
-    no_such_grid(file, names);
+    const std::vector<GridEntry> entries = read_nvdb_entries(file.path);
+    return read_nvdb_grid(file.path, *std::find_if(entries.begin(), entries.end(),
+                                                   [&](const GridEntry& entry) { return entry.name == file.grid; }));
 }
 
 } // namespace
@@ -301,6 +306,15 @@ bool DensityField::is_empty_block(glm::ivec3 ijk) const {
     return !(entry & 1u) && read_float(bytes.data() + std::size_t{entry >> 1} * 4) == 0.0f;
 }
 
+float DensityField::max_value() const {
+    float largest = 0.0f;
+    for (int x = voxel_min.x; x <= voxel_max.x; ++x)
+        for (int y = voxel_min.y; y <= voxel_max.y; ++y)
+            for (int z = voxel_min.z; z <= voxel_max.z; ++z)
+                largest = std::max(largest, value({x, y, z}));
+    return largest;
+}
+
 double DensityField::voxel_size() const {
     return std::cbrt(std::abs(glm::determinant(glm::dmat3(index_to_world))));
 }
@@ -324,6 +338,11 @@ DensityField make_density_field(GridBytes bytes, const std::string& place) {
     field.type = *type;
     Builder(field, place).build();
     return field;
+}
+
+bool has_grid(const GridFile& file) {
+    const std::vector<std::string> names = grid_names(file.path);
+    return std::find(names.begin(), names.end(), file.grid) != names.end();
 }
 
 DensityField load_density_field(const GridFile& file) {

@@ -26,12 +26,17 @@ struct DensityField {
     float value(glm::ivec3 ijk) const;
     // True if the block that holds this voxel of the box is one constant 0.
     bool is_empty_block(glm::ivec3 ijk) const;
+    // The largest voxel value.
+    float max_value() const;
     // World units per voxel: |det|^(1/3) of index_to_world.
     double voxel_size() const;
 };
 
 // Throws InputError naming file, grid, what is wrong and the remedy.
 DensityField load_density_field(const GridFile& file);
+
+// True if the file can be read and has a grid of that name. Throws InputError if it cannot be read.
+bool has_grid(const GridFile& file);
 
 // From a NanoVDB grid in memory; `place` stands in messages.
 DensityField make_density_field(GridBytes bytes, const std::string& place);

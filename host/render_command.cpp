@@ -42,6 +42,12 @@ std::string samples_text(const Film& film) {
     return *least == *most ? std::to_string(*most) : fmt::format("{} to {}", *least, *most);
 }
 
+void print_warnings(const RenderOptions& options, const std::vector<std::string>& warnings) {
+    if (!options.quiet)
+        for (const std::string& warning : warnings)
+            fmt::print(stderr, "vkvol: warning: {}\n", warning);
+}
+
 // One line for each kind of thing that makes the picture less than it claims to be.
 void print_caps(const RenderCounts& c, const RenderResult& result) {
     const auto line = [](std::uint64_t count, const char* what) {
@@ -105,12 +111,11 @@ void check_result(const Device& device, const RenderResult& result) {
 
 int run_render(const RenderOptions& options) {
     const Scene scene = load(options);
-    if (!options.quiet)
-        for (const std::string& warning : scene.warnings)
-            fmt::print(stderr, "vkvol: warning: {}\n", warning);
+    print_warnings(options, scene.warnings);
     check_outputs(options);
     const Device device({options.device, options.validate, options.robust});
     const RenderResult result = render_with_progress(options, scene, device);
+    print_warnings(options, result.warnings);
     check_result(device, result);
     const double write_seconds = write_outputs(options, result.film, make_metadata(options, scene, device, result));
     if (options.report)

@@ -28,33 +28,44 @@ private:
 // The buffers that hold the scene.
 struct SceneBuffers {
     Buffer frame;
-    std::optional<Buffer> grid, leaf_table, majorants;
+    std::optional<Buffer> grids, leaf_table, majorants, blackbody;
 
     SceneBuffers(const Device& device, Commands& commands, const LoadedVolume& volume)
         : frame(device, "frame parameters", sizeof(shared::FrameParams), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
                 BufferPlace::host) {
-        const auto make = [&](std::optional<Buffer>& buffer, const char* name, std::span<const std::byte> data) {
-            buffer.emplace(device, name, data.size(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device);
-            commands.upload(*buffer, data);
+        // Parts lie one after another; empty ones take no place.
+        const auto make = [&](std::optional<Buffer>& buffer, const char* name, std::span<const std::byte> first,
+                              std::span<const std::byte> second = {}) {
+            buffer.emplace(device, name, first.size() + second.size(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                           BufferPlace::device);
+            commands.upload(*buffer, first);
+            commands.upload(*buffer, second, first.size());
         };
         if (!volume.field)
             return;
-        make(grid, "density grid", volume.field->bytes.span());
-        make(leaf_table, "leaf table", std::as_bytes(std::span(volume.field->leaf_table)));
+        const DensityField nothing;
+        const DensityField& temperature = volume.temperature ? *volume.temperature : nothing;
+        make(grids, "grids", volume.field->bytes.span(), temperature.bytes.span());
+        make(leaf_table, "leaf table", std::as_bytes(std::span(volume.field->leaf_table)),
+             std::as_bytes(std::span(temperature.leaf_table)));
         make(majorants, "majorant grid", std::as_bytes(std::span(volume.majorants->bounds)));
+        if (!volume.blackbody.empty())
+            make(blackbody, "black-body table", std::as_bytes(std::span(volume.blackbody)));
     }
 
     std::uint64_t bytes() const {
         const auto size = [](const std::optional<Buffer>& buffer) { return buffer ? buffer->bytes() : 0; };
-        return frame.bytes() + size(grid) + size(leaf_table) + size(majorants);
+        return frame.bytes() + size(grids) + size(leaf_table) + size(majorants) + size(blackbody);
     }
 
     BoundBuffers bound() const {
         BoundBuffers buffers{};
         buffers[BINDING_FRAME] = &frame;
-        buffers[BINDING_GRID] = grid ? &*grid : nullptr;
-        buffers[BINDING_LEAF_TABLE] = leaf_table ? &*leaf_table : nullptr;
-        buffers[BINDING_MAJORANTS] = majorants ? &*majorants : nullptr;
+        const auto place = [](const std::optional<Buffer>& buffer) { return buffer ? &*buffer : nullptr; };
+        buffers[BINDING_GRID] = place(grids);
+        buffers[BINDING_LEAF_TABLE] = place(leaf_table);
+        buffers[BINDING_MAJORANTS] = place(majorants);
+        buffers[BINDING_BLACKBODY] = place(blackbody);
         return buffers;
     }
 };
@@ -123,8 +134,8 @@ std::string describe(const Specialization& s, const LoadedVolume& volume) {
     if (s[SPEC_NEE] != NEE_NONE)
         text += s[SPEC_TRANSMITTANCE] == TRANSMITTANCE_ANALYTIC ? ", light with analytic transmittance"
                                                                 : ", light with ratio-tracked transmittance";
-    if (s[SPEC_EMISSION])
-        text += ", emission";
+    constexpr std::array emissions = {"", ", uniform emission", ", emission by temperature", ", black-body emission"};
+    text += emissions[s[SPEC_EMISSION]];
     return text;
 }
 
@@ -138,6 +149,7 @@ public:
         LoadedVolume volume = load_volume(scene);
         result_.load_seconds = watch.lap();
         result_.counts.cleaned_voxels = volume.field ? volume.field->cleaned : 0;
+        result_.warnings = volume.warnings;
         const Specialization specialization = specialize(scene, volume, integrator);
         result_.integrator = integrator.name;
         result_.specialization = describe(specialization, volume);

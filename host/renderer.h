@@ -44,6 +44,7 @@ struct RenderResult {
     Film film;
     RenderCounts counts;
     std::vector<NonFiniteSample> non_finite; // the first few
+    std::vector<std::string> warnings;       // what the scene asks for and its files do not hold
     std::string integrator;
     std::string specialization; // in words: what the kernels were compiled for
     PassSeconds pass_seconds{};

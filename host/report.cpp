@@ -103,6 +103,8 @@ std::string make_report(const RenderOptions& options, const Scene& scene, const 
     report["meanRelativeVariance"] = noise * noise;
     report["memory"] = {{"peakHostBytes", peak_host_bytes()}, {"deviceBytes", result.device_bytes}};
     report["warnings"] = scene.warnings;
+    for (const std::string& warning : result.warnings)
+        report["warnings"].push_back(warning);
     return report.dump(2) + "\n";
 }
 

@@ -60,6 +60,19 @@ struct GridFile {
 // For a grid whose transform is M (index -> world) one voxel is |det M|^(1/3) world units long.
 enum class CoefficientUnit { voxel, world };
 
+// How a temperature grid glows: `color` times the grid's value (the original's model), or `color` times a black body's
+// colour at kelvin = scale * value + offset, 0 below the cutoff, relative to luminance 1 at `reference` kelvin.
+struct TemperatureEmission {
+    enum class Model { color, blackbody };
+    Model model = Model::color;
+    Rgb color{0.0};                   // 0: no such emission
+    std::string grid = "temperature"; // in the density field's file; a file without it does not glow
+    double scale = 1.0;
+    double offset = 0.0;       // kelvin
+    double cutoff = 0.0;       // kelvin
+    double reference = 1500.0; // kelvin, > 0
+};
+
 // A participating medium filling a shape. Coefficients multiply the density, which is 1 in a sphere or box.
 struct Volume {
     std::variant<Sphere, Box, GridFile> shape;
@@ -69,6 +82,7 @@ struct Volume {
     double density_scale = 1.0;                    // >= 0, multiplies the density
     double g = 0.0;                                // Henyey-Greenstein mean cosine, in (-1, 1), + is forward
     Rgb Le{0.0};                                   // radiance emitted per absorption event: emission is sigma_a * Le
+    TemperatureEmission temperature;               // adds to Le
 };
 
 struct DirectionalLight {

@@ -58,6 +58,12 @@ void add_volume(Writer& writer, const Volume& volume) {
     writer.add("density_scale", volume.density_scale);
     writer.add("g", volume.g);
     writer.add("Le", volume.Le);
+    const TemperatureEmission& emission = volume.temperature;
+    writer.add("emission", emission.color);
+    writer.add("model", emission.model == TemperatureEmission::Model::color ? 0 : 1);
+    writer.add("temperature", emission.grid);
+    writer.add("kelvin", glm::dvec3(emission.scale, emission.offset, emission.cutoff));
+    writer.add("reference", emission.reference);
 }
 
 void add_view(Writer& writer, const Camera& camera, const Picture& picture) {

@@ -97,6 +97,7 @@ void SceneReader::read_coefficients(Volume& volume) const {
     const XmlElement medium = one("medium");
     medium.allow(color_attributes);
     volume.Le = color(medium);
+    volume.temperature = temperature_emission(std::holds_alternative<GridFile>(volume.shape));
 
     const XmlElement path_density = one("lightRayDensityMultiplier");
     const XmlElement shadow_density = one("shadowRayDensityMultiplier");
@@ -107,6 +108,38 @@ void SceneReader::read_coefficients(Volume& volume) const {
         shadow_density.warn(fmt::format("shadow rays cannot have a density of their own; they use "
                                         "lightRayDensityMultiplier, {}",
                                         volume.density_scale));
+}
+
+TemperatureEmission SceneReader::temperature_emission(bool is_grid) const {
+    const XmlElement element = one("emission");
+    const auto blackbody_only = {"temperatureScale", "temperatureOffset", "temperatureCutoff", "referenceTemperature"};
+    std::vector<std::string> allowed = {"r", "g", "b", "multiplier", "model", "grid"};
+    allowed.insert(allowed.end(), blackbody_only.begin(), blackbody_only.end());
+    element.allow(allowed);
+    TemperatureEmission emission;
+    emission.color = color(element);
+    emission.grid = element.attribute("grid", emission.grid);
+    const std::string model = element.attribute("model", "color");
+    if (model == "blackbody")
+        emission.model = TemperatureEmission::Model::blackbody;
+    else if (model != "color")
+        element.fail_attribute("model",
+                               fmt::format("<emission> model: '{}' is unknown; expected color (the grid's value "
+                                           "times r, g, b) or blackbody",
+                                           model));
+    emission.scale = element.attribute_number("temperatureScale", emission.scale, any_number);
+    emission.offset = element.attribute_number("temperatureOffset", emission.offset, any_number);
+    emission.cutoff = element.attribute_number("temperatureCutoff", emission.cutoff, not_negative);
+    emission.reference = element.attribute_number("referenceTemperature", emission.reference, positive);
+    if (emission.model == TemperatureEmission::Model::color)
+        for (const char* name : blackbody_only)
+            if (!element.attribute(name).empty())
+                element.fail_attribute(name,
+                                       fmt::format("<emission> {}: has a meaning with model=\"blackbody\" only", name));
+    if (element.exists() && emission.color != Rgb(0.0) && !is_grid)
+        element.warn(
+            "spheres and boxes have no temperature grid: <emission> is without effect; <medium> glows uniformly");
+    return emission;
 }
 
 CoefficientUnit SceneReader::unit(const XmlElement& sigma_a, const XmlElement& sigma_s, bool is_grid) const {

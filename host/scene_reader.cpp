@@ -171,11 +171,6 @@ void SceneReader::read_light(Scene& scene) const {
 
 // What asks for something that this renderer does not do, each with what is done in its place.
 void SceneReader::read_without_effect() const {
-    const XmlElement emission = one("emission");
-    emission.allow(color_attributes);
-    if (color(emission) != Rgb(0.0))
-        emission.warn("emission by a temperature grid is not rendered in this version; <medium> glows uniformly");
-
     const XmlElement step = one("stepSize");
     step.allow({"min", "max", "multiplier"});
     for (const char* name : {"min", "max", "multiplier"})

@@ -39,6 +39,7 @@ private:
     Box box(const XmlElement& element) const;
     GridFile grid_file(const XmlElement& element) const;
     void read_coefficients(Volume& volume) const;
+    TemperatureEmission temperature_emission(bool is_grid) const;
     CoefficientUnit unit(const XmlElement& sigma_a, const XmlElement& sigma_s, bool is_grid) const;
     void warn_without_volume() const;
     void read_without_effect() const;

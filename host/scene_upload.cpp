@@ -5,13 +5,17 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "blackbody.h"
 #include "error.h"
 
 namespace vkvol {
 
 static_assert(std::is_standard_layout_v<shared::FrameParams>);
 static_assert(sizeof(shared::CameraParams) == 4 * 12);
-static_assert(sizeof(shared::VolumeParams) == 3 * 16 + 7 * 12 + 4 * 4 + 12);
+static_assert(sizeof(shared::GridParams) == 4 * 12 + 2 * 4);
+static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 5 * 4);
+static_assert(sizeof(shared::VolumeParams) ==
+              3 * 16 + 2 * 12 + sizeof(shared::GridParams) + 12 + 4 * 4 + sizeof(shared::EmissionParams));
 static_assert(sizeof(shared::PassPush) <= 128, "the least push constant space that Vulkan promises");
 
 namespace {
@@ -66,34 +70,60 @@ Bounds medium_bounds(const LoadedVolume& loaded) {
     return {glm::dvec3(loaded.field->voxel_min) - 1.0, glm::dvec3(loaded.field->voxel_max) + 1.0};
 }
 
-void fill_grid(shared::VolumeParams& params, const LoadedVolume& loaded) {
-    const DensityField& field = *loaded.field;
-    const MajorantGrid& majorants = *loaded.majorants;
+// `before`: the grid that lies ahead of this one in the buffers, if any.
+shared::GridParams make_grid(const DensityField& field, const DensityField* before) {
+    shared::GridParams params{};
     params.voxel_min = field.voxel_min;
     params.voxel_max = field.voxel_max;
     params.leaf_min = field.leaf_min;
     params.leaf_dims = field.leaf_dims;
-    params.cell_dims = majorants.dims;
-    params.cell_size = static_cast<float>(majorants.cell);
+    params.first_word = before ? static_cast<std::uint32_t>(before->bytes.size() / 4) : 0;
+    params.first_entry = before ? static_cast<std::uint32_t>(before->leaf_table.size()) : 0;
+    return params;
 }
 
-// `origin`: of render space, in world coordinates. The map render -> medium is composed in double precision.
+// Rows of the affine map from render space, whose origin is at `origin` in the world. Composed in double precision.
+void fill_rows(glm::vec4 (&rows)[3], const glm::dmat4& space_to_world, glm::dvec3 origin) {
+    const glm::dmat4 map = glm::inverse(space_to_world) * glm::translate(glm::dmat4(1.0), origin);
+    for (int row = 0; row < 3; ++row)
+        rows[row] = glm::vec4(map[0][row], map[1][row], map[2][row], map[3][row]);
+}
+
+shared::EmissionParams make_emission(const Volume& volume, const LoadedVolume& loaded, double albedo,
+                                     glm::dvec3 origin) {
+    shared::EmissionParams params{};
+    params.constant = (1.0 - albedo) * volume.Le;
+    if (!loaded.temperature)
+        return params;
+    const TemperatureEmission& emission = volume.temperature;
+    params.color = (1.0 - albedo) * emission.color;
+    params.grid = make_grid(*loaded.temperature, &*loaded.field);
+    fill_rows(params.to_index, loaded.temperature->index_to_world, origin);
+    params.kelvin_scale = static_cast<float>(emission.scale);
+    params.kelvin_offset = static_cast<float>(emission.offset);
+    params.kelvin_cutoff = static_cast<float>(emission.cutoff);
+    params.table_low = 0.0f;
+    params.table_high = static_cast<float>(loaded.hottest);
+    return params;
+}
+
+// `origin`: of render space, in world coordinates.
 shared::VolumeParams make_volume(const Volume& volume, const LoadedVolume& loaded, glm::dvec3 origin) {
     shared::VolumeParams params{};
-    const glm::dmat4 to_medium =
-        glm::inverse(medium_to_world(volume, loaded)) * glm::translate(glm::dmat4(1.0), origin);
-    for (int row = 0; row < 3; ++row)
-        params.to_medium[row] = glm::vec4(to_medium[0][row], to_medium[1][row], to_medium[2][row], to_medium[3][row]);
+    fill_rows(params.to_medium, medium_to_world(volume, loaded), origin);
     const Bounds bounds = medium_bounds(loaded);
     params.bounds_min = bounds.low;
     params.bounds_max = bounds.high;
-    if (loaded.field)
-        fill_grid(params, loaded);
+    if (loaded.field) {
+        params.density = make_grid(*loaded.field, nullptr);
+        params.cell_dims = loaded.majorants->dims;
+        params.cell_size = static_cast<float>(loaded.majorants->cell);
+    }
     const double albedo = volume.sigma_s > 0.0 ? volume.sigma_s / (volume.sigma_a + volume.sigma_s) : 0.0;
     params.sigma_t = static_cast<float>(world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr));
     params.albedo = static_cast<float>(albedo);
     params.g = static_cast<float>(volume.g);
-    params.emission = glm::vec3((1.0 - albedo) * volume.Le);
+    params.emission = make_emission(volume, loaded, albedo, origin);
     return params;
 }
 
@@ -124,6 +154,43 @@ shared::CameraParams make_camera(const Scene& scene, glm::dvec3 origin) {
 
 } // namespace
 
+namespace {
+
+// A file without that grid, or one that holds no heat, does not glow: a warning, no error.
+void load_temperature(const Volume& volume, const GridFile& file, LoadedVolume& loaded) {
+    const TemperatureEmission& emission = volume.temperature;
+    if (emission.color == Rgb(0.0) || volume.sigma_a == 0.0)
+        return;
+    if (!has_grid({file.path, emission.grid})) {
+        loaded.warnings.push_back(
+            fmt::format("{}: has no grid \"{}\": <emission> is without effect", file.path.string(), emission.grid));
+        return;
+    }
+    DensityField field = load_density_field({file.path, emission.grid});
+    if (field.active_voxels == 0)
+        return;
+    if (emission.model == TemperatureEmission::Model::blackbody) {
+        loaded.hottest = std::max(emission.scale * field.max_value(), 0.0) + std::max(emission.offset, 0.0);
+        if (loaded.hottest < 500.0 || loaded.hottest > 40000.0)
+            loaded.warnings.push_back(fmt::format("{}: \"{}\" reaches {:.0f} kelvin by temperatureScale and "
+                                                  "temperatureOffset; flames have 1000 to 3000",
+                                                  file.path.string(), emission.grid, loaded.hottest));
+        loaded.hottest = std::max(loaded.hottest, 1.0);
+        loaded.blackbody = make_blackbody_table(0.0, loaded.hottest, emission.reference, BLACKBODY_ENTRIES);
+    }
+    loaded.temperature = std::move(field);
+}
+
+int emission_kind(const Volume& volume, const LoadedVolume& loaded) {
+    if (volume.sigma_a == 0.0)
+        return EMISSION_NONE;
+    if (loaded.temperature)
+        return volume.temperature.model == TemperatureEmission::Model::color ? EMISSION_COLOR : EMISSION_BLACKBODY;
+    return volume.Le != Rgb(0.0) ? EMISSION_CONSTANT : EMISSION_NONE;
+}
+
+} // namespace
+
 LoadedVolume load_volume(const Scene& scene) {
     LoadedVolume loaded;
     const Volume* volume = find_volume(scene);
@@ -138,6 +205,7 @@ LoadedVolume load_volume(const Scene& scene) {
     for (float& bound : loaded.majorants->bounds)
         bound *= static_cast<float>(scene.settings.majorant_scale);
     loaded.field = std::move(field);
+    load_temperature(*volume, *file, loaded);
     return loaded;
 }
 
@@ -154,8 +222,8 @@ Specialization specialize(const Scene& scene, const LoadedVolume& loaded, const 
                                                                           : FILTER_STOCHASTIC;
     const bool scattering = medium != MEDIUM_NONE && scene.volumes.front().sigma_s > 0.0;
     constants[SPEC_NEE] = scene.lights.empty() || !scattering ? NEE_NONE : integrator.nee;
-    constants[SPEC_EMISSION] =
-        medium != MEDIUM_NONE && scene.volumes.front().sigma_a > 0.0 && scene.volumes.front().Le != Rgb(0.0);
+    constants[SPEC_EMISSION] = medium != MEDIUM_NONE ? emission_kind(scene.volumes.front(), loaded) : EMISSION_NONE;
+    constants[SPEC_TEMPERATURE_TYPE] = loaded.temperature ? loaded.temperature->type : GRID_FLOAT;
     constants[SPEC_FREE_FLIGHT] = homogeneous ? FREE_FLIGHT_ANALYTIC : integrator.free_flight;
     constants[SPEC_TRANSMITTANCE] = homogeneous ? TRANSMITTANCE_ANALYTIC : integrator.transmittance;
     constants[SPEC_STEPS] = 1;

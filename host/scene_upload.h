@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "compute_pass.h"
 #include "density_field.h"
@@ -15,6 +17,10 @@ namespace vkvol {
 struct LoadedVolume {
     std::optional<DensityField> field;
     std::optional<MajorantGrid> majorants;
+    std::optional<DensityField> temperature; // only if the scene wants its glow
+    std::vector<glm::vec3> blackbody;        // BLACKBODY_ENTRIES colours between 0 and the hottest kelvin, or none
+    double hottest = 0.0;                    // kelvin
+    std::vector<std::string> warnings;       // what the scene asks for and its files do not hold
 };
 
 // Opens the grid, if the scene has one. Throws InputError.

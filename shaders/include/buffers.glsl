@@ -11,9 +11,10 @@ layout(constant_id = SPEC_MEDIUM) const int MEDIUM = MEDIUM_NONE;
 layout(constant_id = SPEC_GRID_TYPE) const int GRID_TYPE = GRID_FLOAT;
 layout(constant_id = SPEC_FILTER) const int FILTER = FILTER_TRILINEAR;
 layout(constant_id = SPEC_NEE) const int NEE = NEE_NONE;
-layout(constant_id = SPEC_EMISSION) const int EMISSION = 0;
+layout(constant_id = SPEC_EMISSION) const int EMISSION = EMISSION_NONE;
 layout(constant_id = SPEC_FREE_FLIGHT) const int FREE_FLIGHT = FREE_FLIGHT_DELTA;
 layout(constant_id = SPEC_TRANSMITTANCE) const int TRANSMITTANCE = TRANSMITTANCE_RATIO;
+layout(constant_id = SPEC_TEMPERATURE_TYPE) const int TEMPERATURE_TYPE = GRID_FLOAT;
 layout(constant_id = SPEC_STEPS) const int STEPS = 1;
 
 layout(scalar, binding = BINDING_FRAME) uniform FrameBlock { FrameParams frame; };
@@ -25,6 +26,7 @@ layout(scalar, binding = BINDING_QUEUE_ITEMS) buffer QueueItemBlock { uint queue
 layout(scalar, binding = BINDING_QUEUES) buffer QueueBlock { QueueHeader queues[]; };
 layout(scalar, binding = BINDING_FILM) buffer FilmBlock { FilmPixel film[]; };
 layout(scalar, binding = BINDING_WORK) buffer WorkBlock { uint work[]; };
+layout(scalar, binding = BINDING_BLACKBODY) readonly buffer BlackbodyBlock { vec3 blackbody[]; };
 layout(scalar, binding = BINDING_COUNTERS) buffer CounterBlock { Counters counters; };
 
 #endif

@@ -1,4 +1,4 @@
-// Density of the grid at a point of index space, read from the NanoVDB buffer itself.
+// Grid values at points of index space, read from the NanoVDB buffers themselves.
 //
 // Leaves are found through a dense table, one word per aligned 8^3 block between the grid's bounds: the word offset
 // of the leaf node times two, plus one; or, where the tree has a tile or its background, the word offset of that
@@ -13,13 +13,11 @@ const uint LEAF_MINIMUM = 20u; // quantised: value of code 0
 const uint LEAF_QUANTUM = 21u; // quantised: value step per code
 const uint LEAF_VALUES = 24u;
 
-float leaf_value(uint leaf, uint n) {
-    if (GRID_TYPE == GRID_FLOAT)
-        return uintBitsToFloat(grid_words[leaf + LEAF_VALUES + n]);
-    uint log2_bits = GRID_TYPE == GRID_FP4   ? 2u
-                     : GRID_TYPE == GRID_FP8 ? 3u
-                     : GRID_TYPE == GRID_FP16 ? 4u
-                                              : grid_words[leaf + LEAF_FLAGS] >> 29u;
+float leaf_value(int type, uint leaf, uint n) {
+    uint log2_bits = type == GRID_FP4    ? 2u
+                     : type == GRID_FP8  ? 3u
+                     : type == GRID_FP16 ? 4u
+                                         : grid_words[leaf + LEAF_FLAGS] >> 29u;
     uint word = grid_words[leaf + LEAF_VALUES + (n >> (5u - log2_bits))];
     uint shift = (n & ((32u >> log2_bits) - 1u)) << log2_bits;
     uint code = (word >> shift) & ((1u << (1u << log2_bits)) - 1u);
@@ -28,53 +26,57 @@ float leaf_value(uint leaf, uint n) {
     return max(float(code) * quantum + minimum, 0.0);
 }
 
-// Value of voxel `ijk`, >= 0; 0 outside the box of active voxels. No branch: lanes disagree at every edge anyway.
-float voxel(VolumeParams v, ivec3 ijk) {
-    ivec3 inside = clamp(ijk, v.voxel_min, v.voxel_max);
-    ivec3 block = (inside >> 3) - v.leaf_min;
-    uint entry = leaf_table[(block.x * v.leaf_dims.y + block.y) * v.leaf_dims.z + block.z];
+// Value of voxel `ijk`, >= 0; 0 outside the box of active voxels. `type` is a specialization constant. No branch: lanes
+// disagree at every edge anyway.
+float voxel(GridParams g, int type, ivec3 ijk) {
+    ivec3 inside = clamp(ijk, g.voxel_min, g.voxel_max);
+    ivec3 block = (inside >> 3) - g.leaf_min;
+    uint entry = leaf_table[g.first_entry + uint((block.x * g.leaf_dims.y + block.y) * g.leaf_dims.z + block.z)];
     ivec3 low = inside & 7;
     uint n = uint(low.x << 6 | low.y << 3 | low.z);
+    bool in_leaf = (entry & 1u) != 0u;
+    uint at = g.first_word + (entry >> 1u);
     float value;
-    if (GRID_TYPE == GRID_FLOAT)
-        value = uintBitsToFloat(grid_words[(entry >> 1u) + ((entry & 1u) != 0u ? LEAF_VALUES + n : 0u)]);
+    if (type == GRID_FLOAT)
+        value = uintBitsToFloat(grid_words[at + (in_leaf ? LEAF_VALUES + n : 0u)]);
     else
-        value = (entry & 1u) != 0u ? leaf_value(entry >> 1u, n) : uintBitsToFloat(grid_words[entry >> 1u]);
+        value = in_leaf ? leaf_value(type, at, n) : uintBitsToFloat(grid_words[at]);
     return inside == ijk ? value : 0.0;
 }
 
-float density_nearest(VolumeParams v, vec3 p) {
-    return voxel(v, ivec3(floor(p + 0.5)));
+float lookup_nearest(GridParams g, int type, vec3 p) {
+    return voxel(g, type, ivec3(floor(p + 0.5)));
 }
 
-float density_trilinear(VolumeParams v, vec3 p) {
+float lookup_trilinear(GridParams g, int type, vec3 p) {
     vec3 base = floor(p);
     vec3 f = p - base;
     ivec3 i = ivec3(base);
     float plane[2];
     for (int x = 0; x < 2; ++x) {
-        float low = mix(voxel(v, i + ivec3(x, 0, 0)), voxel(v, i + ivec3(x, 0, 1)), f.z);
-        float high = mix(voxel(v, i + ivec3(x, 1, 0)), voxel(v, i + ivec3(x, 1, 1)), f.z);
+        float low = mix(voxel(g, type, i + ivec3(x, 0, 0)), voxel(g, type, i + ivec3(x, 0, 1)), f.z);
+        float high = mix(voxel(g, type, i + ivec3(x, 1, 0)), voxel(g, type, i + ivec3(x, 1, 1)), f.z);
         plane[x] = mix(low, high, f.y);
     }
     return mix(plane[0], plane[1], f.x);
 }
 
 // One corner, chosen with its trilinear weight (Pharr et al., "Filtering After Shading", 2024): the expectation is
-// the trilinear value, so it may stand wherever density enters linearly.
-float density_stochastic(VolumeParams v, vec3 p, vec3 tap) {
+// the trilinear value, so it may stand wherever the value enters linearly.
+float lookup_stochastic(GridParams g, int type, vec3 p, vec3 tap) {
     vec3 base = floor(p);
-    return voxel(v, ivec3(base) + ivec3(lessThan(tap, p - base)));
+    return voxel(g, type, ivec3(base) + ivec3(lessThan(tap, p - base)));
 }
 
+// `p` in index space; `tap` in [0, 1)^3 is for the stochastic filter.
 float density(VolumeParams v, vec3 p, vec3 tap) {
     switch (FILTER) {
     case FILTER_NEAREST:
-        return density_nearest(v, p);
+        return lookup_nearest(v.density, GRID_TYPE, p);
     case FILTER_STOCHASTIC:
-        return density_stochastic(v, p, tap);
+        return lookup_stochastic(v.density, GRID_TYPE, p, tap);
     default:
-        return density_trilinear(v, p);
+        return lookup_trilinear(v.density, GRID_TYPE, p);
     }
 }
 

@@ -13,6 +13,7 @@
 #include "../include/pass.glsl"
 
 #include "../include/camera.glsl"
+#include "../include/emission.glsl"
 #include "../include/free_flight.glsl"
 #include "../include/light.glsl"
 #include "../include/queue.glsl"
@@ -128,9 +129,9 @@ void main() {
             path.radiance += path.beta * frame.background;
             ended = true;
         } else if (event == EVENT_COLLIDED) {
-            if (EMISSION != 0)
-                path.radiance += path.beta * v.emission;
             path.position += (t_enter + walk.t) * path.direction;
+            if (EMISSION != EMISSION_NONE)
+                path.radiance += path.beta * emitted_radiance(v.emission, path.position);
             path.beta *= v.albedo;
             bool capped = path.depth >= frame.max_depth;
             tally.depth_caps += capped ? 1u : 0u;

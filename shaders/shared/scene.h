@@ -14,21 +14,42 @@ struct CameraParams {
     vec3 down;  // per pixel
 };
 
+// A grid within the buffers that hold all grids. Positions are in its index space, voxel centres at integers.
+struct GridParams {
+    ivec3 voxel_min; // active voxels, inclusive; 0 outside
+    ivec3 voxel_max;
+    ivec3 leaf_min; // first 8^3 block of the leaf table
+    ivec3 leaf_dims;
+    uint first_word;  // of the grid
+    uint first_entry; // of its leaf table
+};
+
+// Radiance emitted per absorption event; see emission.glsl. All colours include the factor 1 - albedo, the chance that
+// a collision is an absorption.
+struct EmissionParams {
+    vec3 constant;
+    vec3 color;       // times temperature, or times the black body's colour
+    GridParams grid;  // of temperatures
+    vec4 to_index[3]; // rows of the affine map render -> index space of that grid
+    float kelvin_scale; // kelvin = scale * value + offset
+    float kelvin_offset;
+    float kelvin_cutoff; // colder than this does not glow
+    float table_low;     // kelvin of the black-body table's first and last entry
+    float table_high;
+};
+
 // Medium space: index space for a grid, voxel centres at integers; the unit ball or the cube [-1, 1]^3 for shapes.
 struct VolumeParams {
     vec4 to_medium[3]; // rows of the affine map render -> medium
     vec3 bounds_min;   // medium space; where the filtered density can differ from 0
     vec3 bounds_max;
-    ivec3 voxel_min; // active voxels, inclusive; 0 outside
-    ivec3 voxel_max;
-    ivec3 leaf_min; // first 8^3 block of the leaf table
-    ivec3 leaf_dims;
+    GridParams density;
     ivec3 cell_dims; // majorant cells, the first begins at bounds_min
     float cell_size; // edge of a cell, voxels
     float sigma_t;   // extinction at density 1 [1 / world unit], > 0
     float albedo;    // sigma_s / sigma_t
     float g;
-    vec3 emission; // (1 - albedo) * Le: radiance added at each real collision
+    EmissionParams emission;
 };
 
 struct LightParams {

@@ -1,0 +1,17 @@
+// Thermal emission: Planck's law seen by the CIE 1931 observer, in linear Rec.709.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace vkvol {
+
+// Colour of a black body at `kelvin`, in units where one at `reference` kelvin has luminance 1. Channels that Rec.709
+// cannot show (blue below some 1900 K) are clipped at 0. Zero for kelvin <= 0; finite for all finite arguments.
+glm::dvec3 blackbody_rgb(double kelvin, double reference);
+
+// blackbody_rgb at `count` temperatures spaced evenly over [low, high]. Between neighbours dT kelvin apart linear
+// interpolation is off by a fraction of at most (1.44e7 nm K / 400 nm / T^2 * dT)^2 / 8.
+std::vector<glm::vec3> make_blackbody_table(double low, double high, double reference, int count);
+
+} // namespace vkvol
