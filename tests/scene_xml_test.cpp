@@ -134,9 +134,8 @@ TEST_CASE("the report's own scenes load unmodified", "[cpu][xml]") {
         CHECK(scene.settings.max_depth.value() == 16);
         CHECK(scene.picture.height == 1080);
         CHECK(scene.lights.size() == (name.find("ratio") != std::string::npos ? 1 : 0));
-        CHECK(scene.warnings.size() == 2); // stepSize and emission
+        CHECK(scene.warnings.size() == 1); // stepSize
         CHECK(warns(scene, "stepSize"));
-        CHECK(warns(scene, "emission"));
     }
 }
 
@@ -149,7 +148,7 @@ TEST_CASE("what is not rendered is said, with its place", "[cpu][xml]") {
     CHECK_THAT(warning(R"(<stepSize min=".1" max="1"/>)"), Catch::StartsWith("s.xml:2:1: stepSize"));
     CHECK_THAT(warning("<shadowRayDensityMultiplier>4</shadowRayDensityMultiplier>"),
                Catch::Contains("lightRayDensityMultiplier, 1"));
-    CHECK_THAT(warning(R"(<emission r="1" multiplier="5"/>)"), Catch::Contains("not rendered"));
+    CHECK_THAT(warning(R"(<emission r="1" multiplier="5"/>)"), Catch::Contains("no temperature grid"));
     CHECK_THAT(warning(R"(<models><model baseDir="..\M\">a.obj</model></models>)"), Catch::StartsWith("s.xml:2:9: "));
     CHECK_THAT(warning("<diffuseRebounds><rebound>5</rebound></diffuseRebounds>"), Catch::Contains("without effect"));
     CHECK_THAT(warning("<fileName>x.png</fileName>"), Catch::Contains("-o"));

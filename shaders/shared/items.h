@@ -47,7 +47,6 @@ struct Counters {
     uint paths;      // finished, including those that never met the medium
     uint real_collisions;
     uint null_collisions;
-    uint lookups; // density lookups
     uint cells;   // majorant cells left
     uint shadow_rays;
     uint depth_caps;          // paths ended by maxDepth

@@ -13,9 +13,9 @@ void main() {
     DensityInput input_ = inputs[i];
     DensityOutput o;
     o.filtered = density(v, input_.p, input_.tap);
-    o.voxel = voxel(v, ivec3(floor(input_.p)));
-    o.nearest = density_nearest(v, input_.p);
-    o.trilinear = density_trilinear(v, input_.p);
-    o.stochastic = density_stochastic(v, input_.p, input_.tap);
+    o.voxel = voxel(v.density, GRID_TYPE, ivec3(floor(input_.p)));
+    o.nearest = lookup_nearest(v.density, GRID_TYPE, input_.p);
+    o.trilinear = lookup_trilinear(v.density, GRID_TYPE, input_.p);
+    o.stochastic = lookup_stochastic(v.density, GRID_TYPE, input_.p, input_.tap);
     outputs[i] = o;
 }

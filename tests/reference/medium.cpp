@@ -14,7 +14,7 @@ Medium with_shape(std::variant<vkvol::Sphere, vkvol::Box, Grid> shape, const vkv
     medium.sigma_t = sigma_t * volume.density_scale;
     medium.albedo = sigma_t > 0.0 ? volume.sigma_s / sigma_t : 0.0;
     medium.g = volume.g;
-    medium.Le = volume.Le;
+    medium.emission.constant = volume.Le;
     medium.filter = filter;
     if (const Grid* grid = medium.grid(); grid && volume.unit == vkvol::CoefficientUnit::voxel)
         medium.sigma_t /= grid->voxel_length();
@@ -33,7 +33,9 @@ Medium load(const vkvol::Volume& volume, vkvol::Filter filter) {
     if (const auto* box = std::get_if<vkvol::Box>(&volume.shape))
         return with_shape(*box, volume, filter);
     const auto& file = std::get<vkvol::GridFile>(volume.shape);
-    return with_shape(load_grid(file.path, file.grid), volume, filter);
+    Medium medium = with_shape(load_grid(file.path, file.grid), volume, filter);
+    medium.emission = load_emission(volume, &file);
+    return medium;
 }
 
 Medium with_grid(Grid grid, const vkvol::Volume& volume, vkvol::Filter filter) {

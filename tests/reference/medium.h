@@ -3,7 +3,7 @@
 
 #include <variant>
 
-#include "grid.h"
+#include "emission.h"
 
 namespace reference {
 
@@ -12,7 +12,7 @@ struct Medium {
     double sigma_t = 0.0; // extinction at density 1 [1/world unit], density_scale included
     double albedo = 0.0;
     double g = 0.0;
-    vkvol::Rgb Le{0.0};
+    Emission emission;
     vkvol::Filter filter = vkvol::Filter::trilinear;
 
     const Grid* grid() const { return std::get_if<Grid>(&shape); } // null where the density is 1 throughout

@@ -55,7 +55,7 @@ Rgb radiance(const World& world, Ray ray, double flight, Rng& rng) {
 
         const Medium& medium = *world.medium;
         ray.origin = ray.at(*t);
-        L += beta * (1.0 - medium.albedo) * medium.Le;
+        L += beta * (1.0 - medium.albedo) * medium.emission.at(ray.origin);
         if (settings.max_depth && depth == *settings.max_depth)
             return L;
         if (world.nee)

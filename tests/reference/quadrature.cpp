@@ -103,7 +103,7 @@ vkvol::Rgb single_scattering_quadrature(const Medium& medium, const vkvol::Direc
 vkvol::Rgb unscattered_quadrature(const Medium& medium, const vkvol::Rgb& background, const Ray& ray) {
     // Albedo and Le are constant, so the integral of (1 - albedo) sigma_t T Le is (1 - albedo)(1 - T) Le.
     const double tau = optical_depth(medium, ray, 0.0, infinity);
-    return -std::expm1(-tau) * (1.0 - medium.albedo) * medium.Le + std::exp(-tau) * background;
+    return -std::expm1(-tau) * (1.0 - medium.albedo) * medium.emission.constant + std::exp(-tau) * background;
 }
 
 } // namespace reference

@@ -50,15 +50,23 @@ double value_noise(glm::dvec3 p, std::uint32_t octave) {
 
 } // namespace
 
-GridFile write_grid(const GridRecipe& grid) {
+GridFile write_grids(const std::vector<GridRecipe>& grids) {
     static const TemporaryDirectory directory;
     static int count = 0;
     const std::filesystem::path path = directory.path() / fmt::format("{}.nvdb", count++);
-    const GridBytes bytes = make_grid_bytes(grid);
-    auto buffer = nanovdb::HostBuffer::create(bytes.size());
-    std::memcpy(buffer.data(), bytes.data(), bytes.size());
-    nanovdb::io::writeGrid(path.string(), nanovdb::GridHandle<>(std::move(buffer)));
-    return {path, "density"};
+    std::vector<nanovdb::GridHandle<>> handles;
+    for (const GridRecipe& grid : grids) {
+        const GridBytes bytes = make_grid_bytes(grid);
+        auto buffer = nanovdb::HostBuffer::create(bytes.size());
+        std::memcpy(buffer.data(), bytes.data(), bytes.size());
+        handles.emplace_back(std::move(buffer));
+    }
+    nanovdb::io::writeGrids(path.string(), handles);
+    return {path, grids.front().name};
+}
+
+GridFile write_grid(const GridRecipe& grid) {
+    return write_grids({grid});
 }
 
 glm::dvec3 center_of(const GridRecipe& grid) {

@@ -5,7 +5,8 @@
 
 namespace vkvol {
 
-// A file of its own, removed when the tests end.
+// A file of its own, removed when the tests end. The GridFile names the first of the grids.
+GridFile write_grids(const std::vector<GridRecipe>& grids);
 GridFile write_grid(const GridRecipe& grid);
 
 // Of its voxels, in world space.

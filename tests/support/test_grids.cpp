@@ -41,7 +41,7 @@ template <class Build> GridBytes build(const GridRecipe& recipe) {
     builder([&](const nanovdb::Coord& c) { return recipe.value(to_ivec3(c)); },
             nanovdb::CoordBBox(to_coord(recipe.first), to_coord(recipe.last)));
     const auto handle = builder.template getHandle<nanovdb::AbsDiff>(make_map(recipe.linear, recipe.translation),
-                                                                     "density", nanovdb::AbsDiff(0.001f));
+                                                                     recipe.name, nanovdb::AbsDiff(0.001f));
     GridBytes bytes(handle.size());
     std::memcpy(bytes.data(), handle.data(), handle.size());
     return bytes;

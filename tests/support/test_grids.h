@@ -22,6 +22,7 @@ struct GridRecipe {
     float background = 0.0f;
     glm::dmat3 linear{1.0}; // world = linear * index + translation
     glm::dvec3 translation{0.0};
+    std::string name = "density";
     int cell = 8; // of the majorants; 0: chosen for density 1 having extinction 1 per voxel
 };
 

@@ -1,0 +1,73 @@
+#include "emission.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace reference {
+
+namespace {
+
+using vkvol::Rgb;
+
+double gauss(double x, double mean, double left, double right) {
+    const double u = (x - mean) * (x < mean ? left : right);
+    return std::exp(-u * u / 2.0);
+}
+
+// Tristimulus values of Planck's spectrum, wavelengths in metres; the constants h and c scale all temperatures alike.
+Rgb tristimulus(double kelvin) {
+    constexpr double h = 6.62607015e-34, c = 299792458.0, k = 1.380649e-23;
+    Rgb sum(0.0);
+    for (int i = 0; i < 940; ++i) { // midpoints of half nanometres
+        const double nm = 360.0 + (i + 0.5) * 0.5, metre = nm * 1e-9;
+        const double radiance = 2.0 * h * c * c / std::pow(metre, 5) / (std::exp(h * c / (metre * k * kelvin)) - 1.0);
+        const double x = 1.056 * gauss(nm, 599.8, 0.0264, 0.0323) + 0.362 * gauss(nm, 442.0, 0.0624, 0.0374) -
+                         0.065 * gauss(nm, 501.1, 0.0490, 0.0382);
+        const double y = 0.821 * gauss(nm, 568.8, 0.0213, 0.0247) + 0.286 * gauss(nm, 530.9, 0.0613, 0.0322);
+        const double z = 1.217 * gauss(nm, 437.0, 0.0845, 0.0278) + 0.681 * gauss(nm, 459.0, 0.0385, 0.0725);
+        sum += radiance * Rgb(x, y, z);
+    }
+    return sum;
+}
+
+} // namespace
+
+Rgb blackbody(double kelvin, double reference) {
+    if (kelvin <= 0.0)
+        return Rgb(0.0);
+    // Columns: what X, Y and Z give to red, green and blue (IEC 61966-2-1).
+    const glm::dmat3 to_rgb(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259, -0.4985314, 0.0415560,
+                            1.0572252);
+    return glm::max(to_rgb * (tristimulus(kelvin) / tristimulus(reference).y), Rgb(0.0));
+}
+
+Rgb Emission::at(const glm::dvec3& world) const {
+    if (grid.empty())
+        return constant;
+    const double value = grid.trilinear(grid.to_index(world));
+    if (temperature.model == vkvol::TemperatureEmission::Model::color)
+        return constant + value * temperature.color;
+    const double kelvin = temperature.scale * value + temperature.offset;
+    if (kelvin < temperature.cutoff)
+        return constant;
+    const double x = std::max(kelvin, 0.0) / spacing;
+    const auto i = std::min(static_cast<std::size_t>(x), blackbodies.size() - 2);
+    return constant + temperature.color * glm::mix(blackbodies[i], blackbodies[i + 1], x - static_cast<double>(i));
+}
+
+Emission load_emission(const vkvol::Volume& volume, const vkvol::GridFile* file) {
+    Emission emission{volume.Le, volume.temperature, {}, {}};
+    if (!file || volume.temperature.color == Rgb(0.0))
+        return emission;
+    emission.grid = load_grid(file->path, volume.temperature.grid);
+    if (emission.temperature.model == vkvol::TemperatureEmission::Model::blackbody && !emission.grid.empty()) {
+        const double warmest = *std::max_element(emission.grid.values.begin(), emission.grid.values.end());
+        const double hottest =
+            std::max(volume.temperature.scale * warmest + volume.temperature.offset, volume.temperature.offset);
+        for (double kelvin = 0.0; kelvin < hottest + 2.0 * Emission::spacing; kelvin += Emission::spacing)
+            emission.blackbodies.push_back(blackbody(kelvin, volume.temperature.reference));
+    }
+    return emission;
+}
+
+} // namespace reference
