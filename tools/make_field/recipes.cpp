@@ -14,7 +14,7 @@ const std::vector<Recipe>& recipes() {
         {"spike", "a ball of density 0.05 that hides one sample of 20, in a cube of SIZE samples", 32, make_spike},
         {"tiles", "active tiles of 128^3 and 8^3 samples beside one leaf of samples", 0, make_tiles},
         {"empty", "a grid without active samples", 0, make_empty},
-        {"cumulus", "a cumulus cloud, about 60 units wide, in a box SIZE samples wide", 384, make_cumulus},
+        {"cumulus", "a cumulus cloud, about 60 units wide, in a box SIZE samples wide", 464, make_cumulus},
         {"explosion", "a rising fireball: density and temperature, SIZE samples wide", 160, make_explosion},
     };
     return all;
