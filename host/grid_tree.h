@@ -1,0 +1,20 @@
+// The tree of a NanoVDB grid: checked, cleaned, and flattened into the table of leaves that lookups use.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "density_field.h"
+
+namespace vkvol {
+
+// Fills what of `field` follows from its bytes and type: transform, box, leaf table, cleaned values. No offset in the
+// file is trusted. Throws InputError, in which `place` stands for the grid.
+void read_tree(DensityField& field, const std::string& place);
+
+// Value `n` (0..511, z fastest) of a leaf node of a GRID_... type; >= 0.
+float leaf_value(int type, const std::byte* leaf, unsigned n);
+
+float read_float(const std::byte* from);
+
+} // namespace vkvol
