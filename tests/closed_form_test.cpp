@@ -59,8 +59,8 @@ Volume slab(double tau, double albedo) {
 
 } // namespace
 
-// Where the tau of a pixel's chord varies, 32 x 32 points per pixel are off by less than 1e-4 at the silhouette,
-// a twentieth of the standard error of 1024 samples.
+// 64 x 64 points per pixel are at most 0.15 standard errors off, at the silhouette of the densest sphere, and 0.01 in
+// the mean.
 TEST_CASE("absorbing shapes transmit exp(-tau) and emit Le (1 - exp(-tau))", "[gpu][hard][closed_form]") {
     const double tau = GENERATE(0.1, 1.0, 10.0);
     const bool emits = GENERATE(false, true);
@@ -71,7 +71,7 @@ TEST_CASE("absorbing shapes transmit exp(-tau) and emit Le (1 - exp(-tau))", "[g
         Scene scene = scene_of(volume, 2.6, 24, 6.0, glm::dvec3(0.0), {-20.0, 40.0, 15.0});
         scene.background = sky;
         scene.settings.spp = 1024;
-        CHECK_AGREEMENT(agree_with_escapes(render_here(scene, 6).film, escapes(scene, 32), sky, volume.Le,
+        CHECK_AGREEMENT(agree_with_escapes(render_here(scene, 6).film, escapes(scene, 64), sky, volume.Le,
                                            fmt::format("absorbing shape {}, tau {}", shape.index(), tau)));
     }
 }

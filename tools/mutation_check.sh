@@ -19,8 +19,8 @@ mutations() {
 albedo + 2 % ~ host/scene_upload.cpp ~ static_cast<float>(albedo); ~ static_cast<float>(1.02 * albedo); ~ [image]
 g sign in sampling ~ shaders/passes/track.comp ~ hg_sample(v.g, ~ hg_sample(-v.g, ~ [image]
 g sign toward the light ~ shaders/include/light.glsl ~ hg_eval(v.g, ~ hg_eval(-v.g, ~ [image]
-light direction reversed in phase ~ shaders/include/light.glsl ~ direction - light.direction; ~ direction + light.direction; ~ [image]
-1 / 4 pi missing ~ shaders/include/phase.glsl ~ return INV_4PI * ( ~ return ( ~ [image]
+light direction reversed in phase ~ shaders/include/light.glsl ~ direction, light.direction) ~ direction, -light.direction) ~ [image]
+1 / 4 pi missing ~ shaders/include/phase.glsl ~ return INV_4PI * (1.0 - a) ~ return (1.0 - a) ~ [image]
 majorant x 0.9 ~ host/majorant_grid.cpp ~ bound = std::max(bound, value); ~ bound = std::max(bound, 0.9f * value); ~ [image]
 majorant not dilated ~ host/majorant_grid.cpp ~ glm::max((relative - 1) / grid.cell, glm::ivec3(0)); ~ high; ~ [image]
 lookup half a voxel off ~ shaders/include/collision.glsl ~ w.origin + w.t * w.direction ~ w.origin + w.t * w.direction + 0.5 ~ [image]
@@ -33,8 +33,8 @@ camera rows flipped ~ host/scene_upload.cpp ~ dy = -2.0 * s ^ dx, s + picture.st
 nearest lookup truncates ~ shaders/include/density.glsl ~ floor(p + 0.5) ~ floor(p) ~ [image]
 stochastic corner reversed ~ shaders/include/density.glsl ~ lessThan(tap, p - base) ~ greaterThan(tap, p - base) ~ [image]
 depth limit off by one ~ shaders/passes/track.comp ~ path.depth >= frame.max_depth ~ path.depth > frame.max_depth ~ [image]
-emission without its albedo ~ host/scene_upload.cpp ~ (1.0 - albedo) * volume.Le ~ volume.Le ~ [image]
-random numbers used twice ~ shaders/include/rng.glsl ~ rng.draw += 1u; ~ rng.draw += rng.draw % 2u == 0u ? 1u : 0u; ~ [image]
+emission without its albedo ~ host/scene_upload.cpp ~ params.constant = (1.0 - albedo) * volume.Le ~ params.constant = volume.Le ~ [image]
+all samples the same ~ shaders/include/rng.glsl ~ rng.sample_index, rng.draw ~ 0u, rng.draw ~ [image]
 crop forgotten in random numbers ~ shaders/include/camera.glsl ~ frame.crop_x + pixel ~ pixel ~ [determinism]
 END
 }
@@ -80,10 +80,11 @@ run_tests() { # SPECIFICATION: 0 if they pass
     (cd "$build" && timeout 600 ./vkvol_tests "$1" --abort </dev/null >"$work/tests.log" 2>&1)
 }
 
-# The first test that failed, in the words of Catch2's console reporter.
+# The first test that failed: Catch2's console reporter puts its name between two lines of dashes.
 first_failure() {
     grep -q "FAILED:" "$work/tests.log" || return 1
-    awk '/^-{70}/ { getline; name = $0 } /FAILED:/ { print name; exit }' "$work/tests.log"
+    awk '/^------/ { if (named) named = 0; else { getline; name = $0; named = 1 } } /FAILED:/ { print name; exit }' \
+        "$work/tests.log"
 }
 
 row() { printf '%-36s %s\n' "$1" "$2"; }
@@ -104,6 +105,7 @@ row "error" "caught by"
 while IFS= read -r line; do
     IFS=$'\t' read -r name file text replacement tests <<<"${line// ~ /$'\t'}"
     [[ "$name" == *"$only"* ]] || continue
+    cp "$copy/$file" "$work/original"
     if ! replace "$copy/$file" "$text" "$replacement"; then
         row "$name" "NOT MADE"
         bad=1
@@ -119,6 +121,6 @@ while IFS= read -r line; do
         row "$name" "NO TEST: the program failed, $work/tests.log"
         bad=1
     fi
-    cp "$root/$file" "$copy/$file"
+    cp "$work/original" "$copy/$file"
 done < <(mutations)
 exit $bad
