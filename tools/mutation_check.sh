@@ -18,7 +18,7 @@ mutations() {
     cat <<'END'
 albedo + 2 % ~ host/scene_upload.cpp ~ static_cast<float>(albedo); ~ static_cast<float>(1.02 * albedo); ~ [image]
 g sign in sampling ~ shaders/passes/track.comp ~ hg_sample(v.g, ~ hg_sample(-v.g, ~ [image]
-g sign toward the light ~ shaders/include/light.glsl ~ hg_eval(v.g, ~ hg_eval(-v.g, ~ [image]
+g sign toward the light ~ shaders/include/light.glsl ~ hg_from_peak(v.g, ~ hg_from_peak(-v.g, ~ [image]
 light direction reversed in phase ~ shaders/include/light.glsl ~ direction, light.direction) ~ direction, -light.direction) ~ [image]
 1 / 4 pi missing ~ shaders/include/phase.glsl ~ return INV_4PI * (1.0 - a) ~ return (1.0 - a) ~ [image]
 majorant x 0.9 ~ host/majorant_grid.cpp ~ bound = std::max(bound, value); ~ bound = std::max(bound, 0.9f * value); ~ [image]

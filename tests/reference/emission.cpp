@@ -57,7 +57,7 @@ Rgb Emission::at(const glm::dvec3& world) const {
 
 Emission load_emission(const vkvol::Volume& volume, const vkvol::GridFile* file) {
     Emission emission{volume.Le, volume.temperature, {}, {}};
-    if (!file || volume.temperature.color == Rgb(0.0))
+    if (!file || volume.temperature.color == Rgb(0.0) || !has_grid(file->path, volume.temperature.grid))
         return emission;
     emission.grid = load_grid(file->path, volume.temperature.grid);
     if (emission.temperature.model == vkvol::TemperatureEmission::Model::blackbody && !emission.grid.empty()) {

@@ -42,6 +42,8 @@ struct Grid {
 Grid make_grid(const glm::ivec3& first, const glm::ivec3& last, const std::function<double(glm::ivec3)>& value,
                const glm::dmat3& linear = glm::dmat3(1.0), const glm::dvec3& translation = glm::dvec3(0.0));
 
+bool has_grid(const std::filesystem::path& path, const std::string& name);
+
 // The grid `name` of a .nvdb file: float, Fp4, Fp8, Fp16 or FpN. Throws std::runtime_error.
 Grid load_grid(const std::filesystem::path& path, const std::string& name);
 

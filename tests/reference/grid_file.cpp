@@ -30,6 +30,10 @@ template <typename Build> Grid decode(const nanovdb::NanoGrid<Build>& grid) {
 
 } // namespace
 
+bool has_grid(const std::filesystem::path& path, const std::string& name) {
+    return nanovdb::io::hasGrid(path.string(), name);
+}
+
 Grid load_grid(const std::filesystem::path& path, const std::string& name) {
     if (path.extension() != ".nvdb")
         throw std::runtime_error(path.string() + ": the reference reads .nvdb files only");
