@@ -77,7 +77,7 @@ build_tests() {
 }
 
 run_tests() { # SPECIFICATION: 0 if they pass
-    (cd "$build" && timeout 600 ./vkvol_tests "$1" --abort </dev/null >"$work/tests.log" 2>&1)
+    (cd "$build" && timeout 600 ./vkvol_tests "$1" --abort -w NoTests </dev/null >"$work/tests.log" 2>&1)
 }
 
 # The first test that failed: Catch2's console reporter puts its name between two lines of dashes.
