@@ -8,6 +8,7 @@
 #include "device_command.h"
 #include "error.h"
 #include "info.h"
+#include "integrators_command.h"
 #include "merge.h"
 #include "options.h"
 #include "render_command.h"
@@ -22,6 +23,8 @@ int run(const vkvol::Options& options) {
         return vkvol::run_devices(options.devices_json);
     case vkvol::Command::info:
         return vkvol::run_info(options.info_file);
+    case vkvol::Command::integrators:
+        return vkvol::run_integrators(options.integrators_json);
     case vkvol::Command::compare:
         return vkvol::run_compare(options.compare);
     case vkvol::Command::merge:

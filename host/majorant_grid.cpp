@@ -1,6 +1,7 @@
 #include "majorant_grid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace vkvol {
@@ -84,6 +85,29 @@ double steps_per_voxel(const MajorantGrid& grid, double sigma_t) {
     return sigma_t * sum / static_cast<double>(grid.bounds.size()) + 1.5 / grid.cell;
 }
 
+struct CellValues {
+    double least = 1e300, mean = 0.0;
+};
+
+// Over the corners of interpolation inside the cell.
+CellValues cell_values(const DensityField& field, const MajorantGrid& grid, glm::ivec3 cell) {
+    const glm::ivec3 low = grid.origin + cell * grid.cell;
+    const glm::ivec3 high = glm::min(low + grid.cell, field.voxel_max + 1);
+    CellValues values;
+    int corners = 0;
+    for (int x = low.x; x <= high.x; ++x)
+        for (int y = low.y; y <= high.y; ++y)
+            for (int z = low.z; z <= high.z; ++z, ++corners) {
+                const glm::ivec3 voxel(x, y, z);
+                const bool active = voxel == glm::clamp(voxel, field.voxel_min, field.voxel_max);
+                const double value = active ? field.value(voxel) : 0.0;
+                values.least = std::min(values.least, value);
+                values.mean += value;
+            }
+    values.mean /= corners;
+    return values;
+}
+
 } // namespace
 
 MajorantGrid make_majorant_grid(const DensityField& field, int cell, double sigma_t) {
@@ -94,6 +118,26 @@ MajorantGrid make_majorant_grid(const DensityField& field, int cell, double sigm
         if (steps_per_voxel(next, sigma_t) < steps_per_voxel(best, sigma_t))
             best = next;
     return best;
+}
+
+std::vector<shared::ControlCell> make_controls(const DensityField& field, const MajorantGrid& grid, double sigma_t) {
+    constexpr double rounding = 1e-6; // of the bounds, so that single precision does not violate them
+    std::vector<shared::ControlCell> controls(grid.bounds.size(), shared::ControlCell{0.0f, 0.0f});
+    std::size_t i = 0;
+    for (int x = 0; x < grid.dims.x; ++x)
+        for (int y = 0; y < grid.dims.y; ++y)
+            for (int z = 0; z < grid.dims.z; ++z, ++i) {
+                const double most = grid.bounds[i];
+                if (most == 0.0)
+                    continue;
+                const CellValues values = cell_values(field, grid, {x, y, z});
+                const double rest_of_mean = std::max(most - values.mean, values.mean - values.least);
+                const bool thin = sigma_t > 0.0 && sigma_t * rest_of_mean * grid.cell * std::sqrt(3.0) < 1.0;
+                const double control = thin ? values.mean : values.least * (1.0 - rounding);
+                const double rest = thin ? rest_of_mean : most - control;
+                controls[i] = {float(control), float(rest + rounding * most)};
+            }
+    return controls;
 }
 
 } // namespace vkvol

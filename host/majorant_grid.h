@@ -1,10 +1,11 @@
-// Upper bounds of the density, cell by cell: what delta and ratio tracking walk over.
+// Upper bounds of the density, cell by cell: what null-collision estimators walk over; and control densities.
 #pragma once
 
 #include <glm/glm.hpp>
 #include <vector>
 
 #include "density_field.h"
+#include "shared/scene.h"
 
 namespace vkvol {
 
@@ -24,5 +25,11 @@ struct MajorantGrid {
 // "Toward Optimal Space Partitioning for Unbiased, Adaptive Free Path Sampling", 2011). A lookup and a cell step take
 // about the same time. `sigma_t`: extinction at density 1 per voxel. More than 2^24 cells are never made.
 MajorantGrid make_majorant_grid(const DensityField& field, int cell, double sigma_t);
+
+// A control density for each cell of `grid` (whose bounds are the densities' own, not scaled), with the bound of what
+// the density differs from it: the least value in the cell, or, where the rest is optically thin across the cell, the
+// mean (Novak et al., "Residual Ratio Tracking", 2014: in thick cells a control above the density makes weights that
+// grow exponentially). `sigma_t`: extinction at density 1 per voxel; 0: the least value everywhere, a lower bound.
+std::vector<shared::ControlCell> make_controls(const DensityField& field, const MajorantGrid& grid, double sigma_t);
 
 } // namespace vkvol

@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "integrators.h"
 #include "nearest_name.h"
 #include "option_values.h"
 #include "options_help.h"
-#include "scene_xml.h"
 
 namespace vkvol {
 
@@ -155,9 +155,10 @@ void add_sampling_options(CLI::App& app, RenderOptions& render, RenderTexts& tex
         ->check(CLI::Range(0u, max_samples))
         ->option_text("K [0]")
         ->group(group);
-    app.add_option("--integrator", render.integrator,
-                   fmt::format("{}, in place of the scene's", fmt::join(integrator_names(), " or ")))
-        ->option_text("NAME [scene]")
+    app.add_option(
+           "--integrator", render.integrator,
+           "In place of the scene's, e.g. ratioTracking or ratioTracking:flight=weighted; see vkvol integrators")
+        ->option_text("NAME[:AXIS=CHOICE...] [scene]")
         ->group(group);
     app.add_option("--grid", render.grid, "A .nvdb or .vdb file in place of the scene's density field")
         ->option_text("FILE [scene]")
@@ -206,7 +207,7 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
     render.tone_mapping.curve = tone_curve(texts.tone.curve);
     if (render.integrator)
         try {
-            check_integrator(*render.integrator);
+            parse_integrator(*render.integrator);
         } catch (const InputError& error) {
             fail_command_line(fmt::format("--integrator: {}", error.what()));
         }
@@ -233,6 +234,12 @@ void parse_render(const std::vector<std::string>& arguments, Options& options) {
 void parse_devices(const std::vector<std::string>& arguments, Options& options) {
     CLI::App app("Lists the Vulkan devices, and why those that cannot be used cannot.", "vkvol devices");
     app.add_flag("--json", options.devices_json, "For machines");
+    run_parser(app, arguments, options);
+}
+
+void parse_integrators(const std::vector<std::string>& arguments, Options& options) {
+    CLI::App app(integrators_description, "vkvol integrators");
+    app.add_flag("--json", options.integrators_json, "For machines");
     run_parser(app, arguments, options);
 }
 
@@ -297,11 +304,9 @@ Options parse_options(int argc, const char* const* argv) {
     std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
     using Parser = void (*)(const std::vector<std::string>&, Options&);
     const std::vector<std::pair<std::string, std::pair<Command, Parser>>> commands = {
-        {"render", {Command::render, parse_render}},
-        {"devices", {Command::devices, parse_devices}},
-        {"info", {Command::info, parse_info}},
-        {"compare", {Command::compare, parse_compare}},
-        {"merge", {Command::merge, parse_merge}}};
+        {"render", {Command::render, parse_render}},    {"devices", {Command::devices, parse_devices}},
+        {"info", {Command::info, parse_info}},          {"integrators", {Command::integrators, parse_integrators}},
+        {"compare", {Command::compare, parse_compare}}, {"merge", {Command::merge, parse_merge}}};
     Options options;
     Parser parse = parse_render;
     if (!arguments.empty()) {

@@ -14,7 +14,7 @@
 
 namespace vkvol {
 
-enum class Command { render, devices, info, compare, merge, print };
+enum class Command { render, devices, info, integrators, compare, merge, print };
 enum class ProgressStyle { automatic, json, none };
 
 // x0, x1, y0, y1: pixels of the picture, or fractions of it.
@@ -29,9 +29,9 @@ struct RenderOptions {
         outputs; // never empty: the scene's stem with .exr and .png if none was asked for
     std::optional<std::uint32_t> spp;
     std::uint32_t seed = 0;
-    std::uint32_t sample_offset = 0; // the first sample's number: disjoint ranges of one seed can be merged
-    std::optional<std::string> integrator;
-    std::optional<double> time_limit; // seconds
+    std::uint32_t sample_offset = 0;       // the first sample's number: disjoint ranges of one seed can be merged
+    std::optional<std::string> integrator; // NAME:axis=choice...
+    std::optional<double> time_limit;      // seconds
     std::optional<int> width, height;
     std::optional<CropRequest> crop;
     std::optional<std::filesystem::path> grid;
@@ -68,6 +68,7 @@ struct Options {
     MergeOptions merge;
     std::filesystem::path info_file;
     bool devices_json = false;
+    bool integrators_json = false;
     std::string text; // Command::print: help or version, for standard output
 };
 

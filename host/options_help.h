@@ -11,6 +11,7 @@ inline constexpr const char* render_description =
 inline constexpr const char* render_footer = R"(Other commands (each has its own --help):
   vkvol devices               the Vulkan devices of this machine
   vkvol info FILE.nvdb        what is in a density file
+  vkvol integrators           the estimators there are, by name, and which of them are biased
   vkvol compare A.exr B.exr   are these renders of the same picture?
   vkvol merge A.exr B.exr -o OUT.exr   one image of all their samples
 
@@ -24,6 +25,9 @@ Examples:
 Exit codes: 0 done; 1 the render failed; 2 bad command line, scene or asset; 3 no usable device;
 4 compare found a difference; 5 caps hit or non-finite samples under --strict; 130 interrupted
 (what was rendered so far is written).)";
+
+inline constexpr const char* integrators_description =
+    "Lists the integrators: which estimators each combines, whether it is unbiased, and where it comes from.";
 
 inline constexpr const char* compare_description =
     "Compares two renders: error figures, and whether noise alone explains the difference.";

@@ -7,6 +7,7 @@
 #include <list>
 #include <utility>
 
+#include "integrators.h"
 #include "scene_upload.h"
 
 namespace vkvol {
@@ -28,7 +29,7 @@ private:
 // The buffers that hold the scene.
 struct SceneBuffers {
     Buffer frame;
-    std::optional<Buffer> grids, leaf_table, majorants, blackbody;
+    std::optional<Buffer> grids, leaf_table, majorants, controls, blackbody, triangles, bvh;
 
     SceneBuffers(const Device& device, Commands& commands, const LoadedVolume& volume)
         : frame(device, "frame parameters", sizeof(shared::FrameParams), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
@@ -41,6 +42,10 @@ struct SceneBuffers {
             commands.upload(*buffer, first);
             commands.upload(*buffer, second, first.size());
         };
+        if (volume.bvh) {
+            make(triangles, "triangles", std::as_bytes(std::span(volume.bvh->triangles)));
+            make(bvh, "bounding volume hierarchy", std::as_bytes(std::span(volume.bvh->nodes)));
+        }
         if (!volume.field)
             return;
         const DensityField nothing;
@@ -49,13 +54,16 @@ struct SceneBuffers {
         make(leaf_table, "leaf table", std::as_bytes(std::span(volume.field->leaf_table)),
              std::as_bytes(std::span(temperature.leaf_table)));
         make(majorants, "majorant grid", std::as_bytes(std::span(volume.majorants->bounds)));
+        if (!volume.controls.empty())
+            make(controls, "control grid", std::as_bytes(std::span(volume.controls)));
         if (!volume.blackbody.empty())
             make(blackbody, "black-body table", std::as_bytes(std::span(volume.blackbody)));
     }
 
     std::uint64_t bytes() const {
         const auto size = [](const std::optional<Buffer>& buffer) { return buffer ? buffer->bytes() : 0; };
-        return frame.bytes() + size(grids) + size(leaf_table) + size(majorants) + size(blackbody);
+        return frame.bytes() + size(grids) + size(leaf_table) + size(majorants) + size(controls) + size(blackbody) +
+               size(triangles) + size(bvh);
     }
 
     BoundBuffers bound() const {
@@ -65,7 +73,10 @@ struct SceneBuffers {
         buffers[BINDING_GRID] = place(grids);
         buffers[BINDING_LEAF_TABLE] = place(leaf_table);
         buffers[BINDING_MAJORANTS] = place(majorants);
+        buffers[BINDING_CONTROLS] = place(controls);
         buffers[BINDING_BLACKBODY] = place(blackbody);
+        buffers[BINDING_TRIANGLES] = place(triangles);
+        buffers[BINDING_BVH] = place(bvh);
         return buffers;
     }
 };
@@ -113,6 +124,7 @@ void add_counts(RenderCounts& total, const shared::Counters& c) {
     total.paths += c.paths;
     total.real_collisions += c.real_collisions;
     total.null_collisions += c.null_collisions;
+    total.lookups += c.lookups;
     total.cells += c.cells;
     total.shadow_rays += c.shadow_rays;
     total.depth_caps += c.depth_caps;
@@ -122,41 +134,54 @@ void add_counts(RenderCounts& total, const shared::Counters& c) {
     total.queue_overflows += c.queue_overflows;
 }
 
-std::string describe(const Specialization& s, const LoadedVolume& volume) {
-    constexpr std::array media = {"no medium", "homogeneous sphere", "homogeneous box", "grid"};
+std::string describe(const Specialization& s, const LoadedVolume& volume, bool chromatic) {
+    constexpr std::array shapes = {"no medium", "sphere", "box", "mesh"};
     constexpr std::array types = {"float", "Fp4", "Fp8", "Fp16", "FpN"};
     constexpr std::array filters = {"nearest", "trilinear", "stochastic"};
-    std::string text = media[s[SPEC_MEDIUM]];
-    if (s[SPEC_MEDIUM] == MEDIUM_GRID)
-        text += fmt::format(" {}, {} filter, majorant cells of {} voxels", types[s[SPEC_GRID_TYPE]],
-                            filters[s[SPEC_FILTER]], volume.majorants->cell);
-    text += s[SPEC_FREE_FLIGHT] == FREE_FLIGHT_ANALYTIC ? ", analytic free flight" : ", delta free flight";
-    if (s[SPEC_NEE] != NEE_NONE)
-        text += s[SPEC_TRANSMITTANCE] == TRANSMITTANCE_ANALYTIC ? ", light with analytic transmittance"
-                                                                : ", light with ratio-tracked transmittance";
+    constexpr std::array scatterings = {", no scattering", ", single scattering", ""};
     constexpr std::array emissions = {"", ", uniform emission", ", emission by temperature", ", black-body emission"};
+    const auto choice = [&](int axis, int id) { return axes()[std::size_t(axis)].names[std::size_t(id)]; };
+    if (s[SPEC_SHAPE] == SHAPE_NONE)
+        return shapes[SHAPE_NONE];
+    std::string text = shapes[s[SPEC_SHAPE]];
+    if (s[SPEC_FIELD] == FIELD_GRID)
+        text = fmt::format("grid {}, {} filter, majorant cells of {} voxels", types[s[SPEC_GRID_TYPE]],
+                           filters[s[SPEC_FILTER]], volume.majorants->cell);
+    else
+        text = (s[SPEC_FIELD] == FIELD_NOISE ? "noise in a " : "homogeneous ") + text;
+    text += fmt::format("{}, {} flight", chromatic ? ", chromatic" : "", choice(1, s[SPEC_FREE_FLIGHT]));
+    text += scatterings[s[SPEC_SCATTERING]];
+    if (s[SPEC_NEE] != NEE_NONE)
+        text +=
+            fmt::format(", light at {} by {} transmittance",
+                        s[SPEC_NEE] == NEE_COLLISIONS ? "collisions" : "every step", choice(2, s[SPEC_TRANSMITTANCE]));
     text += emissions[s[SPEC_EMISSION]];
-    return text;
+    return text + (s[SPEC_EMISSION_AT] == EMISSION_AT_STEPS ? " along flights" : "");
 }
 
 // Runs batches of samples over all bands until the samples, the time or the user's patience is used up.
 class Render {
 public:
     Render(const Device& device, const Scene& scene, const RenderJob& job)
-        : scene_(scene), job_(job), commands_(device), width_(static_cast<std::uint32_t>(job.crop.x1 - job.crop.x0)) {
-        const Integrator& integrator = choose_integrator(scene);
+        : scene_(with_preset(scene)), job_(job), commands_(device),
+          width_(static_cast<std::uint32_t>(job.crop.x1 - job.crop.x0)) {
+        const Method method = choose_method(scene_);
         Stopwatch watch;
-        LoadedVolume volume = load_volume(scene);
+        LoadedVolume volume = load_volume(scene_, method);
         result_.load_seconds = watch.lap();
         result_.counts.cleaned_voxels = volume.field ? volume.field->cleaned : 0;
-        result_.warnings = volume.warnings;
-        const Specialization specialization = specialize(scene, volume, integrator);
-        result_.integrator = integrator.name;
-        result_.specialization = describe(specialization, volume);
+        result_.warnings.assign(scene_.warnings.begin() + std::ptrdiff_t(scene.warnings.size()), scene_.warnings.end());
+        for (const auto& more : {method.warnings, volume.warnings})
+            result_.warnings.insert(result_.warnings.end(), more.begin(), more.end());
+        const Specialization specialization = specialize(scene_, volume, method);
+        const bool chromatic = is_chromatic(scene_);
+        result_.integrator = method.integrator;
+        result_.biased = method.biased;
+        result_.specialization = describe(specialization, volume, chromatic);
         buffers_.emplace(device, commands_, volume);
-        frame_ = make_frame(scene, volume, job.crop, job.seed);
+        frame_ = make_frame(scene_, volume, method, job.crop, job.seed);
         volume = {};
-        const Tuning tuning = tune(device, job.tuning);
+        const Tuning tuning = tune(device, specialization[SPEC_SHAPE], job.tuning);
         bands_ = make_bands(device, job.crop, tuning.most_film_bytes);
         for (const Band& band : bands_)
             commands_.fill(band.film, 0);
@@ -164,7 +189,7 @@ public:
         frame_.slots = tuning.slots;
         frame_.queue_capacity = queue_capacity(tuning);
         PipelineCache cache(device, job.disk_cache);
-        wavefront_.emplace(device, buffers_->bound(), bands_.front().rows * width_, specialization, tuning,
+        wavefront_.emplace(device, buffers_->bound(), bands_.front().rows * width_, specialization, chromatic, tuning,
                            cache.handle());
         cache.save();
         result_.device_bytes = buffers_->bytes() + wavefront_->bytes();
@@ -270,7 +295,7 @@ private:
             develop(commands_, band, width_, film);
     }
 
-    const Scene& scene_;
+    const Scene scene_; // as its integrator sees it
     const RenderJob& job_;
     Commands commands_;
     std::uint32_t width_;

@@ -26,12 +26,10 @@ struct RenderJob {
 
 // Totals over the render; see shared::Counters for the meaning of each.
 struct RenderCounts {
-    std::uint64_t paths = 0, real_collisions = 0, null_collisions = 0, cells = 0, shadow_rays = 0;
+    std::uint64_t paths = 0, real_collisions = 0, null_collisions = 0, lookups = 0, cells = 0, shadow_rays = 0;
     std::uint64_t depth_caps = 0, step_caps = 0, majorant_violations = 0, non_finite = 0, queue_overflows = 0;
     std::uint64_t cleaned_voxels = 0;
 
-    // One density lookup per tentative collision.
-    std::uint64_t lookups() const { return real_collisions + null_collisions; }
     bool any_cap() const { return depth_caps + step_caps + majorant_violations + non_finite + queue_overflows > 0; }
 };
 
@@ -46,6 +44,7 @@ struct RenderResult {
     std::vector<NonFiniteSample> non_finite; // the first few
     std::vector<std::string> warnings;       // what the scene asks for and its files do not hold
     std::string integrator;
+    std::string biased;         // why its mean is not exact; empty: it is
     std::string specialization; // in words: what the kernels were compiled for
     PassSeconds pass_seconds{};
     double load_seconds = 0, upload_seconds = 0, pipeline_seconds = 0, render_seconds = 0;

@@ -33,7 +33,7 @@ Json counts_json(const RenderResult& r) {
     return {{"paths", c.paths},
             {"realCollisions", c.real_collisions},
             {"nullCollisions", c.null_collisions},
-            {"densityLookups", c.lookups()},
+            {"densityLookups", c.lookups},
             {"majorantCells", c.cells},
             {"shadowRays", c.shadow_rays}};
 }
@@ -63,6 +63,7 @@ Metadata make_metadata(const RenderOptions& options, const Scene& scene, const D
             {"vkvol/version", std::string(version)},
             {"vkvol/sceneHash", scene_hash(scene)},
             {"vkvol/integrator", result.integrator},
+            {"vkvol/biased", result.biased},
             {"vkvol/specialization", result.specialization},
             {"vkvol/seed", std::to_string(options.seed)},
             {"vkvol/sampleOffset", static_cast<int>(options.sample_offset)},
@@ -81,6 +82,7 @@ std::string make_report(const RenderOptions& options, const Scene& scene, const 
     report["scene"] = options.scene.string();
     report["sceneHash"] = scene_hash(scene);
     report["integrator"] = result.integrator;
+    report["biased"] = result.biased;
     report["specialization"] = result.specialization;
     report["device"] = {{"name", device.info().name},
                         {"type", device.info().type},
@@ -96,8 +98,10 @@ std::string make_report(const RenderOptions& options, const Scene& scene, const 
     report["interrupted"] = result.interrupted;
     report["seconds"] = seconds_json(result, write_seconds);
     report["counts"] = counts_json(result);
-    report["perSecond"] = {{"samples", static_cast<double>(result.counts.paths) / seconds},
-                           {"tentativeCollisions", static_cast<double>(result.counts.lookups()) / seconds}};
+    report["perSecond"] = {
+        {"samples", static_cast<double>(result.counts.paths) / seconds},
+        {"tentativeCollisions",
+         static_cast<double>(result.counts.real_collisions + result.counts.null_collisions) / seconds}};
     report["caps"] = caps_json(result);
     const double noise = relative_noise(result.film);
     report["meanRelativeVariance"] = noise * noise;

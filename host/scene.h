@@ -51,6 +51,11 @@ struct Box {
     glm::dvec3 size{1.0}; // full edge lengths, > 0
 };
 
+// Closed surfaces from .obj files, in world space; the medium fills what any of them encloses.
+struct MeshFiles {
+    std::vector<std::filesystem::path> paths;
+};
+
 struct GridFile {
     std::filesystem::path path; // .nvdb or .vdb
     std::string grid = "density";
@@ -73,12 +78,22 @@ struct TemperatureEmission {
     double reference = 1500.0; // kelvin, > 0
 };
 
-// A participating medium filling a shape. Coefficients multiply the density, which is 1 in a sphere or box.
+// Procedural density max(0, (1 + fbm(x)) / 2) with fbm(x) = sum over octaves k of gain^k perlin(frequency lacunarity^k
+// x), x in world space, and Perlin's improved noise ("Improving Noise", 2002).
+struct Noise {
+    double frequency = 1.8;  // > 0 [1 / world unit]
+    int octaves = 1;         // 1 to 16
+    double gain = 0.5;       // in [0, 1]
+    double lacunarity = 2.0; // >= 1
+};
+
+// A participating medium filling a shape. Coefficients multiply the density: that of the grid, of the noise, or 1.
 struct Volume {
-    std::variant<Sphere, Box, GridFile> shape;
-    double sigma_a = 0.5;                          // absorption, >= 0 [1/unit]
-    double sigma_s = 0.5;                          // scattering, >= 0 [1/unit]
-    CoefficientUnit unit = CoefficientUnit::voxel; // without meaning for spheres and boxes: always world
+    std::variant<Sphere, Box, MeshFiles, GridFile> shape;
+    std::optional<Noise> noise;                    // not for grids
+    Rgb sigma_a{0.5};                              // absorption, >= 0 [1/unit]
+    Rgb sigma_s{0.5};                              // scattering, >= 0 [1/unit]
+    CoefficientUnit unit = CoefficientUnit::voxel; // without meaning but for grids: else always world
     double density_scale = 1.0;                    // >= 0, multiplies the density
     double g = 0.0;                                // Henyey-Greenstein mean cosine, in (-1, 1), + is forward
     Rgb Le{0.0};                                   // radiance emitted per absorption event: emission is sigma_a * Le
@@ -94,12 +109,32 @@ struct DirectionalLight {
 // probability of its trilinear weight: exact in expectation wherever the density enters linearly.
 enum class Filter { nearest, trilinear, stochastic };
 
+// Choices along the axes of an integrator, as numbered in shaders/shared/bindings.h. Set ones replace the preset's.
+struct AxisChoices {
+    std::optional<int> scattering;    // SCATTERING_...
+    std::optional<int> free_flight;   // FREE_FLIGHT_...
+    std::optional<int> transmittance; // TRANSMITTANCE_...
+    std::optional<int> nee;           // NEE_...
+    std::optional<int> emission;      // EMISSION_AT_...
+};
+
+// Ray marching. Lengths in world units, or in voxels of a grid.
+struct March {
+    double step = 0.0;         // > 0; 0: half a voxel in a grid, 0.2 world units elsewhere, as in the original
+    double shadow_step = 0.0;  // of shadow rays, > 0; 0: as step
+    double optical_step = 0.1; // of adaptive marches: the majorant's optical depth per step, > 0
+    bool jitter = true;        // sample points at random in their step, not in its middle
+    CoefficientUnit unit = CoefficientUnit::voxel; // of the steps; always world but for grids
+};
+
 struct RenderSettings {
-    std::string integrator;                 // empty: the best unbiased choice for the scene
+    std::string integrator; // empty: the best unbiased choice for the scene
+    AxisChoices choices;    // beyond what the integrator's name says
+    March march;
     std::uint32_t spp = 1;                  // samples per pixel, >= 1
     std::optional<std::uint32_t> max_depth; // scattering events per path; none: unlimited
     double roulette_threshold = 0.1;        // path weight below which Russian roulette is played; 0: never
-    Filter filter = Filter::stochastic;
+    std::optional<Filter> filter;           // none: stochastic, or trilinear where that would be biased
     double majorant_scale = 1.0; // >= 1 leaves every unbiased estimator unbiased; < 1 violates the majorant on purpose
     int majorant_cell = 0;       // voxels along an edge of a majorant cell; 0: automatic
 };

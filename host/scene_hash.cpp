@@ -1,9 +1,11 @@
 #include "scene_hash.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <fmt/format.h>
 #include <iterator>
+
+#include "method.h"
+#include "shared/bindings.h"
 
 namespace vkvol {
 
@@ -34,6 +36,13 @@ private:
     std::string text_;
 };
 
+void add_file(Writer& writer, const std::filesystem::path& path) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    writer.add("file", path.filename().string());
+    writer.add("bytes", error ? -1.0 : double(size));
+}
+
 void add_shape(Writer& writer, const Volume& volume) {
     if (const Sphere* sphere = std::get_if<Sphere>(&volume.shape)) {
         writer.add("sphere", sphere->center);
@@ -42,12 +51,18 @@ void add_shape(Writer& writer, const Volume& volume) {
         writer.add("box", box->center);
         writer.add("size", box->size);
     } else if (const GridFile* grid = std::get_if<GridFile>(&volume.shape)) {
-        std::error_code error;
-        const std::uintmax_t size = std::filesystem::file_size(grid->path, error);
-        writer.add("file", grid->path.filename().string());
-        writer.add("bytes", error ? -1.0 : double(size));
+        add_file(writer, grid->path);
         writer.add("grid", grid->grid);
         writer.add("unit", volume.unit == CoefficientUnit::world ? 1 : 0);
+    } else if (const MeshFiles* mesh = std::get_if<MeshFiles>(&volume.shape)) {
+        for (const std::filesystem::path& path : mesh->paths)
+            add_file(writer, path);
+    }
+    if (volume.noise) {
+        writer.add("noise", volume.noise->frequency);
+        writer.add("octaves", volume.noise->octaves);
+        writer.add("gain", volume.noise->gain);
+        writer.add("lacunarity", volume.noise->lacunarity);
     }
 }
 
@@ -76,22 +91,48 @@ void add_view(Writer& writer, const Camera& camera, const Picture& picture) {
     writer.add("reference", glm::dvec3(picture.reference_width, picture.reference_height, 0));
 }
 
+// Unbiased estimators of the same light have the same expectation, however they get it.
+void add_method(Writer& writer, const RenderSettings& settings, const Method& method) {
+    writer.add("scattering", method.scattering);
+    if (method.scattering == SCATTERING_MULTIPLE)
+        writer.add("max_depth", settings.max_depth ? double(*settings.max_depth) : -1.0);
+    writer.add("material_colour", method.material_colour ? 1 : 0);
+    // Trilinear and stochastic look-ups have the same expectation.
+    writer.add("nearest", method.filter == Filter::nearest ? 1 : 0);
+    if (method.biases & bias_majorant) {
+        writer.add("majorant", glm::dvec3(settings.majorant_scale, settings.majorant_cell, method.nee));
+        writer.add("tracking", glm::dvec3(method.free_flight, method.transmittance, 0));
+    }
+    const March& march = settings.march;
+    if (method.biases & bias_flight_steps) {
+        writer.add("flight", glm::dvec3(method.free_flight, march.step, method.emission_at));
+        if (method.free_flight == FREE_FLIGHT_ADAPTIVE) // its steps end at the faces of majorant cells, too
+            writer.add("steps", glm::dvec3(march.optical_step, settings.majorant_scale, settings.majorant_cell));
+    }
+    if (method.biases & bias_shadow_steps)
+        writer.add("shadow_step", march.shadow_step > 0.0 ? march.shadow_step : march.step);
+    if (method.biases & (bias_flight_steps | bias_shadow_steps)) {
+        writer.add("jitter", method.jitter ? 1 : 0);
+        writer.add("step_unit", march.unit == CoefficientUnit::world ? 1 : 0);
+    }
+}
+
 } // namespace
 
-std::string scene_hash(const Scene& scene) {
+std::string scene_hash(const Scene& authored) {
+    const Scene scene = with_preset(authored);
+    const Method method = choose_method(scene);
     Writer writer;
     add_view(writer, scene.camera, scene.picture);
     for (const Volume& volume : scene.volumes)
         add_volume(writer, volume);
-    for (const DirectionalLight& light : scene.lights) {
-        writer.add("direction", light.direction);
-        writer.add("irradiance", light.irradiance);
-    }
+    if (method.nee != NEE_NONE)
+        for (const DirectionalLight& light : scene.lights) {
+            writer.add("direction", light.direction);
+            writer.add("irradiance", light.irradiance);
+        }
     writer.add("background", scene.background);
-    writer.add("max_depth", scene.settings.max_depth ? double(*scene.settings.max_depth) : -1.0);
-    // Trilinear and stochastic look-ups have the same expectation.
-    writer.add("nearest", scene.settings.filter == Filter::nearest ? 1 : 0);
-    writer.add("majorant_scale", std::min(1.0, scene.settings.majorant_scale));
+    add_method(writer, scene.settings, method);
     return writer.hash();
 }
 

@@ -7,9 +7,10 @@
 
 namespace vkvol {
 
-// 16 hexadecimal digits over camera, picture, media, lights and the settings that change the expectation (maxDepth,
-// filter, a majorant scale below 1). Grids count by file name and size, not by folder, so that two machines agree.
-// Samples per pixel, integrator and warnings do not count.
+// 16 hexadecimal digits over camera, picture, media, the lights that are seen and the settings that change the
+// expectation: the kind of scattering, maxDepth, a nearest filter; of biased estimators, what their bias depends on.
+// Which unbiased estimators are used does not count, nor samples per pixel and warnings. Files count by name and size,
+// not by folder, so that two machines agree. Throws InputError for a scene that cannot be rendered.
 std::string scene_hash(const Scene& scene);
 
 } // namespace vkvol

@@ -1,4 +1,4 @@
-// The part of SceneReader that reads the medium: its shape and its coefficients.
+// The part of SceneReader that reads the medium's coefficients.
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -6,89 +6,40 @@
 
 namespace vkvol {
 
-// A grid from the command line takes the place of whatever is here.
-std::optional<Volume> SceneReader::volume() const {
-    const XmlElement element = shape_element();
+std::optional<Volume> SceneReader::volume(const std::string& integrator) const {
     Volume volume;
-    if (element.exists() && element.name() == "sphere")
-        volume.shape = sphere(element);
-    else if (element.exists() && element.name() == "box")
-        volume.shape = box(element);
-    else if (element.exists())
-        volume.shape = grid_file(element);
-    if (overrides_.grid) {
-        const GridFile* authored = std::get_if<GridFile>(&volume.shape);
-        volume.shape = GridFile{*overrides_.grid, authored ? authored->grid : GridFile{}.grid};
-    }
+    const std::optional<Shape> authored = shape(integrator);
+    if (authored)
+        volume.shape = *authored;
+    const bool is_grid = std::holds_alternative<GridFile>(volume.shape);
+    volume.noise = noise(is_grid);
     read_coefficients(volume);
-    if (element.exists() || overrides_.grid)
+    if (authored)
         return volume;
     warn_without_volume();
     return std::nullopt;
 }
 
-// The one densityField, sphere or box; missing if there is none or only a densityField that names no file.
-XmlElement SceneReader::shape_element() const {
-    XmlElement found(document_, {});
-    for (const char* name : {"densityField", "sphere", "box"}) {
-        const XmlElement element = one(name);
-        if (!element.exists())
-            continue;
-        if (element.name() == "densityField") {
-            element.allow({"baseDir", "grid"}, true);
-            if (element.text().empty() && element.attribute("baseDir").empty())
-                continue;
-        }
-        if (found.exists())
-            element.fail(fmt::format("a <{}> beside the <{}> at {}; a scene has one medium: remove one", name,
-                                     found.name(), found.place()));
-        found = element;
-    }
-    return found;
-}
-
-Sphere SceneReader::sphere(const XmlElement& element) const {
-    element.allow({"x", "y", "z", "radius"});
-    const auto number = [&](const char* name) { return element.attribute_number(name, 0.0, any_number); };
-    Sphere sphere;
-    sphere.center = {number("x"), number("y"), number("z")};
-    sphere.radius = element.attribute_number("radius", sphere.radius, positive);
-    return sphere;
-}
-
-Box SceneReader::box(const XmlElement& element) const {
-    element.allow({"x", "y", "z", "width", "height", "depth"});
-    const auto number = [&](const char* name) { return element.attribute_number(name, 0.0, any_number); };
-    const auto edge = [&](const char* name) { return element.attribute_number(name, 1.0, positive); };
-    return {{number("x"), number("y"), number("z")}, {edge("width"), edge("height"), edge("depth")}};
-}
-
-// baseDir is the folder of the named file, with either kind of slash; relative paths start from the scene file.
-GridFile SceneReader::grid_file(const XmlElement& element) const {
-    const std::string name = element.text();
-    if (name.empty())
-        element.fail("<densityField> names no file; write one between the tags, e.g. cloud.nvdb");
-    std::string path = element.attribute("baseDir");
-    if (!path.empty() && path.back() != '/' && path.back() != '\\')
-        path += '/';
-    path += name;
-    std::replace(path.begin(), path.end(), '\\', '/');
-    GridFile file;
-    file.path = (document_.file().parent_path() / path).lexically_normal();
-    file.grid = element.attribute("grid", file.grid);
-    if (file.grid.empty())
-        element.fail_attribute("grid", "<densityField> grid: is empty; expected the name of a grid in the file");
-    return file;
+// A number, or one for each channel.
+Rgb SceneReader::coefficient(const char* name, const Rgb& fallback) const {
+    const XmlElement element = one(name);
+    element.allow({"unit", "r", "g", "b"}, true);
+    if (!element.has("r") && !element.has("g") && !element.has("b"))
+        return element.exists() ? Rgb(element.number(0.0, not_negative)) : fallback;
+    if (!element.text().empty())
+        element.fail_text(fmt::format("<{}> has both a number and r, g, b; keep one of them", name));
+    const auto channel = [&](const char* letter) {
+        if (!element.has(letter))
+            element.fail(fmt::format("<{}> lacks {}; all of r, g, b are needed", name, letter));
+        return element.attribute_number(letter, 0.0, not_negative);
+    };
+    return {channel("r"), channel("g"), channel("b")};
 }
 
 void SceneReader::read_coefficients(Volume& volume) const {
-    const XmlElement sigma_a = one("sigma_a");
-    const XmlElement sigma_s = one("sigma_s");
-    sigma_a.allow({"unit"}, true);
-    sigma_s.allow({"unit"}, true);
-    volume.sigma_a = sigma_a.number(volume.sigma_a, not_negative);
-    volume.sigma_s = sigma_s.number(volume.sigma_s, not_negative);
-    volume.unit = unit(sigma_a, sigma_s, std::holds_alternative<GridFile>(volume.shape));
+    volume.sigma_a = coefficient("sigma_a", volume.sigma_a);
+    volume.sigma_s = coefficient("sigma_s", volume.sigma_s);
+    volume.unit = unit(one("sigma_a"), one("sigma_s"), std::holds_alternative<GridFile>(volume.shape));
 
     const XmlElement g = one({"heyneygreenstein_g", "heynegreenstein_g"});
     g.allow({}, true);
@@ -137,8 +88,8 @@ TemperatureEmission SceneReader::temperature_emission(bool is_grid) const {
                 element.fail_attribute(name,
                                        fmt::format("<emission> {}: has a meaning with model=\"blackbody\" only", name));
     if (element.exists() && emission.color != Rgb(0.0) && !is_grid)
-        element.warn(
-            "spheres and boxes have no temperature grid: <emission> is without effect; <medium> glows uniformly");
+        element.warn("spheres, boxes and models have no temperature grid: <emission> is without effect; <medium> glows "
+                     "uniformly");
     return emission;
 }
 
@@ -155,7 +106,7 @@ CoefficientUnit SceneReader::unit(const XmlElement& sigma_a, const XmlElement& s
     if (!is_grid) {
         for (const XmlElement& element : {sigma_a, sigma_s})
             if (element.attribute("unit") == "voxel")
-                element.warn("spheres and boxes have no voxels; the coefficient is taken per world unit");
+                element.warn("only grids have voxels; the coefficient is taken per world unit");
         return CoefficientUnit::world;
     }
     if (sigma_a.exists() && sigma_s.exists() && a != s)
@@ -166,9 +117,10 @@ CoefficientUnit SceneReader::unit(const XmlElement& sigma_a, const XmlElement& s
 }
 
 void SceneReader::warn_without_volume() const {
-    for (const char* name : {"sigma_a", "sigma_s", "heyneygreenstein_g", "heynegreenstein_g", "medium"})
+    for (const char* name : {"sigma_a", "sigma_s", "heyneygreenstein_g", "heynegreenstein_g", "medium", "noise"})
         if (const XmlElement element = one(name); element.exists()) {
-            element.warn(fmt::format("<{}> is without effect: the scene has no densityField, sphere or box", name));
+            element.warn(
+                fmt::format("<{}> is without effect: the scene has no densityField, sphere, box or model", name));
             return;
         }
 }

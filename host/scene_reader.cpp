@@ -5,19 +5,17 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "integrators.h"
 #include "nearest_name.h"
-#include "shared/bindings.h"
 
 namespace vkvol {
 
 namespace {
 
 const std::vector<std::string> vocabulary = {
-    "densityField", "sphere", "box", "sigma_a", "sigma_s", "heyneygreenstein_g", "medium", "emission", "light",
-    "backgroundColor", "camera", "width", "height", "rayPerPixelCount", "maxDepth", "integrator", "filter",
-    "russianRoulette", "majorant", "lightRayDensityMultiplier", "shadowRayDensityMultiplier", "stepSize",
-    "importanceSampling", "models", "fileName", "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds",
+    "densityField", "sphere", "box", "models", "noise", "sigma_a", "sigma_s", "heyneygreenstein_g", "medium",
+    "emission", "light", "backgroundColor", "camera", "width", "height", "rayPerPixelCount", "maxDepth", "integrator",
+    "march", "filter", "russianRoulette", "majorant", "lightRayDensityMultiplier", "shadowRayDensityMultiplier",
+    "stepSize", "importanceSampling", "fileName", "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds",
     // Names that are read for old files' sake: a misspelling in the original's report, and the old name of integrator.
     "heynegreenstein_g", "intersectionHandler"};
 
@@ -33,8 +31,11 @@ Scene SceneReader::read() {
     background.allow(color_attributes);
     scene.background = color(background);
     read_light(scene);
-    if (const std::optional<Volume> medium = volume())
+    if (const std::optional<Volume> medium = volume(scene.settings.integrator))
         scene.volumes.push_back(*medium);
+    if (scene.volumes.empty() || !std::holds_alternative<GridFile>(scene.volumes.front().shape))
+        scene.settings.march.unit = CoefficientUnit::world;
+    check_method(scene);
     read_without_effect();
     read_bookkeeping();
     scene.warnings = document_.warnings();
@@ -57,31 +58,10 @@ XmlElement SceneReader::one(std::initializer_list<const char*> names) const {
     return XmlElement(document_, found);
 }
 
-std::string SceneReader::integrator() const {
-    const XmlElement element = one("integrator");
-    const XmlElement legacy = one("intersectionHandler");
-    legacy.allow({}, true);
-    if (legacy.exists())
-        legacy.warn("<intersectionHandler> is without effect, as in the original renderer; write <integrator>");
-    element.allow({}, true);
-    if (overrides_.integrator) {
-        check_integrator(*overrides_.integrator);
-        return *overrides_.integrator;
-    }
-    const std::string name = element.text();
-    if (name.empty())
-        return "";
-    try {
-        check_integrator(name);
-    } catch (const InputError& error) {
-        element.fail_text(error.what());
-    }
-    return name;
-}
-
 RenderSettings SceneReader::settings() const {
     RenderSettings settings;
-    settings.integrator = integrator();
+    read_integrator(settings);
+    settings.march = march();
     const XmlElement spp = one("rayPerPixelCount");
     spp.allow({}, true);
     settings.spp = static_cast<std::uint32_t>(spp.integer(settings.spp, 1, max_integer));
@@ -104,7 +84,9 @@ RenderSettings SceneReader::settings() const {
         settings.filter = Filter::nearest;
     else if (name == "trilinear")
         settings.filter = Filter::trilinear;
-    else if (filter.exists() && name != "stochastic")
+    else if (name == "stochastic")
+        settings.filter = Filter::stochastic;
+    else if (filter.exists())
         filter.fail_text(
             fmt::format("unknown filter '{}'{}", name, name_hint(name, {"nearest", "trilinear", "stochastic"})));
     return settings;
@@ -164,33 +146,16 @@ void SceneReader::read_light(Scene& scene) const {
         element.fail(
             "<light> has no direction; x, y, z point from the scene towards the light, e.g. x=\"0\" y=\"1\" z=\"0\"");
     scene.lights.push_back({glm::normalize(direction / largest), irradiance});
-    if (!scene.settings.integrator.empty() && find_integrator(scene.settings.integrator)->nee == NEE_NONE)
-        element.warn(fmt::format("{} cannot see a directional light, which is left out; ratioTracking renders it",
-                                 scene.settings.integrator));
 }
 
 // What asks for something that this renderer does not do, each with what is done in its place.
 void SceneReader::read_without_effect() const {
-    const XmlElement step = one("stepSize");
-    step.allow({"min", "max", "multiplier"});
-    for (const char* name : {"min", "max", "multiplier"})
-        step.attribute_number(name, 0.0, not_negative);
-    if (step.exists())
-        step.warn("stepSize is without effect: free flights are sampled exactly, without steps");
 
     const XmlElement sampling = one("importanceSampling");
     sampling.allow({}, true);
     if (sampling.boolean(false))
         sampling.warn("importanceSampling is without effect: the original's weights were wrong; paths are sampled by "
                       "the phase function");
-
-    const XmlElement models = one("models");
-    models.allow({}, false, {"model"});
-    for (const pugi::xml_node node : document_.root().child("models").children("model")) {
-        const XmlElement model(document_, node);
-        model.allow({"baseDir"}, true);
-        model.warn("OBJ models are not rendered in this version; <sphere> and <box> hold homogeneous media");
-    }
 
     const XmlElement rebounds = one("diffuseRebounds");
     rebounds.allow({}, false, {"rebound"});

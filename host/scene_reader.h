@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "method.h"
 #include "scene.h"
 #include "scene_xml.h"
 #include "xml_reader.h"
@@ -13,6 +14,8 @@
 namespace vkvol {
 
 inline const std::vector<std::string> color_attributes = {"r", "g", "b", "multiplier"};
+using Shape = decltype(Volume::shape);
+
 inline constexpr long long max_edge = 65536; // pixels
 inline constexpr long long max_integer = 2147483647;
 
@@ -26,18 +29,27 @@ private:
     XmlElement one(std::initializer_list<const char*> names) const;
     XmlElement one(const char* name) const { return one({name}); }
 
-    std::string integrator() const;
     RenderSettings settings() const;
+    void read_integrator(RenderSettings& settings) const;
+    March march() const;
+    void check_method(const Scene& scene) const;
+    void warn_about_light(const Scene& scene, const Method& method) const;
+    void warn_about_steps(const Scene& scene, const Method& method) const;
     Camera camera() const;
     Picture picture() const;
     void read_edge(const char* name, int& size, double& start, double& reference) const;
     Rgb color(const XmlElement& element) const;
     void read_light(Scene& scene) const;
-    std::optional<Volume> volume() const;
-    XmlElement shape_element() const;
+    std::optional<Volume> volume(const std::string& integrator) const;
+    std::optional<Shape> shape(const std::string& integrator) const;
+    XmlElement shape_element(const std::string& integrator) const;
     Sphere sphere(const XmlElement& element) const;
     Box box(const XmlElement& element) const;
+    std::filesystem::path file_path(const XmlElement& element, const char* example) const;
     GridFile grid_file(const XmlElement& element) const;
+    MeshFiles mesh_files() const;
+    std::optional<Noise> noise(bool is_grid) const;
+    Rgb coefficient(const char* name, const Rgb& fallback) const;
     void read_coefficients(Volume& volume) const;
     TemperatureEmission temperature_emission(bool is_grid) const;
     CoefficientUnit unit(const XmlElement& sigma_a, const XmlElement& sigma_s, bool is_grid) const;

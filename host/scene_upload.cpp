@@ -7,6 +7,8 @@
 
 #include "blackbody.h"
 #include "error.h"
+#include "noise.h"
+#include "shared/items.h"
 
 namespace vkvol {
 
@@ -14,8 +16,10 @@ static_assert(std::is_standard_layout_v<shared::FrameParams>);
 static_assert(sizeof(shared::CameraParams) == 4 * 12);
 static_assert(sizeof(shared::GridParams) == 4 * 12 + 2 * 4);
 static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 5 * 4);
-static_assert(sizeof(shared::VolumeParams) ==
-              3 * 16 + 2 * 12 + sizeof(shared::GridParams) + 12 + 4 * 4 + sizeof(shared::EmissionParams));
+static_assert(sizeof(shared::VolumeParams) == 3 * 16 + 3 * 12 + sizeof(shared::GridParams) + 12 + 5 * 4 + 2 * 12 + 4 +
+                                                  sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) + 4);
+static_assert(sizeof(shared::Walk) == 2 * 12 + 8 * 4 + 12 + 7 * 4);
+static_assert(sizeof(shared::Suspended) == 2 * sizeof(shared::Walk) + 3 * 12 + 3 * 4);
 static_assert(sizeof(shared::PassPush) <= 128, "the least push constant space that Vulkan promises");
 
 namespace {
@@ -26,28 +30,45 @@ const Volume* find_volume(const Scene& scene) {
     return scene.volumes.empty() ? nullptr : &scene.volumes.front();
 }
 
-bool scatters_or_absorbs(const Volume& volume) {
-    return (volume.sigma_a + volume.sigma_s) * volume.density_scale > 0.0;
-}
-
-int medium_kind(const Scene& scene, const LoadedVolume& loaded) {
+int shape_kind(const Scene& scene, const LoadedVolume& loaded) {
     const Volume* volume = find_volume(scene);
-    if (!volume || !scatters_or_absorbs(*volume))
-        return MEDIUM_NONE;
+    if (!volume || (volume->sigma_a + volume->sigma_s) * volume->density_scale == Rgb(0.0))
+        return SHAPE_NONE;
     if (std::holds_alternative<Sphere>(volume->shape))
-        return MEDIUM_SPHERE;
-    if (std::holds_alternative<Box>(volume->shape))
-        return MEDIUM_BOX;
-    return loaded.field ? MEDIUM_GRID : MEDIUM_NONE;
+        return SHAPE_SPHERE;
+    if (std::holds_alternative<MeshFiles>(volume->shape))
+        return SHAPE_MESH;
+    return loaded.field || std::holds_alternative<Box>(volume->shape) ? SHAPE_BOX : SHAPE_NONE;
 }
 
 // Extinction at density 1 [1 / world unit].
-double world_sigma_t(const Volume& volume, const DensityField* field) {
-    const double sigma_t = (volume.sigma_a + volume.sigma_s) * volume.density_scale;
+Rgb world_sigma_t(const Volume& volume, const DensityField* field) {
+    const Rgb sigma_t = (volume.sigma_a + volume.sigma_s) * volume.density_scale;
     return field && volume.unit == CoefficientUnit::voxel ? sigma_t / field->voxel_size() : sigma_t;
 }
 
-// Medium space -> world: a ball, a cube, or the grid's own index space.
+double largest(const Rgb& c) {
+    return std::max({c.x, c.y, c.z});
+}
+
+Rgb albedo_of(const Volume& volume) {
+    Rgb albedo(0.0);
+    for (int i = 0; i < 3; ++i)
+        if (volume.sigma_s[i] > 0.0)
+            albedo[i] = volume.sigma_s[i] / (volume.sigma_a[i] + volume.sigma_s[i]);
+    return albedo;
+}
+
+glm::dvec3 mesh_center(const Mesh& mesh) {
+    glm::dvec3 low(mesh.vertices.front()), high(low);
+    for (const glm::dvec3& vertex : mesh.vertices) {
+        low = glm::min(low, vertex);
+        high = glm::max(high, vertex);
+    }
+    return 0.5 * (low + high);
+}
+
+// Medium space -> world: a ball, a cube, the grid's own index space, or a mesh about its middle.
 glm::dmat4 medium_to_world(const Volume& volume, const LoadedVolume& loaded) {
     const auto placed = [](glm::dvec3 center, glm::dvec3 half) {
         return glm::scale(glm::translate(glm::dmat4(1.0), center), half);
@@ -56,6 +77,8 @@ glm::dmat4 medium_to_world(const Volume& volume, const LoadedVolume& loaded) {
         return placed(sphere->center, glm::dvec3(sphere->radius));
     if (const auto* box = std::get_if<Box>(&volume.shape))
         return placed(box->center, box->size / 2.0);
+    if (loaded.mesh)
+        return placed(mesh_center(*loaded.mesh), glm::dvec3(1.0));
     return loaded.field ? loaded.field->index_to_world : glm::dmat4(1.0);
 }
 
@@ -89,10 +112,16 @@ void fill_rows(glm::vec4 (&rows)[3], const glm::dmat4& space_to_world, glm::dvec
         rows[row] = glm::vec4(map[0][row], map[1][row], map[2][row], map[3][row]);
 }
 
-shared::EmissionParams make_emission(const Volume& volume, const LoadedVolume& loaded, double albedo,
+// Radiance per absorption event: the medium's own, or its model's diffuse colour.
+Rgb constant_emission(const Volume& volume, const LoadedVolume& loaded, const Method& method) {
+    return method.material_colour && loaded.mesh && loaded.mesh->diffuse ? *loaded.mesh->diffuse : volume.Le;
+}
+
+shared::EmissionParams make_emission(const Volume& volume, const LoadedVolume& loaded, const Method& method,
                                      glm::dvec3 origin) {
+    const Rgb albedo = albedo_of(volume);
     shared::EmissionParams params{};
-    params.constant = (1.0 - albedo) * volume.Le;
+    params.constant = (1.0 - albedo) * constant_emission(volume, loaded, method);
     if (!loaded.temperature)
         return params;
     const TemperatureEmission& emission = volume.temperature;
@@ -107,10 +136,23 @@ shared::EmissionParams make_emission(const Volume& volume, const LoadedVolume& l
     return params;
 }
 
+// The density where there are no majorant cells: bounds of it, and a control density with what differs from it.
+void fill_density(const Volume& volume, double majorant_scale, bool decomposes, shared::VolumeParams& params) {
+    const double bound = volume.noise ? noise_bound(*volume.noise) : 1.0;
+    const double control = volume.noise ? (decomposes ? 0.0 : 0.5 * bound) : 1.0; // decomposition: a lower bound
+    params.majorant = static_cast<float>(bound * majorant_scale);
+    params.control = static_cast<float>(control);
+    params.residual = static_cast<float>(std::max(0.0, majorant_scale * bound - control));
+}
+
 // `origin`: of render space, in world coordinates.
-shared::VolumeParams make_volume(const Volume& volume, const LoadedVolume& loaded, glm::dvec3 origin) {
+shared::VolumeParams make_volume(const Scene& scene, const LoadedVolume& loaded, const Method& method,
+                                 glm::dvec3 origin) {
+    const Volume& volume = scene.volumes.front();
     shared::VolumeParams params{};
-    fill_rows(params.to_medium, medium_to_world(volume, loaded), origin);
+    const glm::dmat4 to_world = medium_to_world(volume, loaded);
+    fill_rows(params.to_medium, to_world, origin);
+    params.extent = glm::vec3(to_world[0][0], to_world[1][1], to_world[2][2]);
     const Bounds bounds = medium_bounds(loaded);
     params.bounds_min = bounds.low;
     params.bounds_max = bounds.high;
@@ -119,11 +161,16 @@ shared::VolumeParams make_volume(const Volume& volume, const LoadedVolume& loade
         params.cell_dims = loaded.majorants->dims;
         params.cell_size = static_cast<float>(loaded.majorants->cell);
     }
-    const double albedo = volume.sigma_s > 0.0 ? volume.sigma_s / (volume.sigma_a + volume.sigma_s) : 0.0;
-    params.sigma_t = static_cast<float>(world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr));
-    params.albedo = static_cast<float>(albedo);
+    fill_density(volume, scene.settings.majorant_scale, method.free_flight == FREE_FLIGHT_DECOMPOSITION, params);
+    if (volume.noise)
+        params.noise = make_noise(*volume.noise, origin);
+    params.bvh_nodes = loaded.bvh ? static_cast<std::uint32_t>(loaded.bvh->nodes.size()) : 0;
+    const Rgb sigma_t = world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr);
+    params.sigma_t = static_cast<float>(largest(sigma_t));
+    params.sigma_ratio = has_chromatic_extinction(scene) ? sigma_t / largest(sigma_t) : Rgb(1.0);
+    params.albedo = albedo_of(volume);
     params.g = static_cast<float>(volume.g);
-    params.emission = make_emission(volume, loaded, albedo, origin);
+    params.emission = make_emission(volume, loaded, method, origin);
     return params;
 }
 
@@ -159,7 +206,7 @@ namespace {
 // A file without that grid, or one that holds no heat, does not glow: a warning, no error.
 void load_temperature(const Volume& volume, const GridFile& file, LoadedVolume& loaded) {
     const TemperatureEmission& emission = volume.temperature;
-    if (emission.color == Rgb(0.0) || volume.sigma_a == 0.0)
+    if (emission.color * volume.sigma_a == Rgb(0.0))
         return;
     if (!has_grid({file.path, emission.grid})) {
         loaded.warnings.push_back(
@@ -181,66 +228,115 @@ void load_temperature(const Volume& volume, const GridFile& file, LoadedVolume& 
     loaded.temperature = std::move(field);
 }
 
-int emission_kind(const Volume& volume, const LoadedVolume& loaded) {
-    if (volume.sigma_a == 0.0)
-        return EMISSION_NONE;
+int emission_kind(const Volume& volume, const LoadedVolume& loaded, const Method& method) {
     if (loaded.temperature)
         return volume.temperature.model == TemperatureEmission::Model::color ? EMISSION_COLOR : EMISSION_BLACKBODY;
-    return volume.Le != Rgb(0.0) ? EMISSION_CONSTANT : EMISSION_NONE;
+    return volume.sigma_a * constant_emission(volume, loaded, method) != Rgb(0.0) ? EMISSION_CONSTANT : EMISSION_NONE;
+}
+
+// The cells' bounds are scaled after the controls are made: these bound the density itself.
+void load_grid(const Scene& scene, const Volume& volume, const Method& method, const GridFile& file,
+               LoadedVolume& loaded) {
+    DensityField field = load_density_field(file);
+    if (field.active_voxels == 0)
+        return;
+    const double scale = scene.settings.majorant_scale;
+    const double voxel_sigma_t = largest(world_sigma_t(volume, &field)) * field.voxel_size();
+    loaded.majorants = make_majorant_grid(field, scene.settings.majorant_cell, voxel_sigma_t * scale);
+    const bool decomposes = method.free_flight == FREE_FLIGHT_DECOMPOSITION;
+    if (decomposes || (method.nee != NEE_NONE && method.transmittance == TRANSMITTANCE_RESIDUAL))
+        loaded.controls = make_controls(field, *loaded.majorants, decomposes ? 0.0 : voxel_sigma_t);
+    for (float& bound : loaded.majorants->bounds)
+        bound *= static_cast<float>(scale);
+    for (shared::ControlCell& cell : loaded.controls)
+        cell.residual *= static_cast<float>(scale);
+    loaded.field = std::move(field);
+    load_temperature(volume, file, loaded);
 }
 
 } // namespace
 
-LoadedVolume load_volume(const Scene& scene) {
+LoadedVolume load_volume(const Scene& scene, const Method& method) {
     LoadedVolume loaded;
     const Volume* volume = find_volume(scene);
-    const GridFile* file = volume ? std::get_if<GridFile>(&volume->shape) : nullptr;
-    if (!file)
+    if (!volume)
         return loaded;
-    DensityField field = load_density_field(*file);
-    if (field.active_voxels == 0)
-        return loaded;
-    const double voxel_sigma_t = world_sigma_t(*volume, &field) * field.voxel_size() * scene.settings.majorant_scale;
-    loaded.majorants = make_majorant_grid(field, scene.settings.majorant_cell, voxel_sigma_t);
-    for (float& bound : loaded.majorants->bounds)
-        bound *= static_cast<float>(scene.settings.majorant_scale);
-    loaded.field = std::move(field);
-    load_temperature(*volume, *file, loaded);
+    if (const auto* file = std::get_if<GridFile>(&volume->shape))
+        load_grid(scene, *volume, method, *file, loaded);
+    if (const auto* files = std::get_if<MeshFiles>(&volume->shape)) {
+        loaded.mesh = load_mesh(*files);
+        loaded.bvh = build_bvh(*loaded.mesh, mesh_center(*loaded.mesh));
+        loaded.warnings = loaded.mesh->warnings;
+        if (method.material_colour && !loaded.mesh->diffuse)
+            loaded.warnings.push_back(fmt::format("{}: has no material with a diffuse colour; <medium> is what glows",
+                                                  files->paths.front().string()));
+    }
     return loaded;
 }
 
-Specialization specialize(const Scene& scene, const LoadedVolume& loaded, const Integrator& integrator) {
+bool is_chromatic(const Scene& scene) {
+    if (scene.volumes.empty())
+        return false;
+    const Rgb albedo = albedo_of(scene.volumes.front());
+    const double most = largest(albedo);
+    return has_chromatic_extinction(scene) || glm::any(glm::greaterThan(Rgb(most) - albedo, Rgb(1e-9 * most)));
+}
+
+Specialization specialize(const Scene& scene, const LoadedVolume& loaded, const Method& method) {
     if (scene.lights.size() > 1)
         throw InputError("a scene with several lights is not rendered by this version; keep one");
     Specialization constants{};
-    const int medium = medium_kind(scene, loaded);
-    const bool homogeneous = medium == MEDIUM_SPHERE || medium == MEDIUM_BOX;
-    constants[SPEC_MEDIUM] = medium;
+    constants[SPEC_SHAPE] = shape_kind(scene, loaded);
+    constants[SPEC_FIELD] = density_kind(scene);
     constants[SPEC_GRID_TYPE] = loaded.field ? loaded.field->type : GRID_FLOAT;
-    constants[SPEC_FILTER] = scene.settings.filter == Filter::nearest     ? FILTER_NEAREST
-                             : scene.settings.filter == Filter::trilinear ? FILTER_TRILINEAR
-                                                                          : FILTER_STOCHASTIC;
-    const bool scattering = medium != MEDIUM_NONE && scene.volumes.front().sigma_s > 0.0;
-    constants[SPEC_NEE] = scene.lights.empty() || !scattering ? NEE_NONE : integrator.nee;
-    constants[SPEC_EMISSION] = medium != MEDIUM_NONE ? emission_kind(scene.volumes.front(), loaded) : EMISSION_NONE;
+    constants[SPEC_FILTER] = method.filter == Filter::nearest     ? FILTER_NEAREST
+                             : method.filter == Filter::trilinear ? FILTER_TRILINEAR
+                                                                  : FILTER_STOCHASTIC;
+    constants[SPEC_SCATTERING] = method.scattering;
+    constants[SPEC_NEE] = method.nee;
+    constants[SPEC_EMISSION] =
+        constants[SPEC_SHAPE] != SHAPE_NONE ? emission_kind(scene.volumes.front(), loaded, method) : EMISSION_NONE;
+    constants[SPEC_EMISSION_AT] = method.emission_at;
     constants[SPEC_TEMPERATURE_TYPE] = loaded.temperature ? loaded.temperature->type : GRID_FLOAT;
-    constants[SPEC_FREE_FLIGHT] = homogeneous ? FREE_FLIGHT_ANALYTIC : integrator.free_flight;
-    constants[SPEC_TRANSMITTANCE] = homogeneous ? TRANSMITTANCE_ANALYTIC : integrator.transmittance;
+    constants[SPEC_FREE_FLIGHT] = method.free_flight;
+    // Without shadow rays the choice is to leave no trace in the kernel.
+    constants[SPEC_TRANSMITTANCE] = method.nee != NEE_NONE ? method.transmittance : TRANSMITTANCE_ANALYTIC;
     constants[SPEC_STEPS] = 1;
     return constants;
 }
 
-shared::FrameParams make_frame(const Scene& scene, const LoadedVolume& loaded, Crop crop, std::uint32_t seed) {
+namespace {
+
+shared::MarchParams make_march(const Scene& scene, const LoadedVolume& loaded, const Method& method) {
+    const March& march = scene.settings.march;
+    const double voxel = loaded.field ? loaded.field->voxel_size() : 1.0;
+    const double unit = march.unit == CoefficientUnit::voxel ? voxel : 1.0;
+    const double step = march.step > 0.0 ? march.step * unit : loaded.field ? 0.5 * voxel : 0.2;
+    // A series that ends unbiased does best from a coarse beginning.
+    const double shadow_step = method.transmittance == TRANSMITTANCE_TELESCOPING ? 16.0 * step : step;
+    shared::MarchParams params{};
+    params.step = static_cast<float>(step);
+    params.shadow_step = static_cast<float>(march.shadow_step > 0.0 ? march.shadow_step * unit : shadow_step);
+    params.optical_step = static_cast<float>(march.optical_step);
+    params.jitter = method.jitter ? 1.0f : 0.0f;
+    return params;
+}
+
+} // namespace
+
+shared::FrameParams make_frame(const Scene& scene, const LoadedVolume& loaded, const Method& method, Crop crop,
+                               std::uint32_t seed) {
     shared::FrameParams frame{};
     glm::dvec3 origin = scene.camera.position;
     if (const Volume* volume = find_volume(scene)) {
         const Bounds bounds = medium_bounds(loaded);
         origin = glm::dvec3(medium_to_world(*volume, loaded) * glm::dvec4((bounds.low + bounds.high) / 2.0, 1.0));
-        frame.volume = make_volume(*volume, loaded, origin);
+        frame.volume = make_volume(scene, loaded, method, origin);
     }
     frame.camera = make_camera(scene, origin);
     if (!scene.lights.empty())
         frame.light = {scene.lights.front().direction, scene.lights.front().irradiance};
+    frame.march = make_march(scene, loaded, method);
     frame.background = scene.background;
     frame.roulette_threshold = static_cast<float>(scene.settings.roulette_threshold);
     // Beyond a million scatterings a path of any albedo that scenes have is worth nothing; the bound is counted.

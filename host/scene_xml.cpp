@@ -6,18 +6,11 @@
 #include <fstream>
 
 #include "error.h"
-#include "integrators.h"
-#include "nearest_name.h"
 #include "scene_reader.h"
 
 namespace vkvol {
 
 namespace {
-
-// The original's other integrators: ray marchers and analytic fog, most of them biased.
-const std::vector<std::string> retired_integrators = {
-    "densitySampling", "homogeneousRayMarcherNEE", "homogeneousRayMarcherImproved", "heterogeneousPerlinNoise",
-    "nanoVDBSimple",   "nanoVDBEmission"};
 
 std::string read_file(const std::filesystem::path& file) {
     std::error_code error;
@@ -39,23 +32,6 @@ std::string read_file(const std::filesystem::path& file) {
 }
 
 } // namespace
-
-std::vector<std::string> integrator_names() {
-    std::vector<std::string> names;
-    for (const Integrator& integrator : integrators())
-        names.push_back(integrator.name);
-    return names;
-}
-
-void check_integrator(const std::string& name) {
-    if (find_integrator(name))
-        return;
-    const std::vector<std::string> known = integrator_names();
-    if (std::find(retired_integrators.begin(), retired_integrators.end(), name) != retired_integrators.end())
-        throw InputError(
-            fmt::format("integrator {} is not available in this version; use {}", name, fmt::join(known, " or ")));
-    throw InputError(fmt::format("unknown integrator '{}'{}", name, name_hint(name, known)));
-}
 
 Scene parse_scene(const std::string& xml, const std::filesystem::path& file, const Defines& defines,
                   const SceneOverrides& overrides) {

@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "scene.h"
 
@@ -16,8 +15,8 @@ using Defines = std::map<std::string, std::string>;
 
 // What the command line puts in the place of the scene's own; known while loading so that checks and warnings fit.
 struct SceneOverrides {
-    std::optional<std::filesystem::path> grid; // instead of the density field, sphere or box, with its coefficients
-    std::optional<std::string> integrator;
+    std::optional<std::filesystem::path> grid; // instead of the scene's shape, with the coefficients of its medium
+    std::optional<std::string> integrator;     // NAME:axis=choice..., instead of the scene's and of its choices
 };
 
 // Throws InputError, "file:line:column: what is wrong; what would be right". What the scene asks for and this
@@ -30,11 +29,5 @@ Scene parse_scene(const std::string& xml, const std::filesystem::path& file, con
 
 // The same view in `width` x `height` pixels; with only one given the aspect is kept. Start and reference scale along.
 void resize_picture(Picture& picture, std::optional<int> width, std::optional<int> height);
-
-// The integrators of this version, for help and hints.
-std::vector<std::string> integrator_names();
-
-// Throws InputError (its message has no place) unless `name` is one of integrator_names().
-void check_integrator(const std::string& name);
 
 } // namespace vkvol

@@ -13,6 +13,7 @@
 #include "prepare.spv.h"
 #include "sky.spv.h"
 #include "track.spv.h"
+#include "track_chromatic.spv.h"
 #include "vulkan_error.h"
 
 namespace vkvol {
@@ -24,9 +25,11 @@ constexpr std::uint32_t marks = pass_names.size(); // timestamps per round: befo
 constexpr VkDeviceSize queue_bytes = QUEUE_COUNT * sizeof(shared::QueueHeader);
 constexpr std::uint64_t sky_samples = 1u << 22; // per submit: some 70 ms on two cores of a software driver
 
-BoundBuffers with_queues(BoundBuffers buffers, const Buffer& paths, const Buffer& items, const Buffer& queues,
-                         const Buffer& work, const Buffer& counters) {
+BoundBuffers with_queues(BoundBuffers buffers, const Buffer& paths, const Buffer& betas, const Buffer& suspended,
+                         const Buffer& items, const Buffer& queues, const Buffer& work, const Buffer& counters) {
     buffers[BINDING_PATHS] = &paths;
+    buffers[BINDING_BETAS] = &betas;
+    buffers[BINDING_SUSPENDED] = &suspended;
     buffers[BINDING_QUEUE_ITEMS] = &items;
     buffers[BINDING_QUEUES] = &queues;
     buffers[BINDING_WORK] = &work;
@@ -41,15 +44,16 @@ bool is_empty(const shared::QueueHeader& header) {
 
 } // namespace
 
-Tuning tune(const Device& device, const Tuning& wish) {
+Tuning tune(const Device& device, int shape, const Tuning& wish) {
     const auto pick = [](auto wanted, auto usual) { return wanted != 0 ? wanted : usual; };
     Tuning tuning = wish;
-    // step_limit: llvmpipe leaves every loop of an invocation after 65535 iterations in all, without a word.
+    // llvmpipe leaves every loop of an invocation after 65535 iterations in all, without a word: a budget is to stay
+    // well below that with all that its iterations loop over, a mesh's hierarchy above all.
     // A software driver wants its state in cache and few lanes that each do much; a GPU wants to be full.
     tuning.slots = pick(wish.slots, device.is_cpu() ? 8192u : 1u << 18);
     tuning.lanes = pick(wish.lanes, device.is_cpu() ? 512u : 1u << 17);
-    tuning.budget = pick(wish.budget, 1024u);
-    tuning.step_limit = pick(wish.step_limit, 32768u);
+    tuning.budget = pick(wish.budget, shape == SHAPE_MESH ? 32u : 1024u);
+    tuning.step_limit = pick(wish.step_limit, 1u << 26);
     tuning.steps_per_look = pick(wish.steps_per_look, 4u);
     tuning.most_film_bytes =
         pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
@@ -61,10 +65,14 @@ std::uint32_t queue_capacity(const Tuning& tuning) {
 }
 
 Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, std::uint32_t most_pixels,
-                     const Specialization& specialization, const Tuning& tuning, VkPipelineCache cache)
+                     const Specialization& specialization, bool chromatic, const Tuning& tuning, VkPipelineCache cache)
     : device_(device), tuning_(tuning), commands_(device),
       paths_(device, "path states", tuning.slots * sizeof(shared::PathState), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
              BufferPlace::device),
+      betas_(device, "path throughputs", tuning.slots * (chromatic ? sizeof(glm::vec3) : sizeof(float)),
+             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device),
+      suspended_(device, "suspended paths", tuning.slots * sizeof(shared::Suspended),
+                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device),
       queue_items_(device, "queues", std::uint64_t{QUEUE_COUNT} * queue_capacity(tuning) * sizeof(std::uint32_t),
                    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device),
       queues_(device, "queue headers", queue_bytes,
@@ -74,14 +82,16 @@ Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, st
       counter_buffer_(device, "counters", sizeof(shared::Counters), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                       BufferPlace::device),
       readback_(device, "readback", queue_bytes + sizeof(shared::Counters), 0, BufferPlace::host),
-      bindings_(device, with_queues(scene_buffers, paths_, queue_items_, queues_, work_, counter_buffer_)) {
+      bindings_(device,
+                with_queues(scene_buffers, paths_, betas_, suspended_, queue_items_, queues_, work_, counter_buffer_)) {
     Specialization constants = specialization;
     constants[SPEC_STEPS] = static_cast<std::int32_t>(tuning.steps_per_look);
     const auto make = [&](std::span<const std::uint32_t> spirv) {
         return std::make_unique<ComputePass>(device, bindings_, spirv, constants, cache);
     };
     // The one large kernel compiles beside the others.
-    auto track = std::async(std::launch::async, make, std::span<const std::uint32_t>(track_spv));
+    auto track = std::async(std::launch::async, make,
+                            chromatic ? std::span<const std::uint32_t>(track_chromatic_spv) : track_spv);
     begin_ = make(begin_spv);
     sky_ = make(sky_spv);
     prepare_ = make(prepare_spv);
@@ -105,8 +115,8 @@ Wavefront::~Wavefront() {
 }
 
 std::uint64_t Wavefront::bytes() const {
-    return paths_.bytes() + queue_items_.bytes() + queues_.bytes() + work_.bytes() + counter_buffer_.bytes() +
-           readback_.bytes();
+    return paths_.bytes() + betas_.bytes() + suspended_.bytes() + queue_items_.bytes() + queues_.bytes() +
+           work_.bytes() + counter_buffer_.bytes() + readback_.bytes();
 }
 
 void Wavefront::bind_film(const Buffer& film) {

@@ -15,15 +15,15 @@ namespace vkvol {
 struct Tuning {
     std::uint32_t slots = 0;           // paths in flight
     std::uint32_t lanes = 0;           // invocations that share the track queue
-    std::uint32_t budget = 0;          // steps after which a lane takes no further item
+    std::uint32_t budget = 0;          // iterations after which a lane lays its path aside
     std::uint32_t step_limit = 0;      // steps after which a flight is cut, and counted
     double submit_seconds = 0.08;      // aimed at; no submit should hold a device much longer
     std::uint32_t steps_per_look = 0;  // tracking steps between two looks at what they led to
     std::uint64_t most_film_bytes = 0; // in one buffer; a larger film lies in several
 };
 
-// What suits the device; fields of `wish` that are not 0 win.
-Tuning tune(const Device& device, const Tuning& wish = {});
+// What suits the device and the shape; fields of `wish` that are not 0 win.
+Tuning tune(const Device& device, int shape, const Tuning& wish = {});
 
 // Places in each queue.
 std::uint32_t queue_capacity(const Tuning& tuning);
@@ -33,9 +33,9 @@ using PassSeconds = std::array<double, pass_names.size()>;
 
 class Wavefront {
 public:
-    // `most_pixels`: of any film that will be bound.
+    // `most_pixels`: of any film that will be bound. `chromatic`: the throughput has three channels.
     Wavefront(const Device& device, const BoundBuffers& scene_buffers, std::uint32_t most_pixels,
-              const Specialization& specialization, const Tuning& tuning, VkPipelineCache cache);
+              const Specialization& specialization, bool chromatic, const Tuning& tuning, VkPipelineCache cache);
     ~Wavefront();
     Wavefront(const Wavefront&) = delete;
     Wavefront& operator=(const Wavefront&) = delete;
@@ -67,7 +67,7 @@ private:
     const Device& device_;
     Tuning tuning_;
     Commands commands_;
-    Buffer paths_, queue_items_, queues_, work_, counter_buffer_, readback_;
+    Buffer paths_, betas_, suspended_, queue_items_, queues_, work_, counter_buffer_, readback_;
     Bindings bindings_;
     std::unique_ptr<ComputePass> begin_, sky_, prepare_, generate_, track_, accumulate_;
     VkQueryPool timestamps_ = VK_NULL_HANDLE;

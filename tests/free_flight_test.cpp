@@ -25,8 +25,8 @@ constexpr float largest_u = 1.0f - 0x1p-24f;
 
 Volume medium_of(double sigma_t) {
     Volume volume;
-    volume.sigma_a = 0.4 * sigma_t;
-    volume.sigma_s = 0.6 * sigma_t;
+    volume.sigma_a = Rgb(0.4 * sigma_t);
+    volume.sigma_s = Rgb(0.6 * sigma_t);
     volume.unit = CoefficientUnit::world;
     return volume;
 }
@@ -42,7 +42,7 @@ std::vector<RayInput> repeat(const TestScene& scene, const reference::Ray& ray, 
     std::vector<RayInput> rays;
     for (int i = 0; i < count; ++i)
         rays.push_back({scene.to_render(ray.origin), ray.direction, std::uint32_t(engine()),
-                        static_cast<float>((engine() >> 8) * 0x1p-24)});
+                        static_cast<float>((engine() >> 8) * 0x1p-24), 0.0f, glm::vec3(1.0f)});
     return rays;
 }
 
@@ -130,7 +130,7 @@ TEST_CASE("flights in spheres and boxes are exponential", "[gpu][free_flight]") 
     for (const double from : {0.5, 9.0}) { // from within and from without
         const glm::dvec3 d = glm::normalize(glm::dvec3(-0.4, 0.3, 0.8));
         const reference::Ray ray{center + glm::dvec3(0.1, 0.2, 0.0) - from * d, d};
-        const reference::Interval inside = reference::support(medium, ray);
+        const reference::Interval inside = reference::support(medium, ray).front();
         REQUIRE(inside.length() > 1.0);
         const auto flights = fly(scene, repeat(scene, ray, 50000, 2));
         check_flights(
@@ -166,7 +166,8 @@ TEST_CASE("no random number leads to anything but a distance", "[gpu][free_fligh
     Volume ball = medium_of(1.0);
     ball.shape = Sphere{glm::dvec3(0.0), 20.0};
     const TestScene scene = make_test_scene(ball);
-    const auto ends = fly(scene, {{{-30, 0, 0}, {1, 0, 0}, 1, 0.0f}, {{-30, 0, 0}, {1, 0, 0}, 1, largest_u}});
+    const auto ends = fly(scene, {{{-30, 0, 0}, {1, 0, 0}, 1, 0.0f, 0.0f, glm::vec3(1.0f)},
+                                  {{-30, 0, 0}, {1, 0, 0}, 1, largest_u, 0.0f, glm::vec3(1.0f)}});
     CHECK(ends[0].event == collided);
     CHECK(ends[0].t == Approx(10.0));
     CHECK(ends[1].event == collided);

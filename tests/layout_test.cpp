@@ -13,6 +13,9 @@ namespace {
 
 struct Structs {
     shared::PathState path;
+    shared::Suspended laid_aside;
+    shared::ControlCell control_cell;
+    shared::BvhNode bvh_node;
     shared::QueueHeader header;
     shared::FilmPixel entry;
     shared::Counters counters;
@@ -38,7 +41,7 @@ std::vector<std::uint32_t> list_words(const Structs& all) {
         words.resize(first + sizeof field / 4);
         std::memcpy(&words[first], &field, sizeof field);
     };
-    const auto& [path, header, entry, counters, frame, push] = all;
+    const auto& [path, laid_aside, control_cell, bvh_node, header, entry, counters, frame, push] = all;
 #define PUT(field) put(field);
 #include "kernels/layout_fields.h"
 #undef PUT
@@ -63,6 +66,9 @@ TEST_CASE("shared structs have one layout on host and device", "[gpu][layout]") 
     const auto storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     Commands commands(test_device());
     const Buffer paths = second_of_two(commands, all.path, storage);
+    const Buffer laid_aside = second_of_two(commands, all.laid_aside, storage);
+    const Buffer controls = second_of_two(commands, all.control_cell, storage);
+    const Buffer nodes = second_of_two(commands, all.bvh_node, storage);
     const Buffer headers = second_of_two(commands, all.header, storage);
     const Buffer film = second_of_two(commands, all.entry, storage);
     Buffer counters(test_device(), "layout test", sizeof all.counters, storage, BufferPlace::device);
@@ -74,6 +80,9 @@ TEST_CASE("shared structs have one layout on host and device", "[gpu][layout]") 
 
     BoundBuffers bound{};
     bound[BINDING_PATHS] = &paths;
+    bound[BINDING_SUSPENDED] = &laid_aside;
+    bound[BINDING_CONTROLS] = &controls;
+    bound[BINDING_BVH] = &nodes;
     bound[BINDING_QUEUES] = &headers;
     bound[BINDING_FILM] = &film;
     bound[BINDING_COUNTERS] = &counters;

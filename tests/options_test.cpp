@@ -57,7 +57,7 @@ TEST_CASE("every option is read, before or after the scene", "[cpu][options]") {
                                    "-Dk=a=b",
                                    "--seed=7",
                                    "--integrator",
-                                   "ratioTracking",
+                                   "ratioTracking:flight=weighted",
                                    "--time",
                                    "5m",
                                    "--width",
@@ -92,7 +92,7 @@ TEST_CASE("every option is read, before or after the scene", "[cpu][options]") {
     CHECK(render.spp.value() == 16);
     CHECK(render.seed == 7);
     CHECK(render.sample_offset == 48);
-    CHECK(render.integrator.value() == "ratioTracking");
+    CHECK(render.integrator.value() == "ratioTracking:flight=weighted");
     CHECK(render.time_limit.value() == 300.0);
     CHECK(render.width.value() == 64);
     CHECK(render.height.value() == 32);
@@ -109,6 +109,8 @@ TEST_CASE("every option is read, before or after the scene", "[cpu][options]") {
 TEST_CASE("the other commands", "[cpu][options]") {
     CHECK(parse({"devices"}).command == Command::devices);
     CHECK(parse({"devices", "--json"}).devices_json);
+    CHECK(parse({"integrators"}).command == Command::integrators);
+    CHECK(parse({"integrators", "--json"}).integrators_json);
     CHECK(parse({"info", "a.nvdb"}).info_file == "a.nvdb");
     const Options compare = parse({"compare", "a.exr", "b.exr", "--max-relmse", "1e-3", "--json"});
     CHECK(compare.command == Command::compare);
@@ -126,8 +128,8 @@ TEST_CASE("help and version are printed", "[cpu][options]") {
     for (const char* flag : {"--help", "-h"}) {
         const Options help = parse({flag});
         CHECK(help.command == Command::print);
-        CHECK_THAT(help.text,
-                   Catch::Contains("--spp") && Catch::Contains("Exit codes") && Catch::Contains("vkvol merge"));
+        CHECK_THAT(help.text, Catch::Contains("--spp") && Catch::Contains("Exit codes") &&
+                                  Catch::Contains("vkvol merge") && Catch::Contains("vkvol integrators"));
     }
     CHECK_THAT(parse({"compare", "--help"}).text, Catch::Contains("--max-relmse"));
     CHECK(parse({"--version"}).text.substr(0, 6) == "vkvol ");
@@ -149,7 +151,11 @@ TEST_CASE("a bad command line is one line with a hint", "[cpu][options]") {
     CHECK_THAT(error_of({"s.xml", "-D", "a=1", "-D", "a=2"}), Catch::Contains("a given twice"));
     CHECK_THAT(error_of({"s.xml", "--tonemap", "acs"}), Catch::Contains("did you mean aces?"));
     CHECK_THAT(error_of({"s.xml", "--progress", "xml"}), Catch::Contains("--progress: unknown value 'xml'"));
-    CHECK_THAT(error_of({"s.xml", "--integrator", "nanoVDBSimple"}), Catch::Contains("not available in this version"));
+    CHECK_THAT(error_of({"s.xml", "--integrator", "ratioTracking:fligth=delta"}),
+               Catch::Contains("did you mean flight?"));
+    CHECK_THAT(error_of({"s.xml", "--integrator", "ratioTracking:flight=dleta"}),
+               Catch::Contains("did you mean delta?"));
+    CHECK_THAT(error_of({"integrators", "--jsno"}), Catch::Contains("did you mean --json?"));
     CHECK_THAT(error_of({"s.xml", "--integrator", "ratio"}), Catch::Contains("unknown integrator 'ratio'"));
     CHECK_THAT(error_of({"s.xml", "--exposure", "nan"}), Catch::Contains("--exposure"));
     CHECK_THAT(error_of({"s.xml", "--crop", "1,2,3"}), Catch::Contains("x0,x1,y0,y1"));

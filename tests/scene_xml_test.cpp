@@ -6,9 +6,11 @@
 #include <random>
 
 #include "error.h"
+#include "integrators.h"
 #include "nearest_name.h"
 #include "scene_hash.h"
 #include "scene_xml.h"
+#include "shared/bindings.h"
 
 using namespace vkvol;
 
@@ -68,18 +70,21 @@ TEST_CASE("every element of the vocabulary is read", "[cpu][xml]") {
         <backgroundColor r="0.1" g="0.2" b="0.3" multiplier="2"/>
         <camera x="1" y="2" z="+3" pitch="-19" yaw="-8" roll="5" fov="60"/>
         <width startOffset="54" reference="216">108</width><height startOffset="27" reference="108">54</height>
-        <rayPerPixelCount>64</rayPerPixelCount><maxDepth>0</maxDepth><integrator>ratioTracking</integrator>
+        <rayPerPixelCount>64</rayPerPixelCount><maxDepth>3</maxDepth>
+        <integrator scattering="single" flight="weighted" transmittance="march" nee="tentative"
+                    emission="steps">ratioTracking</integrator>
+        <march step="0.25" shadowStep="2" opticalStep="0.5" jitter="false" unit="world"/>
         <filter>trilinear</filter><russianRoulette threshold="0.05"/><majorant scale="1.5" cell="16"/>
         <lightRayDensityMultiplier>2.5</lightRayDensityMultiplier>
         <shadowRayDensityMultiplier>2.5</shadowRayDensityMultiplier>
         <multiThreaded freeThreads="1">true</multiThreaded><multiThreadedChunkSize>20</multiThreadedChunkSize>)");
-    CHECK(scene.warnings.empty());
+    CHECK(scene.warnings.size() == 2); // steps of free flights, which this integrator does not take
     REQUIRE(scene.volumes.size() == 1);
     const Volume& volume = scene.volumes[0];
     CHECK(grid_of(scene).path == "../fields/cloud.nvdb");
     CHECK(grid_of(scene).grid == "smoke");
-    CHECK(volume.sigma_a == 0.25);
-    CHECK(volume.sigma_s == 4.0);
+    CHECK(volume.sigma_a == Rgb(0.25));
+    CHECK(volume.sigma_s == Rgb(4.0));
     CHECK(volume.unit == CoefficientUnit::world);
     CHECK(volume.g == -0.3);
     CHECK(volume.Le == Rgb(2, 1, 0));
@@ -101,8 +106,21 @@ TEST_CASE("every element of the vocabulary is read", "[cpu][xml]") {
     CHECK(scene.picture.start_y == 27.0);
     CHECK(scene.picture.reference_height == 108.0);
     CHECK(scene.settings.spp == 64);
-    CHECK(scene.settings.max_depth.value() == 0);
+    CHECK(scene.settings.max_depth.value() == 3);
+    CHECK(parse("<maxDepth>0</maxDepth>").settings.max_depth.value() == 0);
     CHECK(scene.settings.integrator == "ratioTracking");
+    const AxisChoices& choices = scene.settings.choices;
+    CHECK(choices.scattering == SCATTERING_SINGLE);
+    CHECK(choices.free_flight == FREE_FLIGHT_WEIGHTED);
+    CHECK(choices.transmittance == TRANSMITTANCE_MARCH);
+    CHECK(choices.nee == NEE_TENTATIVE);
+    CHECK(choices.emission == EMISSION_AT_STEPS);
+    const March& march = scene.settings.march;
+    CHECK(march.step == 0.25);
+    CHECK(march.shadow_step == 2.0);
+    CHECK(march.optical_step == 0.5);
+    CHECK_FALSE(march.jitter);
+    CHECK(march.unit == CoefficientUnit::world);
     CHECK(scene.settings.filter == Filter::trilinear);
     CHECK(scene.settings.roulette_threshold == 0.05);
     CHECK(scene.settings.majorant_scale == 1.5);
@@ -117,6 +135,80 @@ TEST_CASE("spheres and boxes hold homogeneous media", "[cpu][xml]") {
     CHECK(ball.warnings.empty());
     const Scene box = parse(R"(<box width="2" height="3" depth="4"/>)");
     CHECK(std::get<Box>(box.volumes.at(0).shape).size == glm::dvec3(2, 3, 4));
+    CHECK(box.settings.march.unit == CoefficientUnit::world);
+    CHECK_FALSE(box.volumes[0].noise);
+}
+
+TEST_CASE("models hold media", "[cpu][xml]") {
+    const Scene scene = parse_scene(R"(<options><models><model baseDir="..\models\">ball.obj</model>
+                                       <model>/data/cube.obj</model></models></options>)",
+                                    "/scenes/a/s.xml");
+    const std::vector<std::filesystem::path> paths = {"/scenes/models/ball.obj", "/data/cube.obj"};
+    CHECK(std::get<MeshFiles>(scene.volumes.at(0).shape).paths == paths);
+    CHECK(scene.volumes[0].unit == CoefficientUnit::world);
+    CHECK(scene.warnings.empty());
+    CHECK(parse("<models/>").volumes.empty());
+    CHECK(error_of("<models>\n<model baseDir=\"x/\"/></models>") ==
+          "s.xml:3:1: <model> names no file; write one between the tags, e.g. sphere.obj");
+    CHECK_THAT(error_of("<models><modle>a.obj</modle></models>"), Catch::Contains("did you mean <model>?"));
+}
+
+TEST_CASE("between models and a density field the original's integrators decide", "[cpu][xml]") {
+    const auto both = [](const std::string& integrator) {
+        return parse("<models><model>a.obj</model></models><densityField>a.nvdb</densityField><integrator>" +
+                     integrator + "</integrator>");
+    };
+    for (const char* name :
+         {"densitySampling", "homogeneousRayMarcherNEE", "homogeneousRayMarcherImproved", "heterogeneousPerlinNoise"}) {
+        CHECK(std::holds_alternative<MeshFiles>(both(name).volumes.at(0).shape));
+        CHECK(warns(both(name), "<densityField> is left out"));
+    }
+    for (const char* name : {"nanoVDBSimple", "nanoVDBEmission", "deltaTracking", "ratioTracking"}) {
+        CHECK(std::holds_alternative<GridFile>(both(name).volumes.at(0).shape));
+        CHECK(warns(both(name), "<models> is left out"));
+    }
+    for (const char* name : {"rayMarching", ""})
+        CHECK_THROWS_WITH(both(name), Catch::Contains("a <models> beside the <densityField>"));
+    CHECK_THAT(error_of("<sphere/><models><model>a.obj</model></models>"), Catch::Contains("one medium"));
+}
+
+TEST_CASE("the density of shapes can be noise", "[cpu][xml]") {
+    const Scene scene = parse(R"(<box/><noise frequency="2" octaves="3" gain="0.25" lacunarity="4"/>)");
+    const Noise& noise = scene.volumes.at(0).noise.value();
+    CHECK(noise.frequency == 2.0);
+    CHECK(noise.octaves == 3);
+    CHECK(noise.gain == 0.25);
+    CHECK(noise.lacunarity == 4.0);
+    CHECK(parse("<models><model>a.obj</model></models><noise/>").volumes.at(0).noise->frequency == 1.8);
+    CHECK_THAT(error_of("<densityField>a.nvdb</densityField>\n<noise/>"),
+               Catch::StartsWith("s.xml:3:1: <noise> is for"));
+    CHECK_THAT(error_of(R"(<box/><noise octaves="17"/>)"), Catch::Contains("<noise> octaves: "));
+    CHECK_THAT(error_of(R"(<box/><noise frequency="0"/>)"), Catch::Contains("<noise> frequency: "));
+    CHECK_THAT(error_of(R"(<box/><noise gain="1.5"/>)"), Catch::Contains("from 0 to 1"));
+    CHECK_THAT(error_of(R"(<box/><noise lacunarity="0.5"/>)"), Catch::Contains("a number >= 1"));
+}
+
+TEST_CASE("coefficients are a number or one for each channel", "[cpu][xml]") {
+    const Volume volume = parse(R"(<sphere/><sigma_a r="1" g="2" b="3"/><sigma_s>2</sigma_s>)").volumes.at(0);
+    CHECK(volume.sigma_a == Rgb(1, 2, 3));
+    CHECK(volume.sigma_s == Rgb(2, 2, 2));
+    CHECK(error_of(R"(<sphere/><sigma_a r="1" b="3"/>)") == "s.xml:2:10: <sigma_a> lacks g; all of r, g, b are needed");
+    CHECK_THAT(error_of(R"(<sphere/><sigma_s r="1" g="1" b="1">2</sigma_s>)"),
+               Catch::StartsWith("s.xml:2:37: <sigma_s> has both a number and r, g, b"));
+    CHECK_THAT(error_of(R"(<sphere/><sigma_s r="1" g="-1" b="1"/>)"), Catch::Contains("<sigma_s> g: '-1' is out of"));
+}
+
+TEST_CASE("an integrator's choices and the scene must fit", "[cpu][xml]") {
+    CHECK(error_of(R"(<integrator flight="wieghted">ratioTracking</integrator>)") ==
+          "s.xml:2:13: unknown flight 'wieghted'; did you mean weighted?");
+    CHECK_THAT(error_of(R"(<integrator fligth="delta"/>)"), Catch::Contains("did you mean flight?"));
+    CHECK_THAT(error_of("<densityField>a.nvdb</densityField>\n<integrator>densitySampling</integrator>"),
+               Catch::StartsWith("s.xml:3:1: densitySampling: analytic flights need constant density"));
+    CHECK_THAT(error_of("<box/><noise/>\n<integrator>regularTracking</integrator>"),
+               Catch::StartsWith("s.xml:3:1: regularTracking: regular flights"));
+    CHECK(error_of(R"(<march jitter="maybe"/>)") == "s.xml:2:8: <march> jitter: 'maybe' is neither true nor false");
+    CHECK_THAT(error_of(R"(<march unit="metre"/>)"), Catch::Contains("voxel or world"));
+    CHECK_THAT(error_of(R"(<march step="0"/>)"), Catch::Contains("<march> step: "));
 }
 
 TEST_CASE("the report's own scenes load unmodified", "[cpu][xml]") {
@@ -145,11 +237,23 @@ TEST_CASE("what is not rendered is said, with its place", "[cpu][xml]") {
         return scene.warnings.size() == 1 ? scene.warnings[0] : std::to_string(scene.warnings.size()) + " warnings";
     };
     CHECK_THAT(warning("  <importanceSampling>true</importanceSampling>"), Catch::StartsWith("s.xml:2:3: importance"));
-    CHECK_THAT(warning(R"(<stepSize min=".1" max="1"/>)"), Catch::StartsWith("s.xml:2:1: stepSize"));
+    CHECK_THAT(warning(R"(<stepSize min=".1" max="1"/>)"),
+               Catch::StartsWith("s.xml:2:1: stepSize") && Catch::Contains("without steps"));
+    CHECK_THAT(warning(R"(<stepSize min=".1" max="1"/><integrator>rayMarching</integrator>)"),
+               Catch::StartsWith("s.xml:2:1: stepSize") && Catch::Contains("<march> has the steps of rayMarching"));
+    CHECK_THAT(warning(R"(<march step="1"/><integrator>ratioTracking</integrator>)"),
+               Catch::Contains("<march> step is without effect: ratioTracking"));
+    CHECK_THAT(warning(R"(<march jitter="true"/><integrator>homogeneousRayMarcherNEE</integrator>)"),
+               Catch::Contains("the middle of its steps"));
+    CHECK_THAT(warning(R"(<march unit="voxel"/><integrator>rayMarching</integrator>)"), Catch::Contains("world units"));
+    CHECK_THAT(warning("<sigma_s>1</sigma_s><integrator>densitySampling</integrator>"), Catch::Contains("sigma_s out"));
+    CHECK_THAT(warning(R"(<integrator>densitySampling</integrator><light y="1" r="1"/>)"),
+               Catch::Contains("ratioTracking renders it"));
+    CHECK_THAT(warning(R"(<integrator scattering="none">ratioTracking</integrator><light y="1" r="1"/>)"),
+               Catch::Contains("scatters nothing"));
     CHECK_THAT(warning("<shadowRayDensityMultiplier>4</shadowRayDensityMultiplier>"),
                Catch::Contains("lightRayDensityMultiplier, 1"));
     CHECK_THAT(warning(R"(<emission r="1" multiplier="5"/>)"), Catch::Contains("no temperature grid"));
-    CHECK_THAT(warning(R"(<models><model baseDir="..\M\">a.obj</model></models>)"), Catch::StartsWith("s.xml:2:9: "));
     CHECK_THAT(warning("<diffuseRebounds><rebound>5</rebound></diffuseRebounds>"), Catch::Contains("without effect"));
     CHECK_THAT(warning("<fileName>x.png</fileName>"), Catch::Contains("-o"));
     CHECK_THAT(warning("<intersectionHandler>diffuse</intersectionHandler>"), Catch::Contains("<integrator>"));
@@ -182,10 +286,6 @@ TEST_CASE("unknown names are errors with the nearest known name", "[cpu][xml]") 
     CHECK(error_of("<filter>\n trilinar</filter>") == "s.xml:3:2: unknown filter 'trilinar'; did you mean trilinear?");
     CHECK(error_of("<integrator>ratiotracking</integrator>") ==
           "s.xml:2:13: unknown integrator 'ratiotracking'; did you mean ratioTracking?");
-    for (const char* name : {"densitySampling", "homogeneousRayMarcherNEE", "homogeneousRayMarcherImproved",
-                             "heterogeneousPerlinNoise", "nanoVDBSimple", "nanoVDBEmission"})
-        CHECK_THAT(error_of(std::string("<integrator>") + name + "</integrator>"),
-                   Catch::StartsWith("s.xml:2:13: ") && Catch::Contains("not available in this version; use "));
 }
 
 TEST_CASE("values must be what they claim to be", "[cpu][xml]") {
@@ -249,8 +349,10 @@ TEST_CASE("malformed XML is located", "[cpu][xml]") {
 }
 
 TEST_CASE("garbage never gets further than an InputError", "[cpu][xml]") {
-    const std::string seed = "<options><camera x=\"1\" fov=\"$f\"/><sigma_a unit='world'>1</sigma_a><sphere/>"
-                             "<width startOffset=\"1\" reference=\"3\">10</width><![CDATA[x]]>&amp;&#0;</options>";
+    const std::string seed =
+        "<options><camera x=\"1\" fov=\"$f\"/><sigma_a unit='world'>1</sigma_a><sphere/><march step='2'/>"
+        "<integrator flight='delta'/><noise gain='.5'/><width startOffset=\"1\" "
+        "reference=\"3\">10</width><![CDATA[x]]>&amp;&#0;</options>";
     std::mt19937 random(1);
     for (int i = 0; i < 5000; ++i) {
         std::string text = seed;
@@ -283,7 +385,7 @@ TEST_CASE("$keys are filled in", "[cpu][xml]") {
     const Scene scene =
         parse(R"(<sphere radius="${r}"/><sigma_s>$s</sigma_s><camera x="1${r}5"/>)", {{"r", "2"}, {"s", "0.5"}});
     CHECK(std::get<Sphere>(scene.volumes.at(0).shape).radius == 2.0);
-    CHECK(scene.volumes[0].sigma_s == 0.5);
+    CHECK(scene.volumes[0].sigma_s == Rgb(0.5));
     CHECK(scene.camera.position.x == 125.0);
     CHECK(grid_of(parse("<densityField>a$$b.nvdb</densityField>")).path == "a$b.nvdb");
     CHECK(error_of("<sigma_s> $s</sigma_s>") == "s.xml:2:11: $s has no value; give it with -D s=VALUE");
@@ -313,10 +415,19 @@ TEST_CASE("the command line's grid and integrator replace the scene's", "[cpu][x
     const Scene grid = parse("<densityField grid=\"d\">a.nvdb</densityField><sigma_s>3</sigma_s>", {}, overrides);
     CHECK(grid_of(grid).path == "other.vdb");
     CHECK(grid_of(grid).grid == "d");
-    CHECK(grid.volumes[0].sigma_s == 3.0);
+    CHECK(grid.volumes[0].sigma_s == Rgb(3.0));
     CHECK(grid_of(parse("<sphere/>", {}, overrides)).grid == "density");
     CHECK(grid_of(parse("", {}, overrides)).path == "other.vdb");
+    CHECK(warns(parse("<sphere/><noise/>", {}, overrides), "<noise> is left out"));
+    CHECK_FALSE(parse("<sphere/><noise/>", {}, overrides).volumes.at(0).noise);
     overrides = {};
+    overrides.integrator = "deltaTracking:nee=tentative";
+    CHECK(parse("<integrator flight=\"weighted\">nanoVDBSimple</integrator>", {}, overrides).settings.choices.nee ==
+          NEE_TENTATIVE);
+    CHECK_FALSE(parse("<integrator flight=\"weighted\"/>", {}, overrides).settings.choices.free_flight);
+    overrides.integrator = "densitySampling";
+    CHECK_THROWS_WITH(parse("<densityField>a.nvdb</densityField><integrator/>", {}, overrides),
+                      Catch::StartsWith("s.xml: densitySampling: "));
     overrides.integrator = "ratioTracking";
     const Scene scene = parse("<integrator>nanoVDBSimple</integrator><sphere/><light y=\"1\" r=\"1\"/>", {}, overrides);
     CHECK(scene.settings.integrator == "ratioTracking");
@@ -359,7 +470,8 @@ TEST_CASE("the scene hash follows what the picture depends on", "[cpu][xml]") {
     CHECK(hash.size() == 16);
     CHECK(scene_hash(parse("<sphere/><rayPerPixelCount>9</rayPerPixelCount><filter>trilinear</filter>")) == hash);
     for (const char* change :
-         {"<sigma_a>1</sigma_a>", "<maxDepth>3</maxDepth>", "<camera x=\"1\"/>", "<width>401</width>",
+         {"<noise/>", "<integrator scattering=\"single\"/>", "<sigma_a r=\".5\" g=\".5\" b=\".6\"/>",
+          "<sigma_a>1</sigma_a>", "<maxDepth>3</maxDepth>", "<camera x=\"1\"/>", "<width>401</width>",
           "<heyneygreenstein_g>.1</heyneygreenstein_g>", "<filter>nearest</filter>", "<light y=\"1\" r=\"1\"/>",
           "<backgroundColor r=\"1\"/>", "<medium r=\"1\"/>"})
         CHECK(scene_hash(parse(std::string("<sphere/>") + change)) != hash);
@@ -373,4 +485,9 @@ TEST_CASE("the schema knows every integrator", "[cpu][xml]") {
     const std::string schema((std::istreambuf_iterator<char>(stream)), {});
     for (const std::string& name : integrator_names())
         CHECK_THAT(schema, Catch::Contains("\"" + name + "\""));
+    for (const Axis& axis : axes()) {
+        CHECK_THAT(schema, Catch::Contains("<xs:attribute name=\"" + std::string(axis.name) + "\""));
+        for (const std::string& name : axis.names)
+            CHECK_THAT(schema, Catch::Contains("\"" + name + "\""));
+    }
 }

@@ -7,11 +7,11 @@
 #include <random>
 
 #include "kernels/test_items.h"
-#include "ratio.spv.h"
 #include "support/statistics.h"
 #include "support/test_grids.h"
 #include "support/test_scene.h"
 #include "tests/reference/quadrature.h"
+#include "transmittance.spv.h"
 
 using namespace vkvol;
 using shared::FlightOutput;
@@ -23,8 +23,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Volume absorber(double sigma_t) {
     Volume volume;
-    volume.sigma_a = sigma_t;
-    volume.sigma_s = 0.0;
+    volume.sigma_a = Rgb(sigma_t);
+    volume.sigma_s = Rgb(0.0);
     volume.unit = CoefficientUnit::world;
     return volume;
 }
@@ -34,8 +34,9 @@ std::vector<RunningMean> estimate(const TestScene& scene, const std::vector<refe
                                   std::uint32_t seed) {
     std::vector<RayInput> inputs;
     for (std::size_t i = 0; i < rays.size(); ++i)
-        inputs.push_back({scene.to_render(rays[i].origin), rays[i].direction, seed + std::uint32_t(i), 0.0f});
-    KernelRunner runner(ratio_spv, scene.specialization, scene.kernel);
+        inputs.push_back(
+            {scene.to_render(rays[i].origin), rays[i].direction, seed + std::uint32_t(i), 0.0f, 0.0f, glm::vec3(1.0f)});
+    KernelRunner runner(transmittance_spv, scene.specialization, scene.kernel);
     runner.push.step_limit = 20000;
     runner.push.sample_end = count;
     const auto threads = static_cast<std::uint32_t>(rays.size() * count);
@@ -43,7 +44,7 @@ std::vector<RunningMean> estimate(const TestScene& scene, const std::vector<refe
     std::vector<RunningMean> means(rays.size());
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         REQUIRE(outputs[i].event == 2u); // left
-        means[i / count].add(outputs[i].T);
+        means[i / count].add(outputs[i].weight.x);
     }
     return means;
 }
@@ -200,11 +201,11 @@ TEST_CASE("majorants that are too low are counted, and the mean stays", "[gpu][t
     const double T = reference::transmittance_quadrature(medium, ray, 0.0, infinity);
     CHECK(mean_p(scene, ray, 200000, T) > 1e-3);
 
-    KernelRunner runner(ratio_spv, scene.specialization, scene.kernel);
+    KernelRunner runner(transmittance_spv, scene.specialization, scene.kernel);
     runner.push.step_limit = 20000;
     runner.push.sample_end = 10000;
-    const std::vector<RayInput> input = {{scene.to_render(ray.origin), ray.direction, 1, 0.0f}};
+    const std::vector<RayInput> input = {{scene.to_render(ray.origin), ray.direction, 1, 0.0f, 0.0f, glm::vec3(1.0f)}};
     const auto outputs = runner.run<FlightOutput>(std::span<const RayInput>(input), 10000, 10000);
     CHECK(runner.counters().majorant_violations > 0u);
-    CHECK(std::any_of(outputs.begin(), outputs.end(), [](const FlightOutput& f) { return f.T < 0.0f; }));
+    CHECK(std::any_of(outputs.begin(), outputs.end(), [](const FlightOutput& f) { return f.weight.x < 0.0f; }));
 }

@@ -6,22 +6,44 @@
 #include "../shared/bindings.h"
 #include "../shared/items.h"
 #include "../shared/scene.h"
+#include "spectrum.glsl"
 
-layout(constant_id = SPEC_MEDIUM) const int MEDIUM = MEDIUM_NONE;
+layout(constant_id = SPEC_SHAPE) const int SHAPE = SHAPE_NONE;
+layout(constant_id = SPEC_FIELD) const int FIELD = FIELD_CONSTANT;
 layout(constant_id = SPEC_GRID_TYPE) const int GRID_TYPE = GRID_FLOAT;
 layout(constant_id = SPEC_FILTER) const int FILTER = FILTER_TRILINEAR;
+layout(constant_id = SPEC_SCATTERING) const int SCATTERING = SCATTERING_MULTIPLE;
 layout(constant_id = SPEC_NEE) const int NEE = NEE_NONE;
 layout(constant_id = SPEC_EMISSION) const int EMISSION = EMISSION_NONE;
+layout(constant_id = SPEC_EMISSION_AT) const int EMISSION_AT = EMISSION_AT_COLLISIONS;
 layout(constant_id = SPEC_FREE_FLIGHT) const int FREE_FLIGHT = FREE_FLIGHT_DELTA;
 layout(constant_id = SPEC_TRANSMITTANCE) const int TRANSMITTANCE = TRANSMITTANCE_RATIO;
 layout(constant_id = SPEC_TEMPERATURE_TYPE) const int TEMPERATURE_TYPE = GRID_FLOAT;
 layout(constant_id = SPEC_STEPS) const int STEPS = 1;
 
+// Estimators that walk from one tentative collision to the next.
+const bool NULL_FLIGHT = FREE_FLIGHT == FREE_FLIGHT_DELTA || FREE_FLIGHT == FREE_FLIGHT_WEIGHTED ||
+                         FREE_FLIGHT == FREE_FLIGHT_DECOMPOSITION || FREE_FLIGHT == FREE_FLIGHT_SPECTRAL;
+const bool NULL_TRANSMITTANCE = TRANSMITTANCE == TRANSMITTANCE_DELTA || TRANSMITTANCE == TRANSMITTANCE_RATIO ||
+                                TRANSMITTANCE == TRANSMITTANCE_RESIDUAL;
+// Where light scatters at most once a march samples no collision: it goes through and gathers along the ray. (A
+// function, since spirv-opt 2023.1 misorders some operations on constants.)
+bool goes_through() {
+    bool marches = FREE_FLIGHT == FREE_FLIGHT_MARCH || FREE_FLIGHT == FREE_FLIGHT_ADAPTIVE;
+    return (SCATTERING != SCATTERING_MULTIPLE && marches) ||
+           (SCATTERING == SCATTERING_NONE && FREE_FLIGHT == FREE_FLIGHT_ANALYTIC);
+}
+
 layout(scalar, binding = BINDING_FRAME) uniform FrameBlock { FrameParams frame; };
 layout(scalar, binding = BINDING_GRID) readonly buffer GridBlock { uint grid_words[]; };
 layout(scalar, binding = BINDING_LEAF_TABLE) readonly buffer LeafTableBlock { uint leaf_table[]; };
 layout(scalar, binding = BINDING_MAJORANTS) readonly buffer MajorantBlock { float majorants[]; };
+layout(scalar, binding = BINDING_CONTROLS) readonly buffer ControlBlock { ControlCell controls[]; };
+layout(scalar, binding = BINDING_TRIANGLES) readonly buffer TriangleBlock { vec3 triangles[]; };
+layout(scalar, binding = BINDING_BVH) readonly buffer BvhBlock { BvhNode bvh[]; };
 layout(scalar, binding = BINDING_PATHS) buffer PathBlock { PathState paths[]; };
+layout(scalar, binding = BINDING_BETAS) buffer BetaBlock { Spectrum betas[]; };
+layout(scalar, binding = BINDING_SUSPENDED) buffer SuspendedBlock { Suspended suspended[]; };
 layout(scalar, binding = BINDING_QUEUE_ITEMS) buffer QueueItemBlock { uint queue_items[]; };
 layout(scalar, binding = BINDING_QUEUES) buffer QueueBlock { QueueHeader queues[]; };
 layout(scalar, binding = BINDING_FILM) buffer FilmBlock { FilmPixel film[]; };

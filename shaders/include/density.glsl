@@ -6,6 +6,7 @@
 #ifndef DENSITY_GLSL
 #define DENSITY_GLSL
 #include "buffers.glsl"
+#include "noise.glsl"
 
 // Word offsets within a leaf node of NanoVDB 32.x.
 const uint LEAF_FLAGS = 3u;    // quantised: bits 29-31 are log2 of the bits per value
@@ -68,8 +69,12 @@ float lookup_stochastic(GridParams g, int type, vec3 p, vec3 tap) {
     return voxel(g, type, ivec3(base) + ivec3(lessThan(tap, p - base)));
 }
 
-// `p` in index space; `tap` in [0, 1)^3 is for the stochastic filter.
+// At a point of medium space, >= 0. `tap` in [0, 1)^3 is for the stochastic filter.
 float density(VolumeParams v, vec3 p, vec3 tap) {
+    if (FIELD == FIELD_CONSTANT)
+        return 1.0;
+    if (FIELD == FIELD_NOISE)
+        return noise_density(v.noise, v.extent * p);
     switch (FILTER) {
     case FILTER_NEAREST:
         return lookup_nearest(v.density, GRID_TYPE, p);

@@ -1,30 +1,80 @@
-// Free flights: where along the segment the next real collision is. One function per estimator, one switch.
+// Free flights: where along the segment the next real collision is. One file per estimator, one switch.
 #ifndef FREE_FLIGHT_GLSL
 #define FREE_FLIGHT_GLSL
+#extension GL_EXT_control_flow_attributes : require
 #include "collision.glsl"
+#include "march.glsl"
+#include "voxels.glsl"
 
-// Homogeneous: t = -log(1 - u) / sigma_t.
-uint analytic_flight(VolumeParams v, inout Walk w) {
-    w.t = w.tau / v.sigma_t;
-    return w.t < w.t_end ? EVENT_COLLIDED : EVENT_LEFT;
+#include "free_flight/adaptive.glsl"
+#include "free_flight/analytic.glsl"
+#include "free_flight/decomposition.glsl"
+#include "free_flight/delta.glsl"
+#include "free_flight/march.glsl"
+#include "free_flight/regular.glsl"
+#include "free_flight/spectral.glsl"
+#include "free_flight/weighted.glsl"
+
+// The optical depth to fly. `e`: unit exponential; `select` in [0, 1).
+float begin_flight(VolumeParams v, Spectrum beta, float e, float select) {
+    return NULL_FLIGHT ? e : sample_depth(v, beta, e, select);
 }
 
-// Delta tracking (Woodcock et al. 1965): a tentative collision is real with probability sigma_t / sigma_maj.
-// Unbiased as long as sigma_maj bounds sigma_t; where it does not, the excess is lost: biased, and counted.
-uint delta_tracking(Collision c) {
-    return c.u * c.sigma_maj < c.sigma_t ? EVENT_COLLIDED : EVENT_MOVING;
+// Called for each part of the ray within the medium.
+void begin_flight_part(VolumeParams v, inout Walk w) {
+    if (NULL_FLIGHT || FREE_FLIGHT == FREE_FLIGHT_ADAPTIVE)
+        begin_cells(v, false, w);
+    if (FREE_FLIGHT == FREE_FLIGHT_REGULAR)
+        begin_voxels(v, w);
+    if (FREE_FLIGHT == FREE_FLIGHT_MARCH)
+        begin_march(frame.march.step, w);
 }
 
-// What a tentative collision is to a free flight: real (EVENT_COLLIDED) or null (EVENT_MOVING).
-uint resolve_flight(Collision c, inout Tally tally) {
-    uint event = EVENT_MOVING;
+// One step of a flight. For flights with null collisions `event` is what the walk met, and `c` its tentative collision.
+// `deposit`: at EVENT_TOUCHED and EVENT_COLLIDED, how much throughput meets matter at w.at: beta sigma_t / sigma_maj, or
+// what a march's step takes away.
+uint fly(VolumeParams v, Collision c, uint event, inout Walk w, inout Rng rng, inout Spectrum beta,
+         out Spectrum deposit, inout Tally tally) {
+    deposit = to_spectrum(vec3(0.0));
+    if (NULL_FLIGHT && event == EVENT_COLLIDED) {
+        deposit = beta * to_spectrum(v.sigma_ratio) * (c.sigma_t / c.sigma_maj);
+        switch (FREE_FLIGHT) {
+        case FREE_FLIGHT_DELTA:
+            event = delta_flight(c);
+            break;
+        case FREE_FLIGHT_WEIGHTED:
+            event = weighted_flight(c, beta);
+            break;
+        case FREE_FLIGHT_DECOMPOSITION:
+            event = decomposition_flight(c);
+            break;
+        case FREE_FLIGHT_SPECTRAL:
+            event = spectral_flight(v, c, beta);
+            break;
+        }
+        tally.null_collisions += event == EVENT_TOUCHED ? 1u : 0u;
+    }
     switch (FREE_FLIGHT) {
-    case FREE_FLIGHT_DELTA:
-        event = delta_tracking(c);
+    case FREE_FLIGHT_ANALYTIC:
+        event = analytic_flight(v, w, beta, deposit);
+        break;
+    case FREE_FLIGHT_REGULAR:
+        event = regular_flight(v, w, tally);
+        break;
+    case FREE_FLIGHT_MARCH:
+        event = march_flight(v, w, rng, beta, deposit, tally);
+        break;
+    case FREE_FLIGHT_ADAPTIVE:
+        event = adaptive_flight(v, w, rng, beta, deposit, tally);
         break;
     }
-    tally.real_collisions += event == EVENT_COLLIDED ? 1u : 0u;
-    tally.null_collisions += event == EVENT_COLLIDED ? 0u : 1u;
+    if (!goes_through() && NEE != NEE_TENTATIVE && event == EVENT_TOUCHED)
+        event = EVENT_MOVING; // nobody asks
+    if (event == EVENT_COLLIDED) {
+        tally.real_collisions += 1u;
+        if (!NULL_FLIGHT)
+            beta *= depth_weight(v, beta, w.depth, true);
+    }
     return event;
 }
 

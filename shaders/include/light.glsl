@@ -3,8 +3,9 @@
 #ifndef LIGHT_GLSL
 #define LIGHT_GLSL
 #include "phase.glsl"
+#include "spectrum.glsl"
 
-vec3 sun_contribution(VolumeParams v, LightParams light, vec3 direction, float beta) {
+vec3 sun_contribution(VolumeParams v, LightParams light, vec3 direction, Spectrum beta) {
     return beta * hg_eval(v.g, hg_from_peak(v.g, direction, light.direction)) * light.irradiance;
 }
 

@@ -1,69 +1,83 @@
 // The null-collision process along a segment: a walk over the majorant cells that stops at cell faces and at
 // tentative collisions. Which tentative collisions are real, and what that means, is the estimators' business.
 //
-// Distances are world units from the segment's own start, so their precision is that of the segment, wherever it
-// lies. Faces are found from the cell's integer coordinates, never accumulated: no error grows along the walk, and
-// every step that leaves a cell changes that integer, so the walk ends after at most dims.x + dims.y + dims.z faces.
+// Distances are world units from where the ray's present part within the medium begins, so their precision is that of
+// this part, wherever it lies. Faces are found from the cell's integer coordinates, never accumulated: no error grows
+// along the walk, and every step that leaves a cell changes that integer, so the walk ends after at most dims.x +
+// dims.y + dims.z faces.
 #ifndef MAJORANT_GLSL
 #define MAJORANT_GLSL
-#include "shape.glsl"
-
-struct Walk {
-    vec3 origin; // medium space, the segment's start
-    vec3 direction;
-    float t;     // travelled
-    float t_end; // length of the segment
-    float tau;   // optical depth left to the next tentative collision
-    float sigma_maj; // of the present cell [1 / world unit]; grids only
-    ivec3 cell;
-};
+#include "interval.glsl"
 
 #define EVENT_MOVING 0u  // nothing happened but distance
 #define EVENT_COLLIDED 1u
-#define EVENT_LEFT 2u    // the segment's end
+#define EVENT_LEFT 2u    // the end of the part within the medium, or of the whole segment
+#define EVENT_TOUCHED 3u // an interaction that leaves the flight as it is: a null collision, a step of a march
 
-float cell_sigma_maj(VolumeParams v, ivec3 cell) {
-    return v.sigma_t * majorants[(cell.x * v.cell_dims.y + cell.y) * v.cell_dims.z + cell.z];
+// What the walk needs of its cell. With `residual` the bound of |density - control|, else that of the density.
+void load_cell(VolumeParams v, bool residual, inout Walk w) {
+    bool cells = FIELD == FIELD_GRID;
+    uint i = uint((w.cell.x * v.cell_dims.y + w.cell.y) * v.cell_dims.z + w.cell.z);
+    if (residual || FREE_FLIGHT == FREE_FLIGHT_DECOMPOSITION)
+        w.control = cells ? controls[i].control : v.control;
+    if (residual)
+        w.sigma_maj = v.sigma_t * (cells ? controls[i].residual : v.residual);
+    else
+        w.sigma_maj = v.sigma_t * (cells ? majorants[i] : v.majorant);
 }
 
-// The walk along the ray's part [t.x, t.y].
-Walk begin_walk(VolumeParams v, Ray ray, vec2 t, float tau) {
-    Walk w;
-    w.origin = ray.origin + t.x * ray.direction;
-    w.direction = ray.direction;
-    w.t = 0.0;
-    w.t_end = t.y - t.x;
-    w.tau = tau;
-    w.sigma_maj = 0.0;
+void begin_cells(VolumeParams v, bool residual, inout Walk w) {
     w.cell = ivec3(0);
-    if (MEDIUM == MEDIUM_GRID) {
+    if (FIELD == FIELD_GRID)
         w.cell = clamp(ivec3(floor((w.origin - v.bounds_min) / v.cell_size)), ivec3(0), v.cell_dims - 1);
-        w.sigma_maj = cell_sigma_maj(v, w.cell);
-    }
-    return w;
+    load_cell(v, residual, w);
+}
+
+// Distances at which the ray crosses the far faces of a cube with lower corner `low`.
+vec3 far_faces(Walk w, vec3 low, float size) {
+    vec3 face = low + size * vec3(greaterThan(w.direction, vec3(0.0)));
+    bvec3 parallel = lessThan(abs(w.direction), vec3(1.0e-30));
+    return mix((face - w.origin) / mix(w.direction, vec3(1.0), parallel), vec3(FAR), parallel);
+}
+
+// One along the axis whose face is crossed first, 0 along the others.
+ivec3 first_axis(vec3 t_face) {
+    int axis = t_face.x <= t_face.y && t_face.x <= t_face.z ? 0 : t_face.y <= t_face.z ? 1 : 2;
+    return ivec3(equal(ivec3(0, 1, 2), ivec3(axis)));
+}
+
+// Where the walk leaves its cell, at most t_end.
+float cell_exit(VolumeParams v, Walk w, out vec3 t_face) {
+    t_face = vec3(FAR);
+    if (FIELD == FIELD_GRID)
+        t_face = far_faces(w, v.bounds_min + v.cell_size * vec3(w.cell), v.cell_size);
+    return max(w.t, min(min(t_face.x, t_face.y), min(t_face.z, w.t_end)));
+}
+
+// Into the cell beyond. EVENT_LEFT: there is none.
+uint next_cell(VolumeParams v, bool residual, float t_exit, vec3 t_face, inout Walk w) {
+    w.t = t_exit;
+    if (FIELD != FIELD_GRID)
+        return EVENT_LEFT;
+    ivec3 next = w.cell + first_axis(t_face) * ivec3(sign(w.direction));
+    ivec3 inside = clamp(next, ivec3(0), v.cell_dims - 1);
+    bool left = t_exit >= w.t_end || inside != next;
+    w.cell = inside;
+    load_cell(v, residual, w);
+    return left ? EVENT_LEFT : EVENT_MOVING;
 }
 
 // One step: to the face of the cell, or to a tentative collision before it (EVENT_COLLIDED).
-uint advance(VolumeParams v, inout Walk w) {
-    vec3 face = v.bounds_min + v.cell_size * vec3(w.cell + ivec3(greaterThan(w.direction, vec3(0.0))));
-    bvec3 parallel = lessThan(abs(w.direction), vec3(1.0e-30));
-    vec3 t_face = mix((face - w.origin) / mix(w.direction, vec3(1.0), parallel), vec3(FAR), parallel);
-    float t_exit = max(w.t, min(min(t_face.x, t_face.y), min(t_face.z, w.t_end)));
+uint advance(VolumeParams v, bool residual, inout Walk w) {
+    vec3 t_face;
+    float t_exit = cell_exit(v, w, t_face);
     float tau_cell = w.sigma_maj * (t_exit - w.t);
     if (w.tau < tau_cell) {
         w.t = min(w.t + w.tau / w.sigma_maj, t_exit);
         return EVENT_COLLIDED;
     }
     w.tau -= tau_cell;
-    w.t = t_exit;
-    int axis = t_face.x <= t_face.y && t_face.x <= t_face.z ? 0 : t_face.y <= t_face.z ? 1 : 2;
-    ivec3 step = ivec3(equal(ivec3(0, 1, 2), ivec3(axis)));
-    ivec3 next = w.cell + step * ivec3(sign(w.direction));
-    ivec3 inside = clamp(next, ivec3(0), v.cell_dims - 1);
-    bool left = t_exit >= w.t_end || inside != next;
-    w.cell = inside;
-    w.sigma_maj = cell_sigma_maj(v, inside);
-    return left ? EVENT_LEFT : EVENT_MOVING;
+    return next_cell(v, residual, t_exit, t_face, w);
 }
 
 #endif

@@ -1,4 +1,4 @@
-// Where a ray is inside the volume's bounds, in medium space.
+// Where a ray is inside the medium, in medium space.
 #ifndef SHAPE_GLSL
 #define SHAPE_GLSL
 #include "buffers.glsl"
@@ -46,20 +46,6 @@ bool intersect_unit_ball(Ray ray, out vec2 t) {
     float half_chord = sqrt(max(inside, 0.0) / dd);
     t = vec2(max(middle - half_chord, 0.0), middle + half_chord);
     return inside > 0.0 && t.x < t.y;
-}
-
-// [t.x, t.y], 0 <= t.x < t.y, world distances: the part of the ray within the bounds; false if there is none.
-bool intersect_volume(VolumeParams v, Ray ray, out vec2 t) {
-    switch (MEDIUM) {
-    case MEDIUM_SPHERE:
-        return intersect_unit_ball(ray, t);
-    case MEDIUM_BOX:
-    case MEDIUM_GRID:
-        return intersect_box(ray, v.bounds_min, v.bounds_max, t);
-    default:
-        t = vec2(0.0);
-        return false;
-    }
 }
 
 #endif

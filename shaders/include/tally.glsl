@@ -6,6 +6,7 @@
 struct Tally {
     uint real_collisions;
     uint null_collisions;
+    uint lookups;
     uint cells;
     uint shadow_rays;
     uint violations;
@@ -13,9 +14,12 @@ struct Tally {
     uint step_caps;
 };
 
+const Tally NOTHING_SEEN = Tally(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+
 void add_tally(Tally tally) {
     atomicAdd(counters.real_collisions, tally.real_collisions);
     atomicAdd(counters.null_collisions, tally.null_collisions);
+    atomicAdd(counters.lookups, tally.lookups);
     atomicAdd(counters.cells, tally.cells);
     if (NEE != NEE_NONE)
         atomicAdd(counters.shadow_rays, tally.shadow_rays);

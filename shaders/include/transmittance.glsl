@@ -1,33 +1,88 @@
-// Transmittance along a segment. Estimators return T itself, never an optical depth to be exponentiated later:
-// exp of a noisy estimate is biased upward (Jensen). One function per estimator, one switch.
+// Transmittance along a segment. Estimators return T itself, never an optical depth to be exponentiated later by who
+// knows whom: exp of a noisy estimate is biased upward (Jensen). One file per estimator, one switch.
 #ifndef TRANSMITTANCE_GLSL
 #define TRANSMITTANCE_GLSL
+#extension GL_EXT_control_flow_attributes : require
 #include "collision.glsl"
+#include "march.glsl"
+#include "voxels.glsl"
+
+#include "transmittance/analytic.glsl"
+#include "transmittance/delta.glsl"
+#include "transmittance/march.glsl"
+#include "transmittance/ratio.glsl"
+#include "transmittance/regular.glsl"
+#include "transmittance/residual.glsl"
+#include "transmittance/telescoping.glsl"
 
 const float SHADOW_ROULETTE = 0.1; // |T| below which roulette is played: 2 to 2.5 times less work in dense clouds
+const float OPAQUE = 104.0;        // exp(-104) is 0 in single precision
 
-float analytic_transmittance(VolumeParams v, float distance) {
-    return exp(-v.sigma_t * distance);
+// Once per shadow ray; the words of its first draw.
+void begin_transmittance(uvec4 words, inout Walk w) {
+    w.depth = 0.0;
+    if (TRANSMITTANCE == TRANSMITTANCE_TELESCOPING)
+        begin_telescoping(to_uniform(words), to_tap(words).z, w);
 }
 
-// Ratio tracking (Novak et al. 2014): T is the product of 1 - sigma_t / sigma_maj over tentative collisions.
-// Unbiased even where the majorant is violated; T is then negative at times. Roulette keeps it so.
-float ratio_tracking(Collision c, float T) {
-    T *= 1.0 - c.sigma_t / c.sigma_maj;
-    if (abs(T) < SHADOW_ROULETTE)
-        T = c.u * SHADOW_ROULETTE < abs(T) ? sign(T) * SHADOW_ROULETTE : 0.0;
-    return T;
+// Called for each part of the ray within the medium.
+void begin_transmittance_part(VolumeParams v, inout Walk w) {
+    if (NULL_TRANSMITTANCE)
+        begin_cells(v, TRANSMITTANCE == TRANSMITTANCE_RESIDUAL, w);
+    if (TRANSMITTANCE == TRANSMITTANCE_REGULAR)
+        begin_voxels(v, w);
+    if (TRANSMITTANCE == TRANSMITTANCE_MARCH)
+        begin_march(frame.march.shadow_step, w);
+    if (TRANSMITTANCE == TRANSMITTANCE_TELESCOPING)
+        begin_telescoping_part(frame.march.shadow_step, w);
 }
 
-// Updates T, 1 at the start, at a tentative collision. EVENT_LEFT: it is 0, no need to go on.
-uint resolve_transmittance(Collision c, inout float T, inout Tally tally) {
+// One step of a shadow ray. Estimators with null collisions update T, 1 at the start; `event` is what the walk met, and
+// `c` its tentative collision. The others know T when the segment has ended: see end_transmittance.
+// `opaque`: T is 0, no need to go on.
+uint see(VolumeParams v, Collision c, uint event, inout Walk w, inout Rng rng, inout Spectrum T, out bool opaque,
+         inout Tally tally) {
     switch (TRANSMITTANCE) {
-    case TRANSMITTANCE_RATIO:
-        T = ratio_tracking(c, T);
+    case TRANSMITTANCE_REGULAR:
+        event = regular_transmittance(v, w, tally);
+        break;
+    case TRANSMITTANCE_MARCH:
+        event = march_transmittance(v, w, rng, tally);
+        break;
+    case TRANSMITTANCE_TELESCOPING:
+        event = telescoping_transmittance(v, w, tally);
+        break;
+    case TRANSMITTANCE_RESIDUAL:
+        T = residual_transmittance(v, c, event, T);
         break;
     }
-    tally.null_collisions += 1u;
-    return T == 0.0 ? EVENT_LEFT : EVENT_MOVING;
+    if (NULL_TRANSMITTANCE && event == EVENT_COLLIDED) {
+        if (TRANSMITTANCE == TRANSMITTANCE_DELTA)
+            T = delta_transmittance(v, c, T);
+        if (TRANSMITTANCE == TRANSMITTANCE_RATIO)
+            T = ratio_transmittance(v, c, T);
+        float m = largest(T);
+        if (m < SHADOW_ROULETTE && TRANSMITTANCE != TRANSMITTANCE_DELTA) // unbiased
+            T *= c.u * SHADOW_ROULETTE < m ? SHADOW_ROULETTE / m : 0.0;
+        tally.null_collisions += 1u;
+        event = EVENT_MOVING;
+    }
+    bool exact = TRANSMITTANCE == TRANSMITTANCE_REGULAR || TRANSMITTANCE == TRANSMITTANCE_MARCH;
+    opaque = exact ? v.sigma_t * smallest(to_spectrum(v.sigma_ratio)) * w.depth > OPAQUE : largest(T) == 0.0;
+    return event;
+}
+
+// When the ray has left the medium.
+Spectrum end_transmittance(VolumeParams v, Walk w, Spectrum T) {
+    switch (TRANSMITTANCE) {
+    case TRANSMITTANCE_REGULAR:
+    case TRANSMITTANCE_MARCH:
+        return analytic_transmittance(v, w.depth);
+    case TRANSMITTANCE_TELESCOPING:
+        return end_telescoping(v, w);
+    default:
+        return T;
+    }
 }
 
 #endif

@@ -7,7 +7,7 @@
 #include "../include/camera.glsl"
 #include "../include/film.glsl"
 #include "../include/queue.glsl"
-#include "../include/shape.glsl"
+#include "../include/interval.glsl"
 
 // The next pixel of the work list, or NO_PIXEL.
 uint take_pixel() {
@@ -22,11 +22,11 @@ void begin_path(uint slot, uint pixel, uint sample_index, vec3 direction) {
     path.position = frame.camera.position;
     path.direction = direction;
     path.radiance = vec3(0.0);
-    path.beta = 1.0;
     path.pixel = pixel;
     path.sample_index = sample_index;
     path.draw = 0u;
     path.depth = 0u;
+    path.suspended = 0u;
     paths[slot] = path;
 }
 
@@ -44,7 +44,7 @@ void main() {
         return; // no work left: the slot rests until the next batch
     vec3 direction = camera_direction(pixel, sample_index);
     vec2 t;
-    bool hit = intersect_volume(frame.volume, to_medium(frame.volume, frame.camera.position, direction), t);
+    bool hit = next_interval(frame.volume, to_medium(frame.volume, frame.camera.position, direction), 0.0, t);
     begin_path(slot, pixel, sample_index, direction);
     if (!hit)
         paths[slot].radiance = frame.background;

@@ -6,7 +6,7 @@
 
 #include "../include/camera.glsl"
 #include "../include/film.glsl"
-#include "../include/shape.glsl"
+#include "../include/interval.glsl"
 
 void main() {
     uint pixel = push.pixel_begin + gl_GlobalInvocationID.x;
@@ -17,7 +17,7 @@ void main() {
     for (uint i = push.sample_begin; i < push.sample_end && !hit; ++i) {
         vec2 t;
         Ray ray = to_medium(frame.volume, frame.camera.position, camera_direction(pixel, i));
-        hit = intersect_volume(frame.volume, ray, t);
+        hit = next_interval(frame.volume, ray, 0.0, t);
         film_add(entry, frame.background, pixel, i);
     }
     if (hit) {

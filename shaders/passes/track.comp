@@ -1,152 +1,265 @@
 // Follow paths from vertex to vertex: free flights, shadow rays, scattering.
 //
 // One flat loop: a lane takes a path from the queue and steps along its present segment, free flight or shadow ray
-// alike, since both are walks over majorant cells with tentative collisions. When a segment ends it begins the next;
+// alike, since most are walks over majorant cells with tentative collisions. When a segment ends it begins the next;
 // when the path ends it takes another at once. So lanes with short and long paths, looking or flying, share every
 // iteration. A pass of its own for shadow rays cost each path one round of all passes per vertex, and ran at a
 // fifth of this speed on a software driver.
 //
-// A path is put back only at a vertex, when its lane's budget is spent: so the state that travels is small, and
-// nothing depends on where the budget ran out.
+// When a lane's budget is spent its path is laid aside as it stands, amid a segment or not, and nothing depends on
+// where that was.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "../include/pass.glsl"
 
 #include "../include/camera.glsl"
 #include "../include/emission.glsl"
-#include "../include/free_flight.glsl"
 #include "../include/light.glsl"
 #include "../include/queue.glsl"
-#include "../include/transmittance.glsl"
+#include "../include/segment.glsl"
 
 // What a lane does next.
-#define TODO_TAKE 0u  // take a path from the queue
+#define TODO_TAKE 0u   // take a path from the queue
 #define TODO_DEPART 1u // from a vertex: scatter, unless it is the camera, and fly
-#define TODO_LOOK 2u   // from a vertex toward the light
+#define TODO_LOOK 2u   // toward the light
 #define TODO_FLY 3u    // go on along the flight
 #define TODO_SEE 4u    // go on along the shadow ray
+#define TODO_END 5u    // the path is over
 
-#define EVENT_STOPPED 3u // the path ended before it flew
+#define EVENT_OPAQUE 4u // nothing of the light is left, no need to go on
+
+// A path as a lane holds it.
+struct Lane {
+    PathState path;
+    Spectrum beta;
+    Walk walk;     // the present segment's
+    Walk flight;   // to come back to, from a shadow ray sent amid it
+    Spectrum T;    // of the shadow ray so far
+    Spectrum lit;  // throughput of what it lights,
+    vec3 position; // and where that is
+    uint todo;
+    uint resume; // what to do after the shadow ray
+    uint steps;  // of the segment
+};
+
+// What the shadow ray lights, and from where. At collisions that is the path's own vertex, and need not be kept.
+Spectrum lit_beta(Lane lane) {
+    return NEE == NEE_TENTATIVE ? lane.lit : lane.beta;
+}
+vec3 looking_from(Lane lane) {
+    return NEE == NEE_TENTATIVE ? lane.position : lane.path.position;
+}
+uint after_looking(Lane lane) {
+    return NEE == NEE_TENTATIVE ? lane.resume : SCATTERING == SCATTERING_SINGLE ? TODO_END : TODO_DEPART;
+}
+
+void suspend(uint slot, Lane lane) {
+    paths[slot] = lane.path;
+    betas[slot] = lane.beta;
+    if (lane.path.suspended == 0u)
+        return;
+    suspended[slot].walk = kept(lane.walk);
+    suspended[slot].todo = lane.todo;
+    suspended[slot].steps = lane.steps;
+    if (LOOKS)
+        suspended[slot].T = vec3(lane.T);
+    if (LOOKS && NEE == NEE_TENTATIVE) {
+        suspended[slot].flight = kept(lane.flight);
+        suspended[slot].lit = vec3(lane.lit);
+        suspended[slot].position = lane.position;
+        suspended[slot].resume = lane.resume;
+    }
+}
+
+void resume(uint slot, inout Lane lane) {
+    lane.path = paths[slot];
+    lane.todo = TODO_DEPART;
+    lane.beta = to_spectrum(vec3(1.0));
+    if (lane.path.depth != 0u || lane.path.suspended != 0u)
+        lane.beta = betas[slot];
+    // At most once. A loop and no `if`, since software drivers carry out both sides of an `if`, here some 70 loads.
+    while (lane.path.suspended != 0u) {
+        lane.path.suspended = 0u;
+        lane.walk = kept(suspended[slot].walk);
+        lane.todo = suspended[slot].todo;
+        lane.steps = suspended[slot].steps;
+        if (LOOKS)
+            lane.T = to_spectrum(suspended[slot].T);
+        if (LOOKS && NEE == NEE_TENTATIVE) {
+            lane.flight = kept(suspended[slot].flight);
+            lane.lit = to_spectrum(suspended[slot].lit);
+            lane.position = suspended[slot].position;
+            lane.resume = suspended[slot].resume;
+        }
+    }
+}
 
 // Russian roulette on the throughput: unbiased, survivors are raised to the threshold.
-bool survives(inout float beta, float u) {
-    if (beta >= frame.roulette_threshold)
+bool survives(inout Spectrum beta, float u) {
+    float m = largest(beta);
+    if (m >= frame.roulette_threshold)
         return true;
-    bool alive = u * frame.roulette_threshold < beta;
-    beta = frame.roulette_threshold;
+    bool alive = u * frame.roulette_threshold < m;
+    beta *= alive ? frame.roulette_threshold / m : 0.0;
     return alive;
 }
 
-// The walk along the volume's part of a ray from a vertex or the camera; `t_enter` is where that part begins.
-Walk begin_segment(VolumeParams v, vec3 position, vec3 direction, float tau, out float t_enter) {
-    Ray ray = to_medium(v, position, direction);
-    vec2 t;
-    if (!intersect_volume(v, ray, t))
-        t = vec2(0.0); // a vertex on the boundary, heading out
-    t_enter = t.x;
-    return begin_walk(v, ray, t, tau);
+// Emission along what was just flown, by one sample: a track-length estimate.
+vec3 emission_along(VolumeParams v, Spectrum beta, float from, Walk w, PathState path, inout Rng rng) {
+    uvec4 words = next_words(rng);
+    float t = mix(from, w.t, to_uniform(words).x);
+    float sigma_t = v.sigma_t * density(v, w.origin + t * w.direction, to_tap(words));
+    vec3 Le = emitted_radiance(v.emission, path.position + (w.start + t) * path.direction);
+    return beta * (w.t - from) * sigma_t * to_spectrum(v.sigma_ratio) * Le;
 }
 
-// Homogeneous: the transmittance to the light is known at once.
-vec3 analytic_sun(VolumeParams v, PathState path) {
-    vec2 t;
-    if (!intersect_volume(v, to_medium(v, path.position, frame.light.direction), t))
-        t.y = 0.0;
-    return sun_contribution(v, frame.light, path.direction, path.beta) * analytic_transmittance(v, t.y);
-}
-
-uint step_segment(VolumeParams v, inout Walk walk, inout Rng rng, bool seeing, inout float T, inout Tally tally) {
-    if (FREE_FLIGHT == FREE_FLIGHT_ANALYTIC) {
-        uint flown = analytic_flight(v, walk);
-        tally.real_collisions += flown == EVENT_COLLIDED ? 1u : 0u;
-        return flown;
+// One step of the lane's segment, flight or shadow ray; the next part follows one that ends.
+uint step_segment(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum deposit, inout Tally tally) {
+    bool seeing = LOOKS && lane.todo == TODO_SEE;
+    uint event = EVENT_MOVING;
+    deposit = to_spectrum(vec3(0.0));
+    Collision c = Collision(0.0, 1.0, 0.0, 0.0, 0.0);
+    if ((NULL_FLIGHT && NULL_TRANSMITTANCE) || (seeing ? NULL_TRANSMITTANCE : NULL_FLIGHT))
+        event = next_collision(v, seeing, lane.walk, rng, tally, c);
+    if (seeing) {
+        bool opaque;
+        event = see(v, c, event, lane.walk, rng, lane.T, opaque, tally);
+        event = opaque ? EVENT_OPAQUE : event;
+    } else {
+        float from = lane.walk.t;
+        Spectrum before = lane.beta;
+        event = fly(v, c, event, lane.walk, rng, lane.beta, deposit, tally);
+        if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS && !goes_through())
+            lane.path.radiance += emission_along(v, before, from - c.flown, lane.walk, lane.path, rng);
     }
-    Collision c;
-    uint event = next_collision(v, walk, rng, tally, c);
-    if (event == EVENT_COLLIDED)
-        event = seeing ? resolve_transmittance(c, T, tally) : resolve_flight(c, tally);
+    if (SHAPE == SHAPE_MESH && event == EVENT_LEFT)
+        event = next_part(v, seeing ? looking_from(lane) : lane.path.position,
+                          seeing ? frame.light.direction : lane.path.direction, seeing, lane.walk);
     return event;
+}
+
+// Light at a point that an interaction of throughput `lit` there scatters into the path. Known at once in a homogeneous
+// medium, else the lane goes to look, and then does as `next` says.
+void gather_light(VolumeParams v, vec3 position, Spectrum lit, uint next, inout Lane lane) {
+    if (LOOKS) {
+        lane.position = position;
+        lane.lit = lit;
+        lane.resume = next;
+        lane.todo = TODO_LOOK;
+    } else {
+        Spectrum T = analytic_shadow(v, position, frame.light.direction);
+        lane.path.radiance += sun_contribution(v, frame.light, lane.path.direction, lit * T);
+        lane.todo = next;
+    }
+}
+
+// At a real collision: emission, absorption, light. Then the path departs, or ends.
+void collide(VolumeParams v, Spectrum deposit, inout Lane lane, inout Tally tally) {
+    lane.path.position += (lane.walk.start + lane.walk.t) * lane.path.direction;
+    if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_COLLISIONS)
+        lane.path.radiance += lane.beta * emitted_radiance(v.emission, lane.path.position);
+    lane.beta *= to_spectrum(v.albedo);
+    bool capped = SCATTERING != SCATTERING_NONE && lane.path.depth >= frame.max_depth;
+    tally.depth_caps += capped ? 1u : 0u;
+    lane.path.depth += 1u;
+    bool ended = capped || SCATTERING == SCATTERING_NONE || largest(lane.beta) == 0.0;
+    lane.todo = ended || SCATTERING == SCATTERING_SINGLE ? TODO_END : TODO_DEPART;
+    if (NEE != NEE_NONE && !ended) {
+        Spectrum lit = NEE == NEE_TENTATIVE ? deposit * to_spectrum(v.albedo) : lane.beta;
+        gather_light(v, lane.path.position, lit, lane.todo, lane);
+    }
+}
+
+// Amid a flight: a null collision, or a step of a march through.
+void touch(VolumeParams v, Spectrum deposit, inout Lane lane) {
+    vec3 position = lane.path.position + (lane.walk.start + lane.walk.at) * lane.path.direction;
+    uint next = TODO_FLY;
+    if (goes_through()) {
+        if (EMISSION != EMISSION_NONE)
+            lane.path.radiance += deposit * emitted_radiance(v.emission, position);
+        next = largest(lane.beta) == 0.0 ? TODO_END : TODO_FLY;
+    }
+    lane.todo = next;
+    if (NEE == NEE_TENTATIVE && lane.path.depth < frame.max_depth)
+        gather_light(v, position, deposit * to_spectrum(v.albedo), next, lane);
 }
 
 void main() {
     VolumeParams v = frame.volume;
-    Tally tally = Tally(0u, 0u, 0u, 0u, 0u, 0u, 0u);
+    Tally tally = NOTHING_SEEN;
     uint slot = 0u;
-    uint todo = TODO_TAKE;
-    PathState path;
     Rng rng;
-    Walk walk;
-    float t_enter = 0.0;
-    float T = 1.0;
-    uint segment_steps = 0u;
-    for (uint i = 0u; i < push.budget + push.step_limit; ++i) {
-        bool over_budget = i >= push.budget;
-        if (todo == TODO_DEPART && over_budget) {
-            path.draw = rng.draw;
-            paths[slot] = path;
-            push_item(QUEUE_TRACK, slot);
-            todo = TODO_TAKE;
-        }
-        if (todo == TODO_TAKE) {
-            if (over_budget || !pop_item(QUEUE_TRACK, slot))
+    Lane lane;
+    lane.todo = TODO_TAKE;
+    for (uint i = 0u; i < push.budget; ++i) {
+        if (lane.todo == TODO_TAKE) {
+            if (!pop_item(QUEUE_TRACK, slot))
                 break;
-            path = paths[slot];
-            rng = pixel_rng(path.pixel, path.sample_index, path.draw);
-            todo = TODO_DEPART;
+            resume(slot, lane);
+            rng = pixel_rng(lane.path.pixel, lane.path.sample_index, lane.path.draw);
         }
-        bool ended = false;
-        if (todo == TODO_DEPART || todo == TODO_LOOK) {
-            vec4 u = to_uniform(next_words(rng));
-            bool looks = NEE != NEE_NONE && todo == TODO_LOOK;
-            bool at_camera = path.depth == 0u;
+        if (lane.todo == TODO_DEPART || lane.todo == TODO_LOOK) {
+            bool looks = LOOKS && lane.todo == TODO_LOOK;
+            uvec4 words = next_words(rng);
+            vec4 u = to_uniform(words);
+            bool at_camera = !looks && lane.path.depth == 0u;
+            lane.todo = looks ? TODO_SEE : TODO_FLY;
             if (!looks && !at_camera) {
-                path.direction = hg_sample(v.g, path.direction, u.yz);
-                ended = !survives(path.beta, u.w);
+                lane.path.direction = hg_sample(v.g, lane.path.direction, u.yz);
+                lane.todo = survives(lane.beta, u.w) ? TODO_FLY : TODO_END;
             }
-            walk = begin_segment(v, path.position, looks ? frame.light.direction : path.direction,
-                                 to_exponential(at_camera ? u.z : u.x), t_enter);
-            todo = looks ? TODO_SEE : TODO_FLY;
+            if (NEE == NEE_TENTATIVE && looks)
+                lane.flight = lane.walk;
+            float e = to_exponential(at_camera ? u.z : u.x);
+            lane.walk.tau = looks ? e : begin_flight(v, lane.beta, e, to_tap(words).z);
+            lane.walk.depth = 0.0;
+            if (LOOKS && looks)
+                begin_transmittance(words, lane.walk);
+            begin_segment(v, looks ? looking_from(lane) : lane.path.position,
+                          looks ? frame.light.direction : lane.path.direction, looks, lane.walk);
             tally.shadow_rays += looks ? 1u : 0u;
-            T = 1.0;
-            segment_steps = 0u;
+            lane.T = to_spectrum(vec3(1.0));
+            lane.steps = 0u;
         }
-        bool seeing = NEE != NEE_NONE && todo == TODO_SEE;
-        uint event = ended ? EVENT_STOPPED : EVENT_MOVING;
-        for (int k = 0; k < STEPS && event == EVENT_MOVING; ++k)
-            event = step_segment(v, walk, rng, seeing, T, tally);
-        segment_steps += STEPS;
-        if (event == EVENT_MOVING && segment_steps >= push.step_limit) { // loses light, and is counted
-            tally.step_caps += 1u;
-            T = 0.0;
-            event = seeing ? EVENT_LEFT : EVENT_STOPPED;
-            ended = !seeing;
-        }
-        if (seeing && event == EVENT_LEFT) {
-            if (T != 0.0)
-                path.radiance += T * sun_contribution(v, frame.light, path.direction, path.beta);
-            todo = TODO_DEPART;
+        Spectrum deposit = to_spectrum(vec3(0.0));
+        uint event = EVENT_MOVING;
+        bool stepping = lane.todo == TODO_FLY || lane.todo == TODO_SEE;
+        for (int k = 0; k < STEPS && stepping && event == EVENT_MOVING; ++k)
+            event = step_segment(v, lane, rng, deposit, tally);
+        lane.steps += STEPS;
+        bool seeing = LOOKS && lane.todo == TODO_SEE;
+        bool cut = event == EVENT_MOVING && stepping && lane.steps >= push.step_limit;
+        tally.step_caps += cut ? 1u : 0u; // loses light, and is counted
+        if (seeing && (cut || event != EVENT_MOVING)) {
+            Spectrum T = event == EVENT_LEFT ? end_transmittance(v, lane.walk, lane.T) : to_spectrum(vec3(0.0));
+            lane.path.radiance += sun_contribution(v, frame.light, lane.path.direction, lit_beta(lane) * T);
+            lane.todo = after_looking(lane);
+            if (NEE == NEE_TENTATIVE)
+                lane.walk = lane.flight;
+        } else if (cut) {
+            lane.todo = TODO_END;
         } else if (event == EVENT_LEFT) {
-            path.radiance += path.beta * frame.background;
-            ended = true;
+            Spectrum beta = lane.beta;
+            if (!NULL_FLIGHT && !goes_through())
+                beta *= depth_weight(v, beta, lane.walk.depth, false);
+            lane.path.radiance += beta * frame.background;
+            lane.todo = TODO_END;
         } else if (event == EVENT_COLLIDED) {
-            path.position += (t_enter + walk.t) * path.direction;
-            if (EMISSION != EMISSION_NONE)
-                path.radiance += path.beta * emitted_radiance(v.emission, path.position);
-            path.beta *= v.albedo;
-            bool capped = path.depth >= frame.max_depth;
-            tally.depth_caps += capped ? 1u : 0u;
-            ended = capped || path.beta == 0.0;
-            path.depth += 1u;
-            if (NEE != NEE_NONE && TRANSMITTANCE == TRANSMITTANCE_ANALYTIC && !ended)
-                path.radiance += analytic_sun(v, path);
-            todo = NEE != NEE_NONE && TRANSMITTANCE != TRANSMITTANCE_ANALYTIC ? TODO_LOOK : TODO_DEPART;
+            collide(v, deposit, lane, tally);
+        } else if (event == EVENT_TOUCHED) {
+            touch(v, deposit, lane);
         }
-        if (ended) {
-            path.draw = rng.draw;
-            paths[slot] = path;
+        if (lane.todo == TODO_END) {
+            paths[slot].radiance = lane.path.radiance;
             push_item(QUEUE_ACCUMULATE, slot);
-            todo = TODO_TAKE;
+            lane.todo = TODO_TAKE;
         }
+    }
+    if (lane.todo != TODO_TAKE) {
+        lane.path.draw = rng.draw;
+        lane.path.suspended = lane.todo == TODO_DEPART ? 0u : 1u;
+        suspend(slot, lane);
+        push_item(QUEUE_TRACK, slot);
     }
     add_tally(tally);
 }

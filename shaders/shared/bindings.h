@@ -14,28 +14,40 @@
 #define BINDING_COUNTERS 8    // Counters
 #define BINDING_WORK 9        // pixels of the batch that meet the medium
 #define BINDING_BLACKBODY 10  // vec3, BLACKBODY_ENTRIES colours evenly spaced in temperature
-#define BINDING_TEST_INPUT 11 // test kernels only
-#define BINDING_TEST_OUTPUT 12
-#define BINDING_COUNT 13
+#define BINDING_BETAS 11      // path throughput per slot: float, or vec3 in a medium of chromatic coefficients
+#define BINDING_CONTROLS 12   // ControlCell per majorant cell
+#define BINDING_TRIANGLES 13  // vec3, three corners per triangle, counterclockwise seen from without; render space
+#define BINDING_BVH 14        // BvhNode
+#define BINDING_SUSPENDED 15  // Suspended per slot
+#define BINDING_TEST_INPUT 16 // test kernels only
+#define BINDING_TEST_OUTPUT 17
+#define BINDING_COUNT 18
 
 #define WORKGROUP_SIZE 64
 
 // Specialization constants. What a scene lacks is false here and absent from its kernels.
-#define SPEC_MEDIUM 0
-#define SPEC_GRID_TYPE 1
-#define SPEC_FILTER 2
-#define SPEC_NEE 3
-#define SPEC_EMISSION 4
-#define SPEC_FREE_FLIGHT 5
-#define SPEC_TRANSMITTANCE 6
-#define SPEC_STEPS 7 // tracking steps between two looks at what they led to
-#define SPEC_TEMPERATURE_TYPE 8 // GRID_...
-#define SPEC_COUNT 9
+#define SPEC_SHAPE 0
+#define SPEC_FIELD 1
+#define SPEC_GRID_TYPE 2
+#define SPEC_FILTER 3
+#define SPEC_SCATTERING 4
+#define SPEC_NEE 5
+#define SPEC_EMISSION 6
+#define SPEC_EMISSION_AT 7
+#define SPEC_FREE_FLIGHT 8
+#define SPEC_TRANSMITTANCE 9
+#define SPEC_TEMPERATURE_TYPE 10 // GRID_...
+#define SPEC_STEPS 11            // tracking steps between two looks at what they led to
+#define SPEC_COUNT 12
 
-#define MEDIUM_NONE 0 // background only
-#define MEDIUM_SPHERE 1
-#define MEDIUM_BOX 2
-#define MEDIUM_GRID 3
+#define SHAPE_NONE 0 // background only
+#define SHAPE_SPHERE 1
+#define SHAPE_BOX 2 // of a grid too
+#define SHAPE_MESH 3
+
+#define FIELD_CONSTANT 0 // density 1
+#define FIELD_NOISE 1
+#define FIELD_GRID 2
 
 #define GRID_FLOAT 0
 #define GRID_FP4 1
@@ -47,19 +59,40 @@
 #define FILTER_TRILINEAR 1
 #define FILTER_STOCHASTIC 2
 
+#define SCATTERING_NONE 0   // absorption and emission only
+#define SCATTERING_SINGLE 1 // of the light, once; the background is seen through the medium but not scattered
+#define SCATTERING_MULTIPLE 2
+
 #define NEE_NONE 0
 #define NEE_COLLISIONS 1 // at real collisions
+#define NEE_TENTATIVE 2  // at every tentative collision, weighted by sigma_t / sigma_maj
 
 #define EMISSION_NONE 0
 #define EMISSION_CONSTANT 1
 #define EMISSION_COLOR 2     // and a colour times temperature
 #define EMISSION_BLACKBODY 3 // and a black body's colour at that temperature
 
+#define EMISSION_AT_COLLISIONS 0 // real ones
+#define EMISSION_AT_STEPS 1      // integrated along the flight, one sample per step
+
 #define FREE_FLIGHT_ANALYTIC 0
-#define FREE_FLIGHT_DELTA 1
+#define FREE_FLIGHT_REGULAR 1
+#define FREE_FLIGHT_MARCH 2
+#define FREE_FLIGHT_ADAPTIVE 3
+#define FREE_FLIGHT_DELTA 4
+#define FREE_FLIGHT_WEIGHTED 5
+#define FREE_FLIGHT_DECOMPOSITION 6
+#define FREE_FLIGHT_SPECTRAL 7
+#define FREE_FLIGHT_COUNT 8
 
 #define TRANSMITTANCE_ANALYTIC 0
-#define TRANSMITTANCE_RATIO 1
+#define TRANSMITTANCE_REGULAR 1
+#define TRANSMITTANCE_MARCH 2
+#define TRANSMITTANCE_DELTA 3
+#define TRANSMITTANCE_RATIO 4
+#define TRANSMITTANCE_RESIDUAL 5
+#define TRANSMITTANCE_TELESCOPING 6
+#define TRANSMITTANCE_COUNT 7
 
 // A slot is in exactly one queue, or held by a lane.
 #define QUEUE_GENERATE 0

@@ -5,16 +5,51 @@
 
 SHARED_BEGIN
 
-// A path in flight, kept only at vertices: the camera's, or a real collision. One slot per path.
+// A path in flight at its last vertex: the camera, or a real collision. One slot per path. Its throughput beta is in a
+// buffer of its own, since its type depends on the scene; at a collision it includes that collision's albedo.
 struct PathState {
     vec3 position;  // render space
     vec3 direction; // unit, of travel: the camera ray's, or that which led to this collision
     vec3 radiance;  // gathered so far
-    float beta;     // path throughput, > 0; at a collision it includes that collision's albedo
     uint pixel;     // index into the film, or NO_PIXEL
     uint sample_index;
     uint draw;      // random draws consumed; 0 at the camera, whose draw also holds the first free flight
     uint depth;     // scattering events, this one included; 0 at the camera
+    uint suspended; // 1: it has left the vertex, see Suspended
+};
+
+// A segment, free flight or shadow ray, as far as it has gone. Which fields mean something depends on the estimator.
+struct Walk {
+    vec3 origin;     // medium space, where the present part of the ray within the medium begins
+    vec3 direction;  // what one world unit of travel becomes in medium space
+    float start;     // of that part, from the vertex [world units]
+    float t_end;     // its length
+    float t;         // travelled in it
+    float at;        // where in it the last interaction was
+    float tau;       // optical depth left: of the majorant, or, where no collision is null, of the medium
+    float depth;     // density integrated so far, over all parts
+    float sigma_maj; // of the present cell [1 / world unit]
+    float control;   // control density of the present cell
+    ivec3 cell;      // majorant cell; the voxel in regular tracking
+    float dt;        // marches: length of a step
+    uint index;      // marches: the next step
+    uint level;      // telescoping: the refinement
+    uint residue;    // telescoping: which samples the coarser sums take
+    float offset;    // telescoping: of the samples in their steps
+    float coarse;    // telescoping: density integrated with half of the samples
+    float base;      // telescoping: with the coarsest set of samples
+};
+
+// A path laid aside amid a segment, when its lane's budget was spent.
+struct Suspended {
+    Walk walk;
+    Walk flight;  // to come back to from a shadow ray that was sent amid a flight
+    vec3 T;       // of the shadow ray so far
+    vec3 lit;     // throughput of what it lights
+    vec3 position; // where it began, render space
+    uint todo;
+    uint resume;
+    uint steps; // of the segment
 };
 
 // A ring of slot numbers. Items of queue q start at q * capacity; positions grow without end and wrap modulo the
@@ -47,7 +82,8 @@ struct Counters {
     uint paths;      // finished, including those that never met the medium
     uint real_collisions;
     uint null_collisions;
-    uint cells;   // majorant cells left
+    uint lookups; // of the density
+    uint cells;   // steps of a walk or march that were no collision
     uint shadow_rays;
     uint depth_caps;          // paths ended by maxDepth
     uint step_caps;           // flights ended by the step limit

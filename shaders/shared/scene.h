@@ -38,18 +38,56 @@ struct EmissionParams {
     float table_high;
 };
 
+// Where the density is procedural; see noise.glsl. Each octave has its own map, so that its offset can be wrapped to the
+// noise's period of 256 in double precision, however far the medium is from the world's origin.
+struct NoiseParams {
+    vec4 to_noise[16]; // per octave: w * position + xyz, render -> where its lattice has spacing 1
+    uint octaves;
+    float gain;
+    uvec4 permutation[16]; // of 0 to 255, as bytes, the first in the lowest
+};
+
+// A node of the bounding volume hierarchy over a mesh's triangles, in depth-first order; see mesh.glsl.
+struct BvhNode {
+    vec3 low;
+    uint skip; // the node to go to when the ray misses this one, or after a leaf; the number of nodes at the end
+    vec3 high;
+    uint leaf; // 0 for inner nodes; else first triangle * 8 + number of triangles
+};
+
+// A control density in a majorant cell and the bound of the rest: |density - control| <= residual.
+struct ControlCell {
+    float control;
+    float residual;
+};
+
+// How far a march goes at a time.
+struct MarchParams {
+    float step;         // world units
+    float shadow_step;  // of shadow rays, world units
+    float optical_step; // of adaptive marches: the majorant's optical depth
+    float jitter;       // 1: sample points anywhere in their step; 0: in its middle
+};
+
 // Medium space: index space for a grid, voxel centres at integers; the unit ball or the cube [-1, 1]^3 for shapes.
 struct VolumeParams {
     vec4 to_medium[3]; // rows of the affine map render -> medium
     vec3 bounds_min;   // medium space; where the filtered density can differ from 0
     vec3 bounds_max;
+    vec3 extent; // sphere, box, mesh: a point of medium space times this is one of render space
     GridParams density;
     ivec3 cell_dims; // majorant cells, the first begins at bounds_min
     float cell_size; // edge of a cell, voxels
-    float sigma_t;   // extinction at density 1 [1 / world unit], > 0
-    float albedo;    // sigma_s / sigma_t
+    float majorant;  // of the density, where there are no cells
+    float control;   // likewise a control density
+    float residual;  // and the bound of what differs from it
+    float sigma_t;   // extinction at density 1, of the channel where it is largest [1 / world unit], > 0
+    vec3 sigma_ratio; // of the channels to that, in [0, 1]
+    vec3 albedo;     // sigma_s / sigma_t
     float g;
     EmissionParams emission;
+    NoiseParams noise;
+    uint bvh_nodes; // of a mesh
 };
 
 struct LightParams {
@@ -61,6 +99,7 @@ struct FrameParams {
     CameraParams camera;
     VolumeParams volume;
     LightParams light;
+    MarchParams march;
     vec3 background;
     float roulette_threshold;
     uint max_depth;

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernel.glsl"
 
-#include "include/free_flight.glsl"
+#include "include/segment.glsl"
 TEST_IO(RayInput, FlightOutput)
 
 void main() {
@@ -11,22 +11,24 @@ void main() {
     if (i >= push.lanes)
         return;
     VolumeParams v = frame.volume;
-    Tally tally = Tally(0u, 0u, 0u, 0u, 0u, 0u, 0u);
-    Ray ray = to_medium(v, inputs[i].origin, inputs[i].direction);
+    Tally tally = NOTHING_SEEN;
     Rng rng = Rng(inputs[i].key, 0u, 0u, frame.seed);
-    vec2 t;
-    uint event = intersect_volume(v, ray, t) ? EVENT_MOVING : EVENT_LEFT;
-    Walk w = begin_walk(v, ray, event == EVENT_MOVING ? t : vec2(0.0), to_exponential(inputs[i].u));
-    for (uint k = 0u; k < push.step_limit && event == EVENT_MOVING; ++k) {
-        if (FREE_FLIGHT == FREE_FLIGHT_ANALYTIC) {
-            event = analytic_flight(v, w);
-        } else {
-            Collision c;
-            event = next_collision(v, w, rng, tally, c);
-            if (event == EVENT_COLLIDED)
-                event = resolve_flight(c, tally);
-        }
+    Spectrum beta = to_spectrum(inputs[i].beta);
+    Spectrum deposit;
+    Walk w;
+    w.tau = begin_flight(v, beta, to_exponential(inputs[i].u), inputs[i].select);
+    w.depth = 0.0;
+    begin_segment(v, inputs[i].origin, inputs[i].direction, false, w);
+    uint event = EVENT_MOVING;
+    for (uint k = 0u; k < push.step_limit && (event == EVENT_MOVING || event == EVENT_TOUCHED); ++k) {
+        Collision c = Collision(0.0, 1.0, 0.0, 0.0, 0.0);
+        event = NULL_FLIGHT ? next_collision(v, false, w, rng, tally, c) : EVENT_MOVING;
+        event = fly(v, c, event, w, rng, beta, deposit, tally);
+        if (SHAPE == SHAPE_MESH && event == EVENT_LEFT)
+            event = next_part(v, inputs[i].origin, inputs[i].direction, false, w);
     }
-    outputs[i] = FlightOutput(event, t.x + w.t, 0.0, tally.null_collisions);
+    if (event == EVENT_LEFT && !NULL_FLIGHT && !goes_through())
+        beta *= depth_weight(v, beta, w.depth, false);
+    outputs[i] = FlightOutput(event, w.start + w.t, vec3(beta), tally.null_collisions, tally.lookups);
     add_tally(tally);
 }

@@ -27,7 +27,17 @@ void put(vec4 v) {
     put(v.w);
 }
 
+void put(uvec4 v) {
+    put(v.x);
+    put(v.y);
+    put(v.z);
+    put(v.w);
+}
+
 #define path paths[1]
+#define laid_aside suspended[1]
+#define control_cell controls[1]
+#define bvh_node bvh[1]
 #define header queues[1]
 #define entry film[1]
 #define PUT(field) put(field);

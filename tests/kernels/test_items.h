@@ -28,8 +28,10 @@ struct DensityOutput {
 struct RayInput {
     vec3 origin;
     vec3 direction;
-    uint key; // of the random numbers
-    float u;  // of the first free flight
+    uint key;     // of the random numbers
+    float u;      // of the first free flight
+    float select; // of its channel
+    vec3 beta;
 };
 struct WalkStep {
     ivec3 cell; // passed in this step
@@ -40,9 +42,10 @@ struct WalkStep {
 };
 struct FlightOutput {
     uint event;
-    float t; // world units from the ray's origin
-    float T; // transmittance
+    float t;     // world units from the ray's origin
+    vec3 weight; // transmittance, or the throughput after a flight; of a grey medium thrice the same
     uint nulls;
+    uint lookups;
 };
 
 struct PhaseInput {
@@ -77,6 +80,26 @@ struct FilmInput {
     vec3 radiance; // added as it is if random is 0
     uint random;   // else as many times a number that differs each time
     uint first;    // key of the first
+};
+
+#define MESH_INTERVALS 16
+
+struct MeshInput {
+    vec3 origin;
+    vec3 direction; // unit
+};
+struct MeshOutput {
+    uint count;             // of intervals, also of those beyond the array's end
+    vec2 t[MESH_INTERVALS]; // in order
+    float total;            // length of all together
+};
+
+struct NoiseInput {
+    vec3 position; // render space
+};
+struct NoiseOutput {
+    float density;
+    float octave; // the first alone, before clamping
 };
 
 SHARED_END

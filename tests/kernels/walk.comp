@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernel.glsl"
 
-#include "include/majorant.glsl"
+#include "include/segment.glsl"
 TEST_IO(RayInput, WalkStep)
 
 void main() {
@@ -13,12 +13,14 @@ void main() {
     VolumeParams v = frame.volume;
     Ray ray = Ray(inputs[i].origin, inputs[i].direction);
     vec2 t;
-    uint event = intersect_volume(v, ray, t) ? EVENT_MOVING : EVENT_LEFT;
-    Walk w = begin_walk(v, ray, event == EVENT_MOVING ? t : vec2(0.0), 1.0e4);
+    uint event = next_interval(v, ray, 0.0, t) ? EVENT_MOVING : EVENT_LEFT;
+    Walk w;
+    w.tau = 1.0e4;
+    begin_part(v, ray, event == EVENT_MOVING ? t : vec2(0.0), false, w);
     for (uint k = 0u; k < push.step_limit; ++k) {
         bool moving = event == EVENT_MOVING;
         WalkStep record = WalkStep(w.cell, 0.0, w.sigma_maj, 0.0, event);
-        event = moving ? advance(v, w) : event;
+        event = moving ? advance(v, false, w) : event;
         record.t = t.x + w.t;
         record.tau = w.tau;
         record.event = moving ? event : NO_PIXEL;

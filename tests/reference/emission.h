@@ -22,7 +22,8 @@ struct Emission {
     vkvol::Rgb at(const glm::dvec3& world) const;
 };
 
-// `file` is the density field's; null for spheres and boxes. Without a temperature grid in it nothing glows but `Le`.
+// `file` is the density field's; null for other shapes than grids. Without a temperature grid in it nothing glows but
+// `Le`.
 Emission load_emission(const vkvol::Volume& volume, const vkvol::GridFile* file);
 
 } // namespace reference

@@ -1,34 +1,37 @@
 #include "free_flight.h"
 
+#include <stdexcept>
+
+#include "shaders/shared/bindings.h"
+
 namespace reference {
 
-std::optional<double> sample_collision(const Medium& medium, const Ray& ray, double flight, Rng& rng) {
-    const Interval inside = support(medium, ray);
-    if (inside.empty())
-        return {};
-    const Grid* grid = medium.grid();
-    if (!grid) {
-        const double t = inside.t0 + flight / medium.sigma_t;
-        return t < inside.t1 ? std::optional(t) : std::nullopt;
-    }
+bool depth_sampled(int free_flight) {
+    return free_flight == FREE_FLIGHT_ANALYTIC || free_flight == FREE_FLIGHT_REGULAR ||
+           free_flight == FREE_FLIGHT_MARCH || free_flight == FREE_FLIGHT_ADAPTIVE;
+}
 
-    const Ray index_ray = grid->to_index(ray);
-    MajorantWalk walk(*grid, index_ray, inside);
-    MajorantSegment segment;
-    double tau = flight; // majorant optical depth left until the next tentative collision
-    while (walk.next(segment)) {
-        const double sigma_maj = medium.sigma_t * segment.majorant;
-        double t = segment.t0;
-        while (tau < sigma_maj * (segment.t1 - t)) {
-            t += tau / sigma_maj;
-            const Draw draw = rng.next();
-            if (draw.y() * segment.majorant < medium.density(index_ray.at(t)))
-                return t;
-            tau = to_exponential(draw.x());
-        }
-        tau -= sigma_maj * (segment.t1 - t);
+Flight fly(const Medium& medium, int free_flight, const Ray& ray, double exponential, double select,
+           const vkvol::Rgb& beta, const vkvol::March& march, Rng& rng, const FlightEvents& events) {
+    const DepthSample sample(medium, exponential, select, beta);
+    switch (free_flight) {
+    case FREE_FLIGHT_ANALYTIC:
+        return analytic_flight(medium, ray, sample, events);
+    case FREE_FLIGHT_REGULAR:
+        return regular_flight(medium, ray, sample, events);
+    case FREE_FLIGHT_MARCH:
+        return march_flight(medium, ray, sample, march, false, rng, events);
+    case FREE_FLIGHT_ADAPTIVE:
+        return march_flight(medium, ray, sample, march, true, rng, events);
+    case FREE_FLIGHT_DELTA:
+    case FREE_FLIGHT_DECOMPOSITION:
+        return delta_flight(medium, ray, exponential, beta, rng, events);
+    case FREE_FLIGHT_WEIGHTED:
+        return weighted_flight(medium, ray, exponential, beta, rng, events);
+    case FREE_FLIGHT_SPECTRAL:
+        return spectral_flight(medium, ray, exponential, beta, rng, events);
     }
-    return {};
+    throw std::runtime_error("no such free flight");
 }
 
 } // namespace reference

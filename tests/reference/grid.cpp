@@ -90,17 +90,22 @@ void build_majorants(Grid& grid, int cell) {
     const glm::ivec3 extent = grid.size - 1; // of the support, in index units
     grid.cell = cell == one_cell ? std::max({extent.x, extent.y, extent.z}) : cell;
     grid.cells = (extent + grid.cell - 1) / grid.cell;
-    grid.majorants.assign(static_cast<std::size_t>(grid.cells.x) * grid.cells.y * grid.cells.z, 0.0f);
+    const std::size_t count = static_cast<std::size_t>(grid.cells.x) * grid.cells.y * grid.cells.z;
+    grid.majorants.assign(count, 0.0f);
+    grid.minorants.assign(count, std::numeric_limits<float>::infinity());
     for (int z = 0; z < grid.cells.z; ++z)
         for (int y = 0; y < grid.cells.y; ++y)
             for (int x = 0; x < grid.cells.x; ++x) {
                 // Every voxel that takes part in an interpolation inside the cell, both faces included.
                 const glm::ivec3 c(x, y, z), a = c * grid.cell, b = glm::min(a + grid.cell, extent);
-                float& bound = grid.majorants[offset(c, grid.cells)];
+                float& most = grid.majorants[offset(c, grid.cells)];
+                float& least = grid.minorants[offset(c, grid.cells)];
                 for (int k = a.z; k <= b.z; ++k)
                     for (int j = a.y; j <= b.y; ++j)
-                        for (int i = a.x; i <= b.x; ++i)
-                            bound = std::max(bound, grid.values[offset({i, j, k}, grid.size)]);
+                        for (int i = a.x; i <= b.x; ++i) {
+                            most = std::max(most, grid.values[offset({i, j, k}, grid.size)]);
+                            least = std::min(least, grid.values[offset({i, j, k}, grid.size)]);
+                        }
             }
 }
 
@@ -129,7 +134,8 @@ bool MajorantWalk::next(MajorantSegment& segment) {
             axis = a;
         }
     }
-    segment = {t_, std::clamp(exit, t_, end_), grid_.majorants[offset(cell_, grid_.cells)]};
+    const std::size_t i = offset(cell_, grid_.cells);
+    segment = {t_, std::clamp(exit, t_, end_), grid_.majorants[i], grid_.minorants[i]};
     t_ = segment.t1;
     cell_[axis] += ray_.direction[axis] > 0.0 ? 1 : -1;
     return true;

@@ -22,10 +22,10 @@ struct Grid {
     glm::dmat3 linear{1.0};
     glm::dvec3 translation{0.0};
 
-    // Cells of cell^3 index units from `lower` on, x fastest: upper bounds of the interpolated field.
+    // Cells of cell^3 index units from `lower` on, x fastest: upper and lower bounds of the interpolated field.
     int cell = 0;
     glm::ivec3 cells{0};
-    std::vector<float> majorants;
+    std::vector<float> majorants, minorants;
 
     bool empty() const { return values.empty(); }
     double voxel_length() const; // |det linear|^(1/3), world units
@@ -56,6 +56,7 @@ void build_majorants(Grid& grid, int cell);
 struct MajorantSegment {
     double t0, t1;
     double majorant; // >= the field anywhere on the segment
+    double minorant; // <= it
 };
 
 class MajorantWalk {
@@ -65,7 +66,7 @@ public:
 
 private:
     const Grid& grid_;
-    const Ray& ray_;
+    Ray ray_;
     double t_, end_;
     glm::ivec3 cell_;
 };

@@ -1,29 +1,52 @@
 // A volume ready for tracking: shape, density field and coefficients in world units.
 #pragma once
 
+#include <optional>
 #include <variant>
+#include <vector>
 
 #include "emission.h"
+#include "mesh.h"
+#include "noise.h"
 
 namespace reference {
 
 struct Medium {
-    std::variant<vkvol::Sphere, vkvol::Box, Grid> shape;
-    double sigma_t = 0.0; // extinction at density 1 [1/world unit], density_scale included
-    double albedo = 0.0;
+    std::variant<vkvol::Sphere, vkvol::Box, Mesh, Grid> shape;
+    std::optional<vkvol::Noise> noise; // the density, but for grids; none: 1
+    vkvol::Rgb sigma_t{0.0};           // extinction at density 1 [1/world unit], density_scale included
+    vkvol::Rgb albedo{0.0};
     double g = 0.0;
     Emission emission;
     vkvol::Filter filter = vkvol::Filter::trilinear;
+    double majorant_scale = 1.0;
 
-    const Grid* grid() const { return std::get_if<Grid>(&shape); } // null where the density is 1 throughout
-    double density(const glm::dvec3& index) const;                 // of the grid, at index coordinates
+    const Grid* grid() const { return std::get_if<Grid>(&shape); }
+    bool homogeneous() const { return !grid() && !noise; } // density 1 throughout
+    double density(const glm::dvec3& p) const;             // at index coordinates of a grid, else in world space
+
+    double largest() const; // of sigma_t's channels
+    bool grey() const { return sigma_t == vkvol::Rgb(sigma_t.x); }
 };
 
-// `stochastic` filtering has the expectation of trilinear, and is taken as trilinear.
-Medium load(const vkvol::Volume& volume, vkvol::Filter filter = vkvol::Filter::trilinear);
-Medium with_grid(Grid grid, const vkvol::Volume& volume, vkvol::Filter filter = vkvol::Filter::trilinear);
+// `stochastic` filtering has the expectation of trilinear, and is taken as trilinear, as is none.
+Medium load(const vkvol::Volume& volume, std::optional<vkvol::Filter> filter = {});
+Medium with_grid(Grid grid, const vkvol::Volume& volume, std::optional<vkvol::Filter> filter = {});
 
-// The part of a world-space ray, t >= 0, where the density can be other than 0.
-Interval support(const Medium& medium, const Ray& ray);
+// The parts of a world-space ray, t >= 0, where the density can be other than 0, in order.
+std::vector<Interval> support(const Medium& medium, const Ray& ray);
+
+// The density along a world-space ray.
+class DensityAlong {
+public:
+    DensityAlong(const Medium& medium, const Ray& ray)
+        : medium_(medium), ray_(medium.grid() ? medium.grid()->to_index(ray) : ray) {}
+    double operator()(double t) const { return medium_.density(ray_.at(t)); }
+    const Ray& ray() const { return ray_; } // in index space for a grid
+
+private:
+    const Medium& medium_;
+    Ray ray_;
+};
 
 } // namespace reference

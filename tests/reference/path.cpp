@@ -1,77 +1,113 @@
 #include "path.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "camera.h"
 #include "free_flight.h"
 #include "phase.h"
+#include "shaders/shared/bindings.h"
 #include "transmittance.h"
 
 namespace reference {
 
 using vkvol::Rgb;
 
-namespace {
-
-// Shadow rays lose their weight in dense media slowly; below this transmittance roulette ends most of them.
-constexpr double shadow_roulette_threshold = 0.1;
-
-// Radiance scattered into the path at p from all directional lights.
 Rgb direct_light(const World& world, const glm::dvec3& p, const glm::dvec3& travel, Rng& rng) {
     const Medium& medium = *world.medium;
     Rgb Ld(0.0);
     for (const vkvol::DirectionalLight& light : world.scene.lights) {
         // Light travels along -light.direction and leaves along -travel: their cosine is dot(direction, travel).
         const double mu = glm::dot(light.direction, travel);
-        const double T = ratio_transmittance(medium, {p, light.direction}, rng, shadow_roulette_threshold);
-        Ld += medium.albedo * hg_eval(medium.g, mu) * T * light.irradiance;
+        const Rgb T =
+            estimate_transmittance(medium, world.method.transmittance, {p, light.direction}, world.method.march, rng);
+        Ld += hg_eval(medium.g, mu) * T * light.irradiance;
     }
     return Ld;
 }
 
-} // namespace
+World make_world(const vkvol::Scene& scene, Medium medium) {
+    World world{scene, std::move(medium), {}};
+    world.medium->majorant_scale = scene.settings.majorant_scale;
+    world.method = resolve_method(scene, *world.medium);
+    return world;
+}
 
 World load_world(const vkvol::Scene& scene) {
     if (scene.volumes.size() > 1)
         throw std::runtime_error("the reference renders one volume");
-    const std::string& name = scene.settings.integrator;
-    if (!name.empty() && name != "deltaTracking" && name != "ratioTracking")
-        throw std::runtime_error("the reference knows deltaTracking and ratioTracking, not " + name);
-
-    World world{scene, std::nullopt, name == "ratioTracking" || (name.empty() && !scene.lights.empty())};
-    if (!scene.volumes.empty())
-        world.medium = load(scene.volumes.front(), scene.settings.filter);
-    return world;
+    if (scene.volumes.empty()) {
+        Medium nothing;
+        return {scene, std::nullopt, resolve_method(scene, nothing)};
+    }
+    Medium medium = load(preset_volume(scene.settings.integrator, scene.volumes.front()), scene.settings.filter);
+    if (auto* grid = std::get_if<Grid>(&medium.shape); grid && scene.settings.majorant_cell > 0)
+        build_majorants(*grid, scene.settings.majorant_cell);
+    return make_world(scene, std::move(medium));
 }
 
-Rgb radiance(const World& world, Ray ray, double flight, Rng& rng) {
-    const vkvol::RenderSettings& settings = world.scene.settings;
-    Rgb L(0.0);
-    double beta = 1.0; // throughput
-    for (std::uint32_t depth = 0;; ++depth) {
-        const auto t = world.medium ? sample_collision(*world.medium, ray, flight, rng) : std::nullopt;
-        if (!t)
-            return L + beta * world.scene.background;
+namespace {
 
-        const Medium& medium = *world.medium;
-        ray.origin = ray.at(*t);
-        L += beta * (1.0 - medium.albedo) * medium.emission.at(ray.origin);
-        if (settings.max_depth && depth == *settings.max_depth)
+// One free flight of a path of throughput beta; what it gathers on its way is added to L.
+Flight gathering_flight(const World& world, const Ray& ray, double exponential, double select, const Rgb& beta,
+                        bool lit, Rng& rng, Rgb& L) {
+    const Medium& medium = *world.medium;
+    const DensityAlong density(medium, ray);
+    FlightEvents events;
+    if (world.method.emission == EMISSION_AT_STEPS)
+        events.piece = [&](double t0, double t1, const Rgb& weight) {
+            const double t = t0 + rng.next().x() * (t1 - t0);
+            const Rgb emitted = medium.sigma_t * density(t) * (1.0 - medium.albedo) * medium.emission.at(ray.at(t));
+            L += weight * (t1 - t0) * emitted;
+        };
+    if (world.method.nee == NEE_TENTATIVE && lit)
+        events.tentative = [&](double t, const Rgb& weight) {
+            L += weight * medium.albedo * direct_light(world, ray.at(t), ray.direction, rng);
+        };
+    return fly(medium, world.method.free_flight, ray, exponential, select, beta, world.method.march, rng, events);
+}
+
+} // namespace
+
+Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng& rng) {
+    if (!world.medium)
+        return world.scene.background;
+    if (marches_through(world.method))
+        return march_through(world, ray, rng);
+    const Medium& medium = *world.medium;
+    const Method& method = world.method;
+    const vkvol::RenderSettings& settings = world.scene.settings;
+    Rgb L(0.0), beta(1.0); // radiance so far, throughput
+    for (std::uint32_t depth = 0;; ++depth) {
+        const bool last = method.scattering == SCATTERING_NONE || (settings.max_depth && depth == *settings.max_depth);
+        const Flight flight = gathering_flight(world, ray, exponential, select, beta, !last, rng, L);
+        beta = flight.beta;
+        if (!flight.t)
+            return L + beta * world.scene.background;
+        ray.origin = ray.at(*flight.t);
+        if (method.emission == EMISSION_AT_COLLISIONS)
+            L += beta * (1.0 - medium.albedo) * medium.emission.at(ray.origin);
+        if (last)
             return L;
-        if (world.nee)
+        beta *= medium.albedo;
+        if (method.nee == NEE_COLLISIONS)
             L += beta * direct_light(world, ray.origin, ray.direction, rng);
+        if (method.scattering == SCATTERING_SINGLE)
+            return L;
 
         const Draw draw = rng.next();
-        beta *= medium.albedo;
-        if (beta < settings.roulette_threshold) {
-            if (draw.w() * settings.roulette_threshold >= beta)
-                return L;
-            beta = settings.roulette_threshold;
-        }
-        if (beta == 0.0)
+        const double m = std::max({std::abs(beta.x), std::abs(beta.y), std::abs(beta.z)});
+        if (m == 0.0)
             return L;
+        if (m < settings.roulette_threshold) {
+            if (!(draw.w() * settings.roulette_threshold < m))
+                return L;
+            beta *= settings.roulette_threshold / m;
+        }
         ray.direction = hg_sample(medium.g, ray.direction, draw.y(), draw.z());
-        flight = to_exponential(draw.x());
+        exponential = to_exponential(draw.x());
+        select = draw.select();
     }
 }
 
@@ -79,7 +115,7 @@ Rgb trace_path(const World& world, int x, int y, std::uint32_t sample, std::uint
     Rng rng{static_cast<std::uint32_t>(x) | static_cast<std::uint32_t>(y) << 16, sample, seed};
     const Draw draw = rng.next();
     const Ray ray = camera_ray(world.scene.camera, world.scene.picture, x + draw.x(), y + draw.y());
-    return radiance(world, ray, to_exponential(draw.z()), rng);
+    return radiance(world, ray, to_exponential(draw.z()), draw.select(), rng);
 }
 
 } // namespace reference

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "medium.h"
+#include "method.h"
 #include "rng.h"
 
 namespace reference {
@@ -11,16 +12,27 @@ namespace reference {
 struct World {
     vkvol::Scene scene;
     std::optional<Medium> medium; // none: background only
-    bool nee = false;             // next-event estimation towards the lights at real collisions
+    Method method;
 };
 
-// Opens the scene's volume. Throws std::runtime_error for what the reference does not model.
+// Opens the scene's volume and resolves its integrator. Throws std::runtime_error for what the reference does not model
+// and for choices that do not go together.
 World load_world(const vkvol::Scene& scene);
+// Likewise, with a medium that is open already.
+World make_world(const vkvol::Scene& scene, Medium medium);
 
-// `flight`: unit exponential variate of the first free flight.
-vkvol::Rgb radiance(const World& world, Ray ray, double flight, Rng& rng);
+// `exponential`: unit exponential variate of the first free flight; `select`: chooses its channel.
+vkvol::Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng& rng);
 
 // One sample of pixel (x, y) of the picture.
 vkvol::Rgb trace_path(const World& world, int x, int y, std::uint32_t sample, std::uint32_t seed);
+
+// Radiance from all directional lights scattered at p into the path that travels along `travel`, per unit of scattered
+// throughput.
+vkvol::Rgb direct_light(const World& world, const glm::dvec3& p, const glm::dvec3& travel, Rng& rng);
+
+// Does a path of this method collide nowhere, and sum up what it passes?
+bool marches_through(const Method& method);
+vkvol::Rgb march_through(const World& world, const Ray& ray, Rng& rng);
 
 } // namespace reference

@@ -3,42 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <vector>
+#include <functional>
 
 #include "phase.h"
 
 namespace reference {
 
+using vkvol::Rgb;
+
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-// Where the density along the ray ceases to be a polynomial: the ends of the interval and the crossings of voxel cells.
-std::vector<double> breaks(const Medium& medium, const Ray& index_ray, const Interval& interval) {
-    std::vector<double> t{interval.t0, interval.t1};
-    const Grid& grid = *medium.grid();
-    const double shift = medium.filter == vkvol::Filter::nearest ? 0.5 : 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (index_ray.direction[axis] == 0.0)
-            continue;
-        for (int plane = 0; plane < grid.size[axis]; ++plane) {
-            const double position = grid.lower[axis] + plane + shift;
-            const double crossing = (position - index_ray.origin[axis]) / index_ray.direction[axis];
-            if (crossing > interval.t0 && crossing < interval.t1)
-                t.push_back(crossing);
-        }
-    }
-    std::sort(t.begin(), t.end());
-    return t;
-}
-
-// Optical depth over [a, b], which lies inside one voxel cell: two Gauss points.
-double cell_depth(const Medium& medium, const Ray& index_ray, double a, double b) {
-    const double middle = 0.5 * (a + b), half = 0.5 * (b - a), x = half / std::sqrt(3.0);
-    const double sum = medium.density(index_ray.at(middle - x)) + medium.density(index_ray.at(middle + x));
-    return medium.sigma_t * half * sum;
-}
 
 struct GaussPoint {
     double x, weight; // on [-1, 1]
@@ -49,61 +22,134 @@ constexpr std::array<GaussPoint, 5> gauss5{{{-0.9061798459386640, 0.236926885056
                                             {0.5384693101056831, 0.4786286704993665},
                                             {0.9061798459386640, 0.2369268850561891}}};
 
+// Where the ray crosses the planes x = `first` + k `spacing`, likewise y and z, within the interval.
+void add_crossings(std::vector<double>& t, const Ray& ray, const Interval& interval, const glm::dvec3& first,
+                   double spacing) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double d = ray.direction[axis];
+        if (d == 0.0)
+            continue;
+        const auto plane = [&](double at) { return (ray.origin[axis] + at * d - first[axis]) / spacing; };
+        const auto [low, high] = std::minmax({plane(interval.t0), plane(interval.t1)});
+        for (double k = std::ceil(low); k <= high; k += 1.0) {
+            const double crossing = (first[axis] + k * spacing - ray.origin[axis]) / d;
+            if (crossing > interval.t0 && crossing < interval.t1)
+                t.push_back(crossing);
+        }
+    }
+}
+
+// Integral over the ray of sigma_t T source(t), where `smooth` are the breaks of each interval.
+Rgb attenuated_integral(const Medium& medium, const Ray& ray, int panels,
+                        const std::function<std::vector<double>(const Interval&)>& smooth,
+                        const std::function<Rgb(double)>& source) {
+    const DensityAlong density(medium, ray);
+    const int cuts = medium.homogeneous() ? 64 * panels : panels;
+    Rgb integral(0.0);
+    double D = 0.0;
+    for (const Interval& interval : support(medium, ray)) {
+        const std::vector<double> t = smooth(interval);
+        for (std::size_t i = 0; i + 1 < t.size(); ++i) {
+            for (int cut = 0; cut < cuts; ++cut) {
+                const double length = (t[i + 1] - t[i]) / cuts, a = t[i] + cut * length, b = a + length;
+                for (const GaussPoint& point : gauss5) {
+                    const double s = 0.5 * (a + b) + 0.5 * length * point.x;
+                    const Rgb T = glm::exp(-medium.sigma_t * (D + piece_integral(medium, density, a, s)));
+                    integral += 0.5 * length * point.weight * density(s) * medium.sigma_t * T * source(s);
+                }
+                D += piece_integral(medium, density, a, b);
+            }
+        }
+    }
+    return integral;
+}
+
 } // namespace
 
+std::vector<double> breaks(const Medium& medium, const Ray& field_ray, const Interval& interval) {
+    std::vector<double> t{interval.t0, interval.t1};
+    if (const Grid* grid = medium.grid()) {
+        const double shift = medium.filter == vkvol::Filter::nearest ? 0.5 : 0.0;
+        add_crossings(t, field_ray, interval, glm::dvec3(grid->lower) + shift, 1.0);
+    } else if (medium.noise) {
+        double frequency = medium.noise->frequency;
+        for (int octave = 0; octave < medium.noise->octaves; ++octave, frequency *= medium.noise->lacunarity)
+            add_crossings(t, field_ray, interval, glm::dvec3(0.0), 1.0 / frequency);
+    }
+    std::sort(t.begin(), t.end());
+    return t;
+}
+
+double piece_integral(const Medium& medium, const DensityAlong& density, double a, double b) {
+    if (medium.homogeneous())
+        return b - a;
+    if (medium.grid()) {
+        const double middle = 0.5 * (a + b), half = 0.5 * (b - a), x = half / std::sqrt(3.0);
+        return half * (density(middle - x) + density(middle + x));
+    }
+    constexpr int panels = 4;
+    const double half = 0.5 * (b - a) / panels;
+    double sum = 0.0;
+    for (int panel = 0; panel < panels; ++panel)
+        for (const GaussPoint& point : gauss5)
+            sum += half * point.weight * density(a + (2 * panel + 1 + point.x) * half);
+    return sum;
+}
+
+double density_integral(const Medium& medium, const Ray& ray, double t0, double t1) {
+    const DensityAlong density(medium, ray);
+    double D = 0.0;
+    for (const Interval& part : support(medium, ray)) {
+        const Interval inside = clip(part, {t0, t1});
+        if (inside.empty())
+            continue;
+        const std::vector<double> t = breaks(medium, density.ray(), inside);
+        for (std::size_t i = 0; i + 1 < t.size(); ++i)
+            D += piece_integral(medium, density, t[i], t[i + 1]);
+    }
+    return D;
+}
+
 double optical_depth(const Medium& medium, const Ray& ray, double t0, double t1) {
-    const Interval inside = clip(support(medium, ray), {t0, t1});
-    if (inside.empty())
-        return 0.0;
-    if (!medium.grid())
-        return medium.sigma_t * inside.length();
-    const Ray index_ray = medium.grid()->to_index(ray);
-    const std::vector<double> t = breaks(medium, index_ray, inside);
-    double tau = 0.0;
-    for (std::size_t i = 0; i + 1 < t.size(); ++i)
-        tau += cell_depth(medium, index_ray, t[i], t[i + 1]);
-    return tau;
+    return medium.largest() * density_integral(medium, ray, t0, t1);
 }
 
 double transmittance_quadrature(const Medium& medium, const Ray& ray, double t0, double t1) {
     return std::exp(-optical_depth(medium, ray, t0, t1));
 }
 
-vkvol::Rgb single_scattering_quadrature(const Medium& medium, const vkvol::DirectionalLight& light, const Ray& ray,
-                                        int panels) {
-    const Interval inside = support(medium, ray);
-    if (inside.empty())
-        return vkvol::Rgb(0.0);
-    const Grid* grid = medium.grid();
-    const Ray index_ray = grid ? grid->to_index(ray) : ray;
-    const std::vector<double> t = grid ? breaks(medium, index_ray, inside) : std::vector{inside.t0, inside.t1};
-    const int cuts = grid ? panels : 64 * panels;
-    const auto sigma_t = [&](double s) { return medium.sigma_t * (grid ? medium.density(index_ray.at(s)) : 1.0); };
-    const auto depth = [&](double a, double b) {
-        return grid ? cell_depth(medium, index_ray, a, b) : medium.sigma_t * (b - a);
-    };
+Rgb chromatic_transmittance(const Medium& medium, const Ray& ray, double t0, double t1) {
+    return glm::exp(-medium.sigma_t * density_integral(medium, ray, t0, t1));
+}
 
-    double integral = 0.0, tau = 0.0;
-    for (std::size_t i = 0; i + 1 < t.size(); ++i) {
-        for (int cut = 0; cut < cuts; ++cut) {
-            const double a = t[i] + (t[i + 1] - t[i]) * cut / cuts, b = t[i] + (t[i + 1] - t[i]) * (cut + 1) / cuts;
-            for (const GaussPoint& point : gauss5) {
-                const double s = 0.5 * (a + b) + 0.5 * (b - a) * point.x;
-                const Ray to_light{ray.at(s), light.direction};
-                const double path = tau + depth(a, s) + optical_depth(medium, to_light, 0.0, infinity);
-                integral += 0.5 * (b - a) * point.weight * sigma_t(s) * std::exp(-path);
-            }
-            tau += depth(a, b);
-        }
-    }
+Rgb single_scattering_quadrature(const Medium& medium, const vkvol::DirectionalLight& light, const Ray& ray,
+                                 int panels) {
+    const Ray field_ray = DensityAlong(medium, ray).ray();
+    const Rgb integral = attenuated_integral(
+        medium, ray, panels, [&](const Interval& interval) { return breaks(medium, field_ray, interval); },
+        [&](double t) {
+            return chromatic_transmittance(medium, {ray.at(t), light.direction});
+        });
     const double mu = glm::dot(light.direction, ray.direction);
     return medium.albedo * hg_eval(medium.g, mu) * integral * light.irradiance;
 }
 
-vkvol::Rgb unscattered_quadrature(const Medium& medium, const vkvol::Rgb& background, const Ray& ray) {
-    // Albedo and Le are constant, so the integral of (1 - albedo) sigma_t T Le is (1 - albedo)(1 - T) Le.
-    const double tau = optical_depth(medium, ray, 0.0, infinity);
-    return -std::expm1(-tau) * (1.0 - medium.albedo) * medium.emission.constant + std::exp(-tau) * background;
+Rgb unscattered_quadrature(const Medium& medium, const Rgb& background, const Ray& ray, int panels) {
+    const Rgb tau = medium.sigma_t * density_integral(medium, ray), T = glm::exp(-tau);
+    const Rgb absorbed(-std::expm1(-tau.x), -std::expm1(-tau.y), -std::expm1(-tau.z));
+    const Emission& emission = medium.emission;
+    if (emission.grid.empty()) // the integral of (1 - albedo) sigma_t T Le with constant albedo and Le
+        return absorbed * (1.0 - medium.albedo) * emission.constant + T * background;
+    const Ray field_ray = DensityAlong(medium, ray).ray(), emission_ray = emission.grid.to_index(ray);
+    const auto smooth = [&](const Interval& interval) {
+        std::vector<double> t = breaks(medium, field_ray, interval);
+        add_crossings(t, emission_ray, interval, glm::dvec3(0.0), 1.0);
+        std::sort(t.begin(), t.end());
+        return t;
+    };
+    return (1.0 - medium.albedo) *
+               attenuated_integral(medium, ray, panels, smooth, [&](double t) { return emission.at(ray.at(t)); }) +
+           T * background;
 }
 
 } // namespace reference

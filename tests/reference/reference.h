@@ -8,9 +8,11 @@
 #pragma once
 
 #include "camera.h"
+#include "cells.h"
 #include "closed_forms.h"
 #include "free_flight.h"
 #include "medium.h"
+#include "method.h"
 #include "path.h"
 #include "phase.h"
 #include "quadrature.h"

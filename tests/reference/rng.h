@@ -42,6 +42,9 @@ struct Draw {
         const std::uint32_t low_bytes = (words[0] & 255u) << 16 | (words[1] & 255u) << 8 | (words[2] & 255u);
         return glm::dvec3(words[2] >> 8, words[3] >> 8, low_bytes) * 0x1p-24;
     }
+
+    // One more number in [0, 1), that shares no bits with x() to w().
+    double select() const { return tap().z; }
 };
 
 struct Rng {

@@ -14,7 +14,7 @@ namespace vkvol {
 // What a kernel finds in the buffers besides its inputs.
 struct KernelScene {
     shared::FrameParams frame{};
-    const LoadedVolume* volume = nullptr; // grid, leaf table and majorants; null where the kernel looks up none
+    const LoadedVolume* volume = nullptr; // its grids, mesh and tables; null where the kernel looks up none
 };
 
 class KernelRunner {

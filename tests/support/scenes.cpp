@@ -90,8 +90,8 @@ GridRecipe cloud_grid(Storage storage) {
 Volume medium(decltype(Volume::shape) shape, double sigma_t, double albedo, double g) {
     Volume volume;
     volume.shape = std::move(shape);
-    volume.sigma_a = sigma_t * (1.0 - albedo);
-    volume.sigma_s = sigma_t * albedo;
+    volume.sigma_a = Rgb(sigma_t * (1.0 - albedo));
+    volume.sigma_s = Rgb(sigma_t * albedo);
     volume.unit = CoefficientUnit::world;
     volume.g = g;
     return volume;

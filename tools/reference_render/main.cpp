@@ -83,7 +83,7 @@ void run(const Arguments& arguments) {
 
     vkvol::write_exr(arguments.output, film,
                      {{"Software", std::string("vkvol reference_render")},
-                      {"vkvol/integrator", std::string(world.nee ? "ratioTracking" : "deltaTracking")},
+                      {"vkvol/integrator", world.method.name},
                       {"vkvol/spp", static_cast<int>(spp)},
                       {"vkvol/seed", static_cast<int>(arguments.seed)}});
     const double paths = static_cast<double>(film.pixel_count()) * spp;

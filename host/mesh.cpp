@@ -1,0 +1,172 @@
+#include "mesh.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <numeric>
+#include <tuple>
+
+#include "error.h"
+#include "obj_file.h"
+
+namespace vkvol {
+
+namespace {
+
+// Vertices at the same position become one. Triangles that lose a corner by that go: of their edges one is left, which
+// they run through both ways, so that their neighbours on either side fit each other. Triangles whose three corners lie
+// on a line stay, since they fill a gap between unlike edges; no ray meets them.
+void weld(ObjFile& obj) {
+    std::vector<std::uint32_t> order(obj.vertices.size()), welded(obj.vertices.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto key = [&](std::uint32_t i) {
+        const glm::dvec3 v = obj.vertices[i];
+        return std::tuple(v.x, v.y, v.z);
+    };
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    for (std::size_t i = 0; i < order.size(); ++i)
+        welded[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? welded[order[i - 1]] : order[i];
+    for (glm::uvec3& t : obj.triangles)
+        t = {welded[t.x], welded[t.y], welded[t.z]};
+    std::erase_if(obj.triangles, [](glm::uvec3 t) { return t.x == t.y || t.y == t.z || t.z == t.x; });
+}
+
+struct Edge {
+    std::uint32_t low, high; // vertices, low < high
+    std::uint32_t triangle;
+    bool forward; // run through from low to high
+    auto ends() const { return std::pair(low, high); }
+};
+
+std::vector<Edge> sorted_edges(const std::vector<glm::uvec3>& triangles) {
+    std::vector<Edge> edges;
+    edges.reserve(3 * triangles.size());
+    for (std::uint32_t i = 0; i < triangles.size(); ++i)
+        for (int corner = 0; corner < 3; ++corner) {
+            const std::uint32_t a = triangles[i][corner], b = triangles[i][(corner + 1) % 3];
+            edges.push_back({std::min(a, b), std::max(a, b), i, a < b});
+        }
+    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.ends() < b.ends(); });
+    return edges;
+}
+
+// Calls use(first, last) for every run of edges between the same two vertices.
+template <class Use> void for_each_edge(const std::vector<Edge>& edges, Use&& use) {
+    for (auto first = edges.begin(); first != edges.end();) {
+        const auto last = std::find_if(first, edges.end(), [&](const Edge& e) { return e.ends() != first->ends(); });
+        use(first, last);
+        first = last;
+    }
+}
+
+// Two triangles meet in an edge and run through it in opposite directions; where bodies touch it may be more, as many
+// one way as the other.
+void check_closed(const ObjFile& obj, const std::vector<Edge>& edges, const std::string& file) {
+    std::size_t open = 0, turned = 0;
+    const Edge* example = nullptr;
+    for_each_edge(edges, [&](auto first, auto last) {
+        const auto count = last - first;
+        const auto forward = std::count_if(first, last, [](const Edge& e) { return e.forward; });
+        if (2 * forward == count)
+            return;
+        const bool odd = count % 2 != 0;
+        if (!example || (odd && open == 0)) // rather an open edge than one between triangles that disagree
+            example = &*first;
+        ++(odd ? open : turned);
+    });
+    if (!example)
+        return;
+    const glm::dvec3 a = obj.vertices[example->low], b = obj.vertices[example->high];
+    const std::string place =
+        fmt::format("from ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})", a.x, a.y, a.z, b.x, b.y, b.z);
+    if (open > 0)
+        throw InputError(
+            fmt::format("{}: the surface is not closed: {} edges, one {}, do not join two faces; close the "
+                        "holes, e.g. in Blender by Select > All by Trait > Non Manifold, then Face > Fill",
+                        file, open, place));
+    throw InputError(fmt::format("{}: faces disagree about which side is outside along {} edges, one {}; make them "
+                                 "consistent, e.g. in Blender by Mesh > Normals > Recalculate Outside",
+                                 file, turned, place));
+}
+
+// Which body a triangle belongs to: a triangle of it. Triangles that share an edge are of one body.
+std::vector<std::uint32_t> find_bodies(std::size_t triangles, const std::vector<Edge>& edges) {
+    std::vector<std::uint32_t> parent(triangles);
+    std::iota(parent.begin(), parent.end(), 0u);
+    const auto root = [&](std::uint32_t i) {
+        while (parent[i] != i)
+            i = parent[i] = parent[parent[i]];
+        return i;
+    };
+    for_each_edge(edges, [&](auto first, auto last) {
+        for (auto other = first + 1; other != last; ++other)
+            parent[root(other->triangle)] = root(first->triangle);
+    });
+    for (std::uint32_t i = 0; i < triangles; ++i)
+        parent[i] = root(i);
+    return parent;
+}
+
+// Makes every body's volume positive, by the divergence theorem the sum of tetrahedra from any point: here a vertex of
+// its own, so that nothing large cancels far from the origin.
+void turn_outward(ObjFile& obj, const std::vector<std::uint32_t>& bodies) {
+    std::vector<double> volumes(obj.triangles.size(), 0.0); // those at the bodies' own numbers count
+    for (std::size_t i = 0; i < obj.triangles.size(); ++i) {
+        const glm::dvec3 apex = obj.vertices[obj.triangles[bodies[i]].x];
+        const glm::uvec3 t = obj.triangles[i];
+        const glm::dvec3 a = obj.vertices[t.x] - apex, b = obj.vertices[t.y] - apex, c = obj.vertices[t.z] - apex;
+        volumes[bodies[i]] += glm::dot(a, glm::cross(b, c));
+    }
+    for (std::size_t i = 0; i < obj.triangles.size(); ++i)
+        if (volumes[bodies[i]] < 0.0)
+            std::swap(obj.triangles[i].y, obj.triangles[i].z);
+}
+
+// Only the vertices that a triangle uses.
+void append(Mesh& mesh, const ObjFile& obj) {
+    constexpr std::uint32_t unused = ~0u;
+    std::vector<std::uint32_t> place(obj.vertices.size(), unused);
+    for (const glm::uvec3& t : obj.triangles) {
+        glm::uvec3 moved;
+        for (int corner = 0; corner < 3; ++corner) {
+            std::uint32_t& at = place[t[corner]];
+            if (at == unused) {
+                at = static_cast<std::uint32_t>(mesh.vertices.size());
+                mesh.vertices.push_back(obj.vertices[t[corner]]);
+            }
+            moved[corner] = at;
+        }
+        mesh.triangles.push_back(moved);
+    }
+}
+
+} // namespace
+
+Mesh load_mesh(const MeshFiles& files) {
+    if (files.paths.empty())
+        throw InputError("a mesh needs at least one .obj file; name it in the scene");
+    Mesh mesh;
+    bool first = true;
+    for (const std::filesystem::path& path : files.paths) {
+        ObjFile obj = read_obj(path);
+        const std::string file = path.string();
+        weld(obj);
+        if (obj.triangles.empty())
+            throw InputError(fmt::format("{}: all faces are degenerate; export the mesh again, at a scale at which its "
+                                         "vertices differ",
+                                         file));
+        const std::vector<Edge> edges = sorted_edges(obj.triangles);
+        check_closed(obj, edges, file);
+        turn_outward(obj, find_bodies(obj.triangles.size(), edges));
+        append(mesh, obj);
+        if (first)
+            mesh.diffuse = obj.diffuse;
+        if (obj.several_diffuse || obj.diffuse != mesh.diffuse)
+            mesh.warnings.push_back(fmt::format("{}: materials differ in Kd, but a medium has one albedo: that of the "
+                                                "first face is taken",
+                                                file));
+        first = false;
+    }
+    return mesh;
+}
+
+} // namespace vkvol

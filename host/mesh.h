@@ -1,0 +1,25 @@
+// Closed triangle meshes from Wavefront .obj files: the shape of a medium that fills them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene.h"
+
+namespace vkvol {
+
+// Every edge is run through as often one way as the other, so that the number of surfaces a ray leaves less those it
+// enters says how many bodies a point is inside of.
+struct Mesh {
+    std::vector<glm::dvec3> vertices;  // world space
+    std::vector<glm::uvec3> triangles; // counterclockwise seen from without
+    std::optional<Rgb> diffuse;        // Kd of the first face's material
+    std::vector<std::string> warnings; // what was understood but is not honoured
+};
+
+// Reads all files, with the .mtl files they name beside them, and welds equal positions within each. Bodies that are
+// inside out are turned. InputError for what is not closed, or not readable.
+Mesh load_mesh(const MeshFiles& files);
+
+} // namespace vkvol

@@ -1,0 +1,50 @@
+// From an integrator's name and the scene's own choices to the estimators that render it: what is meant, made possible.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene.h"
+
+namespace vkvol {
+
+// Where the mean of many samples is not the exact value; sums of these. What they depend on is in the scene hash.
+enum Bias : unsigned {
+    bias_none = 0,
+    bias_flight_steps = 1, // depends on March::step or ::optical_step, and jitter
+    bias_shadow_steps = 2, // depends on March::shadow_step and jitter
+    bias_majorant = 4      // depends on RenderSettings::majorant_scale
+};
+
+struct Method {
+    int scattering = 0;    // SCATTERING_...
+    int free_flight = 0;   // FREE_FLIGHT_...
+    int transmittance = 0; // TRANSMITTANCE_...; unused if nee is NEE_NONE
+    int nee = 0;           // NEE_...
+    int emission_at = 0;   // EMISSION_AT_...; a march through the medium adds emission step by step in either case
+    Filter filter = Filter::stochastic; // of grids
+    bool jitter = true;
+    bool material_colour = false;      // the mesh's diffuse colour, once loaded, takes the place of Volume::Le
+    std::string integrator;            // name and explicit choices, as on the command line
+    std::vector<std::string> warnings; // what was chosen explicitly and gave way
+    unsigned biases = bias_none;       // sum of Bias
+    std::string biased;                // why, in words; empty if unbiased
+};
+
+// A march (or, without scattering, one analytic step) through the whole medium that samples no collision.
+bool is_through(const Method& method);
+
+// FIELD_..., FIELD_CONSTANT without a volume.
+int density_kind(const Scene& scene);
+bool has_chromatic_extinction(const Scene& scene); // sigma_t differs between channels
+bool emits(const Scene& scene);                    // judged by coefficients: the temperature grid may be missing
+
+// `field`: FIELD_... Expects the scene of with_preset(). Throws InputError, with the remedy, for what cannot be.
+Method choose_method(const Scene& scene, int field, bool chromatic_extinction, bool emits);
+Method choose_method(const Scene& scene);
+
+// The scene as its integrator sees it, with warnings added. Applying it twice changes nothing more. Of
+// adjust_material_colour nothing is done here, since a mesh's colour is known only once it is loaded.
+Scene with_preset(Scene scene);
+
+} // namespace vkvol

@@ -1,0 +1,134 @@
+// The part of SceneReader that reads where the medium is, and its procedural density.
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "integrators.h"
+#include "scene_reader.h"
+
+namespace vkvol {
+
+// A grid from the command line takes the place of whatever is here.
+std::optional<Shape> SceneReader::shape(const std::string& integrator) const {
+    const XmlElement element = shape_element(integrator);
+    std::optional<Shape> shape;
+    if (element.exists() && element.name() == "sphere")
+        shape = sphere(element);
+    else if (element.exists() && element.name() == "box")
+        shape = box(element);
+    else if (element.exists() && element.name() == "models")
+        shape = mesh_files();
+    else if (element.exists())
+        shape = grid_file(element);
+    if (overrides_.grid) {
+        const GridFile* authored = shape ? std::get_if<GridFile>(&*shape) : nullptr;
+        shape = GridFile{*overrides_.grid, authored ? authored->grid : GridFile{}.grid};
+    }
+    return shape;
+}
+
+// The one densityField, sphere, box or models; missing if there is none, or one that asks for nothing. Between models
+// and a density field the original's integrators decided by what they could read, and so do they here.
+XmlElement SceneReader::shape_element(const std::string& integrator) const {
+    const Integrator* row = find_integrator(integrator);
+    const bool of_thesis = row && row->origin != Integrator::Origin::own;
+    XmlElement found(document_, {});
+    for (const char* name : {"densityField", "sphere", "box", "models"}) {
+        const XmlElement element = one(name);
+        if (!element.exists())
+            continue;
+        if (element.name() == "densityField") {
+            element.allow({"baseDir", "grid"}, true);
+            if (element.text().empty() && element.attribute("baseDir").empty())
+                continue;
+        }
+        if (element.name() == "models") {
+            element.allow({}, false, {"model"});
+            if (!document_.root().child("models").child("model"))
+                continue;
+            if (of_thesis && found.exists() && found.name() == "densityField") {
+                const bool takes_models = row->origin == Integrator::Origin::thesis_models;
+                const XmlElement& left_out = takes_models ? found : element;
+                left_out.warn(fmt::format("<{}> is left out: {} renders {}, as in the original renderer",
+                                          left_out.name(), integrator, takes_models ? "models" : "density fields"));
+                if (takes_models)
+                    found = element;
+                continue;
+            }
+        }
+        if (found.exists())
+            element.fail(fmt::format("a <{}> beside the <{}> at {}; a scene has one medium: remove one", name,
+                                     found.name(), found.place()));
+        found = element;
+    }
+    return found;
+}
+
+Sphere SceneReader::sphere(const XmlElement& element) const {
+    element.allow({"x", "y", "z", "radius"});
+    const auto number = [&](const char* name) { return element.attribute_number(name, 0.0, any_number); };
+    Sphere sphere;
+    sphere.center = {number("x"), number("y"), number("z")};
+    sphere.radius = element.attribute_number("radius", sphere.radius, positive);
+    return sphere;
+}
+
+Box SceneReader::box(const XmlElement& element) const {
+    element.allow({"x", "y", "z", "width", "height", "depth"});
+    const auto number = [&](const char* name) { return element.attribute_number(name, 0.0, any_number); };
+    const auto edge = [&](const char* name) { return element.attribute_number(name, 1.0, positive); };
+    return {{number("x"), number("y"), number("z")}, {edge("width"), edge("height"), edge("depth")}};
+}
+
+// baseDir is the folder of the named file, with either kind of slash; relative paths start from the scene file.
+std::filesystem::path SceneReader::file_path(const XmlElement& element, const char* example) const {
+    const std::string name = element.text();
+    if (name.empty())
+        element.fail(fmt::format("<{}> names no file; write one between the tags, e.g. {}", element.name(), example));
+    std::string path = element.attribute("baseDir");
+    if (!path.empty() && path.back() != '/' && path.back() != '\\')
+        path += '/';
+    path += name;
+    std::replace(path.begin(), path.end(), '\\', '/');
+    return (document_.file().parent_path() / path).lexically_normal();
+}
+
+GridFile SceneReader::grid_file(const XmlElement& element) const {
+    GridFile file;
+    file.path = file_path(element, "cloud.nvdb");
+    file.grid = element.attribute("grid", file.grid);
+    if (file.grid.empty())
+        element.fail_attribute("grid", "<densityField> grid: is empty; expected the name of a grid in the file");
+    return file;
+}
+
+// All models; the original kept the last one alone.
+MeshFiles SceneReader::mesh_files() const {
+    MeshFiles files;
+    for (const pugi::xml_node node : document_.root().child("models").children("model")) {
+        const XmlElement model(document_, node);
+        model.allow({"baseDir"}, true);
+        files.paths.push_back(file_path(model, "sphere.obj"));
+    }
+    return files;
+}
+
+std::optional<Noise> SceneReader::noise(bool is_grid) const {
+    const XmlElement element = one("noise");
+    if (!element.exists())
+        return std::nullopt;
+    element.allow({"frequency", "octaves", "gain", "lacunarity"});
+    Noise noise;
+    noise.frequency = element.attribute_number("frequency", noise.frequency, positive);
+    noise.octaves = static_cast<int>(element.attribute_integer("octaves", noise.octaves, 1, 16));
+    noise.gain = element.attribute_number("gain", noise.gain, {0, 1, true, true, "a number from 0 to 1"});
+    noise.lacunarity =
+        element.attribute_number("lacunarity", noise.lacunarity, {1, no_limit, true, true, "a number >= 1"});
+    if (!is_grid)
+        return noise;
+    if (!overrides_.grid)
+        element.fail("<noise> is for spheres, boxes and models, and a <densityField> has its own density; remove one");
+    element.warn("<noise> is left out: the density is that of --grid");
+    return std::nullopt;
+}
+
+} // namespace vkvol

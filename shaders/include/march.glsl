@@ -1,0 +1,53 @@
+// Steps of a march. Where collisions are sampled, one happens when the optical depth marched reaches the sampled one;
+// where the flight goes through (see goes_through), each step interacts with as much of the throughput as it takes away.
+// Biased: the density is taken to be constant along a step.
+#ifndef MARCH_GLSL
+#define MARCH_GLSL
+#include "channel.glsl"
+#include "density.glsl"
+#include "rng.glsl"
+#include "tally.glsl"
+
+const float MARCH_ROULETTE = 1.0e-3; // throughput below which a march through plays roulette: unbiased
+
+void begin_march(float step, inout Walk w) {
+    float steps = max(ceil(w.t_end / step), 1.0);
+    w.dt = w.t_end / steps;
+    w.index = 0u;
+}
+
+bool march_is_over(Walk w) {
+    return w.t >= w.t_end - 0.5 * w.dt;
+}
+
+float march_density(VolumeParams v, float t, vec3 tap, inout Walk w, inout Tally tally) {
+    w.at = t;
+    tally.lookups += 1u;
+    return density(v, w.origin + t * w.direction, tap);
+}
+
+// A step of length `dt` from w.t, in which the density is taken to be `rho`. `u` in [0, 1): roulette.
+uint march_step(VolumeParams v, float rho, float dt, float u, inout Walk w, inout Spectrum beta, out Spectrum deposit) {
+    deposit = to_spectrum(vec3(0.0));
+    if (goes_through()) {
+        Spectrum tau = v.sigma_t * rho * dt * to_spectrum(v.sigma_ratio);
+        deposit = beta * one_minus_exp(tau);
+        beta *= exp(-tau);
+        float m = largest(beta);
+        if (m < MARCH_ROULETTE)
+            beta *= u * MARCH_ROULETTE < m ? MARCH_ROULETTE / m : 0.0;
+        return rho > 0.0 ? EVENT_TOUCHED : EVENT_MOVING;
+    }
+    float tau = v.sigma_t * rho * dt;
+    if (w.tau < tau) {
+        w.t += dt * (w.tau / tau);
+        w.at = w.t;
+        w.depth += w.tau / v.sigma_t;
+        return EVENT_COLLIDED;
+    }
+    w.tau -= tau;
+    w.depth += rho * dt;
+    return EVENT_MOVING;
+}
+
+#endif

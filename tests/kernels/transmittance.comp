@@ -1,0 +1,45 @@
+// Estimates of the transmittance along rays, push.sample_end of each, by the estimator that SPEC_TRANSMITTANCE names.
+// Rays are in render space. The first flight's number is drawn too.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "kernel.glsl"
+
+#include "include/segment.glsl"
+TEST_IO(RayInput, FlightOutput)
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= push.lanes)
+        return;
+    VolumeParams v = frame.volume;
+    Tally tally = NOTHING_SEEN;
+    RayInput ray = inputs[i / push.sample_end];
+    Rng rng = Rng(ray.key, i % push.sample_end, 0u, frame.seed);
+    Spectrum T = to_spectrum(vec3(1.0));
+    Walk w;
+    uint event = EVENT_MOVING;
+    if (LOOKS) {
+        uvec4 words = next_words(rng);
+        w.tau = to_exponential(to_uniform(words).x);
+        begin_transmittance(words, w);
+        begin_segment(v, ray.origin, ray.direction, true, w);
+    } else {
+        T = analytic_shadow(v, ray.origin, ray.direction);
+        event = EVENT_LEFT;
+    }
+    bool opaque = false;
+    for (uint k = 0u; k < push.step_limit && event == EVENT_MOVING; ++k) {
+        Collision c = Collision(0.0, 1.0, 0.0, 0.0, 0.0);
+        if (NULL_TRANSMITTANCE)
+            event = next_collision(v, true, w, rng, tally, c);
+        event = see(v, c, event, w, rng, T, opaque, tally);
+        if (opaque)
+            event = EVENT_LEFT;
+        else if (SHAPE == SHAPE_MESH && event == EVENT_LEFT)
+            event = next_part(v, ray.origin, ray.direction, true, w);
+    }
+    if (LOOKS)
+        T = opaque ? to_spectrum(vec3(0.0)) : end_transmittance(v, w, T);
+    outputs[i] = FlightOutput(event, 0.0, vec3(T), tally.null_collisions, tally.lookups);
+    add_tally(tally);
+}
