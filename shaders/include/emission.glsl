@@ -1,6 +1,6 @@
 // Emission: the medium sends out sigma_a * density * Le per unit length, Le constant, or following a temperature grid.
 // Where density is 0 nothing is emitted, however hot. Estimated at real collisions, whose density is sigma_t * density:
-// each adds beta * (1 - albedo) * Le.
+// each adds beta * (1 - albedo) * Le; or along flights, by one sample per step.
 #ifndef EMISSION_GLSL
 #define EMISSION_GLSL
 #include "density.glsl"

@@ -6,11 +6,13 @@
 //   u_i   = (words_i >> 8) * 2^-24                     in [0, 1); distances come from -log(1 - u), at most 16.64
 //   tap   = ((words_z >> 8), (words_w >> 8), low bytes of words_x, words_y, words_z as one 24-bit number) * 2^-24
 //
-// Order of draws along a path; each draw yields four words:
-//   camera                 x, y: position in the pixel; z: first free flight
+// Order of draws along a path; each draw yields four words. `select` is tap.z: it chooses a colour channel.
+//   camera                 x, y: position in the pixel; z: first free flight; select
 //   tentative collision    x: next distance; y: event or roulette; tap: stochastic filtering
-//   shadow ray             x: first distance
-//   scattering             x: next free flight; y, z: phase function; w: roulette
+//   step of a march        x: position in the step; y: roulette of a march through the medium
+//   emission along a step  x: position in the step; after the step's own draw; none in an empty cell
+//   shadow ray             x: first distance; y, z, select: telescoping's level, offset and residue
+//   scattering             x: next free flight; y, z: phase function; w: roulette; select
 #ifndef RNG_GLSL
 #define RNG_GLSL
 

@@ -126,11 +126,12 @@ uint step_segment(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum d
         event = see(v, c, event, lane.walk, rng, lane.T, opaque, tally);
         event = opaque ? EVENT_OPAQUE : event;
     } else {
-        float from = lane.walk.t;
+        float from = lane.walk.t - c.flown; // a walk has gone its step already
         Spectrum before = lane.beta;
         event = fly(v, c, event, lane.walk, rng, lane.beta, deposit, tally);
-        if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS && !goes_through())
-            lane.path.radiance += emission_along(v, before, from - c.flown, lane.walk, lane.path, rng);
+        bool matter = !NULL_FLIGHT || c.sigma_maj > 0.0; // else the cell is empty
+        if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS && !goes_through() && matter)
+            lane.path.radiance += emission_along(v, before, from, lane.walk, lane.path, rng);
     }
     if (SHAPE == SHAPE_MESH && event == EVENT_LEFT)
         event = next_part(v, seeing ? looking_from(lane) : lane.path.position,
