@@ -26,7 +26,7 @@ const std::vector<Axis>& axes() {
          {"analytic", "regular", "march", "adaptive", "delta", "weighted", "decomposition", "spectral"}},
         {"transmittance",
          &AxisChoices::transmittance,
-         {"analytic", "regular", "march", "delta", "ratio", "residual", "telescoping"}},
+         {"analytic", "regular", "delta", "ratio", "residual", "march", "telescoping"}},
         {"nee", &AxisChoices::nee, {"none", "collisions", "tentative"}},
         {"emission", &AxisChoices::emission, {"collisions", "steps"}},
     };

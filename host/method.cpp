@@ -15,6 +15,10 @@ bool samples_null_collisions(int free_flight) {
     return free_flight >= FREE_FLIGHT_DELTA;
 }
 
+bool marches_shadows(int transmittance) {
+    return transmittance >= TRANSMITTANCE_MARCH;
+}
+
 bool marches(int free_flight) {
     return free_flight == FREE_FLIGHT_MARCH || free_flight == FREE_FLIGHT_ADAPTIVE;
 }
@@ -156,9 +160,8 @@ void Resolution::choose_emission() {
 // The stochastic filter is exact wherever the density enters linearly, which it does in null-collision estimators.
 void Resolution::choose_filter() {
     const int transmittance = method_.transmittance;
-    const bool linear_shadows = method_.nee == NEE_NONE || transmittance == TRANSMITTANCE_ANALYTIC ||
-                                transmittance == TRANSMITTANCE_DELTA || transmittance == TRANSMITTANCE_RATIO ||
-                                transmittance == TRANSMITTANCE_RESIDUAL;
+    const bool linear_shadows =
+        method_.nee == NEE_NONE || (transmittance != TRANSMITTANCE_REGULAR && !marches_shadows(transmittance));
     const bool linear = samples_null_collisions(method_.free_flight) && linear_shadows;
     if (field_ != FIELD_GRID || linear) {
         method_.filter = scene_.settings.filter.value_or(Filter::stochastic);

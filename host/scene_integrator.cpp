@@ -16,8 +16,7 @@ bool marches(const Method& method) {
 }
 
 bool marches_shadow_rays(const Method& method) {
-    return method.nee != NEE_NONE &&
-           (method.transmittance == TRANSMITTANCE_MARCH || method.transmittance == TRANSMITTANCE_TELESCOPING);
+    return method.nee != NEE_NONE && method.transmittance >= TRANSMITTANCE_MARCH;
 }
 
 } // namespace

@@ -22,10 +22,10 @@ layout(constant_id = SPEC_TEMPERATURE_TYPE) const int TEMPERATURE_TYPE = GRID_FL
 layout(constant_id = SPEC_STEPS) const int STEPS = 1;
 
 // Estimators that walk from one tentative collision to the next.
-const bool NULL_FLIGHT = FREE_FLIGHT == FREE_FLIGHT_DELTA || FREE_FLIGHT == FREE_FLIGHT_WEIGHTED ||
-                         FREE_FLIGHT == FREE_FLIGHT_DECOMPOSITION || FREE_FLIGHT == FREE_FLIGHT_SPECTRAL;
-const bool NULL_TRANSMITTANCE = TRANSMITTANCE == TRANSMITTANCE_DELTA || TRANSMITTANCE == TRANSMITTANCE_RATIO ||
-                                TRANSMITTANCE == TRANSMITTANCE_RESIDUAL;
+const bool NULL_FLIGHT = FREE_FLIGHT >= FREE_FLIGHT_DELTA;
+const bool NULL_TRANSMITTANCE = TRANSMITTANCE >= TRANSMITTANCE_DELTA && TRANSMITTANCE <= TRANSMITTANCE_RESIDUAL;
+const bool MARCHED_TRANSMITTANCE = TRANSMITTANCE >= TRANSMITTANCE_MARCH;
+
 // Where light scatters at most once a march samples no collision: it goes through and gathers along the ray. (A
 // function, since spirv-opt 2023.1 misorders some operations on constants.)
 bool goes_through() {

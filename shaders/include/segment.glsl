@@ -10,14 +10,13 @@ const bool LOOKS = NEE != NEE_NONE && TRANSMITTANCE != TRANSMITTANCE_ANALYTIC;
 
 // What the scene's estimators need of a walk that is laid aside. The rest is dropped, so that nothing computes it.
 Walk kept(Walk w) {
-    bool marches = FREE_FLIGHT == FREE_FLIGHT_MARCH || (LOOKS && (TRANSMITTANCE == TRANSMITTANCE_MARCH ||
-                                                                  TRANSMITTANCE == TRANSMITTANCE_TELESCOPING));
+    bool marches = FREE_FLIGHT == FREE_FLIGHT_MARCH || (LOOKS && MARCHED_TRANSMITTANCE);
     bool adds_depth = !NULL_FLIGHT || (LOOKS && !NULL_TRANSMITTANCE);
     bool walks = NULL_FLIGHT || FREE_FLIGHT == FREE_FLIGHT_ADAPTIVE || (LOOKS && NULL_TRANSMITTANCE);
     bool voxels = FREE_FLIGHT == FREE_FLIGHT_REGULAR || (LOOKS && TRANSMITTANCE == TRANSMITTANCE_REGULAR);
     bool controlled =
         FREE_FLIGHT == FREE_FLIGHT_DECOMPOSITION || (LOOKS && TRANSMITTANCE == TRANSMITTANCE_RESIDUAL);
-    bool telescopes = LOOKS && TRANSMITTANCE == TRANSMITTANCE_TELESCOPING;
+    bool marches_more = LOOKS && TRANSMITTANCE > TRANSMITTANCE_MARCH; // marches in several sets of samples
     w.at = 0.0; // set by every step
     if (!adds_depth)
         w.depth = 0.0;
@@ -31,7 +30,7 @@ Walk kept(Walk w) {
         w.dt = 0.0;
         w.index = 0u;
     }
-    if (!telescopes) {
+    if (!marches_more) {
         w.level = 0u;
         w.residue = 0u;
         w.offset = 0.0;

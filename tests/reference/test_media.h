@@ -37,6 +37,15 @@ struct RgbMean {
     }
 };
 
+// Of two estimates of the same, per channel; the largest |z|.
+inline double z_between(const RgbMean& a, const RgbMean& b) {
+    double worst = 0.0;
+    for (int i = 0; i < 3; ++i)
+        worst = std::max(worst, std::abs(a.channel[i].mean() - b.channel[i].mean()) /
+                                    std::hypot(a.channel[i].standard_error(), b.channel[i].standard_error()));
+    return worst;
+}
+
 inline double z_between(const Mean& a, const Mean& b) {
     return (a.mean() - b.mean()) / std::hypot(a.standard_error(), b.standard_error());
 }
@@ -97,8 +106,43 @@ inline RgbMean sample_pixel_rgb(const World& world, int count, std::uint32_t see
     return mean;
 }
 
+// The radiance along a ray whose first flight and channel are drawn as by the camera.
+inline RgbMean sample_ray(const World& world, const Ray& ray, int count, std::uint32_t seed) {
+    RgbMean mean;
+    for (int i = 0; i < count; ++i) {
+        Rng rng{0, std::uint32_t(i), seed};
+        const Draw first = rng.next();
+        mean.add(radiance(world, ray, to_exponential(first.z()), first.select(), rng));
+    }
+    return mean;
+}
+
 // Kinds of media that estimators must cope with, each with a ray through it of moderate optical depth.
-enum class Kind { rough_grid, chromatic_grid, noise_sphere, chromatic_noise, box };
+enum class Kind { rough_grid, chromatic_grid, noise_sphere, chromatic_noise, noise_mesh, box, chromatic_box };
+
+inline bool is_chromatic(Kind kind) {
+    return kind == Kind::chromatic_grid || kind == Kind::chromatic_noise || kind == Kind::chromatic_box;
+}
+
+inline bool is_grid(Kind kind) {
+    return kind == Kind::rough_grid || kind == Kind::chromatic_grid;
+}
+
+// Two bodies with a gap of 0.8 between them along z.
+inline Mesh two_boxes() {
+    Mesh mesh;
+    for (const double low : {-1.8, 0.4}) {
+        const auto corner = [&](int i) {
+            return glm::dvec3(i & 1 ? 1.5 : -1.5, i & 2 ? 1.5 : -1.5, i & 4 ? low + 1.4 : low);
+        };
+        const int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+        for (const auto& f : faces) {
+            mesh.triangles.push_back({corner(f[0]), corner(f[1]), corner(f[2])});
+            mesh.triangles.push_back({corner(f[0]), corner(f[2]), corner(f[3])});
+        }
+    }
+    return mesh;
+}
 
 struct Sample {
     Medium medium;
@@ -108,25 +152,27 @@ struct Sample {
 
 inline Sample make_sample(Kind kind, double majorant_scale = 1.0) {
     vkvol::Volume v = volume(0.2, 0.4);
-    const bool chromatic = kind == Kind::chromatic_grid || kind == Kind::chromatic_noise;
-    if (chromatic) {
+    if (is_chromatic(kind)) {
         v.sigma_a = {0.1, 0.3, 0.05};
         v.sigma_s = {0.4, 0.5, 0.2};
     }
     Sample sample;
-    if (kind == Kind::rough_grid || kind == Kind::chromatic_grid) {
+    if (is_grid(kind)) {
         Grid grid = random_grid(skewed);
         build_majorants(grid, 3);
         sample.medium = with_grid(std::move(grid), v);
         const glm::dvec3 d = glm::normalize(glm::dvec3(0.3, -0.5, 1.0));
         sample.ray = {skewed * glm::dvec3(3, 7, 5) - 10.0 * d, d};
     } else {
-        if (kind != Kind::box)
+        const bool constant = kind == Kind::box || kind == Kind::chromatic_box;
+        if (!constant)
             v.noise = vkvol::Noise{1.3, 3, 0.6, 2.1};
         v.shape = vkvol::Sphere{{0.2, 0.1, 0.0}, 1.7};
-        if (kind == Kind::box)
+        if (constant)
             v.shape = vkvol::Box{{0.2, 0.1, 0.0}, {2.0, 3.0, 2.5}};
         sample.medium = load(v);
+        if (kind == Kind::noise_mesh)
+            sample.medium.shape = two_boxes();
         sample.ray = {{0.4, -0.3, 5.0}, glm::normalize(glm::dvec3(0.02, 0.05, -1.0))};
     }
     sample.medium.majorant_scale = majorant_scale;
