@@ -190,7 +190,8 @@ void Resolution::find_biases() {
         add(bias_flight_steps, "flights take the density of one point for that of a whole step");
     else if (marches(method_.free_flight) && is_through(method_) && method_.nee != NEE_NONE)
         add(bias_flight_steps, "the march takes the light of one point for that of a whole step");
-    if (method_.nee != NEE_NONE && method_.transmittance == TRANSMITTANCE_MARCH && field_ != FIELD_CONSTANT)
+    if (method_.nee != NEE_NONE && marches_shadows(method_.transmittance) &&
+        method_.transmittance != TRANSMITTANCE_TELESCOPING && field_ != FIELD_CONSTANT)
         add(bias_shadow_steps, "shadow rays take the density of one point for that of a whole step");
     // The other null-collision estimators weight what exceeds the majorant.
     const bool needs_majorant = method_.free_flight == FREE_FLIGHT_DELTA ||

@@ -21,6 +21,7 @@ const float OPAQUE = 104.0;        // exp(-104) is 0 in single precision
 // Once per shadow ray; the words of its first draw.
 void begin_transmittance(uvec4 words, inout Walk w) {
     w.depth = 0.0;
+    w.coarse = 0.0;
     if (TRANSMITTANCE == TRANSMITTANCE_TELESCOPING)
         begin_telescoping(to_uniform(words), to_tap(words).z, w);
 }
@@ -31,10 +32,10 @@ void begin_transmittance_part(VolumeParams v, inout Walk w) {
         begin_cells(v, TRANSMITTANCE == TRANSMITTANCE_RESIDUAL, w);
     if (TRANSMITTANCE == TRANSMITTANCE_REGULAR)
         begin_voxels(v, w);
-    if (TRANSMITTANCE == TRANSMITTANCE_MARCH)
+    if (MARCHED_TRANSMITTANCE)
         begin_march(frame.march.shadow_step, w);
     if (TRANSMITTANCE == TRANSMITTANCE_TELESCOPING)
-        begin_telescoping_part(frame.march.shadow_step, w);
+        refine_march(w);
 }
 
 // One step of a shadow ray. Estimators with null collisions update T, 1 at the start; `event` is what the walk met, and

@@ -14,12 +14,10 @@ void begin_telescoping(vec4 u, float select, inout Walk w) {
     w.level = uint(log(1.0 - u.y) / TELESCOPING_LOG_Q); // at most 16, since u has 24 bits
     w.residue = uint(select * float(2u << w.level));
     w.offset = u.z;
-    w.coarse = 0.0;
     w.base = 0.0;
 }
 
-void begin_telescoping_part(float step, inout Walk w) {
-    begin_march(step, w);
+void refine_march(inout Walk w) {
     w.dt /= float(2u << w.level);
 }
 
