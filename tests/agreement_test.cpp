@@ -64,7 +64,7 @@ TEST_CASE("each estimator equals the reference's own", "[gpu][agreement]") {
             named.name != "noise in a mesh")
             continue;
         Scene scene = named.scene;
-        scene.settings.spp = 128;
+        scene.settings.spp = 256;
         for (const Combination& combination : unbiased_combinations(scene)) {
             const AxisChoices& c = combination.choices;
             const int usual = named.name == "chromatic cloud" ? FREE_FLIGHT_SPECTRAL : FREE_FLIGHT_DELTA;
@@ -79,6 +79,19 @@ TEST_CASE("each estimator equals the reference's own", "[gpu][agreement]") {
     }
 }
 
+TEST_CASE("marches equal the reference's of the same steps", "[gpu][agreement]") {
+    Scene scene = agreement_scenes()[6].scene; // the chromatic cloud
+    scene.settings.spp = 256;
+    scene.settings.march.step = 2.0;
+    const auto check = [&](int flight, int transmittance, const char* name) {
+        const Scene chosen = with(scene, {name, {{}, flight, transmittance, {}, {}}});
+        CHECK_AGREEMENT(agree(render_here(chosen, 7).film, render_reference(chosen, 8), name));
+    };
+    check(FREE_FLIGHT_MARCH, TRANSMITTANCE_RATIO, "march");
+    check(FREE_FLIGHT_ADAPTIVE, TRANSMITTANCE_RATIO, "adaptive march");
+    check(FREE_FLIGHT_SPECTRAL, TRANSMITTANCE_MARCH, "marched shadow rays");
+}
+
 TEST_CASE("marches through the medium scatter once", "[gpu][agreement]") {
     // Per pixel against the reference's marches; in the mean against paths that scatter once, which are exact, with
     // steps so small that the bias is below the noise. (Not per pixel: where a path of a hundred collides, the normal
@@ -87,11 +100,11 @@ TEST_CASE("marches through the medium scatter once", "[gpu][agreement]") {
         if (named.name == "noise in a mesh")
             continue;
         Scene scene = named.scene;
-        scene.settings.spp = 64;
+        scene.settings.spp = 128;
         scene.settings.integrator = "ratioTracking";
         scene.settings.choices.scattering = SCATTERING_SINGLE;
         const Film expected = render_here(scene, 1).film;
-        scene.settings.spp = 16;
+        scene.settings.spp = 32;
         scene.settings.choices.nee = NEE_TENTATIVE;
         scene.settings.march.unit = CoefficientUnit::world;
         scene.settings.march.step = 0.1;
