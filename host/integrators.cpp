@@ -26,7 +26,7 @@ const std::vector<Axis>& axes() {
          {"analytic", "regular", "march", "adaptive", "delta", "weighted", "decomposition", "spectral"}},
         {"transmittance",
          &AxisChoices::transmittance,
-         {"analytic", "regular", "delta", "ratio", "residual", "march", "telescoping"}},
+         {"analytic", "regular", "delta", "ratio", "residual", "march", "telescoping", "jackknife"}},
         {"nee", &AxisChoices::nee, {"none", "collisions", "tentative"}},
         {"emission", &AxisChoices::emission, {"collisions", "steps"}},
     };

@@ -90,6 +90,7 @@ TEST_CASE("marches equal the reference's of the same steps", "[gpu][agreement]")
     check(FREE_FLIGHT_MARCH, TRANSMITTANCE_RATIO, "march");
     check(FREE_FLIGHT_ADAPTIVE, TRANSMITTANCE_RATIO, "adaptive march");
     check(FREE_FLIGHT_SPECTRAL, TRANSMITTANCE_MARCH, "marched shadow rays");
+    check(FREE_FLIGHT_SPECTRAL, TRANSMITTANCE_JACKKNIFE, "jackknifed shadow rays");
 }
 
 TEST_CASE("marches through the medium scatter once", "[gpu][agreement]") {

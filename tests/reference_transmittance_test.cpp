@@ -101,6 +101,16 @@ TEST_CASE("telescoping estimates the transmittance without bias", "[cpu][referen
         CHECK(mean.channel[0].standard_error() < 1e-12);
 }
 
+TEST_CASE("the jackknife removes most of a march's bias", "[cpu][reference]") {
+    Sample sample = make_sample(Kind::rough_grid);
+    sample.march = steps(sample, 4, true);
+    const Rgb T = chromatic_transmittance(sample.medium, sample.ray);
+    const RgbMean mean = estimate(sample, TRANSMITTANCE_JACKKNIFE, 40000, 109);
+    const double bias = march_mean(sample, 4, true).x - T.x;
+    REQUIRE(bias > 8.0 * mean.channel[0].standard_error()); // Jensen: too bright
+    CHECK(std::abs(mean.channel[0].mean() - T.x) < 0.25 * bias + 4.0 * mean.channel[0].standard_error());
+}
+
 TEST_CASE("regular and analytic transmittance are exact", "[cpu][reference]") {
     const Kind kind = GENERATE(Kind::rough_grid, Kind::chromatic_grid, Kind::box, Kind::chromatic_box);
     const Sample sample = make_sample(kind);

@@ -9,6 +9,7 @@
 
 #include "transmittance/analytic.glsl"
 #include "transmittance/delta.glsl"
+#include "transmittance/jackknife.glsl"
 #include "transmittance/march.glsl"
 #include "transmittance/ratio.glsl"
 #include "transmittance/regular.glsl"
@@ -50,6 +51,9 @@ uint see(VolumeParams v, Collision c, uint event, inout Walk w, inout Rng rng, i
     case TRANSMITTANCE_MARCH:
         event = march_transmittance(v, w, rng, tally);
         break;
+    case TRANSMITTANCE_JACKKNIFE:
+        event = jackknife_transmittance(v, w, rng, tally);
+        break;
     case TRANSMITTANCE_TELESCOPING:
         event = telescoping_transmittance(v, w, tally);
         break;
@@ -79,6 +83,8 @@ Spectrum end_transmittance(VolumeParams v, Walk w, Spectrum T) {
     case TRANSMITTANCE_REGULAR:
     case TRANSMITTANCE_MARCH:
         return analytic_transmittance(v, w.depth);
+    case TRANSMITTANCE_JACKKNIFE:
+        return end_jackknife(v, w);
     case TRANSMITTANCE_TELESCOPING:
         return end_telescoping(v, w);
     default:

@@ -92,7 +92,8 @@
 #define TRANSMITTANCE_RESIDUAL 4
 #define TRANSMITTANCE_MARCH 5 // from here on by marches
 #define TRANSMITTANCE_TELESCOPING 6
-#define TRANSMITTANCE_COUNT 7
+#define TRANSMITTANCE_JACKKNIFE 7
+#define TRANSMITTANCE_COUNT 8
 
 // A slot is in exactly one queue, or held by a lane.
 #define QUEUE_GENERATE 0

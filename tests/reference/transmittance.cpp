@@ -134,6 +134,23 @@ Rgb telescoping_transmittance(const Medium& medium, const Ray& ray, double step,
     return T(base) + (T(fine) - T(coarse)) / probability;
 }
 
+// Two marches over the same steps; the jackknife removes what the variance of one adds to the mean of exp(-D).
+Rgb jackknife_transmittance(const Medium& medium, const Ray& ray, double step, Rng& rng) {
+    const DensityAlong density(medium, ray);
+    double first = 0.0, second = 0.0;
+    for (const Interval& interval : support(medium, ray)) {
+        const int n = step_count(interval, step);
+        const double length = interval.length() / n;
+        for (int k = 0; k < n; ++k) {
+            const Draw draw = rng.next();
+            first += length * density(interval.t0 + (k + draw.x()) * length);
+            second += length * density(interval.t0 + (k + draw.y()) * length);
+        }
+    }
+    const auto T = [&](double D) { return glm::exp(-medium.sigma_t * D); };
+    return 2.0 * T((first + second) / 2.0) - (T(first) + T(second)) / 2.0;
+}
+
 Rgb estimate_transmittance(const Medium& medium, int estimator, const Ray& ray, const vkvol::March& march, Rng& rng) {
     if (estimator == TRANSMITTANCE_ANALYTIC)
         return analytic_transmittance(medium, ray);
@@ -152,6 +169,8 @@ Rgb estimate_transmittance(const Medium& medium, int estimator, const Ray& ray, 
         return residual_transmittance(medium, ray, exponential, rng);
     case TRANSMITTANCE_TELESCOPING:
         return telescoping_transmittance(medium, ray, march.shadow_step, first);
+    case TRANSMITTANCE_JACKKNIFE:
+        return jackknife_transmittance(medium, ray, march.shadow_step, rng);
     }
     throw std::runtime_error("no such transmittance estimator");
 }
