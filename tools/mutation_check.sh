@@ -16,7 +16,7 @@ build=$work/build
 # name ~ file ~ text ~ replacement ~ tests (a Catch2 specification). "^" parts several texts and their replacements.
 mutations() {
     cat <<'END'
-albedo + 2 % ~ host/scene_upload.cpp ~ static_cast<float>(albedo); ~ static_cast<float>(1.02 * albedo); ~ [image]
+albedo + 2 % ~ host/scene_upload.cpp ~ params.albedo = albedo_of(volume); ~ params.albedo = 1.02 * albedo_of(volume); ~ [image]
 g sign in sampling ~ shaders/passes/track.comp ~ hg_sample(v.g, ~ hg_sample(-v.g, ~ [image]
 g sign toward the light ~ shaders/include/light.glsl ~ hg_from_peak(v.g, ~ hg_from_peak(-v.g, ~ [image]
 light direction reversed in phase ~ shaders/include/light.glsl ~ direction, light.direction) ~ direction, -light.direction) ~ [image]
@@ -24,17 +24,25 @@ light direction reversed in phase ~ shaders/include/light.glsl ~ direction, ligh
 majorant x 0.9 ~ host/majorant_grid.cpp ~ bound = std::max(bound, value); ~ bound = std::max(bound, 0.9f * value); ~ [image]
 majorant not dilated ~ host/majorant_grid.cpp ~ glm::max((relative - 1) / grid.cell, glm::ivec3(0)); ~ high; ~ [image]
 lookup half a voxel off ~ shaders/include/collision.glsl ~ w.origin + w.t * w.direction ~ w.origin + w.t * w.direction + 0.5 ~ [image]
-roulette weight missing ~ shaders/passes/track.comp ~ beta = frame.roulette_threshold; ~ ; ~ [image]
-shadow roulette weight missing ~ shaders/include/transmittance.glsl ~ sign(T) * SHADOW_ROULETTE ~ T ~ [image]
+roulette weight missing ~ shaders/passes/track.comp ~ frame.roulette_threshold / m : 0.0 ~ 1.0 : 0.0 ~ [image]
+shadow roulette weight missing ~ shaders/include/transmittance.glsl ~ SHADOW_ROULETTE / m : 0.0 ~ 1.0 : 0.0 ~ [image]
 last cell left out ~ shaders/include/majorant.glsl ~ inside != next; ~ inside != next || next + (next - w.cell) != clamp(next + (next - w.cell), ivec3(0), v.cell_dims - 1); ~ [image]
 film variance / n for / (n - 1) ~ host/renderer.cpp ~ / (n - 1.0) ~ / n ~ [determinism]
 voxel length inverted ~ host/scene_upload.cpp ~ sigma_t / field->voxel_size() ~ sigma_t * field->voxel_size() ~ [invariance]
 camera rows flipped ~ host/scene_upload.cpp ~ dy = -2.0 * s ^ dx, s + picture.start_y ~ dy = 2.0 * s ^ dx, -s + picture.start_y ~ [image]
 nearest lookup truncates ~ shaders/include/density.glsl ~ floor(p + 0.5) ~ floor(p) ~ [image]
 stochastic corner reversed ~ shaders/include/density.glsl ~ lessThan(tap, p - base) ~ greaterThan(tap, p - base) ~ [density]
-depth limit off by one ~ shaders/passes/track.comp ~ path.depth >= frame.max_depth ~ path.depth > frame.max_depth ~ [image]
-emission without its albedo ~ host/scene_upload.cpp ~ params.constant = (1.0 - albedo) * volume.Le ~ params.constant = volume.Le ~ [image]
+depth limit off by one ~ shaders/passes/track.comp ~ lane.path.depth >= frame.max_depth ~ lane.path.depth > frame.max_depth ~ [image]
+emission without its albedo ~ host/scene_upload.cpp ~ params.constant = (1.0 - albedo) * ~ params.constant = ~ [image]
 all samples the same ~ shaders/include/rng.glsl ~ rng.sample_index, rng.draw ~ 0u, rng.draw ~ [image]
+spectral weight missing ~ shaders/include/free_flight/spectral.glsl ~ max(P, 1.0e-30) ~ 1.0 ~ [agreement]
+weighted flight without sign ~ shaders/include/free_flight/weighted.glsl ~ sign(sigma_n) ~ 1.0 ~ [free_flight]
+channels not weighted ~ shaders/include/channel.glsl ~ density * total(abs(beta)) / mean ~ vec3(1.0) ~ [agreement]
+cubic through wrong values ~ shaders/include/voxels.glsl ~ -5.5 * f[0] + 9.0 * f[1] ~ -5.5 * f[0] + 8.9 * f[1] ~ [free_flight]
+telescoping with wrong chances ~ shaders/include/transmittance/telescoping.glsl ~ (1.0 - exp(TELESCOPING_LOG_Q)) * ~ 1.2 * (1.0 - exp(TELESCOPING_LOG_Q)) * ~ [transmittance]
+control density not seen ~ shaders/include/transmittance/residual.glsl ~ T *= exp(-c.sigma_c * c.flown * ratio); ~ ; ~ [transmittance]
+null collisions lit in full ~ shaders/include/free_flight.glsl ~ (c.sigma_t / c.sigma_maj) ~ 1.0 ~ [agreement]
+march without albedo ~ shaders/passes/track.comp ~ gather_light(v, position, deposit * to_spectrum(v.albedo), ~ gather_light(v, position, deposit, ~ [agreement]
 crop forgotten in random numbers ~ shaders/include/camera.glsl ~ frame.crop_x + pixel ~ pixel ~ [determinism]
 END
 }
