@@ -180,8 +180,8 @@ public:
         result_.specialization = describe(specialization, volume, chromatic);
         buffers_.emplace(device, commands_, volume);
         frame_ = make_frame(scene_, volume, method, job.crop, job.seed);
+        const Tuning tuning = tune(device, volume.bvh ? volume.bvh->nodes.size() : 0, job.tuning);
         volume = {};
-        const Tuning tuning = tune(device, specialization[SPEC_SHAPE], job.tuning);
         bands_ = make_bands(device, job.crop, tuning.most_film_bytes);
         for (const Band& band : bands_)
             commands_.fill(band.film, 0);

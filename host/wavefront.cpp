@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <future>
 #include <utility>
@@ -42,17 +43,26 @@ bool is_empty(const shared::QueueHeader& header) {
     return header.tail == header.limit && static_cast<std::int32_t>(header.limit - header.head) <= 0;
 }
 
+// llvmpipe leaves every loop of an invocation after 65535 iterations in all, without a word: what the iterations of a
+// budget loop over must stay below that. A ray meets some 4 sqrt(n) of the n nodes over a surface where it grazes it,
+// the lanes of a group together more, with a few triangles each; and an iteration may ask for several crossings. Should
+// it not be enough after all, the kernel counts a cap.
+std::uint32_t longest_budget(std::size_t mesh_nodes) {
+    if (mesh_nodes == 0)
+        return 1024;
+    const double per_iteration = 16.0 * (16.0 + 4.0 * std::sqrt(double(mesh_nodes)));
+    return static_cast<std::uint32_t>(std::clamp(65535.0 / per_iteration, 4.0, 1024.0));
+}
+
 } // namespace
 
-Tuning tune(const Device& device, int shape, const Tuning& wish) {
+Tuning tune(const Device& device, std::size_t mesh_nodes, const Tuning& wish) {
     const auto pick = [](auto wanted, auto usual) { return wanted != 0 ? wanted : usual; };
     Tuning tuning = wish;
-    // llvmpipe leaves every loop of an invocation after 65535 iterations in all, without a word: a budget is to stay
-    // well below that with all that its iterations loop over, a mesh's hierarchy above all.
     // A software driver wants its state in cache and few lanes that each do much; a GPU wants to be full.
     tuning.slots = pick(wish.slots, device.is_cpu() ? 8192u : 1u << 18);
     tuning.lanes = pick(wish.lanes, device.is_cpu() ? 512u : 1u << 17);
-    tuning.budget = pick(wish.budget, shape == SHAPE_MESH ? 32u : 1024u);
+    tuning.budget = pick(wish.budget, longest_budget(mesh_nodes));
     tuning.step_limit = pick(wish.step_limit, 1u << 26);
     tuning.steps_per_look = pick(wish.steps_per_look, 4u);
     tuning.most_film_bytes =

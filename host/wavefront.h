@@ -22,8 +22,8 @@ struct Tuning {
     std::uint64_t most_film_bytes = 0; // in one buffer; a larger film lies in several
 };
 
-// What suits the device and the shape; fields of `wish` that are not 0 win.
-Tuning tune(const Device& device, int shape, const Tuning& wish = {});
+// What suits the device and a mesh with that many nodes, 0 without one; fields of `wish` that are not 0 win.
+Tuning tune(const Device& device, std::size_t mesh_nodes, const Tuning& wish = {});
 
 // Places in each queue.
 std::uint32_t queue_capacity(const Tuning& tuning);

@@ -7,8 +7,8 @@ import os
 import sys
 
 CENTRE, RADIUS, SPLITS = (0.0, 0.5, 0.0), 2.5456, 2  # the original's, measured in its pictures and file
-MATERIAL = """# The original's material. A medium has no surface: Kd is the colour of the fog of densitySampling
-# (in vkvol: <medium r="0.8" g="0.1" b="0.5"/>), and d < 1 told its loader that the inside is visible.
+MATERIAL = """# The original's material. A medium has no surface: Kd is the colour of the fog of densitySampling,
+# and d < 1 told the original's loader that the inside is visible.
 newmtl SphereOnly
 Kd 0.8 0.1 0.5
 d 0.5

@@ -21,7 +21,7 @@ def options():
     parser.add_argument("--volumes", default=os.environ.get("VKVOL_VOLUMES"), metavar="DIR",
                         help="folder of real volumes, searched before density_fields (default: $VKVOL_VOLUMES)")
     parser.add_argument("--spp-scale", type=float, default=1, metavar="X", help="multiplies each figure's samples per pixel")
-    parser.add_argument("--size", type=int, default=240, metavar="N", help="pixels along the longer edge of a whole view")
+    parser.add_argument("--size", type=int, default=180, metavar="N", help="pixels along the longer edge of a picture")
     parser.add_argument("--out", default=os.path.join(ROOT, "out", "thesis"), metavar="DIR")
     parser.add_argument("--only", action="append", metavar="FIG", help="this figure alone, as 4.5; may be given again")
     parser.add_argument("--build", default=os.path.join(ROOT, "build"), metavar="DIR", help="where vkvol and make_field are")
@@ -66,12 +66,13 @@ def moved_scene(path, source, folder):
 
 
 def view_options(figure, path, source, chosen):
-    """The whole view has --size pixels along its longer edge. A stand-in that fills part of it is rendered in that part."""
+    """--size pixels along the longer edge. A stand-in that fills part of the view is rendered in that part."""
     tree = xml.parse(path)
     width, height = (int(tree.findtext(edge)) for edge in ("width", "height"))
-    scale = chosen.size / max(width, height)
-    view = ["--width", str(max(1, round(width * scale))), "--height", str(max(1, round(height * scale)))]
-    return view + (["--crop", figure.crop] if figure.crop and source and not source.original else [])
+    crop = figure.crop if figure.crop and source and not source.original else "0.0,1.0,0.0,1.0"
+    x0, x1, y0, y1 = (float(edge) for edge in crop.split(","))
+    scale = chosen.size / max(width * (x1 - x0), height * (y1 - y0))
+    return ["--width", str(max(1, round(width * scale))), "--height", str(max(1, round(height * scale))), "--crop", crop]
 
 
 def render(figure, panel, chosen):

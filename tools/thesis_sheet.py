@@ -48,7 +48,7 @@ class Figure:
     title: str
     panels: list
     field: str = ""
-    spp: int = 16
+    spp: int = 4  # light scattered once hardly has noise: these are for edges
     trend: str = ""  # what happens from panel to panel: darker or brighter
     crop: str = ""   # the part of the view that a stand-in fills
 
@@ -82,7 +82,7 @@ FIGURES = [
     Figure("4.6", "4.06-Improved-front.xml", "RayMarcherImproved, light in front", ASYMMETRIES, trend="brighter"),
     Figure("4.7", "4.07-Perlin.xml", "heterogeneousPerlinNoise", NOISE),
     Figure("4.8", "4.08-nanoVDBSimple-bunny.xml", "nanoVDBSimple", [DIRECTIONS[0], DIRECTIONS[2], DIRECTIONS[3]], "bunny"),
-    Figure("4.9", "4.09-nanoVDBEmission-fire.xml", "nanoVDBEmission", ONE, "fire", crop=FLAME),
+    Figure("4.9", "4.09-nanoVDBEmission-fire.xml", "nanoVDBEmission", ONE, "fire", 16, crop=FLAME),
     Figure("4.10", "4.10-deltaTracking-bunny.xml", "deltaTracking, sky alone", ONE, "bunny", 64),
     Figure("4.11", "4.11-deltaTracking-explosion.xml", "deltaTracking, sky alone", ONE, "fire", 64, crop=FLAME),
     Figure("4.12", "4.12-ratioTracking-bunny.xml", "ratioTracking, sun above", ONE, "bunny", 64),
@@ -90,7 +90,7 @@ FIGURES = [
     Figure("4.14", "4.14-pbrt-bunny.xml", "the view of PBRT's bunny", with_and_without("3"), "bunny", 64),
     Figure("4.15", "4.15-pbrt-explosion.xml", "the view of PBRT's explosion", with_and_without("9"), "fire", 64,
            crop="0.15,0.85,0.45,1.0"),
-    Figure("4.16", "4.16-bunny-behind.xml", "ratioTracking, sun behind", ONE, "bunny", 64),
+    Figure("4.16", "4.16-bunny-behind.xml", "ratioTracking, sun behind", ONE, "bunny", 128),
     Figure("4.17", "4.17-bunny-front.xml", "ratioTracking, sun in front", ONE, "bunny", 64),
     Figure("4.18", "4.18-explosion-below.xml", "ratioTracking, sun below", ONE, "fire", 64, crop=FLAME),
 ]
@@ -143,7 +143,8 @@ def row(size, spp, seconds):
 
 def print_tables(results):
     device = results[0]["report"]["device"]
-    print(f"\nOurs: {device['name']}, {device['driver']}; {os.cpu_count()} processors. The report's: i7-7700K, 8 threads, Windows 10.\n"
+    print(f"\nOurs: {device['name']}, {device['driver']}; {os.cpu_count()} processors, load average "
+          f"{os.getloadavg()[2]:.1f} over a quarter of an hour. The report's: i7-7700K, 8 threads, Windows 10.\n"
           "Seconds, pixels, samples per pixel, seconds per million samples: theirs, then ours; last, theirs per sample over ours.\n"
           "Sizes and samples of theirs are those of the report's scene files and the repository's pictures, supposed to be what was\n"
           "timed (the bunny's single sample may well not be); ?: not known. Under the same names they did cheaper or dearer things\n"
@@ -184,9 +185,9 @@ def middle_luminance(path):
     return float((linear @ [0.2126, 0.7152, 0.0722]).mean())
 
 
-def draw_sheet(results, path, columns=6):
+def draw_sheet(results, path, columns=8):
     rows = -(-len(results) // columns)
-    figure, axes = pyplot.subplots(rows, columns, figsize=(2.2 * columns, 2.95 * rows), squeeze=False)
+    figure, axes = pyplot.subplots(rows, columns, figsize=(1.75 * columns, 2.3 * rows), squeeze=False)
     for axis in axes.flat:
         axis.axis("off")
     for axis, result in zip(axes.flat, results):
@@ -194,7 +195,7 @@ def draw_sheet(results, path, columns=6):
         lines = [f"{result['figure'].number} {result['figure'].title}", result["label"], result["field"],
                  "%.2f s" % result["report"]["seconds"]["render"]]
         text = "\n".join(part for line in lines if line for part in textwrap.wrap(line, 38))
-        axis.text(0.5, -0.03, text, transform=axis.transAxes, ha="center", va="top", fontsize=6)
-    figure.subplots_adjust(left=0.01, right=0.99, top=0.99, bottom=0.06 / rows + 0.02, wspace=0.05, hspace=0.38)
-    figure.savefig(path, dpi=150)
+        axis.text(0.5, -0.03, text, transform=axis.transAxes, ha="center", va="top", fontsize=5.5)
+    figure.subplots_adjust(left=0.01, right=0.99, top=0.99, bottom=0.2 / rows, wspace=0.05, hspace=0.3)
+    figure.savefig(path, dpi=120)
     pyplot.close(figure)

@@ -132,7 +132,8 @@ Crossings find_crossings(uint bvh_nodes, Ray ray, float t_from) {
     vec3 inverse = 1.0 / vec3(abs(d.x) < 1.0e-30 ? 1.0e-30 : d.x, abs(d.y) < 1.0e-30 ? 1.0e-30 : d.y,
                               abs(d.z) < 1.0e-30 ? 1.0e-30 : d.z);
     Crossings c = Crossings(0, FAR, 0, FAR);
-    for (uint i = 0u; i < bvh_nodes;) {
+    uint i = 0u;
+    while (i < bvh_nodes) {
         BvhNode node = bvh[i];
         vec3 t0 = (node.low - before) * inverse, t1 = (node.high - after) * inverse;
         vec3 entries = min(t0, t1), exits = max(t0, t1);
@@ -144,6 +145,8 @@ Crossings find_crossings(uint bvh_nodes, Ray ray, float t_from) {
             add_crossing(s, k, t_from, c);
         i = meets && node.leaf == 0u ? i + 1u : node.skip;
     }
+    if (i < bvh_nodes) // the driver left the loop, see longest_budget in wavefront.cpp
+        atomicAdd(counters.step_caps, 1u);
     return c;
 }
 

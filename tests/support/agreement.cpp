@@ -75,22 +75,22 @@ std::filesystem::path mesh_file() {
 std::vector<NamedScene> agreement_scenes() {
     std::vector<NamedScene> scenes;
     const auto ball = [](double g) {
-        return picture_of(medium(Sphere{{0.1, -0.1, 0.0}, 1.0}, 4.0, 0.95, g), 2.6, 1600);
+        return picture_of(medium(Sphere{{0.1, -0.1, 0.0}, 1.0}, 4.0, 0.95, g), 2.6, 500);
     };
     scenes.push_back(
-        {"homogeneous slab", picture_of(medium(Box{glm::dvec3(0.0), {8.0, 8.0, 1.0}}, 2.0, 0.9, 0.3), 3.0, 1600)});
+        {"homogeneous slab", picture_of(medium(Box{glm::dvec3(0.0), {8.0, 8.0, 1.0}}, 2.0, 0.9, 0.3), 3.0, 500)});
     scenes.push_back({"sphere, g 0.8", ball(0.8)});
     scenes.push_back({"sphere, g -0.8", ball(-0.8)});
-    scenes.push_back({"thin cloud", picture_of(medium(cloud_file(), 0.4, 0.95, 0.3), 11.0, 1600)});
-    scenes.push_back({"thick cloud", picture_of(medium(cloud_file(), 4.0, 0.95, 0.3), 11.0, 1200)});
-    scenes.push_back({"spikes", picture_of(medium(spike_file(), 0.5, 0.9), 9.0, 1200)});
+    scenes.push_back({"thin cloud", picture_of(medium(cloud_file(), 0.4, 0.95, 0.3), 11.0, 1000)});
+    scenes.push_back({"thick cloud", picture_of(medium(cloud_file(), 4.0, 0.95, 0.3), 11.0, 1000)});
+    scenes.push_back({"spikes", picture_of(medium(spike_file(), 0.5, 0.9), 9.0, 1000)});
     Volume chromatic = medium(cloud_file(), 1.0, 0.9);
     chromatic.sigma_a = {0.02, 0.1, 0.3};
     chromatic.sigma_s = {0.6, 1.2, 2.4};
-    scenes.push_back({"chromatic cloud", picture_of(chromatic, 11.0, 1200)});
+    scenes.push_back({"chromatic cloud", picture_of(chromatic, 11.0, 1000)});
     Volume fire = medium(fire_file(), 0.8, 0.3);
     fire.temperature.color = {2.0, 0.7, 0.15};
-    scenes.push_back({"fire", picture_of(fire, 11.0, 1200)});
+    scenes.push_back({"fire", picture_of(fire, 11.0, 1000)});
     Volume noise = medium(MeshFiles{{mesh_file()}}, 1.5, 0.9, 0.2);
     noise.noise = Noise{1.8, 3, 0.5, 2.0};
     scenes.push_back({"noise in a mesh", picture_of(noise, 9.0, 400)});
