@@ -56,8 +56,10 @@ void print_caps(const RenderCounts& c, const RenderResult& result) {
     };
     line(c.cleaned_voxels, "voxels were NaN, infinite or negative and count as 0");
     line(c.depth_caps, "paths ended at maxDepth: the light of further scatterings is missing (raise or drop maxDepth)");
-    line(c.step_caps, "segments ended at the step limit: their light is missing (use finer majorant cells)");
-    line(c.majorant_violations, "collisions met a density above its majorant: delta tracking is biased there");
+    line(c.step_caps, "segments were cut, by the step limit or by the driver: their light is missing");
+    line(c.majorant_violations,
+         "collisions met a density above its majorant: delta estimators lose light there, ratio and weighted ones "
+         "stay unbiased with more noise");
     line(c.non_finite, "samples were not finite and were dropped");
     for (const NonFiniteSample& s : result.non_finite)
         fmt::print(stderr, "vkvol: note: not finite: pixel {},{} sample {}\n", s.x, s.y, s.sample);

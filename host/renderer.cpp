@@ -242,6 +242,18 @@ private:
         return stopped_;
     }
 
+    // Paths begun are finished, as a rule in no time; not if that takes a user's patience.
+    bool gave_up() {
+        const double now = watch_.seconds();
+        stopped_at_ = stopped_at_.value_or(now);
+        if (now - *stopped_at_ < patience)
+            return false;
+        result_.warnings.push_back(fmt::format("paths that would not end within {} seconds were left out: what is long "
+                                               "is missing from the picture",
+                                               patience));
+        return true;
+    }
+
     void run_batch(const Band& band, std::uint32_t done, std::uint32_t batch) {
         if (stopping())
             return;
@@ -255,8 +267,10 @@ private:
             gather(band);
             if (job_.progress)
                 job_.progress(progress_of(band, done, batch), std::nullopt);
-            if (!finished && stopping())
+            if (!finished && stopping()) {
                 wavefront_->stop_handing_out();
+                finished = gave_up();
+            }
         }
     }
 
@@ -307,6 +321,8 @@ private:
     Stopwatch watch_;
     double next_noise_ = 3.0;
     bool stopped_ = false;
+    std::optional<double> stopped_at_;
+    static constexpr double patience = 5.0; // seconds
 };
 
 } // namespace

@@ -59,12 +59,19 @@ Rgb albedo_of(const Volume& volume) {
     return albedo;
 }
 
-glm::dvec3 mesh_center(const Mesh& mesh) {
-    glm::dvec3 low(mesh.vertices.front()), high(low);
-    for (const glm::dvec3& vertex : mesh.vertices) {
+glm::dvec3 mesh_low(const Mesh& mesh) {
+    glm::dvec3 low = mesh.vertices.front();
+    for (const glm::dvec3& vertex : mesh.vertices)
         low = glm::min(low, vertex);
+    return low;
+}
+
+// Of its box.
+glm::dvec3 mesh_center(const Mesh& mesh) {
+    const glm::dvec3 low = mesh_low(mesh);
+    glm::dvec3 high = low;
+    for (const glm::dvec3& vertex : mesh.vertices)
         high = glm::max(high, vertex);
-    }
     return 0.5 * (low + high);
 }
 
@@ -266,7 +273,8 @@ LoadedVolume load_volume(const Scene& scene, const Method& method) {
     if (const auto* files = std::get_if<MeshFiles>(&volume->shape)) {
         loaded.mesh = load_mesh(*files);
         loaded.bvh = build_bvh(*loaded.mesh, mesh_center(*loaded.mesh));
-        loaded.warnings = loaded.mesh->warnings;
+        if (method.material_colour)
+            loaded.warnings = loaded.mesh->warnings;
         if (method.material_colour && !loaded.mesh->diffuse)
             loaded.warnings.push_back(fmt::format("{}: has no material with a diffuse colour; <medium> is what glows",
                                                   files->paths.front().string()));
@@ -307,6 +315,25 @@ Specialization specialize(const Scene& scene, const LoadedVolume& loaded, const 
 
 namespace {
 
+// Of the medium, in world units.
+double diagonal_of(const Scene& scene, const LoadedVolume& loaded) {
+    if (scene.volumes.empty())
+        return 0.0;
+    if (loaded.mesh)
+        return 2.0 * glm::length(mesh_center(*loaded.mesh) - mesh_low(*loaded.mesh));
+    const Bounds bounds = medium_bounds(loaded);
+    return glm::length(glm::dmat3(medium_to_world(scene.volumes.front(), loaded)) * (bounds.high - bounds.low));
+}
+
+// Positions along a march are products of step number and length in single precision, and patience is finite too.
+void check_step(const char* name, double step, double diagonal, double unit) {
+    constexpr double most_steps = 1e6;
+    if (diagonal / step > most_steps)
+        throw InputError(fmt::format("<march> {}: {} takes more than a million steps across the medium; {:.3g} takes a "
+                                     "thousand",
+                                     name, step / unit, diagonal / unit / 1000.0));
+}
+
 shared::MarchParams make_march(const Scene& scene, const LoadedVolume& loaded, const Method& method) {
     const March& march = scene.settings.march;
     const double voxel = loaded.field ? loaded.field->voxel_size() : 1.0;
@@ -314,6 +341,11 @@ shared::MarchParams make_march(const Scene& scene, const LoadedVolume& loaded, c
     const double step = march.step > 0.0 ? march.step * unit : loaded.field ? 0.5 * voxel : 0.2;
     // A series that ends unbiased does best from a coarse beginning.
     const double shadow_step = method.transmittance == TRANSMITTANCE_TELESCOPING ? 16.0 * step : step;
+    const double diagonal = diagonal_of(scene, loaded);
+    if (method.free_flight == FREE_FLIGHT_MARCH)
+        check_step("step", step, diagonal, unit);
+    if (method.nee != NEE_NONE && method.transmittance >= TRANSMITTANCE_MARCH && march.shadow_step > 0.0)
+        check_step("shadowStep", march.shadow_step * unit, diagonal, unit);
     shared::MarchParams params{};
     params.step = static_cast<float>(step);
     params.shadow_step = static_cast<float>(march.shadow_step > 0.0 ? march.shadow_step * unit : shadow_step);

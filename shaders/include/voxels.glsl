@@ -77,8 +77,9 @@ uint next_voxel(VolumeParams v, Block block, float t_exit, vec3 t_face, inout Wa
                          block.low + block.size - 1);
     ivec3 beyond = mix(block.low - 1, block.low + block.size, greaterThan(w.direction, vec3(0.0)));
     w.cell = inside + axis * (beyond - inside);
-    // Rounding may put the last face a little before t_end.
-    bool beyond_all = w.cell != clamp(w.cell, v.density.voxel_min - 1, v.density.voxel_max + 1);
+    // Rounding may put the last face a little before t_end. With trilinear lookup the last cell begins at the last voxel.
+    ivec3 last = v.density.voxel_max + (FILTER == FILTER_NEAREST ? 1 : 0);
+    bool beyond_all = w.cell != clamp(w.cell, v.density.voxel_min - 1, last);
     return t_exit >= w.t_end || beyond_all ? EVENT_LEFT : EVENT_MOVING;
 }
 
