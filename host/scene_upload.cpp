@@ -149,7 +149,8 @@ void fill_density(const Volume& volume, double majorant_scale, bool decomposes, 
     const double control = volume.noise ? (decomposes ? 0.0 : 0.5 * bound) : 1.0; // decomposition: a lower bound
     params.majorant = static_cast<float>(bound * majorant_scale);
     params.control = static_cast<float>(control);
-    params.residual = static_cast<float>(std::max(0.0, majorant_scale * bound - control));
+    params.residual = static_cast<float>(volume.noise ? majorant_scale * std::max(bound - control, control)
+                                                      : std::max(0.0, majorant_scale - control));
 }
 
 // `origin`: of render space, in world coordinates.

@@ -255,7 +255,7 @@ TEST_CASE("the device walks the cells that a ray passes", "[gpu][majorant]") {
         const glm::dvec3 middle = 0.5 * (box.low + box.high), extent = box.high - box.low;
         const glm::dvec3 origin = middle + reach * (random() - 0.5) * extent;
         const glm::dvec3 target = middle + 0.9 * (random() - 0.5) * extent;
-        rays.push_back({origin, glm::normalize(target - origin), 0, 0.0f});
+        rays.push_back({origin, glm::normalize(target - origin), 0, 0.0f, 0.0f, glm::vec3(1.0f)});
     }
     const auto walks = walk(grid, rays);
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -294,7 +294,7 @@ TEST_CASE("axis-parallel rays, on faces, edges and borders, pass every cell once
                         origin[(axis + 1) % 3] = static_cast<float>(a);
                         origin[(axis + 2) % 3] = static_cast<float>(b);
                         direction[axis] = sign;
-                        rays.push_back({origin, direction, 0, 0.0f});
+                        rays.push_back({origin, direction, 0, 0.0f, 0.0f, glm::vec3(1.0f)});
                     }
     const auto walks = walk(grid, rays);
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -321,7 +321,8 @@ TEST_CASE("rays through edges and corners of cells lose nothing", "[gpu][majoran
             const glm::ivec3 corner = glm::ivec3(k) / glm::ivec3(1, 3, 9) % 3;
             const glm::dvec3 through(m.origin + corner * m.cell);
             for (const double back : {0.0, 8.0, 100.0})
-                rays.push_back({through - back * glm::dvec3(d), glm::normalize(glm::dvec3(d)), 0, 0.0f});
+                rays.push_back(
+                    {through - back * glm::dvec3(d), glm::normalize(glm::dvec3(d)), 0, 0.0f, 0.0f, glm::vec3(1.0f)});
         }
     }
     const auto walks = walk(grid, rays);

@@ -20,7 +20,8 @@ void main() {
     w.depth = 0.0;
     begin_segment(v, inputs[i].origin, inputs[i].direction, false, w);
     uint event = EVENT_MOVING;
-    for (uint k = 0u; k < push.step_limit && (event == EVENT_MOVING || event == EVENT_TOUCHED); ++k) {
+    uint steps = 0u;
+    for (; steps < push.step_limit && (event == EVENT_MOVING || event == EVENT_TOUCHED); ++steps) {
         Collision c = Collision(0.0, 1.0, 0.0, 0.0, 0.0);
         event = NULL_FLIGHT ? next_collision(v, false, w, rng, tally, c) : EVENT_MOVING;
         event = fly(v, c, event, w, rng, beta, deposit, tally);
@@ -29,6 +30,6 @@ void main() {
     }
     if (event == EVENT_LEFT && !NULL_FLIGHT && !goes_through())
         beta *= depth_weight(v, beta, w.depth, false);
-    outputs[i] = FlightOutput(event, w.start + w.t, vec3(beta), tally.null_collisions, tally.lookups);
+    outputs[i] = FlightOutput(event, w.start + w.t, vec3(beta), tally.null_collisions, tally.lookups, steps);
     add_tally(tally);
 }

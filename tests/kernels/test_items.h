@@ -46,6 +46,7 @@ struct FlightOutput {
     vec3 weight; // transmittance, or the throughput after a flight; of a grey medium thrice the same
     uint nulls;
     uint lookups;
+    uint steps;
 };
 
 struct PhaseInput {

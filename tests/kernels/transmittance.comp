@@ -28,7 +28,8 @@ void main() {
         event = EVENT_LEFT;
     }
     bool opaque = false;
-    for (uint k = 0u; k < push.step_limit && event == EVENT_MOVING; ++k) {
+    uint steps = 0u;
+    for (; steps < push.step_limit && event == EVENT_MOVING; ++steps) {
         Collision c = Collision(0.0, 1.0, 0.0, 0.0, 0.0);
         if (NULL_TRANSMITTANCE)
             event = next_collision(v, true, w, rng, tally, c);
@@ -40,6 +41,6 @@ void main() {
     }
     if (LOOKS)
         T = opaque ? to_spectrum(vec3(0.0)) : end_transmittance(v, w, T);
-    outputs[i] = FlightOutput(event, 0.0, vec3(T), tally.null_collisions, tally.lookups);
+    outputs[i] = FlightOutput(event, 0.0, vec3(T), tally.null_collisions, tally.lookups, steps);
     add_tally(tally);
 }

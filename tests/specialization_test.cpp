@@ -1,0 +1,217 @@
+// A kernel for a scene without a feature contains none of its code. The track kernel is specialised as the driver does
+// it, but by spirv-opt, which freezes the constants and removes what cannot be reached; what is left is counted, and
+// the buffers it still touches are listed.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <span>
+#include <unistd.h>
+
+#include "compute_pass.h"
+#include "shared/items.h"
+#include "track.spv.h"
+#include "track_chromatic.spv.h"
+
+using namespace vkvol;
+
+namespace {
+
+using Words = std::vector<std::uint32_t>;
+
+// SPIR-V 1.5, sections 2.3 and 3: five words of header, then instructions with their length in the upper half of the
+// first word.
+constexpr std::uint32_t op_type_int = 21, op_type_float = 22, op_type_vector = 23, op_type_runtime_array = 29,
+                        op_type_struct = 30, op_type_pointer = 32, op_function = 54, op_function_end = 56,
+                        op_variable = 59, op_decorate = 71;
+constexpr std::uint32_t decoration_binding = 33;
+
+struct Kernel {
+    int instructions = 0;   // within functions
+    std::set<int> bindings; // that a function refers to
+    std::map<int, int>
+        elements; // of the runtime array behind a binding: components of an element, 0: no float or vector
+};
+
+Kernel read_kernel(const Words& words) {
+    std::map<std::uint32_t, int> binding_of;
+    std::map<std::uint32_t, std::vector<std::uint32_t>> types; // operands after the result, opcode first
+    std::map<std::uint32_t, std::uint32_t> variables;          // to their types
+    Kernel kernel;
+    bool inside = false;
+    for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
+        const std::uint32_t op = words[at] & 0xffffu, length = words[at] >> 16;
+        REQUIRE(length > 0);
+        const auto operands = std::span(words).subspan(at + 1, length - 1);
+        if (op == op_decorate && operands[1] == decoration_binding)
+            binding_of[operands[0]] = int(operands[2]);
+        if (op >= op_type_int && op <= op_type_pointer) {
+            types[operands[0]] = {op};
+            types[operands[0]].insert(types[operands[0]].end(), operands.begin() + 1, operands.end());
+        }
+        if (op == op_variable)
+            variables[operands[1]] = operands[0];
+        if (op == op_function)
+            inside = true;
+        if (!inside)
+            continue;
+        ++kernel.instructions;
+        // An operand that looks like the id of a bound variable but is a literal would only make the test stricter.
+        for (const std::uint32_t operand : operands)
+            if (const auto found = binding_of.find(operand); found != binding_of.end())
+                kernel.bindings.insert(found->second);
+        if (op == op_function_end)
+            inside = false;
+    }
+    for (const auto& [id, binding] : binding_of) {
+        const auto block = types[types[variables[id]].at(2)]; // pointer: class, type
+        const auto array = types[block.back()];
+        if (block.front() != op_type_struct || array.empty() || array.front() != op_type_runtime_array)
+            continue;
+        const auto element = types[array.back()];
+        kernel.elements[binding] = element.front() == op_type_float    ? 1
+                                   : element.front() == op_type_vector ? int(element[2])
+                                                                       : 0;
+    }
+    return kernel;
+}
+
+bool has_spirv_opt() {
+    static const bool found = std::system("spirv-opt --version > /dev/null 2>&1") == 0;
+    return found;
+}
+
+Kernel run_spirv_opt(std::span<const std::uint32_t> spirv, const Specialization& constants) {
+    const auto path = std::filesystem::temp_directory_path() / ("vkvol_specialization_" + std::to_string(getpid()));
+    const std::string before = path.string() + ".in.spv", after = path.string() + ".out.spv";
+    std::ofstream(before, std::ios::binary).write(reinterpret_cast<const char*>(spirv.data()), spirv.size_bytes());
+    std::string values;
+    for (int id = 0; id < SPEC_COUNT; ++id)
+        values += std::to_string(id) + ":" + std::to_string(constants[id]) + " ";
+    const std::string command = "spirv-opt --set-spec-const-default-value \"" + values +
+                                "\" --freeze-spec-const --fold-spec-const-op-composite -O " + before + " -o " + after;
+    REQUIRE(std::system(command.c_str()) == 0);
+    std::ifstream file(after, std::ios::binary | std::ios::ate);
+    Words words(std::size_t(file.tellg()) / 4);
+    file.seekg(0).read(reinterpret_cast<char*>(words.data()), std::streamsize(4 * words.size()));
+    std::filesystem::remove(before);
+    std::filesystem::remove(after);
+    return read_kernel(words);
+}
+
+// Each once: the tests below have many in common.
+const Kernel& specialise(std::span<const std::uint32_t> spirv, const Specialization& constants) {
+    static std::map<std::pair<const std::uint32_t*, Specialization>, Kernel> known;
+    const auto key = std::make_pair(spirv.data(), constants);
+    if (!known.contains(key))
+        known[key] = run_spirv_opt(spirv, constants);
+    return known[key];
+}
+
+// A grey cloud in a grid with delta tracking, lit by nothing but its background.
+Specialization plain() {
+    Specialization s{};
+    s[SPEC_SHAPE] = SHAPE_BOX;
+    s[SPEC_FIELD] = FIELD_GRID;
+    s[SPEC_GRID_TYPE] = s[SPEC_TEMPERATURE_TYPE] = GRID_FLOAT;
+    s[SPEC_FILTER] = FILTER_STOCHASTIC;
+    s[SPEC_SCATTERING] = SCATTERING_MULTIPLE;
+    s[SPEC_NEE] = NEE_NONE;
+    s[SPEC_EMISSION] = EMISSION_NONE;
+    s[SPEC_EMISSION_AT] = EMISSION_AT_COLLISIONS;
+    s[SPEC_FREE_FLIGHT] = FREE_FLIGHT_DELTA;
+    s[SPEC_TRANSMITTANCE] = TRANSMITTANCE_ANALYTIC;
+    s[SPEC_STEPS] = 1;
+    return s;
+}
+
+Specialization with(std::initializer_list<std::pair<int, int>> changes) {
+    Specialization s = plain();
+    for (const auto& [id, value] : changes)
+        s[id] = value;
+    return s;
+}
+
+#define REQUIRE_SPIRV_OPT()                                                                                            \
+    if (!has_spirv_opt()) {                                                                                            \
+        WARN("spirv-opt is not on the PATH: not tested");                                                              \
+        return;                                                                                                        \
+    }
+
+} // namespace
+
+TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "[gpu][specialization]") {
+    REQUIRE_SPIRV_OPT();
+    const std::set<int> always = {BINDING_FRAME,       BINDING_PATHS,  BINDING_BETAS,   BINDING_SUSPENDED,
+                                  BINDING_QUEUE_ITEMS, BINDING_QUEUES, BINDING_COUNTERS};
+    const auto touches = [&](std::initializer_list<std::pair<int, int>> changes, std::set<int> more) {
+        more.insert(always.begin(), always.end());
+        CHECK(specialise(track_spv, with(changes)).bindings == more);
+        if (changes.size() == 0)
+            CHECK(specialise(track_chromatic_spv, with(changes)).bindings == more);
+    };
+    const std::set<int> grid = {BINDING_GRID, BINDING_LEAF_TABLE, BINDING_MAJORANTS};
+    const auto grid_and = [&](int binding) {
+        std::set<int> all = grid;
+        all.insert(binding);
+        return all;
+    };
+    touches({}, grid);
+    touches({{SPEC_NEE, NEE_COLLISIONS}, {SPEC_TRANSMITTANCE, TRANSMITTANCE_RATIO}}, grid);
+    touches({{SPEC_EMISSION, EMISSION_CONSTANT}}, grid);
+    touches({{SPEC_EMISSION, EMISSION_COLOR}}, grid);
+    touches({{SPEC_EMISSION, EMISSION_BLACKBODY}}, grid_and(BINDING_BLACKBODY));
+    touches({{SPEC_FREE_FLIGHT, FREE_FLIGHT_DECOMPOSITION}}, grid_and(BINDING_CONTROLS));
+    touches({{SPEC_NEE, NEE_COLLISIONS}, {SPEC_TRANSMITTANCE, TRANSMITTANCE_RESIDUAL}}, grid_and(BINDING_CONTROLS));
+    touches({{SPEC_FREE_FLIGHT, FREE_FLIGHT_MARCH}, {SPEC_FILTER, FILTER_TRILINEAR}},
+            {BINDING_GRID, BINDING_LEAF_TABLE});
+    touches({{SPEC_SHAPE, SHAPE_SPHERE}, {SPEC_FIELD, FIELD_CONSTANT}, {SPEC_FREE_FLIGHT, FREE_FLIGHT_ANALYTIC}}, {});
+    touches({{SPEC_SHAPE, SHAPE_SPHERE}, {SPEC_FIELD, FIELD_NOISE}}, {});
+    touches({{SPEC_SHAPE, SHAPE_MESH}, {SPEC_FIELD, FIELD_NOISE}}, {BINDING_TRIANGLES, BINDING_BVH});
+}
+
+TEST_CASE("every feature costs instructions only where a scene has it", "[gpu][specialization]") {
+    REQUIRE_SPIRV_OPT();
+    const auto count = [](std::initializer_list<std::pair<int, int>> changes) {
+        return specialise(track_spv, with(changes)).instructions;
+    };
+    const int none = count({});
+    REQUIRE(none > 300); // a path tracer's, no empty shell
+    const std::pair<int, int> nee{SPEC_NEE, NEE_COLLISIONS}, ratio{SPEC_TRANSMITTANCE, TRANSMITTANCE_RATIO};
+    const int lit = count({nee, ratio});
+    CHECK(none < lit);
+    CHECK(lit < count({{SPEC_NEE, NEE_TENTATIVE}, ratio}));
+    const int constant = count({{SPEC_EMISSION, EMISSION_CONSTANT}}), color = count({{SPEC_EMISSION, EMISSION_COLOR}});
+    CHECK(none < constant);
+    CHECK(constant < color); // a second grid
+    CHECK(color < count({{SPEC_EMISSION, EMISSION_BLACKBODY}}));
+    CHECK(constant < count({{SPEC_EMISSION, EMISSION_CONSTANT}, {SPEC_EMISSION_AT, EMISSION_AT_STEPS}}));
+    CHECK(none < specialise(track_chromatic_spv, plain()).instructions);
+    CHECK(none < count({{SPEC_FILTER, FILTER_TRILINEAR}}));
+    // What is switched off leaves nothing behind, whatever the constants that describe it say.
+    CHECK(none == count({ratio}));
+    CHECK(none == count({{SPEC_TRANSMITTANCE, TRANSMITTANCE_TELESCOPING}}));
+    CHECK(none == count({{SPEC_EMISSION_AT, EMISSION_AT_STEPS}}));
+    CHECK(none == count({{SPEC_TEMPERATURE_TYPE, GRID_FPN}}));
+    // Estimators do not carry one another: the simple flight is the shortest.
+    const std::pair<int, int> trilinear{SPEC_FILTER, FILTER_TRILINEAR};
+    const int delta = count({trilinear});
+    CHECK(delta < count({trilinear, {SPEC_FREE_FLIGHT, FREE_FLIGHT_WEIGHTED}}));
+    CHECK(delta < count({trilinear, {SPEC_FREE_FLIGHT, FREE_FLIGHT_DECOMPOSITION}}));
+    CHECK(delta < count({trilinear, {SPEC_FREE_FLIGHT, FREE_FLIGHT_SPECTRAL}}));
+    CHECK(delta < count({trilinear, {SPEC_FREE_FLIGHT, FREE_FLIGHT_REGULAR}}));
+    CHECK(count({nee, ratio, trilinear}) < count({nee, trilinear, {SPEC_TRANSMITTANCE, TRANSMITTANCE_RESIDUAL}}));
+}
+
+TEST_CASE("a grey path's throughput is one number, and its state holds nothing of other features",
+          "[gpu][specialization]") {
+    CHECK(read_kernel(Words(std::begin(track_spv), std::end(track_spv))).elements.at(BINDING_BETAS) == 1);
+    CHECK(
+        read_kernel(Words(std::begin(track_chromatic_spv), std::end(track_chromatic_spv))).elements.at(BINDING_BETAS) ==
+        3);
+    // Position, direction, radiance; pixel, sample, draw, depth, and whether a segment was laid aside. No throughput,
+    // no shadow ray, no temperature.
+    CHECK(sizeof(shared::PathState) == 3 * sizeof(glm::vec3) + 5 * sizeof(std::uint32_t));
+}
