@@ -41,7 +41,7 @@ channels not weighted ~ shaders/include/channel.glsl ~ density * total(abs(beta)
 cubic through wrong values ~ shaders/include/voxels.glsl ~ -5.5 * f[0] + 9.0 * f[1] ~ -5.5 * f[0] + 8.9 * f[1] ~ [free_flight]
 telescoping with wrong chances ~ shaders/include/transmittance/telescoping.glsl ~ (1.0 - exp(TELESCOPING_LOG_Q)) * ~ 1.2 * (1.0 - exp(TELESCOPING_LOG_Q)) * ~ [transmittance]
 control density not seen ~ shaders/include/transmittance/residual.glsl ~ T *= exp(-c.sigma_c * c.flown * ratio); ~ ; ~ [transmittance]
-null collisions lit in full ~ shaders/include/free_flight.glsl ~ (c.sigma_t / c.sigma_maj) ~ 1.0 ~ [agreement]
+null collisions lit in full ~ shaders/include/free_flight.glsl ~ : c.sigma_t / c.sigma_maj; ~ : 1.0; ~ [agreement]
 march without albedo ~ shaders/passes/track.comp ~ gather_light(v, position, deposit * to_spectrum(v.albedo), ~ gather_light(v, position, deposit, ~ [agreement]
 crop forgotten in random numbers ~ shaders/include/camera.glsl ~ frame.crop_x + pixel ~ pixel ~ [determinism]
 END

@@ -37,7 +37,8 @@ uint fly(VolumeParams v, Collision c, uint event, inout Walk w, inout Rng rng, i
          out Spectrum deposit, inout Tally tally) {
     deposit = to_spectrum(vec3(0.0));
     if (NULL_FLIGHT && event == EVENT_COLLIDED) {
-        deposit = beta * to_spectrum(v.sigma_ratio) * (c.sigma_t / c.sigma_maj);
+        float share = FREE_FLIGHT == FREE_FLIGHT_DECOMPOSITION ? decomposition_share(c) : c.sigma_t / c.sigma_maj;
+        deposit = beta * to_spectrum(v.sigma_ratio) * share;
         switch (FREE_FLIGHT) {
         case FREE_FLIGHT_DELTA:
             event = delta_flight(c);

@@ -5,3 +5,9 @@
 uint decomposition_flight(Collision c) {
     return c.u * c.sigma_maj < c.sigma_t ? EVENT_COLLIDED : EVENT_TOUCHED;
 }
+
+// What of the throughput meets matter there, in the mean sigma_t / sigma_maj: all of it in the control part, whose
+// sigma_t is not known, and a share of it in the rest.
+float decomposition_share(Collision c) {
+    return c.u * c.sigma_maj < c.sigma_c ? 1.0 : (c.sigma_t - c.sigma_c) / (c.sigma_maj - c.sigma_c);
+}
