@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "blackbody.h"
 #include "error.h"
 #include "noise.h"
 #include "shared/items.h"
@@ -24,12 +23,6 @@ static_assert(sizeof(shared::PassPush) <= 128, "the least push constant space th
 
 namespace {
 
-const Volume* find_volume(const Scene& scene) {
-    if (scene.volumes.size() > 1)
-        throw InputError("a scene with several volumes is not rendered by this version; keep one");
-    return scene.volumes.empty() ? nullptr : &scene.volumes.front();
-}
-
 int shape_kind(const Scene& scene, const LoadedVolume& loaded) {
     const Volume* volume = find_volume(scene);
     if (!volume || (volume->sigma_a + volume->sigma_s) * volume->density_scale == Rgb(0.0))
@@ -41,38 +34,12 @@ int shape_kind(const Scene& scene, const LoadedVolume& loaded) {
     return loaded.field || std::holds_alternative<Box>(volume->shape) ? SHAPE_BOX : SHAPE_NONE;
 }
 
-// Extinction at density 1 [1 / world unit].
-Rgb world_sigma_t(const Volume& volume, const DensityField* field) {
-    const Rgb sigma_t = (volume.sigma_a + volume.sigma_s) * volume.density_scale;
-    return field && volume.unit == CoefficientUnit::voxel ? sigma_t / field->voxel_size() : sigma_t;
-}
-
-double largest(const Rgb& c) {
-    return std::max({c.x, c.y, c.z});
-}
-
 Rgb albedo_of(const Volume& volume) {
     Rgb albedo(0.0);
     for (int i = 0; i < 3; ++i)
         if (volume.sigma_s[i] > 0.0)
             albedo[i] = volume.sigma_s[i] / (volume.sigma_a[i] + volume.sigma_s[i]);
     return albedo;
-}
-
-glm::dvec3 mesh_low(const Mesh& mesh) {
-    glm::dvec3 low = mesh.vertices.front();
-    for (const glm::dvec3& vertex : mesh.vertices)
-        low = glm::min(low, vertex);
-    return low;
-}
-
-// Of its box.
-glm::dvec3 mesh_center(const Mesh& mesh) {
-    const glm::dvec3 low = mesh_low(mesh);
-    glm::dvec3 high = low;
-    for (const glm::dvec3& vertex : mesh.vertices)
-        high = glm::max(high, vertex);
-    return 0.5 * (low + high);
 }
 
 // Medium space -> world: a ball, a cube, the grid's own index space, or a mesh about its middle.
@@ -85,7 +52,7 @@ glm::dmat4 medium_to_world(const Volume& volume, const LoadedVolume& loaded) {
     if (const auto* box = std::get_if<Box>(&volume.shape))
         return placed(box->center, box->size / 2.0);
     if (loaded.mesh)
-        return placed(mesh_center(*loaded.mesh), glm::dvec3(1.0));
+        return placed(box_center(*loaded.mesh), glm::dvec3(1.0));
     return loaded.field ? loaded.field->index_to_world : glm::dmat4(1.0);
 }
 
@@ -207,81 +174,13 @@ shared::CameraParams make_camera(const Scene& scene, glm::dvec3 origin) {
     return params;
 }
 
-} // namespace
-
-namespace {
-
-// A file without that grid, or one that holds no heat, does not glow: a warning, no error.
-void load_temperature(const Volume& volume, const GridFile& file, LoadedVolume& loaded) {
-    const TemperatureEmission& emission = volume.temperature;
-    if (emission.color * volume.sigma_a == Rgb(0.0))
-        return;
-    if (!has_grid({file.path, emission.grid})) {
-        loaded.warnings.push_back(
-            fmt::format("{}: has no grid \"{}\": <emission> is without effect", file.path.string(), emission.grid));
-        return;
-    }
-    DensityField field = load_density_field({file.path, emission.grid});
-    if (field.active_voxels == 0)
-        return;
-    if (emission.model == TemperatureEmission::Model::blackbody) {
-        loaded.hottest = std::max(emission.scale * field.max_value(), 0.0) + std::max(emission.offset, 0.0);
-        if (loaded.hottest < 500.0 || loaded.hottest > 40000.0)
-            loaded.warnings.push_back(fmt::format("{}: \"{}\" reaches {:.0f} kelvin by temperatureScale and "
-                                                  "temperatureOffset; flames have 1000 to 3000",
-                                                  file.path.string(), emission.grid, loaded.hottest));
-        loaded.hottest = std::max(loaded.hottest, 1.0);
-        loaded.blackbody = make_blackbody_table(0.0, loaded.hottest, emission.reference, BLACKBODY_ENTRIES);
-    }
-    loaded.temperature = std::move(field);
-}
-
 int emission_kind(const Volume& volume, const LoadedVolume& loaded, const Method& method) {
     if (loaded.temperature)
         return volume.temperature.model == TemperatureEmission::Model::color ? EMISSION_COLOR : EMISSION_BLACKBODY;
     return volume.sigma_a * constant_emission(volume, loaded, method) != Rgb(0.0) ? EMISSION_CONSTANT : EMISSION_NONE;
 }
 
-// The cells' bounds are scaled after the controls are made: these bound the density itself.
-void load_grid(const Scene& scene, const Volume& volume, const Method& method, const GridFile& file,
-               LoadedVolume& loaded) {
-    DensityField field = load_density_field(file);
-    if (field.active_voxels == 0)
-        return;
-    const double scale = scene.settings.majorant_scale;
-    const double voxel_sigma_t = largest(world_sigma_t(volume, &field)) * field.voxel_size();
-    loaded.majorants = make_majorant_grid(field, scene.settings.majorant_cell, voxel_sigma_t * scale);
-    const bool decomposes = method.free_flight == FREE_FLIGHT_DECOMPOSITION;
-    if (decomposes || (method.nee != NEE_NONE && method.transmittance == TRANSMITTANCE_RESIDUAL))
-        loaded.controls = make_controls(field, *loaded.majorants, decomposes ? 0.0 : voxel_sigma_t);
-    for (float& bound : loaded.majorants->bounds)
-        bound *= static_cast<float>(scale);
-    for (shared::ControlCell& cell : loaded.controls)
-        cell.residual *= static_cast<float>(scale);
-    loaded.field = std::move(field);
-    load_temperature(volume, file, loaded);
-}
-
 } // namespace
-
-LoadedVolume load_volume(const Scene& scene, const Method& method) {
-    LoadedVolume loaded;
-    const Volume* volume = find_volume(scene);
-    if (!volume)
-        return loaded;
-    if (const auto* file = std::get_if<GridFile>(&volume->shape))
-        load_grid(scene, *volume, method, *file, loaded);
-    if (const auto* files = std::get_if<MeshFiles>(&volume->shape)) {
-        loaded.mesh = load_mesh(*files);
-        loaded.bvh = build_bvh(*loaded.mesh, mesh_center(*loaded.mesh));
-        if (method.material_colour)
-            loaded.warnings = loaded.mesh->warnings;
-        if (method.material_colour && !loaded.mesh->diffuse)
-            loaded.warnings.push_back(fmt::format("{}: has no material with a diffuse colour; <medium> is what glows",
-                                                  files->paths.front().string()));
-    }
-    return loaded;
-}
 
 bool is_chromatic(const Scene& scene) {
     if (scene.volumes.empty())
@@ -321,7 +220,7 @@ double diagonal_of(const Scene& scene, const LoadedVolume& loaded) {
     if (scene.volumes.empty())
         return 0.0;
     if (loaded.mesh)
-        return 2.0 * glm::length(mesh_center(*loaded.mesh) - mesh_low(*loaded.mesh));
+        return 2.0 * glm::length(box_center(*loaded.mesh) - lowest_corner(*loaded.mesh));
     const Bounds bounds = medium_bounds(loaded);
     return glm::length(glm::dmat3(medium_to_world(scene.volumes.front(), loaded)) * (bounds.high - bounds.low));
 }

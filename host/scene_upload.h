@@ -1,35 +1,11 @@
 // From the authored scene to what the kernels see. The only place that fills the shared structs.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "bvh.h"
 #include "compute_pass.h"
-#include "density_field.h"
-#include "majorant_grid.h"
-#include "method.h"
+#include "loaded_volume.h"
 #include "shared/scene.h"
 
 namespace vkvol {
-
-// What the medium is made of, read from its files: a grid with its majorants, or a mesh. Empty for spheres, boxes, no
-// volume, or a grid without voxels.
-struct LoadedVolume {
-    std::optional<DensityField> field;
-    std::optional<MajorantGrid> majorants;
-    std::vector<shared::ControlCell> controls; // per majorant cell, for the estimators that use them
-    std::optional<DensityField> temperature;   // only if the scene wants its glow
-    std::vector<glm::vec3> blackbody;          // BLACKBODY_ENTRIES colours between 0 and the hottest kelvin, or none
-    double hottest = 0.0;                      // kelvin
-    std::optional<Mesh> mesh;
-    std::optional<Bvh> bvh;            // about the middle of the mesh
-    std::vector<std::string> warnings; // what the scene asks for and its files do not hold
-};
-
-// Opens the files, if the scene has any. Throws InputError.
-LoadedVolume load_volume(const Scene& scene, const Method& method);
 
 // Extinction or albedo differs between the colour channels.
 bool is_chromatic(const Scene& scene);

@@ -1,0 +1,110 @@
+#include "loaded_volume.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "blackbody.h"
+#include "error.h"
+#include "shared/bindings.h"
+
+namespace vkvol {
+
+const Volume* find_volume(const Scene& scene) {
+    if (scene.volumes.size() > 1)
+        throw InputError("a scene with several volumes is not rendered by this version; keep one");
+    return scene.volumes.empty() ? nullptr : &scene.volumes.front();
+}
+
+Rgb world_sigma_t(const Volume& volume, const DensityField* field) {
+    const Rgb sigma_t = (volume.sigma_a + volume.sigma_s) * volume.density_scale;
+    return field && volume.unit == CoefficientUnit::voxel ? sigma_t / field->voxel_size() : sigma_t;
+}
+
+double largest(const Rgb& color) {
+    return std::max({color.x, color.y, color.z});
+}
+
+glm::dvec3 lowest_corner(const Mesh& mesh) {
+    glm::dvec3 low = mesh.vertices.front();
+    for (const glm::dvec3& vertex : mesh.vertices)
+        low = glm::min(low, vertex);
+    return low;
+}
+
+glm::dvec3 box_center(const Mesh& mesh) {
+    const glm::dvec3 low = lowest_corner(mesh);
+    glm::dvec3 high = low;
+    for (const glm::dvec3& vertex : mesh.vertices)
+        high = glm::max(high, vertex);
+    return 0.5 * (low + high);
+}
+
+namespace {
+
+// A file without that grid, or one that holds no heat, does not glow: a warning, no error.
+void load_temperature(const Volume& volume, const GridFile& file, LoadedVolume& loaded) {
+    const TemperatureEmission& emission = volume.temperature;
+    if (emission.color * volume.sigma_a == Rgb(0.0))
+        return;
+    if (!has_grid({file.path, emission.grid})) {
+        loaded.warnings.push_back(
+            fmt::format("{}: has no grid \"{}\": <emission> is without effect", file.path.string(), emission.grid));
+        return;
+    }
+    DensityField field = load_density_field({file.path, emission.grid});
+    if (field.active_voxels == 0)
+        return;
+    if (emission.model == TemperatureEmission::Model::blackbody) {
+        loaded.hottest = std::max(emission.scale * field.max_value(), 0.0) + std::max(emission.offset, 0.0);
+        if (loaded.hottest < 500.0 || loaded.hottest > 40000.0)
+            loaded.warnings.push_back(fmt::format("{}: \"{}\" reaches {:.0f} kelvin by temperatureScale and "
+                                                  "temperatureOffset; flames have 1000 to 3000",
+                                                  file.path.string(), emission.grid, loaded.hottest));
+        loaded.hottest = std::max(loaded.hottest, 1.0);
+        loaded.blackbody = make_blackbody_table(0.0, loaded.hottest, emission.reference, BLACKBODY_ENTRIES);
+    }
+    loaded.temperature = std::move(field);
+}
+
+// The cells' bounds are scaled after the controls are made: these bound the density itself.
+void load_grid(const Scene& scene, const Volume& volume, const Method& method, const GridFile& file,
+               LoadedVolume& loaded) {
+    DensityField field = load_density_field(file);
+    if (field.active_voxels == 0)
+        return;
+    const double scale = scene.settings.majorant_scale;
+    const double voxel_sigma_t = largest(world_sigma_t(volume, &field)) * field.voxel_size();
+    loaded.majorants = make_majorant_grid(field, scene.settings.majorant_cell, voxel_sigma_t * scale);
+    const bool decomposes = method.free_flight == FREE_FLIGHT_DECOMPOSITION;
+    if (decomposes || (method.nee != NEE_NONE && method.transmittance == TRANSMITTANCE_RESIDUAL))
+        loaded.controls = make_controls(field, *loaded.majorants, decomposes ? 0.0 : voxel_sigma_t);
+    for (float& bound : loaded.majorants->bounds)
+        bound *= static_cast<float>(scale);
+    for (shared::ControlCell& cell : loaded.controls)
+        cell.residual *= static_cast<float>(scale);
+    loaded.field = std::move(field);
+    load_temperature(volume, file, loaded);
+}
+
+} // namespace
+
+LoadedVolume load_volume(const Scene& scene, const Method& method) {
+    LoadedVolume loaded;
+    const Volume* volume = find_volume(scene);
+    if (!volume)
+        return loaded;
+    if (const auto* file = std::get_if<GridFile>(&volume->shape))
+        load_grid(scene, *volume, method, *file, loaded);
+    if (const auto* files = std::get_if<MeshFiles>(&volume->shape)) {
+        loaded.mesh = load_mesh(*files);
+        loaded.bvh = build_bvh(*loaded.mesh, box_center(*loaded.mesh));
+        if (method.material_colour)
+            loaded.warnings = loaded.mesh->warnings;
+        if (method.material_colour && !loaded.mesh->diffuse)
+            loaded.warnings.push_back(fmt::format("{}: has no material with a diffuse colour; <medium> is what glows",
+                                                  files->paths.front().string()));
+    }
+    return loaded;
+}
+
+} // namespace vkvol
