@@ -89,7 +89,7 @@ double tolerance(const Noise& noise, glm::dvec3 render) {
 }
 
 // The largest value that noise can take at a point of the unit cell; see host/noise.cpp.
-double largest(glm::dvec3 p) {
+double bound_of(glm::dvec3 p) {
     double sum = 0.0;
     for (int corner = 0; corner < 8; ++corner) {
         double weight = 1.0, all = 0.0, least = 1.0;
@@ -177,7 +177,7 @@ TEST_CASE("no noise exceeds the bound, which is tight", "[noise]") {
     while (!cells.empty()) {
         const Cell cell = cells.back();
         cells.pop_back();
-        const double value = largest(cell.centre);
+        const double value = bound_of(cell.centre);
         if (value > found) {
             found = value;
             peak = cell.centre;
