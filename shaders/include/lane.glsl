@@ -94,9 +94,11 @@ bool survives(inout Spectrum beta, float u) {
 }
 
 // Emission along what was just flown, by one sample: a track-length estimate.
-vec3 emission_along(VolumeParams v, Spectrum beta, float from, Walk w, PathState path, inout Rng rng) {
+vec3 emission_along(VolumeParams v, Spectrum beta, float from, Walk w, PathState path, inout Rng rng,
+                    inout Tally tally) {
     uvec4 words = next_words(rng);
     float t = mix(from, w.t, to_uniform(words).x);
+    tally.lookups += 1u;
     float sigma_t = v.sigma_t * density(v, w.origin + t * w.direction, to_tap(words));
     vec3 Le = emitted_radiance(v.emission, path.position + (w.start + t) * path.direction);
     return beta * (w.t - from) * sigma_t * to_spectrum(v.sigma_ratio) * Le;
@@ -120,7 +122,7 @@ uint step_segment(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum d
         event = fly(v, c, event, lane.walk, rng, lane.beta, deposit, tally);
         bool matter = !NULL_FLIGHT || c.sigma_maj > 0.0; // else the cell is empty
         if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS && !goes_through() && matter)
-            lane.path.radiance += emission_along(v, before, from, lane.walk, lane.path, rng);
+            lane.path.radiance += emission_along(v, before, from, lane.walk, lane.path, rng, tally);
     }
     if (SHAPE == SHAPE_MESH && event == EVENT_LEFT)
         event = next_part(v, seeing ? looking_from(lane) : lane.path.position,

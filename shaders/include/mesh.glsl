@@ -167,6 +167,7 @@ bool next_mesh_interval(uint bvh_nodes, Ray ray, float t_from, out vec2 t) {
             return false;
         t_from = c.second;
     }
+    atomicAdd(counters.step_caps, 1u);
     return false;
 }
 

@@ -77,8 +77,12 @@ Spectrum analytic_shadow(VolumeParams v, vec3 position, vec3 direction) {
     Ray ray = to_medium(v, position, direction);
     float inside = 0.0;
     vec2 t = vec2(0.0);
-    for (int part = 0; part < 256 && next_interval(v, ray, t.y, t); ++part)
+    const int most_parts = 256;
+    int part = 0;
+    for (; part < most_parts && next_interval(v, ray, t.y, t); ++part)
         inside += t.y - t.x;
+    if (part == most_parts) // the light may be too bright, and it is counted
+        atomicAdd(counters.step_caps, 1u);
     return analytic_transmittance(v, inside);
 }
 
