@@ -1,4 +1,4 @@
-// Procedural density against a plain implementation in double precision, and its bound.
+// Procedural density against the reference, and its bound.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include "noise.h"
 #include "noise.spv.h"
 #include "support/kernel_runner.h"
+#include "tests/reference/noise.h"
 
 using namespace vkvol;
 using shared::NoiseInput;
@@ -31,43 +32,10 @@ double fade(double t) {
     return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
 }
 
-// As the paper puts it: gradients at the corners of the cell, chosen by a hash of the corner, weighted by fade curves.
-double perlin(const Table& table, glm::dvec3 p) {
-    static const std::array<glm::dvec3, 16> gradients{{{1, 1, 0},
-                                                       {-1, 1, 0},
-                                                       {1, -1, 0},
-                                                       {-1, -1, 0},
-                                                       {1, 0, 1},
-                                                       {-1, 0, 1},
-                                                       {1, 0, -1},
-                                                       {-1, 0, -1},
-                                                       {0, 1, 1},
-                                                       {0, -1, 1},
-                                                       {0, 1, -1},
-                                                       {0, -1, -1},
-                                                       {1, 1, 0},
-                                                       {0, -1, 1},
-                                                       {-1, 1, 0},
-                                                       {0, -1, -1}}};
-    const glm::dvec3 low = glm::floor(p);
-    double sum = 0.0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 at = low + glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-        int hash = 0;
-        double weight = 1.0;
-        for (int axis = 0; axis < 3; ++axis) {
-            hash = table[(hash + static_cast<int>(at[axis] - 256.0 * std::floor(at[axis] / 256.0))) & 255];
-            weight *= fade(1.0 - std::abs(p[axis] - at[axis]));
-        }
-        sum += weight * glm::dot(gradients[hash & 15], p - at);
-    }
-    return sum;
-}
-
-double fbm(const Noise& noise, const Table& table, glm::dvec3 world) {
+double fbm(const Noise& noise, glm::dvec3 world) {
     double sum = 0.0, frequency = noise.frequency, amplitude = 1.0;
     for (int k = 0; k < noise.octaves; ++k, frequency *= noise.lacunarity, amplitude *= noise.gain)
-        sum += amplitude * perlin(table, frequency * world);
+        sum += amplitude * reference::perlin(frequency * world);
     return sum;
 }
 
@@ -115,7 +83,7 @@ TEST_CASE("the permutation is Perlin's", "[noise]") {
         CHECK(value);
     CHECK(table[0] == 151);
     CHECK(table[255] == 180);
-    CHECK(perlin(table, {3.14, 42.0, 7.0}) == Approx(0.13691995878400012).epsilon(1e-12)); // his program's
+    CHECK(reference::perlin({3.14, 42.0, 7.0}) == Approx(0.13691995878400012).epsilon(1e-12)); // his program's
 }
 
 TEST_CASE("noise agrees with double precision, near and far from the world's origin", "[gpu][noise]") {
@@ -126,7 +94,6 @@ TEST_CASE("noise agrees with double precision, near and far from the world's ori
     const glm::dvec3 origin = GENERATE(glm::dvec3(0.0), glm::dvec3(-3.25, 1e3, 7.7), glm::dvec3(1e6 + 0.3, -2e5, 7e7));
     const double size = GENERATE(1.0, 50.0);
     CAPTURE(noise.octaves, noise.lacunarity, noise.frequency, origin.x, size);
-    const Table table = unpack(make_noise(noise, origin));
     std::mt19937 engine(1);
     std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
     std::vector<NoiseInput> inputs;
@@ -138,13 +105,13 @@ TEST_CASE("noise agrees with double precision, near and far from the world's ori
     double worst = 0.0;
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         const glm::dvec3 render(inputs[i].position);
-        const double expected = std::max(0.0, (1.0 + fbm(noise, table, origin + render)) / 2.0);
+        const double expected = std::max(0.0, (1.0 + fbm(noise, origin + render)) / 2.0);
         // The product of frequency and world position has roundings of its own in double precision.
         const double far = 8.5 * 3.0 * 0x1p-52 * std::pow(noise.lacunarity * noise.gain, noise.octaves - 1) *
                            noise.octaves * noise.frequency * (glm::length(origin) + size);
         const double eps = 0.5 * tolerance(noise, render) + far;
         worst = std::max(worst, std::abs(outputs[i].density - expected) / eps);
-        CHECK(std::abs(outputs[i].octave - fbm(first, table, origin + render)) <= tolerance(first, render) + 2.0 * far);
+        CHECK(std::abs(outputs[i].octave - fbm(first, origin + render)) <= tolerance(first, render) + 2.0 * far);
     }
     CHECK(worst <= 1.0);
 }
@@ -204,7 +171,6 @@ TEST_CASE("no noise exceeds the bound, which is tight", "[noise]") {
     CAPTURE(peak.x, peak.y, peak.z);
 
     // The lattice that there is: near the peak's 48 images within many cells.
-    const Table table = unpack(make_noise({}, glm::dvec3(0.0)));
     std::mt19937 engine(1);
     std::uniform_int_distribution<int> lattice(0, 255), image(0, 47);
     double most = 0.0;
@@ -219,7 +185,7 @@ TEST_CASE("no noise exceeds the bound, which is tight", "[noise]") {
             if (n / 6 >> axis & 1)
                 p[axis] = 1.0 - p[axis];
         p += glm::dvec3(lattice(engine), lattice(engine), lattice(engine));
-        most = std::max(most, std::abs(perlin(table, p)));
+        most = std::max(most, std::abs(reference::perlin(p)));
     }
     CHECK(most <= perlin_bound);
     CHECK(most > 0.9 * perlin_bound);

@@ -59,12 +59,13 @@ double fade(double t) {
 
 double perlin(const glm::dvec3& p) {
     const glm::dvec3 base = glm::floor(p), f = p - base;
+    const glm::ivec3 lattice(base - 256.0 * glm::floor(base / 256.0)); // the noise repeats; no integer holds far points
     const glm::dvec3 weight(fade(f.x), fade(f.y), fade(f.z));
     double sum = 0.0;
     for (int corner = 0; corner < 8; ++corner) {
         const glm::ivec3 c(corner & 1, corner >> 1 & 1, corner >> 2);
         const glm::dvec3 w = glm::mix(1.0 - weight, weight, glm::dvec3(c));
-        sum += w.x * w.y * w.z * glm::dot(gradient(hash(glm::ivec3(base) + c)), f - glm::dvec3(c));
+        sum += w.x * w.y * w.z * glm::dot(gradient(hash(lattice + c)), f - glm::dvec3(c));
     }
     return sum;
 }

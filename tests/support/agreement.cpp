@@ -168,7 +168,7 @@ PairwiseAgreement compare_all(const std::vector<Estimate>& estimates) {
                     const double excess = std::max(std::abs(x - y) - rounding * size, 0.0);
                     worst(excess == 0.0 ? 0.0 : excess / std::sqrt(v), pair, result.pixel_z, result.pixel_pair);
                     difference += x - y;
-                    variance += v;
+                    variance += double(one.variance[i][channel]) + other.variance[i][channel]; // many pixels: known
                     scale += size;
                 }
                 const double excess = std::max(std::abs(difference) - rounding * scale, 0.0);
