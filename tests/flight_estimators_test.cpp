@@ -121,7 +121,7 @@ TEST_CASE("regular tracking collides where the optical depth is the sampled one"
         const double voxels_per_unit = glm::length(in_index.direction);
         const double length = reference::support(medium.reference(), ray).front().length();
         for (std::size_t i = 0; i < flights.size(); ++i) {
-            const double E = -std::log1p(-double(inputs[i].u));
+            const double E = inputs[i].e;
             const double displaced = 3.0 * 8.0 * u * R * rho_max * (length + 2.0 / voxels_per_unit);
             const double tolerance = sigma_t * (displaced + 64.0 * u * rho_max * length) + 8.0 * u * E;
             const bool escapes = flights[i].event == left;
@@ -181,7 +181,7 @@ double escape_error(int flight, MediumKind kind, double step) {
     for (const reference::Ray& ray : rays) {
         auto some = medium.flights_along(ray, count, 1);
         for (int i = 0; i < count; ++i)
-            some[i].u = (i + 0.5f) / count;
+            some[i].e = -std::log1p(-(i + 0.5f) / count);
         inputs.insert(inputs.end(), some.begin(), some.end());
     }
     const auto flights = medium.fly(inputs);

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint32_t collided = 1, left = 2;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr float largest_u = 1.0f - 0x1p-24f;
+constexpr float longest = 22.18071f; // exponential variate, -log(2^-32)
 
 Volume medium_of(double sigma_t) {
     Volume volume;
@@ -151,8 +151,8 @@ TEST_CASE("no random number leads to anything but a distance", "[gpu][free_fligh
             std::vector<RayInput> rays;
             for (const reference::Ray& ray : rays_through(grid))
                 for (RayInput r : repeat(scene, ray, 200, 3))
-                    for (const float u : {0.0f, 0x1p-24f, 0.5f, largest_u}) {
-                        r.u = u;
+                    for (const float e : {0.0f, 0x1p-54f, 0.5f, longest}) {
+                        r.e = e;
                         rays.push_back(r);
                     }
             for (const FlightOutput& f : fly(scene, rays)) {
@@ -162,16 +162,16 @@ TEST_CASE("no random number leads to anything but a distance", "[gpu][free_fligh
                 REQUIRE(f.t < 100.0f);
             }
         }
-    // u = 0 collides where the medium begins; the largest u goes -log(2^-24) mean free paths.
+    // The least exponential collides where the medium begins; the largest goes -log(2^-32) mean free paths.
     Volume ball = medium_of(1.0);
     ball.shape = Sphere{glm::dvec3(0.0), 20.0};
     const TestScene scene = make_test_scene(ball);
     const auto ends = fly(scene, {{{-30, 0, 0}, {1, 0, 0}, 1, 0.0f, 0.0f, glm::vec3(1.0f)},
-                                  {{-30, 0, 0}, {1, 0, 0}, 1, largest_u, 0.0f, glm::vec3(1.0f)}});
+                                  {{-30, 0, 0}, {1, 0, 0}, 1, longest, 0.0f, glm::vec3(1.0f)}});
     CHECK(ends[0].event == collided);
     CHECK(ends[0].t == Approx(10.0));
     CHECK(ends[1].event == collided);
-    CHECK(ends[1].t == Approx(10.0 + 24.0 * std::log(2.0)));
+    CHECK(ends[1].t == Approx(10.0 + 32.0 * std::log(2.0)));
 }
 
 TEST_CASE("where the majorant is the density no collision is null", "[gpu][free_flight][hard]") {

@@ -10,7 +10,7 @@ TEST_CASE("homogeneous free flights are exponential", "[cpu][reference]") {
     Rng rng = stream(13);
     Mean distance;
     for (int i = 0; i < 100000; ++i)
-        distance.add(*fly(medium, FREE_FLIGHT_ANALYTIC, {{0, 0, 0}, {0, 0, 1}}, to_exponential(rng.next().x()), 0.0,
+        distance.add(*fly(medium, FREE_FLIGHT_ANALYTIC, {{0, 0, 0}, {0, 0, 1}}, rng.next().exponential(0), 0.0,
                           vkvol::Rgb(1.0), {}, rng)
                           .t);
     const double z = distance.z(0.5); // the mean free path, 1 / sigma_t
@@ -156,11 +156,11 @@ TEST_CASE("a conservative slab under Lambertian light", "[cpu][reference]") {
         const Draw first = rng.next();
         const double mu = std::sqrt(1.0 - first.x());
         Ray ray{{0, 0, 0.5 * c.tau}, {std::sqrt(1.0 - mu * mu), 0.0, -mu}};
-        double flight = to_exponential(first.y());
+        double flight = first.exponential(1);
         while (const auto t = fly(medium, FREE_FLIGHT_ANALYTIC, ray, flight, 0.0, vkvol::Rgb(1.0), {}, rng).t) {
             const Draw draw = rng.next();
             ray = {ray.at(*t), hg_sample(0.0, ray.direction, draw.y(), draw.z())};
-            flight = to_exponential(draw.x());
+            flight = draw.exponential(0);
         }
         transmitted.add(ray.direction.z < 0.0 ? 1.0 : 0.0);
     }

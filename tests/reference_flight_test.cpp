@@ -12,8 +12,7 @@ namespace {
 
 Flight fly_once(const Sample& sample, int free_flight, const Rgb& beta, Rng& rng) {
     const Draw first = rng.next();
-    return fly(sample.medium, free_flight, sample.ray, to_exponential(first.z()), first.select(), beta, sample.march,
-               rng);
+    return fly(sample.medium, free_flight, sample.ray, first.exponential(2), first.select(), beta, sample.march, rng);
 }
 
 // The mean weight of the flights that end in each of `bins` stretches of equal optical depth (of the densest channel),
@@ -189,7 +188,7 @@ TEST_CASE("pieces of a flight make up its way", "[cpu][reference]") {
             flown += density_integral(sample.medium, sample.ray, t0, t1);
         };
         const Draw first = rng.next();
-        const Flight flight = fly(sample.medium, c.free_flight, sample.ray, to_exponential(first.z()), first.select(),
+        const Flight flight = fly(sample.medium, c.free_flight, sample.ray, first.exponential(2), first.select(),
                                   Rgb(1.0), sample.march, rng, events);
         const double D = density_integral(sample.medium, sample.ray, 0.0, flight.t.value_or(infinity));
         REQUIRE(flown == Approx(D).epsilon(1e-6).margin(1e-9)); // noise: pieces are integrated from other points

@@ -142,7 +142,7 @@ TEST_CASE("flights and transmittance go on behind a gap", "[cpu][reference]") {
     for (int i = 0; i < 20000; ++i) {
         const Draw draw = rng.next();
         const int kind = medium.homogeneous() ? FREE_FLIGHT_ANALYTIC : FREE_FLIGHT_DELTA;
-        escaped.add(fly(medium, kind, ray, to_exponential(draw.z()), 0.0, vkvol::Rgb(1.0), march, rng).t ? 0.0 : 1.0);
+        escaped.add(fly(medium, kind, ray, draw.exponential(2), 0.0, vkvol::Rgb(1.0), march, rng).t ? 0.0 : 1.0);
     }
     const double z = escaped.z(T.x);
     CHECK(std::abs(z) < 4.0);

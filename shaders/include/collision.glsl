@@ -31,7 +31,7 @@ uint next_collision(VolumeParams v, bool seeing, inout Walk w, inout Rng rng, in
     }
     uvec4 words = next_words(rng);
     vec4 u = to_uniform(words);
-    w.tau = to_exponential(u.x);
+    w.tau = to_exponential(words.x, words);
     c.u = u.y;
     c.sigma_t = c.sigma_maj;
     // Below the control density a collision is real, whatever the density.

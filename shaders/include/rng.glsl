@@ -3,16 +3,18 @@
 //
 //   key   = (x | y << 16, sample, draw, seed)         x, y: pixel of the picture (not of the crop), 16 bits each
 //   words = pcg4d(key)                                 Jarzynski & Olano, "Hash Functions for GPU Rendering", 2020
-//   u_i   = (words_i >> 8) * 2^-24                     in [0, 1); distances come from -log(1 - u), at most 16.64
+//   u_i   = (words_i >> 8) * 2^-24                     in [0, 1)
 //   tap   = ((words_z >> 8), (words_w >> 8), low bytes of words_x, words_y, words_z as one 24-bit number) * 2^-24
+//   e_i   = -log(1 - U), U = (words_i + r * 2^-24) * 2^-32, r: low bytes of words_w, words_y, words_x as one number.
+//           At most 22.18; of steps of 2^-48 near 0: a medium thinner than 2^-24 is hit as often as it should be.
 //
 // Order of draws along a path; each draw yields four words. `select` is tap.z: it chooses a colour channel.
-//   camera                 x, y: position in the pixel; z: first free flight; select
-//   tentative collision    x: next distance; y: event or roulette; tap: stochastic filtering
+//   camera                 x, y: position in the pixel; e_z: first free flight; select
+//   tentative collision    e_x: next distance; y: event or roulette; tap: stochastic filtering
 //   step of a march        x: position in the step; y: roulette of a march through the medium
 //   emission along a step  x: position in the step; after the step's own draw; none in an empty cell
-//   shadow ray             x: first distance; y, z, select: telescoping's level, offset and residue
-//   scattering             x: next free flight; y, z: phase function; w: roulette; select
+//   shadow ray             e_x: first distance; y, z, select: telescoping's level, offset and residue
+//   scattering             e_x: next free flight; y, z: phase function; w: roulette; select
 #ifndef RNG_GLSL
 #define RNG_GLSL
 
@@ -54,9 +56,15 @@ vec3 to_tap(uvec4 words) {
     return vec3(uvec3(words.z >> 8u, words.w >> 8u, low_bytes)) * 5.9604644775390625e-8;
 }
 
-// Unit exponential variate, in [0, 16.64].
-float to_exponential(float u) {
-    return -log(1.0 - u);
+// Unit exponential variate from one of the words of a draw. 1 - U is formed from the integer's complement, so it has all
+// digits where U is near 1. Where U is small 1 - U would keep no more of it than multiples of 2^-24, and Vulkan lets
+// log err by 2^-21 there: the series of -log(1 - U) instead, whose next term is U^4 / 5 < 2^-26 of it.
+float to_exponential(uint word, uvec4 words) {
+    const uint small = 1u << 26u; // U < 2^-6
+    uint rest = (words.w & 255u) << 16u | (words.y & 255u) << 8u | (words.x & 255u);
+    float U = (float(word) + float(rest) * 5.9604644775390625e-8) * 2.3283064365386963e-10;
+    float series = U * (1.0 + U * (0.5 + U * (1.0 / 3.0 + U * 0.25)));
+    return word < small ? series : -log(float(0u - word) * 2.3283064365386963e-10);
 }
 
 #endif

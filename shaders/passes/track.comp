@@ -40,7 +40,7 @@ void main() {
             }
             if (NEE == NEE_TENTATIVE && looks)
                 lane.flight = lane.walk;
-            float e = to_exponential(at_camera ? u.z : u.x);
+            float e = to_exponential(at_camera ? words.z : words.x, words);
             lane.walk.tau = looks ? e : begin_flight(v, lane.beta, e, to_tap(words).z);
             lane.walk.depth = 0.0;
             if (LOOKS && looks)

@@ -16,7 +16,7 @@ void main() {
     Spectrum beta = to_spectrum(inputs[i].beta);
     Spectrum deposit;
     Walk w;
-    w.tau = begin_flight(v, beta, to_exponential(inputs[i].u), inputs[i].select);
+    w.tau = begin_flight(v, beta, inputs[i].e, inputs[i].select);
     w.depth = 0.0;
     begin_segment(v, inputs[i].origin, inputs[i].direction, false, w);
     uint event = EVENT_MOVING;

@@ -15,7 +15,8 @@ void main() {
     o.words = next_words(rng);
     o.u = to_uniform(o.words);
     o.tap = to_tap(o.words);
-    o.exponential = to_exponential(o.u.x);
+    o.exponential = to_exponential(o.words.x, o.words);
+    o.of_key = to_exponential(key.x, key);
     o.draw = rng.draw;
     outputs[i] = o;
 }

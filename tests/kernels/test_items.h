@@ -9,7 +9,8 @@ struct RngOutput {
     uvec4 words;
     vec4 u;
     vec3 tap;
-    float exponential; // from u.x
+    float exponential; // from words.x
+    float of_key;      // the same, were the key itself the words
     uint draw;         // the counter afterwards
 };
 
@@ -29,7 +30,7 @@ struct RayInput {
     vec3 origin;
     vec3 direction;
     uint key;     // of the random numbers
-    float u;      // of the first free flight
+    float e;      // unit exponential of the first free flight
     float select; // of its channel
     vec3 beta;
 };

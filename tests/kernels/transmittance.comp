@@ -20,7 +20,7 @@ void main() {
     uint event = EVENT_MOVING;
     if (LOOKS) {
         uvec4 words = next_words(rng);
-        w.tau = to_exponential(to_uniform(words).x);
+        w.tau = to_exponential(words.x, words);
         begin_transmittance(words, w);
         begin_segment(v, ray.origin, ray.direction, true, w);
     } else {

@@ -42,7 +42,7 @@ Flight track(const Medium& medium, const Ray& ray, double exponential, Rgb beta,
                 return {t, beta};
             if (beta == Rgb(0.0))
                 return {{}, beta};
-            tau = to_exponential(draw.x());
+            tau = draw.exponential(0);
         }
     }
     return {{}, beta};

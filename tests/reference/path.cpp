@@ -106,7 +106,7 @@ Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng
             beta *= settings.roulette_threshold / m;
         }
         ray.direction = hg_sample(medium.g, ray.direction, draw.y(), draw.z());
-        exponential = to_exponential(draw.x());
+        exponential = draw.exponential(0);
         select = draw.select();
     }
 }
@@ -115,7 +115,7 @@ Rgb trace_path(const World& world, int x, int y, std::uint32_t sample, std::uint
     Rng rng{static_cast<std::uint32_t>(x) | static_cast<std::uint32_t>(y) << 16, sample, seed};
     const Draw draw = rng.next();
     const Ray ray = camera_ray(world.scene.camera, world.scene.picture, x + draw.x(), y + draw.y());
-    return radiance(world, ray, to_exponential(draw.z()), draw.select(), rng);
+    return radiance(world, ray, draw.exponential(2), draw.select(), rng);
 }
 
 } // namespace reference

@@ -43,6 +43,12 @@ struct Draw {
         return glm::dvec3(words[2] >> 8, words[3] >> 8, low_bytes) * 0x1p-24;
     }
 
+    // Unit exponential variate from word i.
+    double exponential(int i) const {
+        const std::uint32_t rest = (words[3] & 255u) << 16 | (words[1] & 255u) << 8 | (words[0] & 255u);
+        return -std::log1p(-(words[i] + rest * 0x1p-24) * 0x1p-32);
+    }
+
     // One more number in [0, 1), that shares no bits with x() to w().
     double select() const { return tap().z; }
 };
@@ -55,10 +61,5 @@ struct Rng {
 
     Draw next() { return {pcg4d({pixel, sample, draw++, seed})}; }
 };
-
-// Unit exponential variate.
-inline double to_exponential(double u) {
-    return -std::log(1.0 - u);
-}
 
 } // namespace reference

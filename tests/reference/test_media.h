@@ -112,7 +112,7 @@ inline RgbMean sample_ray(const World& world, const Ray& ray, int count, std::ui
     for (int i = 0; i < count; ++i) {
         Rng rng{0, std::uint32_t(i), seed};
         const Draw first = rng.next();
-        mean.add(radiance(world, ray, to_exponential(first.z()), first.select(), rng));
+        mean.add(radiance(world, ray, first.exponential(2), first.select(), rng));
     }
     return mean;
 }

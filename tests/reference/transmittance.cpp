@@ -48,7 +48,7 @@ Rgb track(const Medium& medium, const Ray& ray, double exponential, Rng& rng, co
             const Draw draw = rng.next();
             if (!collide(T, cell, density(t), draw.y()))
                 return Rgb(0.0);
-            tau = to_exponential(draw.x());
+            tau = draw.exponential(0);
         }
         fly(T, cell, cell.t1 - t);
         tau -= sigma * (cell.t1 - t);
@@ -155,7 +155,7 @@ Rgb estimate_transmittance(const Medium& medium, int estimator, const Ray& ray, 
     if (estimator == TRANSMITTANCE_ANALYTIC)
         return analytic_transmittance(medium, ray);
     const Draw first = rng.next();
-    const double exponential = to_exponential(first.x());
+    const double exponential = first.exponential(0);
     switch (estimator) {
     case TRANSMITTANCE_REGULAR:
         return glm::exp(-medium.sigma_t * density_integral(medium, ray));

@@ -142,7 +142,7 @@ std::vector<RayInput> TestMedium::flights_along(const reference::Ray& ray, int c
     std::vector<RayInput> inputs;
     for (int i = 0; i < count; ++i) {
         RayInput input{scene_->to_render(ray.origin), ray.direction, std::uint32_t(engine()), 0.0f, 0.0f, beta};
-        input.u = uniform();
+        input.e = -std::log1p(-uniform());
         input.select = uniform();
         inputs.push_back(input);
     }
