@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint32_t collided = 1, left = 2;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr float longest = 22.18071f; // exponential variate, -log(2^-32)
+constexpr float longest = 38.81624f; // exponential variate, -log(2^-56)
 
 Volume medium_of(double sigma_t) {
     Volume volume;
@@ -42,7 +42,7 @@ std::vector<RayInput> repeat(const TestScene& scene, const reference::Ray& ray, 
     std::vector<RayInput> rays;
     for (int i = 0; i < count; ++i)
         rays.push_back({scene.to_render(ray.origin), ray.direction, std::uint32_t(engine()),
-                        static_cast<float>((engine() >> 8) * 0x1p-24), 0.0f, glm::vec3(1.0f)});
+                        static_cast<float>(-std::log1p(-(engine() * 0x1p-32))), 0.0f, glm::vec3(1.0f)});
     return rays;
 }
 
@@ -162,7 +162,7 @@ TEST_CASE("no random number leads to anything but a distance", "[gpu][free_fligh
                 REQUIRE(f.t < 100.0f);
             }
         }
-    // The least exponential collides where the medium begins; the largest goes -log(2^-32) mean free paths.
+    // The least exponential collides where the medium begins; the largest goes -log(2^-56) mean free paths.
     Volume ball = medium_of(1.0);
     ball.shape = Sphere{glm::dvec3(0.0), 20.0};
     const TestScene scene = make_test_scene(ball);
@@ -171,7 +171,7 @@ TEST_CASE("no random number leads to anything but a distance", "[gpu][free_fligh
     CHECK(ends[0].event == collided);
     CHECK(ends[0].t == Approx(10.0));
     CHECK(ends[1].event == collided);
-    CHECK(ends[1].t == Approx(10.0 + 32.0 * std::log(2.0)));
+    CHECK(ends[1].t == Approx(10.0 + 56.0 * std::log(2.0)));
 }
 
 TEST_CASE("where the majorant is the density no collision is null", "[gpu][free_flight][hard]") {
