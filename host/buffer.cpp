@@ -13,7 +13,7 @@ Buffer::Buffer(const Device& device, const std::string& name, VkDeviceSize bytes
     const VkDeviceSize range = device.limits().maxStorageBufferRange;
     if ((usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) && bytes > range)
         throw InputError(fmt::format("the {} takes {:.1f} MiB, but a storage buffer of \"{}\" ends at {:.1f} MiB; "
-                                     "use a smaller or quantised form (Fp8 takes a quarter)",
+                                     "use a grid, mesh or picture of fewer voxels, triangles or pixels",
                                      name, bytes / 1048576.0, device.info().name, range / 1048576.0));
     VkBufferCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
@@ -36,8 +36,12 @@ Buffer::Buffer(const Device& device, const std::string& name, VkDeviceSize bytes
     if (type < 0)
         type = device.find_memory_type(need.memoryTypeBits, 0);
 
+    VkMemoryAllocateFlagsInfo flags{};
+    flags.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO;
+    flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
     VkMemoryAllocateInfo allocate{};
     allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    allocate.pNext = usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT ? &flags : nullptr;
     allocate.allocationSize = need.size;
     allocate.memoryTypeIndex = static_cast<std::uint32_t>(type);
     const VkResult result = vkAllocateMemory(device.handle(), &allocate, nullptr, &memory_);
@@ -54,6 +58,13 @@ Buffer::Buffer(const Device& device, const std::string& name, VkDeviceSize bytes
 Buffer::Buffer(Buffer&& other) noexcept
     : device_(other.device_), buffer_(std::exchange(other.buffer_, VK_NULL_HANDLE)),
       memory_(std::exchange(other.memory_, VK_NULL_HANDLE)), bytes_(other.bytes_), mapped_(other.mapped_) {}
+
+VkDeviceAddress Buffer::address() const {
+    VkBufferDeviceAddressInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO;
+    info.buffer = buffer_;
+    return vkGetBufferDeviceAddress(device_.handle(), &info);
+}
 
 Buffer::~Buffer() {
     vkDestroyBuffer(device_.handle(), buffer_, nullptr);

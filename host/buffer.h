@@ -27,6 +27,8 @@ public:
 
     VkBuffer handle() const { return buffer_; }
     VkDeviceSize bytes() const { return bytes_; }
+    // For kernels; needs VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT.
+    VkDeviceAddress address() const;
     // Null if the host cannot see this memory.
     void* mapped() const { return mapped_; }
 

@@ -55,18 +55,22 @@ std::optional<std::uint32_t> find_compute_family(VkPhysicalDevice physical, bool
     return std::nullopt;
 }
 
-std::string find_rejection(VkPhysicalDevice physical, const VkPhysicalDeviceProperties& properties) {
-    if (properties.apiVersion < VK_API_VERSION_1_2)
-        return fmt::format("it offers Vulkan {}, at least 1.2 is needed", version_text(properties.apiVersion));
-    if (!find_compute_family(physical))
-        return "it has no compute queue";
+VkPhysicalDeviceVulkan12Features features_of(VkPhysicalDevice physical) {
     VkPhysicalDeviceVulkan12Features features12{};
     features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
     VkPhysicalDeviceFeatures2 features{};
     features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
     features.pNext = &features12;
     vkGetPhysicalDeviceFeatures2(physical, &features);
-    if (!features12.scalarBlockLayout)
+    return features12;
+}
+
+std::string find_rejection(VkPhysicalDevice physical, const VkPhysicalDeviceProperties& properties) {
+    if (properties.apiVersion < VK_API_VERSION_1_2)
+        return fmt::format("it offers Vulkan {}, at least 1.2 is needed", version_text(properties.apiVersion));
+    if (!find_compute_family(physical))
+        return "it has no compute queue";
+    if (!features_of(physical).scalarBlockLayout)
         return "it lacks the feature scalarBlockLayout";
     return "";
 }
@@ -96,6 +100,7 @@ DeviceInfo describe(VkPhysicalDevice physical, int index) {
         if (memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)
             info.memory += memory.memoryHeaps[i].size;
     info.rejection = find_rejection(physical, properties.properties);
+    info.addresses = info.rejection.empty() && features_of(physical).bufferDeviceAddress;
     return info;
 }
 
@@ -256,6 +261,7 @@ void Device::create_device(const DeviceOptions& options) {
     VkPhysicalDeviceVulkan12Features features12{};
     features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
     features12.scalarBlockLayout = VK_TRUE;
+    features12.bufferDeviceAddress = info_.addresses;
     VkPhysicalDeviceFeatures2 features{};
     features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
     features.pNext = &features12;

@@ -25,6 +25,7 @@ struct DeviceInfo {
     std::string api;                 // "1.3.230"
     std::uint64_t memory = 0;        // bytes, device-local heaps
     std::uint64_t storage_range = 0; // bytes one storage buffer may span
+    bool addresses = false;          // kernels may reach buffers by address, and so larger grids
     std::string rejection;
 };
 
@@ -47,6 +48,7 @@ public:
     const VkPhysicalDeviceProperties& properties() const { return properties_; }
     bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
     bool has_timestamps() const { return timestamps_; }
+    bool has_addresses() const { return info_.addresses; }
 
     // Index of a memory type in `allowed` with all `wanted` properties, or -1.
     int find_memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const;

@@ -68,6 +68,10 @@ public:
     Builder(DensityField& field, const std::string& place) : field_(field), place_(place) {}
 
     void build() {
+        if (field_.bytes.size() > std::uint64_t{1} << 33) // the table keeps word offsets in 31 bits
+            throw InputError(fmt::format("{}: the grid takes {:.1f} GiB, and 8 GiB are the most; crop it or write it "
+                                         "quantised (nanovdb_convert --fp8 takes a quarter of the bytes of floats)",
+                                         place_, field_.bytes.size() / 1073741824.0));
         auto* grid = at<nanovdb::GridData>(0);
         const std::size_t tree_offset = sizeof(nanovdb::GridData);
         const auto* tree = at<nanovdb::TreeData<3>>(tree_offset);

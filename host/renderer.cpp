@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "integrators.h"
+#include "scene_buffers.h"
 #include "scene_upload.h"
 
 namespace vkvol {
@@ -24,61 +25,6 @@ public:
 
 private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-// The buffers that hold the scene.
-struct SceneBuffers {
-    Buffer frame;
-    std::optional<Buffer> grids, leaf_table, majorants, controls, blackbody, triangles, bvh;
-
-    SceneBuffers(const Device& device, Commands& commands, const LoadedVolume& volume)
-        : frame(device, "frame parameters", sizeof(shared::FrameParams), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
-                BufferPlace::host) {
-        // Parts lie one after another; empty ones take no place.
-        const auto make = [&](std::optional<Buffer>& buffer, const char* name, std::span<const std::byte> first,
-                              std::span<const std::byte> second = {}) {
-            buffer.emplace(device, name, first.size() + second.size(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                           BufferPlace::device);
-            commands.upload(*buffer, first);
-            commands.upload(*buffer, second, first.size());
-        };
-        if (volume.bvh) {
-            make(triangles, "triangles", std::as_bytes(std::span(volume.bvh->triangles)));
-            make(bvh, "bounding volume hierarchy", std::as_bytes(std::span(volume.bvh->nodes)));
-        }
-        if (!volume.field)
-            return;
-        const DensityField nothing;
-        const DensityField& temperature = volume.temperature ? *volume.temperature : nothing;
-        make(grids, "grids", volume.field->bytes.span(), temperature.bytes.span());
-        make(leaf_table, "leaf table", std::as_bytes(std::span(volume.field->leaf_table)),
-             std::as_bytes(std::span(temperature.leaf_table)));
-        make(majorants, "majorant grid", std::as_bytes(std::span(volume.majorants->bounds)));
-        if (!volume.controls.empty())
-            make(controls, "control grid", std::as_bytes(std::span(volume.controls)));
-        if (!volume.blackbody.empty())
-            make(blackbody, "black-body table", std::as_bytes(std::span(volume.blackbody)));
-    }
-
-    std::uint64_t bytes() const {
-        const auto size = [](const std::optional<Buffer>& buffer) { return buffer ? buffer->bytes() : 0; };
-        return frame.bytes() + size(grids) + size(leaf_table) + size(majorants) + size(controls) + size(blackbody) +
-               size(triangles) + size(bvh);
-    }
-
-    BoundBuffers bound() const {
-        BoundBuffers buffers{};
-        buffers[BINDING_FRAME] = &frame;
-        const auto place = [](const std::optional<Buffer>& buffer) { return buffer ? &*buffer : nullptr; };
-        buffers[BINDING_GRID] = place(grids);
-        buffers[BINDING_LEAF_TABLE] = place(leaf_table);
-        buffers[BINDING_MAJORANTS] = place(majorants);
-        buffers[BINDING_CONTROLS] = place(controls);
-        buffers[BINDING_BLACKBODY] = place(blackbody);
-        buffers[BINDING_TRIANGLES] = place(triangles);
-        buffers[BINDING_BVH] = place(bvh);
-        return buffers;
-    }
 };
 
 // The film lies in bands of whole rows, each within what one storage buffer may span.
@@ -178,9 +124,9 @@ public:
         result_.integrator = method.integrator;
         result_.biased = method.biased;
         result_.specialization = describe(specialization, volume, chromatic);
-        buffers_.emplace(device, commands_, volume);
-        frame_ = make_frame(scene_, volume, method, job.crop, job.seed);
         const Tuning tuning = tune(device, volume.bvh ? volume.bvh->nodes.size() : 0, job.tuning);
+        buffers_.emplace(device, commands_, volume, tuning.most_grid_bytes);
+        frame_ = make_frame(scene_, volume, method, job.crop, job.seed);
         volume = {};
         bands_ = make_bands(device, job.crop, tuning.most_film_bytes);
         for (const Band& band : bands_)
@@ -189,8 +135,8 @@ public:
         frame_.slots = tuning.slots;
         frame_.queue_capacity = queue_capacity(tuning);
         PipelineCache cache(device, job.disk_cache);
-        wavefront_.emplace(device, buffers_->bound(), bands_.front().rows * width_, specialization, chromatic, tuning,
-                           cache.handle());
+        wavefront_.emplace(device, buffers_->bound(), bands_.front().rows * width_, specialization,
+                           TrackVariant{chromatic, buffers_->window_bits()}, tuning, cache.handle());
         cache.save();
         result_.device_bytes = buffers_->bytes() + wavefront_->bytes();
         for (const Band& band : bands_)
@@ -258,7 +204,7 @@ private:
         if (stopping())
             return;
         frame_.crop_y = static_cast<std::uint32_t>(job_.crop.y0) + band.first_row;
-        commands_.upload(buffers_->frame, std::as_bytes(std::span(&frame_, 1)));
+        buffers_->set_frame(commands_, frame_);
         wavefront_->bind_film(band.film);
         const std::uint32_t begin = job_.sample_offset + done;
         wavefront_->begin_batch(begin, begin + batch, band.rows * width_);

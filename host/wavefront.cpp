@@ -15,6 +15,8 @@
 #include "sky.spv.h"
 #include "track.spv.h"
 #include "track_chromatic.spv.h"
+#include "track_chromatic_windows.spv.h"
+#include "track_windows.spv.h"
 #include "vulkan_error.h"
 
 namespace vkvol {
@@ -54,6 +56,12 @@ std::uint32_t longest_budget(std::size_t mesh_nodes) {
     return static_cast<std::uint32_t>(std::clamp(65535.0 / per_iteration, 4.0, 1024.0));
 }
 
+std::span<const std::uint32_t> track_kernel(const TrackVariant& variant) {
+    if (variant.window_bits)
+        return variant.chromatic ? std::span<const std::uint32_t>(track_chromatic_windows_spv) : track_windows_spv;
+    return variant.chromatic ? std::span<const std::uint32_t>(track_chromatic_spv) : track_spv;
+}
+
 } // namespace
 
 Tuning tune(const Device& device, std::size_t mesh_nodes, const Tuning& wish) {
@@ -67,6 +75,7 @@ Tuning tune(const Device& device, std::size_t mesh_nodes, const Tuning& wish) {
     tuning.steps_per_look = pick(wish.steps_per_look, 4u);
     tuning.most_film_bytes =
         pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
+    tuning.most_grid_bytes = pick(wish.most_grid_bytes, std::uint64_t{device.limits().maxStorageBufferRange});
     return tuning;
 }
 
@@ -75,11 +84,12 @@ std::uint32_t queue_capacity(const Tuning& tuning) {
 }
 
 Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, std::uint32_t most_pixels,
-                     const Specialization& specialization, bool chromatic, const Tuning& tuning, VkPipelineCache cache)
+                     const Specialization& specialization, const TrackVariant& variant, const Tuning& tuning,
+                     VkPipelineCache cache)
     : device_(device), tuning_(tuning), commands_(device),
       paths_(device, "path states", tuning.slots * sizeof(shared::PathState), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
              BufferPlace::device),
-      betas_(device, "path throughputs", tuning.slots * (chromatic ? sizeof(glm::vec3) : sizeof(float)),
+      betas_(device, "path throughputs", tuning.slots * (variant.chromatic ? sizeof(glm::vec3) : sizeof(float)),
              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device),
       suspended_(device, "suspended paths", tuning.slots * sizeof(shared::Suspended),
                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device),
@@ -96,12 +106,12 @@ Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, st
                 with_queues(scene_buffers, paths_, betas_, suspended_, queue_items_, queues_, work_, counter_buffer_)) {
     Specialization constants = specialization;
     constants[SPEC_STEPS] = static_cast<std::int32_t>(tuning.steps_per_look);
+    constants[SPEC_WINDOW_BITS] = static_cast<std::int32_t>(variant.window_bits.value_or(0));
     const auto make = [&](std::span<const std::uint32_t> spirv) {
         return std::make_unique<ComputePass>(device, bindings_, spirv, constants, cache);
     };
     // The one large kernel compiles beside the others.
-    auto track = std::async(std::launch::async, make,
-                            chromatic ? std::span<const std::uint32_t>(track_chromatic_spv) : track_spv);
+    auto track = std::async(std::launch::async, make, track_kernel(variant));
     begin_ = make(begin_spv);
     sky_ = make(sky_spv);
     prepare_ = make(prepare_spv);

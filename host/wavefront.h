@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 #include "commands.h"
 #include "compute_pass.h"
@@ -20,6 +21,7 @@ struct Tuning {
     double submit_seconds = 0.08;      // aimed at; no submit should hold a device much longer
     std::uint32_t steps_per_look = 0;  // tracking steps between two looks at what they led to
     std::uint64_t most_film_bytes = 0; // in one buffer; a larger film lies in several
+    std::uint64_t most_grid_bytes = 0; // likewise, of all grids together
 };
 
 // What suits the device and a mesh with that many nodes, 0 without one; fields of `wish` that are not 0 win.
@@ -31,11 +33,18 @@ std::uint32_t queue_capacity(const Tuning& tuning);
 constexpr std::array pass_names = {"sky", "generate", "track", "accumulate"};
 using PassSeconds = std::array<double, pass_names.size()>;
 
+// Which of its compiled forms the track kernel takes.
+struct TrackVariant {
+    bool chromatic = false;                   // the throughput has three channels
+    std::optional<std::uint32_t> window_bits; // grids lie in windows of 2^bits words
+};
+
 class Wavefront {
 public:
-    // `most_pixels`: of any film that will be bound. `chromatic`: the throughput has three channels.
+    // `most_pixels`: of any film that will be bound.
     Wavefront(const Device& device, const BoundBuffers& scene_buffers, std::uint32_t most_pixels,
-              const Specialization& specialization, bool chromatic, const Tuning& tuning, VkPipelineCache cache);
+              const Specialization& specialization, const TrackVariant& variant, const Tuning& tuning,
+              VkPipelineCache cache);
     ~Wavefront();
     Wavefront(const Wavefront&) = delete;
     Wavefront& operator=(const Wavefront&) = delete;

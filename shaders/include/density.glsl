@@ -5,7 +5,7 @@
 // value times two. Walking the tree for each of eight corners costs three times as much.
 #ifndef DENSITY_GLSL
 #define DENSITY_GLSL
-#include "buffers.glsl"
+#include "grid.glsl"
 #include "noise.glsl"
 
 // Word offsets within a leaf node of NanoVDB 32.x.
@@ -18,12 +18,12 @@ float leaf_value(int type, uint leaf, uint n) {
     uint log2_bits = type == GRID_FP4    ? 2u
                      : type == GRID_FP8  ? 3u
                      : type == GRID_FP16 ? 4u
-                                         : grid_words[leaf + LEAF_FLAGS] >> 29u;
-    uint word = grid_words[leaf + LEAF_VALUES + (n >> (5u - log2_bits))];
+                                         : grid_word(leaf + LEAF_FLAGS) >> 29u;
+    uint word = grid_word(leaf + LEAF_VALUES + (n >> (5u - log2_bits)));
     uint shift = (n & ((32u >> log2_bits) - 1u)) << log2_bits;
     uint code = (word >> shift) & ((1u << (1u << log2_bits)) - 1u);
-    float minimum = uintBitsToFloat(grid_words[leaf + LEAF_MINIMUM]);
-    float quantum = uintBitsToFloat(grid_words[leaf + LEAF_QUANTUM]);
+    float minimum = uintBitsToFloat(grid_word(leaf + LEAF_MINIMUM));
+    float quantum = uintBitsToFloat(grid_word(leaf + LEAF_QUANTUM));
     return max(float(code) * quantum + minimum, 0.0);
 }
 
@@ -39,9 +39,9 @@ float voxel(GridParams g, int type, ivec3 ijk) {
     uint at = g.first_word + (entry >> 1u);
     float value;
     if (type == GRID_FLOAT)
-        value = uintBitsToFloat(grid_words[at + (in_leaf ? LEAF_VALUES + n : 0u)]);
+        value = uintBitsToFloat(grid_word(at + (in_leaf ? LEAF_VALUES + n : 0u)));
     else
-        value = in_leaf ? leaf_value(type, at, n) : uintBitsToFloat(grid_words[at]);
+        value = in_leaf ? leaf_value(type, at, n) : uintBitsToFloat(grid_word(at));
     return inside == ijk ? value : 0.0;
 }
 

@@ -4,7 +4,7 @@
 
 // One descriptor set serves every pass and every test kernel.
 #define BINDING_FRAME 0       // uniform FrameParams
-#define BINDING_GRID 1        // NanoVDB grids one after another, 32-bit words
+#define BINDING_GRID 1        // NanoVDB grids one after another, 32-bit words, unless they lie in windows
 #define BINDING_LEAF_TABLE 2  // one word per 8^3 block of the grid, see density.glsl
 #define BINDING_MAJORANTS 3   // float per majorant cell
 #define BINDING_PATHS 4       // PathState per slot
@@ -38,7 +38,8 @@
 #define SPEC_TRANSMITTANCE 9
 #define SPEC_TEMPERATURE_TYPE 10 // GRID_...
 #define SPEC_STEPS 11            // tracking steps between two looks at what they led to
-#define SPEC_COUNT 12
+#define SPEC_WINDOW_BITS 12      // log2 of the words in a window, where grids lie in windows
+#define SPEC_COUNT 13
 
 #define SHAPE_NONE 0 // background only
 #define SHAPE_SPHERE 1
@@ -102,6 +103,9 @@
 #define QUEUE_COUNT 3
 
 #define BLACKBODY_ENTRIES 4096
+
+// Grids larger than a storage buffer may be lie in that many buffers, reached by address.
+#define GRID_WINDOWS 16
 
 #define NO_PIXEL 0xffffffffu
 

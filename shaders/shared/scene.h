@@ -2,6 +2,7 @@
 // so that single precision is spent on the medium, not on where the world's origin happens to be.
 #ifndef SHARED_SCENE_H
 #define SHARED_SCENE_H
+#include "bindings.h"
 #include "prologue.h"
 
 SHARED_BEGIN
@@ -109,6 +110,7 @@ struct FrameParams {
     uint crop_width;
     uint slots;          // paths in flight
     uint queue_capacity; // a power of two, at least 2 * slots; see queue.glsl
+    uvec2 grid_windows[GRID_WINDOWS]; // device addresses, low and high word; see grid.glsl
 };
 
 // The same for all passes.

@@ -27,6 +27,10 @@ void put(vec4 v) {
     put(v.w);
 }
 
+void put(uvec2 v) {
+    put(v.x);
+    put(v.y);
+}
 void put(uvec4 v) {
     put(v.x);
     put(v.y);

@@ -19,28 +19,17 @@ KernelRunner::KernelRunner(std::span<const std::uint32_t> spirv, const Specializ
     : commands_(test_device()), counters_(test_device(), "counters", sizeof(shared::Counters),
                                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device) {
     commands_.fill(counters_, 0);
-    BoundBuffers bound{};
+    const LoadedVolume nothing;
+    scene_buffers_.emplace(test_device(), commands_, scene.volume ? *scene.volume : nothing,
+                           scene.most_grid_bytes != 0 ? scene.most_grid_bytes
+                                                      : std::uint64_t{test_device().limits().maxStorageBufferRange});
+    scene_buffers_->set_frame(commands_, scene.frame);
+    BoundBuffers bound = scene_buffers_->bound();
     bound[BINDING_COUNTERS] = &counters_;
-    scene_buffers_.reserve(7); // the set keeps their addresses
-    const auto bind = [&](int binding, const char* name, std::span<const std::byte> data, VkBufferUsageFlags usage) {
-        scene_buffers_.push_back(make_buffer(commands_, name, data, usage));
-        bound[binding] = &scene_buffers_.back();
-    };
-    bind(BINDING_FRAME, "frame", std::as_bytes(std::span(&scene.frame, 1)), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-    const auto storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    if (scene.volume && scene.volume->field) {
-        bind(BINDING_GRID, "grid", scene.volume->field->bytes.span(), storage);
-        bind(BINDING_LEAF_TABLE, "leaf table", std::as_bytes(std::span(scene.volume->field->leaf_table)), storage);
-        bind(BINDING_MAJORANTS, "majorants", std::as_bytes(std::span(scene.volume->majorants->bounds)), storage);
-        if (!scene.volume->controls.empty())
-            bind(BINDING_CONTROLS, "controls", std::as_bytes(std::span(scene.volume->controls)), storage);
-    }
-    if (scene.volume && scene.volume->bvh) {
-        bind(BINDING_TRIANGLES, "triangles", std::as_bytes(std::span(scene.volume->bvh->triangles)), storage);
-        bind(BINDING_BVH, "hierarchy", std::as_bytes(std::span(scene.volume->bvh->nodes)), storage);
-    }
+    Specialization constants = specialization;
+    constants[SPEC_WINDOW_BITS] = static_cast<std::int32_t>(scene_buffers_->window_bits().value_or(0));
     bindings_.emplace(test_device(), bound);
-    pass_.emplace(test_device(), *bindings_, spirv, specialization, VK_NULL_HANDLE);
+    pass_.emplace(test_device(), *bindings_, spirv, constants, VK_NULL_HANDLE);
 }
 
 shared::Counters KernelRunner::counters() {

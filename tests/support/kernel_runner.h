@@ -6,6 +6,7 @@
 
 #include "commands.h"
 #include "compute_pass.h"
+#include "scene_buffers.h"
 #include "scene_upload.h"
 #include "shared/items.h"
 
@@ -15,6 +16,7 @@ namespace vkvol {
 struct KernelScene {
     shared::FrameParams frame{};
     const LoadedVolume* volume = nullptr; // its grids, mesh and tables; null where the kernel looks up none
+    std::uint64_t most_grid_bytes = 0;    // in one buffer; 0: as the device allows. More lie in windows
 };
 
 class KernelRunner {
@@ -45,7 +47,7 @@ private:
     void run_bytes(std::span<const std::byte> inputs, std::span<std::byte> outputs, std::uint32_t threads);
 
     Commands commands_;
-    std::vector<Buffer> scene_buffers_;
+    std::optional<SceneBuffers> scene_buffers_;
     Buffer counters_;
     std::optional<Bindings> bindings_;
     std::optional<ComputePass> pass_;

@@ -1,0 +1,122 @@
+#include "scene_buffers.h"
+
+#include <algorithm>
+#include <bit>
+#include <fmt/format.h>
+
+#include "error.h"
+
+namespace vkvol {
+
+namespace {
+
+constexpr double mebibyte = 1048576.0;
+
+template <class T> std::span<const std::byte> bytes_of(const std::vector<T>& values) {
+    return std::as_bytes(std::span(values));
+}
+
+// The bytes [begin, end) of `parts` to the beginning of a buffer.
+template <class Parts>
+void upload_range(Commands& commands, const Buffer& buffer, const Parts& parts, std::uint64_t begin,
+                  std::uint64_t end) {
+    std::uint64_t part_begin = 0;
+    for (const std::span<const std::byte> part : parts) {
+        const std::uint64_t from = std::max(begin, part_begin);
+        const std::uint64_t to = std::min(end, part_begin + part.size());
+        if (from < to)
+            commands.upload(buffer, part.subspan(from - part_begin, to - from), from - begin);
+        part_begin += part.size();
+    }
+}
+
+} // namespace
+
+SceneBuffers::SceneBuffers(const Device& device, Commands& commands, const LoadedVolume& volume,
+                           std::uint64_t most_grid_bytes)
+    : frame_(device, "frame parameters", sizeof(shared::FrameParams), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
+             BufferPlace::host) {
+    const auto make = [&](std::optional<Buffer>& buffer, const char* name, std::span<const std::byte> first,
+                          std::span<const std::byte> second = {}) {
+        if (first.empty())
+            return;
+        buffer.emplace(device, name, first.size() + second.size(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                       BufferPlace::device);
+        upload_range(commands, *buffer, std::array{first, second}, 0, buffer->bytes());
+    };
+    if (volume.bvh) {
+        make(triangles_, "triangles", bytes_of(volume.bvh->triangles));
+        make(bvh_, "bounding volume hierarchy", bytes_of(volume.bvh->nodes));
+    }
+    if (!volume.field)
+        return;
+    const DensityField nothing;
+    const DensityField& temperature = volume.temperature ? *volume.temperature : nothing;
+    make_grids(device, commands, {volume.field->bytes.span(), temperature.bytes.span()}, most_grid_bytes);
+    make(leaf_table_, "leaf table", bytes_of(volume.field->leaf_table), bytes_of(temperature.leaf_table));
+    make(majorants_, "majorant grid", bytes_of(volume.majorants->bounds));
+    make(controls_, "control grid", bytes_of(volume.controls));
+    make(blackbody_, "black-body table", bytes_of(volume.blackbody));
+}
+
+void SceneBuffers::make_grids(const Device& device, Commands& commands, const Parts& grids, std::uint64_t most_bytes) {
+    const std::uint64_t bytes = grids[0].size() + grids[1].size();
+    if (bytes > most_bytes)
+        return make_windows(device, commands, grids, bytes);
+    grids_.emplace(device, "grids", bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device);
+    upload_range(commands, *grids_, grids, 0, bytes);
+}
+
+// As few words to a window as will do: far below what one allocation may hold, which Vulkan lets end at 1 GiB.
+void SceneBuffers::make_windows(const Device& device, Commands& commands, const Parts& grids, std::uint64_t bytes) {
+    constexpr std::uint64_t most_words = std::uint64_t{1} << 32; // as the kernels count them
+    if (!device.has_addresses() || bytes / 4 > most_words)
+        throw InputError(fmt::format(
+            "the grids take {:.1f} MiB, but \"{}\" holds no more than {:.1f} MiB of them{}; crop them or write them "
+            "quantised (nanovdb_convert --fp8 takes a quarter of the bytes of floats)",
+            bytes / mebibyte, device.info().name,
+            device.has_addresses() ? 4 * most_words / mebibyte : device.limits().maxStorageBufferRange / mebibyte,
+            device.has_addresses() ? "" : ", since it lacks the feature bufferDeviceAddress"));
+    window_bits_ = static_cast<std::uint32_t>(std::bit_width((bytes / 4 - 1) / GRID_WINDOWS));
+    const std::uint64_t window = std::uint64_t{4} << *window_bits_;
+    windows_.reserve(GRID_WINDOWS);
+    for (std::uint64_t begin = 0; begin < bytes; begin += window) {
+        const std::uint64_t end = std::min(begin + window, bytes);
+        windows_.emplace_back(device, "window into the grids", end - begin, VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT,
+                              BufferPlace::device);
+        upload_range(commands, windows_.back(), grids, begin, end);
+    }
+}
+
+void SceneBuffers::set_frame(Commands& commands, shared::FrameParams frame) {
+    for (std::size_t i = 0; i < windows_.size(); ++i) {
+        const VkDeviceAddress address = windows_[i].address();
+        frame.grid_windows[i] = {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32)};
+    }
+    commands.upload(frame_, std::as_bytes(std::span(&frame, 1)));
+}
+
+BoundBuffers SceneBuffers::bound() const {
+    const auto place = [](const std::optional<Buffer>& buffer) { return buffer ? &*buffer : nullptr; };
+    BoundBuffers buffers{};
+    buffers[BINDING_FRAME] = &frame_;
+    buffers[BINDING_GRID] = place(grids_);
+    buffers[BINDING_LEAF_TABLE] = place(leaf_table_);
+    buffers[BINDING_MAJORANTS] = place(majorants_);
+    buffers[BINDING_CONTROLS] = place(controls_);
+    buffers[BINDING_BLACKBODY] = place(blackbody_);
+    buffers[BINDING_TRIANGLES] = place(triangles_);
+    buffers[BINDING_BVH] = place(bvh_);
+    return buffers;
+}
+
+std::uint64_t SceneBuffers::bytes() const {
+    std::uint64_t total = frame_.bytes();
+    for (const auto* buffer : {&grids_, &leaf_table_, &majorants_, &controls_, &blackbody_, &triangles_, &bvh_})
+        total += *buffer ? (*buffer)->bytes() : 0;
+    for (const Buffer& window : windows_)
+        total += window.bytes();
+    return total;
+}
+
+} // namespace vkvol

@@ -1,0 +1,22 @@
+// The words of all grids. They lie in one storage buffer or, where that would be larger than the device allows, in windows
+// of 2^WINDOW_BITS words, each a buffer of its own, reached by its address. A kernel is compiled for the one or the other.
+#ifndef GRID_GLSL
+#define GRID_GLSL
+#include "buffers.glsl"
+
+#ifdef WINDOWS
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+layout(constant_id = SPEC_WINDOW_BITS) const uint WINDOW_BITS = 26u;
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer GridWindow { uint words[]; };
+
+uint grid_word(uint i) {
+    return GridWindow(frame.grid_windows[i >> WINDOW_BITS]).words[i & ((1u << WINDOW_BITS) - 1u)];
+}
+#else
+uint grid_word(uint i) {
+    return grid_words[i];
+}
+#endif
+
+#endif
