@@ -71,15 +71,17 @@ void Commands::upload(const Buffer& buffer, std::span<const std::byte> data, VkD
     }
 }
 
-void Commands::download(const Buffer& buffer, std::span<std::byte> data) {
+void Commands::download(const Buffer& buffer, std::span<std::byte> data, VkDeviceSize begin) {
+    if (data.empty())
+        return;
     if (buffer.mapped()) {
-        std::memcpy(data.data(), buffer.mapped(), data.size());
+        std::memcpy(data.data(), buffer.view<std::byte>().data() + begin, data.size());
         return;
     }
     Buffer staging(device_, "staging buffer", std::min<VkDeviceSize>(staging_bytes, data.size()), 0, BufferPlace::host);
     for (VkDeviceSize offset = 0; offset < data.size(); offset += staging.bytes()) {
         const VkDeviceSize size = std::min<VkDeviceSize>(staging.bytes(), data.size() - offset);
-        run([&](VkCommandBuffer commands) { record_copy(commands, buffer, offset, staging, 0, size); });
+        run([&](VkCommandBuffer commands) { record_copy(commands, buffer, begin + offset, staging, 0, size); });
         std::memcpy(data.data() + offset, staging.mapped(), size);
     }
 }

@@ -20,7 +20,8 @@ public:
 
     // `data` to the buffer from byte `begin` on.
     void upload(const Buffer& buffer, std::span<const std::byte> data, VkDeviceSize begin = 0);
-    void download(const Buffer& buffer, std::span<std::byte> data);
+    // From byte `begin` of the buffer on.
+    void download(const Buffer& buffer, std::span<std::byte> data, VkDeviceSize begin = 0);
     void fill(const Buffer& buffer, std::uint32_t word);
 
 private:

@@ -248,7 +248,7 @@ void write_text(const path& target, const std::string& text) {
     write_atomically(target, [&](const path& file) {
         const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "wb"), std::fclose);
         if (!stream || std::fwrite(text.data(), 1, text.size(), stream.get()) != text.size() ||
-            std::fflush(stream.get()) != 0)
+            std::fflush(stream.get()) != 0 || fsync(fileno(stream.get())) != 0)
             throw std::runtime_error(std::strerror(errno));
     });
 }

@@ -79,19 +79,19 @@ Crop resolve_crop(const std::optional<CropRequest>& request, const Picture& pict
     return {int(window[0]), int(window[1]), int(window[2]), int(window[3])};
 }
 
-double parse_duration(const std::string& text) {
+double parse_duration(const std::string& text, const char* option) {
     double unit = 1.0;
     std::string number = text;
     if (!text.empty() && std::isalpha(static_cast<unsigned char>(text.back()))) {
         const char suffix = text.back();
         if (suffix != 's' && suffix != 'm' && suffix != 'h')
-            fail_command_line(fmt::format("--time: '{}' has an unknown unit; expected e.g. 30s, 5m or 2h", text));
+            fail_command_line(fmt::format("{}: '{}' has an unknown unit; expected e.g. 30s, 5m or 2h", option, text));
         unit = suffix == 'h' ? 3600.0 : suffix == 'm' ? 60.0 : 1.0;
         number.pop_back();
     }
-    const double seconds = parse_number(number, "--time") * unit;
+    const double seconds = parse_number(number, option) * unit;
     if (!(seconds > 0.0))
-        fail_command_line(fmt::format("--time: '{}' is no time to render in; expected e.g. 30s, 5m or 2h", text));
+        fail_command_line(fmt::format("{}: '{}' is no time to render in; expected e.g. 30s, 5m or 2h", option, text));
     return seconds;
 }
 

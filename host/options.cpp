@@ -109,10 +109,11 @@ template <typename T> CLI::Option* add_list(CLI::App& app, const char* name, std
 
 // The options of `render` that need a second look after CLI11 has read them.
 struct RenderTexts {
-    std::string time, crop, progress = "auto";
+    std::string time, crop, checkpoint, pixel, progress = "auto";
     std::vector<std::string> defines;
     std::vector<std::string> outputs;
     ToneTexts tone;
+    std::optional<std::uint32_t> sample;
     bool version = false;
 };
 
@@ -183,22 +184,69 @@ void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
                    "On standard error: auto (a bar on a terminal), json (a line each), none")
         ->option_text("STYLE [auto]")
         ->group("Output");
+    app.add_option("--checkpoint", texts.checkpoint,
+                   "Keep the state of the render this often, beside the first output as NAME.checkpoint")
+        ->option_text("T")
+        ->group("Output");
+    app.add_flag("--resume", render.resume, "Go on from the checkpoint, to the same bits; without one, begin")
+        ->group("Output");
     app.add_flag("-q,--quiet", render.quiet, "Print errors only")->group("Output");
     app.add_flag("--strict", render.strict, "End with code 5 if a cap was hit or a sample was not finite")
         ->group("Output");
     app.add_flag("--version", texts.version, "Print the version")->group("Output");
 }
 
+void add_trace_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
+    const char* group = "One path";
+    app.add_option("--pixel", texts.pixel, "This pixel of the picture alone")->option_text("X,Y")->group(group);
+    app.add_option("--sample", texts.sample, "This sample of it alone")
+        ->check(CLI::Range(0u, max_samples))
+        ->option_text("K")
+        ->group(group);
+    app.add_flag("--trace", render.trace, "Print that path's vertices; pictures only where -o says so")->group(group);
+}
+
+std::array<int, 2> parse_pixel(const std::string& text) {
+    std::array<int, 2> pixel{};
+    const char* end = text.data() + text.size();
+    const auto [comma, error] = std::from_chars(text.data(), end, pixel[0]);
+    if (error != std::errc() || comma == end || *comma != ',')
+        fail_command_line(fmt::format("--pixel: '{}' is not X,Y; e.g. --pixel 12,34", text));
+    const auto [last, error2] = std::from_chars(comma + 1, end, pixel[1]);
+    if (error2 != std::errc() || last != end || pixel[0] < 0 || pixel[1] < 0)
+        fail_command_line(fmt::format("--pixel: '{}' is not X,Y; e.g. --pixel 12,34", text));
+    return pixel;
+}
+
+// One pixel is a crop, and one sample a range of one.
+void finish_trace(RenderOptions& render, const RenderTexts& texts, std::optional<std::uint32_t> sample) {
+    if (!render.trace && texts.pixel.empty() && !sample)
+        return;
+    if (!render.trace || texts.pixel.empty() || !sample)
+        fail_command_line("--pixel X,Y, --sample K and --trace belong together: they follow one path");
+    if (render.crop || render.spp || render.time_limit || render.sample_offset != 0 || render.checkpoint ||
+        render.resume)
+        fail_command_line("--trace follows one path; --crop, --spp, --time, --sample-offset, --checkpoint and --resume "
+                          "are of no use with it");
+    const auto [x, y] = parse_pixel(texts.pixel);
+    render.crop = CropRequest{{double(x), x + 1.0, double(y), y + 1.0}, false};
+    render.sample_offset = *sample;
+    render.spp = 1;
+}
+
 void finish_render(RenderOptions& render, const RenderTexts& texts) {
     if (render.scene.empty())
         fail_command_line("no scene given; e.g. vkvol scenes/demo.xml, or see vkvol --help");
     render.outputs.assign(texts.outputs.begin(), texts.outputs.end());
-    if (render.outputs.empty())
+    if (render.outputs.empty() && !render.trace)
         render.outputs = {render.scene.stem().string() + ".exr", render.scene.stem().string() + ".png"};
     if (!texts.time.empty())
         render.time_limit = parse_duration(texts.time);
+    if (!texts.checkpoint.empty())
+        render.checkpoint = parse_duration(texts.checkpoint, "--checkpoint");
     if (!texts.crop.empty())
         render.crop = parse_crop(texts.crop);
+    finish_trace(render, texts, texts.sample);
     for (const std::string& define : texts.defines)
         add_define(render.defines, define);
     render.progress = choose<ProgressStyle>(
@@ -220,6 +268,7 @@ void parse_render(const std::vector<std::string>& arguments, Options& options) {
     add_picture_options(app, options.render, texts);
     add_sampling_options(app, options.render, texts);
     add_run_options(app, options.render, texts);
+    add_trace_options(app, options.render, texts);
     app.footer(render_footer);
     if (!run_parser(app, arguments, options))
         return;

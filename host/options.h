@@ -25,8 +25,7 @@ struct CropRequest {
 
 struct RenderOptions {
     std::filesystem::path scene;
-    std::vector<std::filesystem::path>
-        outputs; // never empty: the scene's stem with .exr and .png if none was asked for
+    std::vector<std::filesystem::path> outputs; // the scene's stem with .exr and .png if none was asked for
     std::optional<std::uint32_t> spp;
     std::uint32_t seed = 0;
     std::uint32_t sample_offset = 0;       // the first sample's number: disjoint ranges of one seed can be merged
@@ -38,6 +37,9 @@ struct RenderOptions {
     std::map<std::string, std::string> defines;
     std::string device = "auto";
     std::optional<std::filesystem::path> report;
+    std::optional<double> checkpoint; // seconds between two
+    bool resume = false;              // from the checkpoint, if there is one
+    bool trace = false;               // print the path's vertices; crop and sample range hold just one
     ProgressStyle progress = ProgressStyle::automatic;
     ToneMapping tone_mapping;
     bool quiet = false;    // errors only
@@ -79,6 +81,6 @@ Options parse_options(int argc, const char* const* argv);
 Crop resolve_crop(const std::optional<CropRequest>& request, const Picture& picture);
 
 // "30s", "5m", "2h" or plain seconds. Throws InputError.
-double parse_duration(const std::string& text);
+double parse_duration(const std::string& text, const char* option = "--time");
 
 } // namespace vkvol

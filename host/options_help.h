@@ -21,6 +21,8 @@ Examples:
   vkvol cloud.xml --time 5m -o cloud.exr           the best picture of five minutes
   vkvol cloud.xml --spp 64 --sample-offset 64 -o part2.exr   samples 64 to 127, for merge
   vkvol sweep.xml -D g=0.8 -o g0.8.exr             fills $g in the scene
+  vkvol cloud.xml --spp 4096 --checkpoint 60s --resume   may be killed at any time, and started again
+  vkvol cloud.xml --pixel 12,34 --sample 7 --trace       where that path went
 
 Exit codes: 0 done; 1 the render failed; 2 bad command line, scene or asset; 3 no usable device;
 4 compare found a difference; 5 caps hit or non-finite samples under --strict; 130 interrupted

@@ -4,8 +4,10 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fmt/format.h>
 #include <limits>
+#include <unistd.h>
 
 #include "error.h"
 #include "image_io.h"
@@ -14,6 +16,8 @@
 #include "renderer.h"
 #include "report.h"
 #include "scene_xml.h"
+#include "trace.h"
+#include "vulkan_error.h"
 
 namespace vkvol {
 
@@ -48,8 +52,33 @@ void print_warnings(const RenderOptions& options, const std::vector<std::string>
             fmt::print(stderr, "vkvol: warning: {}\n", warning);
 }
 
+std::string quoted(const std::string& text) {
+    std::string result = "'";
+    for (const char c : text)
+        result += c == '\'' ? "'\\''" : std::string(1, c);
+    return result + "'";
+}
+
+// The command that follows just this path.
+std::string replay_command(const RenderOptions& options, const NonFiniteSample& s) {
+    std::string command = "vkvol " + quoted(options.scene.string());
+    for (const auto& [key, value] : options.defines)
+        command += " -D " + quoted(key + "=" + value);
+    if (options.integrator)
+        command += " --integrator " + quoted(*options.integrator);
+    if (options.grid)
+        command += " --grid " + quoted(options.grid->string());
+    if (options.width)
+        command += fmt::format(" --width {}", *options.width);
+    if (options.height)
+        command += fmt::format(" --height {}", *options.height);
+    if (options.device != "auto")
+        command += " --device " + quoted(options.device);
+    return command + fmt::format(" --seed {} --pixel {},{} --sample {} --trace", options.seed, s.x, s.y, s.sample);
+}
+
 // One line for each kind of thing that makes the picture less than it claims to be.
-void print_caps(const RenderCounts& c, const RenderResult& result) {
+void print_caps(const RenderOptions& options, const RenderCounts& c, const RenderResult& result) {
     const auto line = [](std::uint64_t count, const char* what) {
         if (count > 0)
             fmt::print(stderr, "vkvol: note: {} {}\n", count, what);
@@ -62,14 +91,51 @@ void print_caps(const RenderCounts& c, const RenderResult& result) {
          "stay unbiased with more noise");
     line(c.non_finite, "samples were not finite and were dropped");
     for (const NonFiniteSample& s : result.non_finite)
-        fmt::print(stderr, "vkvol: note: not finite: pixel {},{} sample {}\n", s.x, s.y, s.sample);
+        fmt::print(stderr, "vkvol: note: not finite: pixel {},{} sample {} seed {}; its path: {}\n", s.x, s.y, s.sample,
+                   options.seed, replay_command(options, s));
 }
 
+std::filesystem::path checkpoint_file(const RenderOptions& options) {
+    std::filesystem::path file = options.outputs.front();
+    return file.replace_extension(".checkpoint");
+}
+
+// Where the picture can be kept when its own place takes no file: a render is not lost to a full disk.
+std::string rescue(const Film& film, const Metadata& metadata) {
+    std::error_code error;
+    const std::filesystem::path directory = std::filesystem::temp_directory_path(error);
+    if (error)
+        return "";
+    const std::filesystem::path file = directory / fmt::format("vkvol-rescued-{}.exr", getpid());
+    try {
+        write_exr(file, film, metadata);
+    } catch (const RenderError&) {
+        return "";
+    }
+    return fmt::format("; the picture is kept as {}", file.string());
+}
+
+// All outputs are tried before the first failure is reported.
 double write_outputs(const RenderOptions& options, const Film& film, const Metadata& metadata) {
     const auto start = std::chrono::steady_clock::now();
+    std::string failures;
+    bool exr_written = false;
     for (const std::filesystem::path& output : options.outputs)
-        write_image(output, film, metadata, options.tone_mapping);
+        try {
+            write_image(output, film, metadata, options.tone_mapping);
+            exr_written = exr_written || output.extension() == ".exr";
+        } catch (const RenderError& error) {
+            failures += (failures.empty() ? "" : "; ") + std::string(error.what());
+        }
+    if (!failures.empty())
+        throw RenderError(failures + (exr_written ? "" : rescue(film, metadata)));
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// What a failure in the midst of a render leaves.
+std::string resume_advice(const RenderOptions& options, std::uint32_t saved_samples) {
+    return fmt::format("; {} holds {} samples per pixel: the same command with --resume goes on from there",
+                       checkpoint_file(options).string(), saved_samples);
 }
 
 void print_summary(const RenderOptions& options, const Device& device, const RenderResult& result) {
@@ -81,22 +147,75 @@ void print_summary(const RenderOptions& options, const Device& device, const Ren
                device.is_cpu() ? " (software)" : "");
 }
 
+// Keeps checkpoints on disk. One that cannot be written is no reason to end the render.
+class Keeper {
+public:
+    explicit Keeper(const RenderOptions& options) : options_(options) {}
+
+    void keep(const Checkpoint& checkpoint) {
+        try {
+            save_checkpoint(checkpoint_file(options_), checkpoint);
+            saved_ = checkpoint.done;
+        } catch (const RenderError& error) {
+            fmt::print(stderr, "vkvol: warning: {}: the last checkpoint stays\n", error.what());
+        }
+    }
+    std::optional<std::uint32_t> saved() const { return saved_; } // samples per pixel
+
+private:
+    const RenderOptions& options_;
+    std::optional<std::uint32_t> saved_;
+};
+
+std::optional<Checkpoint> find_checkpoint(const RenderOptions& options) {
+    std::error_code ignored;
+    if (!options.resume)
+        return std::nullopt;
+    if (std::filesystem::exists(checkpoint_file(options), ignored))
+        return load_checkpoint(checkpoint_file(options));
+    if (!options.quiet)
+        fmt::print(stderr, "vkvol: note: there is no {}: the render begins anew\n", checkpoint_file(options).string());
+    return std::nullopt;
+}
+
 RenderResult render_with_progress(const RenderOptions& options, const Scene& scene, const Device& device) {
     RenderJob job;
+    const std::optional<Checkpoint> from = find_checkpoint(options);
+    job.resume = from ? &*from : nullptr;
+    Keeper keeper(options);
+    if (options.checkpoint) {
+        job.checkpoint_seconds = *options.checkpoint;
+        job.checkpoint = [&](const Checkpoint& checkpoint) { keeper.keep(checkpoint); };
+    }
+    job.trace = options.trace;
     job.crop = resolve_crop(options.crop, scene.picture);
     job.seed = options.seed;
     job.sample_offset = options.sample_offset;
     job.time_limit = options.time_limit;
     job.disk_cache = !options.no_cache;
-    install_interrupt_handler();
     job.interrupted = interrupted;
     Progress progress(options.progress, options.quiet, scene.settings.spp, options.time_limit);
     job.progress = [&](double samples, std::optional<double> noise) {
         progress.update(static_cast<std::uint32_t>(samples), noise);
     };
-    RenderResult result = render(device, scene, job);
-    progress.finish();
-    return result;
+    try {
+        return render(device, scene, job);
+    } catch (const VulkanError& error) {
+        if (!keeper.saved() && !from)
+            throw;
+        throw RenderError(error.what() + resume_advice(options, keeper.saved().value_or(from ? from->done : 0)));
+    }
+}
+
+// The checkpoint of a render that is done is of no more use.
+void remove_checkpoint(const RenderOptions& options, const Scene& scene, const RenderResult& result) {
+    std::error_code ignored;
+    if ((options.checkpoint || options.resume) && result.samples == scene.settings.spp)
+        std::filesystem::remove(checkpoint_file(options), ignored);
+}
+
+bool has_samples(const Film& film) {
+    return std::any_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n > 0; });
 }
 
 void check_result(const Device& device, const RenderResult& result) {
@@ -112,6 +231,7 @@ void check_result(const Device& device, const RenderResult& result) {
 } // namespace
 
 int run_render(const RenderOptions& options) {
+    install_interrupt_handler();
     const Scene scene = load(options);
     print_warnings(options, scene.warnings);
     check_outputs(options);
@@ -119,13 +239,21 @@ int run_render(const RenderOptions& options) {
     const RenderResult result = render_with_progress(options, scene, device);
     print_warnings(options, result.warnings);
     check_result(device, result);
+    if (!has_samples(result.film)) { // nothing to show, and perhaps a good picture to spoil
+        fmt::print(stderr, "vkvol: {} before the first sample; nothing is written\n",
+                   result.interrupted ? "interrupted" : "out of time");
+        return result.interrupted ? exit_interrupted : exit_render_failed;
+    }
     const double write_seconds = write_outputs(options, result.film, make_metadata(options, scene, device, result));
     if (options.report)
         write_text(*options.report, make_report(options, scene, device, result, write_seconds));
-    if (!options.quiet) {
-        print_caps(result.counts, result);
+    remove_checkpoint(options, scene, result);
+    if (!options.quiet)
+        print_caps(options, result.counts, result);
+    if (options.trace)
+        fmt::print("{}", trace_table(result.trace, result.trace_origin, scene.background));
+    else if (!options.quiet)
         print_summary(options, device, result);
-    }
     if (result.interrupted)
         return exit_interrupted;
     return options.strict && result.counts.any_cap() ? exit_caps_hit : exit_done;

@@ -4,12 +4,14 @@
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
-#include <list>
 #include <utility>
 
+#include "error.h"
+#include "film_bands.h"
 #include "integrators.h"
 #include "scene_buffers.h"
 #include "scene_upload.h"
+#include "trace.h"
 
 namespace vkvol {
 
@@ -26,45 +28,6 @@ public:
 private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-// The film lies in bands of whole rows, each within what one storage buffer may span.
-struct Band {
-    std::uint32_t first_row;
-    std::uint32_t rows;
-    Buffer film;
-};
-
-std::list<Band> make_bands(const Device& device, const Crop& crop, std::uint64_t most_bytes) {
-    const std::uint64_t row_bytes = std::uint64_t(crop.x1 - crop.x0) * sizeof(shared::FilmPixel);
-    const std::uint64_t most = most_bytes / row_bytes;
-    const auto height = static_cast<std::uint32_t>(crop.y1 - crop.y0);
-    std::list<Band> bands;
-    for (std::uint32_t row = 0; row < height;) {
-        const auto rows = static_cast<std::uint32_t>(std::min<std::uint64_t>(most, height - row));
-        bands.emplace_back(
-            row, rows,
-            Buffer(device, "film", rows * row_bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device));
-        row += rows;
-    }
-    return bands;
-}
-
-void develop(Commands& commands, const Band& band, std::uint32_t width, Film& film) {
-    std::vector<shared::FilmPixel> pixels(std::size_t(band.rows) * width);
-    commands.download(band.film, std::as_writable_bytes(std::span(pixels)));
-    std::size_t out = std::size_t(band.first_row) * width;
-    for (const shared::FilmPixel& pixel : pixels) {
-        const double n = pixel.count;
-        const glm::dvec3 sum = glm::dvec3(pixel.sum) + glm::dvec3(pixel.sum_low);
-        const glm::dvec3 square = glm::dvec3(pixel.square) + glm::dvec3(pixel.square_low);
-        const glm::dvec3 mean = n > 0 ? sum / n : glm::dvec3(0.0);
-        const glm::dvec3 variance = n > 1 ? (square / n - mean * mean) / (n - 1.0) : glm::dvec3(0.0);
-        film.mean[out] = mean;
-        film.variance[out] = glm::max(variance, glm::dvec3(0.0));
-        film.samples[out] = pixel.count;
-        ++out;
-    }
-}
 
 void add_counts(RenderCounts& total, const shared::Counters& c) {
     total.paths += c.paths;
@@ -119,7 +82,7 @@ public:
         result_.warnings.assign(scene_.warnings.begin() + std::ptrdiff_t(scene.warnings.size()), scene_.warnings.end());
         for (const auto& more : {method.warnings, volume.warnings})
             result_.warnings.insert(result_.warnings.end(), more.begin(), more.end());
-        const Specialization specialization = specialize(scene_, volume, method);
+        Specialization specialization = specialize(scene_, volume, method);
         const bool chromatic = is_chromatic(scene_);
         result_.integrator = method.integrator;
         result_.biased = method.biased;
@@ -127,15 +90,22 @@ public:
         const Tuning tuning = tune(device, volume.bvh ? volume.bvh->nodes.size() : 0, job.tuning);
         buffers_.emplace(device, commands_, volume, tuning.most_grid_bytes);
         frame_ = make_frame(scene_, volume, method, job.crop, job.seed);
+        bands_ = make_bands(device, commands_, job.crop, tuning.most_film_bytes);
+        if (job.checkpoint || job.resume)
+            begin_identity(device, specialization, volume);
+        result_.trace_origin = render_origin(scene_, volume);
         volume = {};
-        bands_ = make_bands(device, job.crop, tuning.most_film_bytes);
-        for (const Band& band : bands_)
-            commands_.fill(band.film, 0);
         result_.upload_seconds = watch.lap();
         frame_.slots = tuning.slots;
         frame_.queue_capacity = queue_capacity(tuning);
         PipelineCache cache(device, job.disk_cache);
-        wavefront_.emplace(device, buffers_->bound(), bands_.front().rows * width_, specialization,
+        BoundBuffers bound = buffers_->bound();
+        if (job.trace) {
+            trace_.emplace(device, commands_);
+            specialization[SPEC_TRACE] = 1;
+            bound[BINDING_TRACE] = &trace_->buffer();
+        }
+        wavefront_.emplace(device, bound, bands_.front().rows * width_, specialization,
                            TrackVariant{chromatic, buffers_->window_bits()}, tuning, cache.handle());
         cache.save();
         result_.device_bytes = buffers_->bytes() + wavefront_->bytes();
@@ -146,22 +116,30 @@ public:
 
     RenderResult run() {
         watch_.lap();
+        if (job_.resume)
+            resume(*job_.resume);
         const std::uint32_t spp = scene_.settings.spp;
-        std::uint32_t done = 0;
-        std::uint32_t batch = 1;
-        while (done < spp && !stopping()) {
-            batch = std::min(batch, spp - done);
+        std::uint32_t next = 1;
+        while (done_ < spp && !stopping()) {
+            if (batch_ == 0)
+                batch_ = std::min(next, spp - done_);
             const double begun = watch_.seconds();
-            for (const Band& band : bands_)
-                run_batch(band, done, batch);
-            if (!stopped_)
-                done += batch;
-            report_noise(done);
-            batch = next_batch(batch, watch_.seconds() - begun);
+            while (band_ < bands_.size() && !stopped_)
+                run_band(bands_[band_]);
+            if (band_ == bands_.size()) {
+                next = next_batch(batch_, watch_.seconds() - begun);
+                done_ += std::exchange(batch_, 0);
+                band_ = 0;
+            }
+            report_noise();
         }
-        result_.render_seconds = watch_.lap();
-        result_.samples = done;
+        if (job_.checkpoint && done_ < spp && !gave_up_)
+            save_checkpoint();
+        result_.render_seconds += watch_.lap();
+        result_.samples = done_;
         develop_film();
+        if (trace_)
+            result_.trace = trace_->records(commands_);
         return std::move(result_);
     }
 
@@ -171,13 +149,56 @@ private:
         return seconds < 1.0 ? batch * 2 : seconds > 4.0 ? std::max(batch / 2, 1u) : batch;
     }
 
+    void begin_identity(const Device& device, const Specialization& specialization, const LoadedVolume& volume) {
+        std::vector<std::uint32_t> rows;
+        for (const Band& band : bands_)
+            rows.push_back(band.rows);
+        identity_ = identify(frame_, specialization, volume, job_.sample_offset,
+                             fmt::format("{}, {}", device.info().name, device.info().driver), rows);
+        if (job_.resume)
+            check_identity(job_.resume->identity, identity_);
+    }
+
+    void resume(const Checkpoint& from) {
+        if (from.done + from.batch > scene_.settings.spp)
+            throw InputError(fmt::format("--resume: the checkpoint has {} samples per pixel already, more than the {} "
+                                         "asked for; ask for more with --spp",
+                                         from.done + from.batch, scene_.settings.spp));
+        write_bands(commands_, bands_, width_, from.film);
+        done_ = from.done;
+        batch_ = from.batch;
+        band_ = from.band;
+        pixels_ = from.pixels;
+        result_.counts = from.counts;
+        result_.non_finite = from.non_finite;
+        result_.render_seconds = from.seconds;
+    }
+
+    void save_checkpoint() {
+        Checkpoint checkpoint{identity_,
+                              done_,
+                              batch_,
+                              band_,
+                              pixels_,
+                              read_bands(commands_, bands_, width_),
+                              result_.counts,
+                              result_.non_finite,
+                              result_.render_seconds + watch_.seconds()};
+        job_.checkpoint(checkpoint);
+        checkpoint_at_ = watch_.seconds();
+    }
+
+    bool checkpoint_due() const {
+        return job_.checkpoint && watch_.seconds() - checkpoint_at_ >= job_.checkpoint_seconds;
+    }
+
     // Developing the film takes a while, so not more often than every few seconds.
-    void report_noise(std::uint32_t done) {
+    void report_noise() {
         if (!job_.progress || watch_.seconds() < next_noise_)
             return;
         next_noise_ = watch_.seconds() + 3.0;
         develop_film();
-        job_.progress(done, relative_noise(result_.film));
+        job_.progress(done_, relative_noise(result_.film));
     }
 
     bool stopping() {
@@ -189,7 +210,7 @@ private:
     }
 
     // Paths begun are finished, as a rule in no time; not if that takes a user's patience.
-    bool gave_up() {
+    bool out_of_patience() {
         const double now = watch_.seconds();
         stopped_at_ = stopped_at_.value_or(now);
         if (now - *stopped_at_ < patience)
@@ -200,32 +221,50 @@ private:
         return true;
     }
 
-    void run_batch(const Band& band, std::uint32_t done, std::uint32_t batch) {
-        if (stopping())
-            return;
+    void begin_band(const Band& band) {
         frame_.crop_y = static_cast<std::uint32_t>(job_.crop.y0) + band.first_row;
         buffers_->set_frame(commands_, frame_);
         wavefront_->bind_film(band.film);
-        const std::uint32_t begin = job_.sample_offset + done;
-        wavefront_->begin_batch(begin, begin + batch, band.rows * width_);
-        for (bool finished = false; !finished;) {
-            finished = wavefront_->advance();
+        const std::uint32_t begin = job_.sample_offset + done_;
+        if (pixels_)
+            wavefront_->begin_batch(begin, begin + batch_, *pixels_);
+        else
+            wavefront_->begin_batch(begin, begin + batch_, band.rows * width_);
+    }
+
+    // The batch under way in one band, or what is left of it. Ends early if the render does, with what is then left in
+    // pixels_. For a checkpoint it comes to rest in between: a path in flight is nothing that could be kept.
+    void run_band(const Band& band) {
+        if (stopping())
+            return;
+        if (checkpoint_due())
+            save_checkpoint();
+        begin_band(band);
+        for (bool resting = false; !resting;) {
+            resting = wavefront_->advance();
             gather(band);
             if (job_.progress)
-                job_.progress(progress_of(band, done, batch), std::nullopt);
-            if (!finished && stopping()) {
+                job_.progress(progress_of(band), std::nullopt);
+            if (!resting && stopping()) {
                 wavefront_->stop_handing_out();
-                finished = gave_up();
+                gave_up_ = resting = out_of_patience();
+            } else if (!resting && checkpoint_due()) {
+                wavefront_->stop_handing_out();
             }
+        }
+        pixels_ = wavefront_->pixels_left();
+        if (pixels_->empty() && !gave_up_) {
+            pixels_.reset();
+            ++band_;
         }
     }
 
-    double progress_of(const Band& band, std::uint32_t done, std::uint32_t batch) const {
+    double progress_of(const Band& band) const {
         const shared::Counters& counters = wavefront_->counters();
         const double handed_out = std::min(counters.next_work, counters.work_count);
         const double done_part = counters.work_count > 0 ? handed_out / counters.work_count : 1.0;
         const double rows = band.first_row + band.rows * done_part;
-        return done + batch * rows / (job_.crop.y1 - job_.crop.y0);
+        return done_ + batch_ * rows / (job_.crop.y1 - job_.crop.y0);
     }
 
     void gather(const Band& band) {
@@ -247,12 +286,7 @@ private:
         film.picture_width = scene_.picture.width;
         film.picture_height = scene_.picture.height;
         film.crop = job_.crop;
-        const std::size_t pixels = std::size_t(film.width()) * film.height();
-        film.mean.resize(pixels);
-        film.variance.resize(pixels);
-        film.samples.resize(pixels);
-        for (const Band& band : bands_)
-            develop(commands_, band, width_, film);
+        develop(read_bands(commands_, bands_, width_), film);
     }
 
     const Scene scene_; // as its integrator sees it
@@ -261,12 +295,21 @@ private:
     std::uint32_t width_;
     std::optional<SceneBuffers> buffers_;
     shared::FrameParams frame_{};
-    std::list<Band> bands_;
+    std::vector<Band> bands_;
+    std::optional<TraceBuffer> trace_;
     std::optional<Wavefront> wavefront_;
+    RenderIdentity identity_; // only for checkpoints
     RenderResult result_;
+
+    // Where the render is; see Checkpoint.
+    std::uint32_t done_ = 0, batch_ = 0, band_ = 0;
+    std::optional<std::vector<std::uint32_t>> pixels_;
+
     Stopwatch watch_;
     double next_noise_ = 3.0;
+    double checkpoint_at_ = 0.0; // the last one
     bool stopped_ = false;
+    bool gave_up_ = false; // paths were left in flight
     std::optional<double> stopped_at_;
     static constexpr double patience = 5.0; // seconds
 };

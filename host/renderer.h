@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 
+#include "checkpoint.h"
 #include "device.h"
 #include "film.h"
 #include "scene.h"
@@ -22,20 +23,11 @@ struct RenderJob {
     // After each submit: samples per pixel finished, as a real number; and, now and then, the picture's relative
     // standard error.
     std::function<void(double, std::optional<double>)> progress;
-};
-
-// Totals over the render; see shared::Counters for the meaning of each.
-struct RenderCounts {
-    std::uint64_t paths = 0, real_collisions = 0, null_collisions = 0, lookups = 0, cells = 0, shadow_rays = 0;
-    std::uint64_t depth_caps = 0, step_caps = 0, majorant_violations = 0, non_finite = 0, queue_overflows = 0;
-    std::uint64_t cleaned_voxels = 0;
-
-    bool any_cap() const { return depth_caps + step_caps + majorant_violations + non_finite + queue_overflows > 0; }
-};
-
-struct NonFiniteSample {
-    int x, y; // of the picture
-    std::uint32_t sample;
+    // Called every so many seconds, and at the end of a render that was ended early.
+    double checkpoint_seconds = 0.0;
+    std::function<void(const Checkpoint&)> checkpoint;
+    const Checkpoint* resume = nullptr; // goes on from there
+    bool trace = false;                 // record the vertices of the path; crop and samples leave just one
 };
 
 struct RenderResult {
@@ -48,9 +40,11 @@ struct RenderResult {
     std::string specialization; // in words: what the kernels were compiled for
     PassSeconds pass_seconds{};
     double load_seconds = 0, upload_seconds = 0, pipeline_seconds = 0, render_seconds = 0;
-    std::uint64_t device_bytes = 0; // of all buffers
-    std::uint32_t samples = 0;      // per pixel, finished for every pixel
-    bool interrupted = false;       // ended before the samples asked for, by a signal
+    std::uint64_t device_bytes = 0;         // of all buffers
+    std::vector<shared::TraceRecord> trace; // positions relative to trace_origin
+    glm::dvec3 trace_origin{0.0};           // world space
+    std::uint32_t samples = 0;              // per pixel, finished for every pixel
+    bool interrupted = false;               // ended before the samples asked for, by a signal
 };
 
 RenderResult render(const Device& device, const Scene& scene, const RenderJob& job);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
@@ -54,6 +55,28 @@ Json caps_json(const RenderResult& r) {
 
 } // namespace
 
+namespace {
+
+// Metadata integers have 32 bits.
+int metadata_count(std::uint64_t count) {
+    return static_cast<int>(std::min<std::uint64_t>(count, std::numeric_limits<int>::max()));
+}
+
+// Why the mean is not exact, also where a cap made it so.
+std::string bias_of(const RenderResult& result) {
+    std::string text = result.biased;
+    const auto add = [&text](std::uint64_t count, const char* what) {
+        if (count > 0)
+            text += (text.empty() ? "" : "; ") + fmt::format("{} {}", count, what);
+    };
+    add(result.counts.depth_caps, "paths ended at maxDepth");
+    add(result.counts.step_caps, "segments were cut");
+    add(result.counts.non_finite, "samples were not finite");
+    return text;
+}
+
+} // namespace
+
 Metadata make_metadata(const RenderOptions& options, const Scene& scene, const Device& device,
                        const RenderResult& result) {
     const auto most = std::max_element(result.film.samples.begin(), result.film.samples.end());
@@ -63,14 +86,19 @@ Metadata make_metadata(const RenderOptions& options, const Scene& scene, const D
             {"vkvol/version", std::string(version)},
             {"vkvol/sceneHash", scene_hash(scene)},
             {"vkvol/integrator", result.integrator},
-            {"vkvol/biased", result.biased},
+            {"vkvol/biased", bias_of(result)},
             {"vkvol/specialization", result.specialization},
             {"vkvol/seed", std::to_string(options.seed)},
             {"vkvol/sampleOffset", static_cast<int>(options.sample_offset)},
             {"vkvol/device", device.info().name},
             {"vkvol/driver", device.info().driver},
             {"vkvol/capsHit", result.counts.any_cap() ? 1 : 0},
-            {"vkvol/nonFiniteSamples", static_cast<int>(result.counts.non_finite)}};
+            {"vkvol/depthCaps", metadata_count(result.counts.depth_caps)},
+            {"vkvol/stepCaps", metadata_count(result.counts.step_caps)},
+            {"vkvol/majorantViolations", metadata_count(result.counts.majorant_violations)},
+            {"vkvol/nullCollisions", std::to_string(result.counts.null_collisions)},
+            {"vkvol/queueOverflows", metadata_count(result.counts.queue_overflows)},
+            {"vkvol/nonFiniteSamples", metadata_count(result.counts.non_finite)}};
 }
 
 std::string make_report(const RenderOptions& options, const Scene& scene, const Device& device,
@@ -82,7 +110,7 @@ std::string make_report(const RenderOptions& options, const Scene& scene, const 
     report["scene"] = options.scene.string();
     report["sceneHash"] = scene_hash(scene);
     report["integrator"] = result.integrator;
-    report["biased"] = result.biased;
+    report["biased"] = bias_of(result);
     report["specialization"] = result.specialization;
     report["device"] = {{"name", device.info().name},
                         {"type", device.info().type},

@@ -256,15 +256,20 @@ shared::MarchParams make_march(const Scene& scene, const LoadedVolume& loaded, c
 
 } // namespace
 
+glm::dvec3 render_origin(const Scene& scene, const LoadedVolume& loaded) {
+    const Volume* volume = find_volume(scene);
+    if (!volume)
+        return scene.camera.position;
+    const Bounds bounds = medium_bounds(loaded);
+    return glm::dvec3(medium_to_world(*volume, loaded) * glm::dvec4((bounds.low + bounds.high) / 2.0, 1.0));
+}
+
 shared::FrameParams make_frame(const Scene& scene, const LoadedVolume& loaded, const Method& method, Crop crop,
                                std::uint32_t seed) {
     shared::FrameParams frame{};
-    glm::dvec3 origin = scene.camera.position;
-    if (const Volume* volume = find_volume(scene)) {
-        const Bounds bounds = medium_bounds(loaded);
-        origin = glm::dvec3(medium_to_world(*volume, loaded) * glm::dvec4((bounds.low + bounds.high) / 2.0, 1.0));
+    const glm::dvec3 origin = render_origin(scene, loaded);
+    if (find_volume(scene))
         frame.volume = make_volume(scene, loaded, method, origin);
-    }
     frame.camera = make_camera(scene, origin);
     if (!scene.lights.empty())
         frame.light = {scene.lights.front().direction, scene.lights.front().irradiance};

@@ -13,6 +13,9 @@ bool is_chromatic(const Scene& scene);
 // Value of every specialization constant. What the scene lacks is switched off here and compiles to nothing.
 Specialization specialize(const Scene& scene, const LoadedVolume& volume, const Method& method);
 
+// World position of render space's origin: amid the medium, or the camera where there is none.
+glm::dvec3 render_origin(const Scene& scene, const LoadedVolume& volume);
+
 // All but the fields that change during a render (crop_y) or belong to the queues.
 shared::FrameParams make_frame(const Scene& scene, const LoadedVolume& volume, const Method& method, Crop crop,
                                std::uint32_t seed);

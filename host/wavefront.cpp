@@ -144,6 +144,31 @@ void Wavefront::bind_film(const Buffer& film) {
 }
 
 void Wavefront::begin_batch(std::uint32_t begin, std::uint32_t end, std::uint32_t pixels) {
+    free_slots(begin, end);
+    const auto start = std::chrono::steady_clock::now();
+    sort_pixels(pixels);
+    sky_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void Wavefront::begin_batch(std::uint32_t begin, std::uint32_t end, std::span<const std::uint32_t> pixels) {
+    free_slots(begin, end);
+    const auto count = static_cast<std::uint32_t>(pixels.size());
+    commands_.upload(work_, std::as_bytes(pixels));
+    commands_.run([&](VkCommandBuffer commands) {
+        vkCmdFillBuffer(commands, counter_buffer_.handle(), offsetof(shared::Counters, work_count), sizeof count,
+                        count);
+        record_barrier(commands);
+    });
+}
+
+std::vector<std::uint32_t> Wavefront::pixels_left() {
+    const std::uint32_t first = std::min(counters_.next_work, counters_.work_count);
+    std::vector<std::uint32_t> pixels(counters_.work_count - first);
+    commands_.download(work_, std::as_writable_bytes(std::span(pixels)), first * sizeof(std::uint32_t));
+    return pixels;
+}
+
+void Wavefront::free_slots(std::uint32_t begin, std::uint32_t end) {
     push_.sample_begin = begin;
     push_.sample_end = end;
     push_.stop = 0;
@@ -153,9 +178,6 @@ void Wavefront::begin_batch(std::uint32_t begin, std::uint32_t end, std::uint32_
         begin_->record(commands, push_, tuning_.slots);
         record_barrier(commands);
     });
-    const auto start = std::chrono::steady_clock::now();
-    sort_pixels(pixels);
-    sky_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void Wavefront::sort_pixels(std::uint32_t pixels) {

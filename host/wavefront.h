@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "commands.h"
 #include "compute_pass.h"
@@ -53,8 +54,12 @@ public:
 
     // Samples [begin, end) of pixels [0, pixels) of the bound film. Then call advance() until it returns true.
     void begin_batch(std::uint32_t begin, std::uint32_t end, std::uint32_t pixels);
+    // The same for these pixels alone.
+    void begin_batch(std::uint32_t begin, std::uint32_t end, std::span<const std::uint32_t> pixels);
     // Hands out no further pixels; those begun are finished.
     void stop_handing_out() { push_.stop = 1; }
+    // Pixels of the batch that were not handed out.
+    std::vector<std::uint32_t> pixels_left();
     // One submit of as many rounds as fit its time. True when no path is in flight any more.
     bool advance();
 
@@ -66,6 +71,7 @@ public:
 
 private:
     void record_round(VkCommandBuffer commands, std::uint32_t round);
+    void free_slots(std::uint32_t begin, std::uint32_t end);
     void sort_pixels(std::uint32_t pixels);
     void record_pass(VkCommandBuffer commands, std::uint32_t queue, const ComputePass& pass, std::uint32_t lanes);
     void record_timestamp(VkCommandBuffer commands, std::uint32_t round, std::uint32_t mark);

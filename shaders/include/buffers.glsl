@@ -20,6 +20,7 @@ layout(constant_id = SPEC_FREE_FLIGHT) const int FREE_FLIGHT = FREE_FLIGHT_DELTA
 layout(constant_id = SPEC_TRANSMITTANCE) const int TRANSMITTANCE = TRANSMITTANCE_RATIO;
 layout(constant_id = SPEC_TEMPERATURE_TYPE) const int TEMPERATURE_TYPE = GRID_FLOAT;
 layout(constant_id = SPEC_STEPS) const int STEPS = 1;
+layout(constant_id = SPEC_TRACE) const int TRACE = 0;
 
 // Estimators that walk from one tentative collision to the next.
 const bool NULL_FLIGHT = FREE_FLIGHT >= FREE_FLIGHT_DELTA;
@@ -49,6 +50,10 @@ layout(scalar, binding = BINDING_QUEUES) buffer QueueBlock { QueueHeader queues[
 layout(scalar, binding = BINDING_FILM) buffer FilmBlock { FilmPixel film[]; };
 layout(scalar, binding = BINDING_WORK) buffer WorkBlock { uint work[]; };
 layout(scalar, binding = BINDING_BLACKBODY) readonly buffer BlackbodyBlock { vec3 blackbody[]; };
+layout(scalar, binding = BINDING_TRACE) buffer TraceBlock {
+    uint trace_count;
+    TraceRecord trace_records[];
+};
 layout(scalar, binding = BINDING_COUNTERS) buffer CounterBlock { Counters counters; };
 
 #endif

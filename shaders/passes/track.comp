@@ -14,6 +14,8 @@
 
 #include "../include/lane.glsl"
 #include "../include/queue.glsl"
+#include "../include/trace.glsl"
+
 void main() {
     VolumeParams v = frame.volume;
     Tally tally = NOTHING_SEEN;
@@ -50,6 +52,8 @@ void main() {
             tally.shadow_rays += looks ? 1u : 0u;
             lane.T = to_spectrum(vec3(1.0));
             lane.steps = 0u;
+            if (!looks)
+                trace(TRACE_DEPART, lane, lane.path.position, lane.path.direction);
         }
         Spectrum deposit = to_spectrum(vec3(0.0));
         uint event = EVENT_MOVING;
@@ -63,6 +67,8 @@ void main() {
         if (seeing && (cut || event != EVENT_MOVING)) {
             Spectrum T = event == EVENT_LEFT ? end_transmittance(v, lane.walk, lane.T) : to_spectrum(vec3(0.0));
             lane.path.radiance += sun_contribution(v, frame.light, lane.path.direction, lit_beta(lane) * T);
+            lane.T = T;
+            trace(TRACE_LIGHT, lane, looking_from(lane), frame.light.direction);
             lane.todo = after_looking(lane);
             if (NEE == NEE_TENTATIVE)
                 lane.walk = lane.flight;
@@ -73,13 +79,16 @@ void main() {
             if (!NULL_FLIGHT && !goes_through())
                 beta *= depth_weight(v, beta, lane.walk.depth, false);
             lane.path.radiance += beta * frame.background;
+            trace(TRACE_ESCAPE, lane, lane.path.position, lane.path.direction);
             lane.todo = TODO_END;
         } else if (event == EVENT_COLLIDED) {
             collide(v, deposit, lane, tally);
+            trace(TRACE_COLLISION, lane, lane.path.position, lane.path.direction);
         } else if (event == EVENT_TOUCHED) {
             touch(v, deposit, lane);
         }
         if (lane.todo == TODO_END) {
+            trace(TRACE_END, lane, lane.path.position, lane.path.direction);
             paths[slot].radiance = lane.path.radiance;
             push_item(QUEUE_ACCUMULATE, slot);
             lane.todo = TODO_TAKE;

@@ -19,9 +19,10 @@
 #define BINDING_TRIANGLES 13  // vec3, three corners per triangle, counterclockwise seen from without; render space
 #define BINDING_BVH 14        // BvhNode
 #define BINDING_SUSPENDED 15  // Suspended per slot
-#define BINDING_TEST_INPUT 16 // test kernels only
-#define BINDING_TEST_OUTPUT 17
-#define BINDING_COUNT 18
+#define BINDING_TRACE 16      // TraceHeader and TraceRecords, only where one path is followed
+#define BINDING_TEST_INPUT 17 // test kernels only
+#define BINDING_TEST_OUTPUT 18
+#define BINDING_COUNT 19
 
 #define WORKGROUP_SIZE 64
 
@@ -39,7 +40,8 @@
 #define SPEC_TEMPERATURE_TYPE 10 // GRID_...
 #define SPEC_STEPS 11            // tracking steps between two looks at what they led to
 #define SPEC_WINDOW_BITS 12      // log2 of the words in a window, where grids lie in windows
-#define SPEC_COUNT 13
+#define SPEC_TRACE 13            // 1: vertices are recorded, of the one path there is
+#define SPEC_COUNT 14
 
 #define SHAPE_NONE 0 // background only
 #define SHAPE_SPHERE 1
@@ -106,6 +108,13 @@
 
 // Grids larger than a storage buffer may be lie in that many buffers, reached by address.
 #define GRID_WINDOWS 16
+
+#define TRACE_RECORDS 65536 // room for
+#define TRACE_DEPART 0      // from the camera, or after scattering
+#define TRACE_COLLISION 1   // a real one; its emission, and light known at once, are in the radiance
+#define TRACE_LIGHT 2       // a shadow ray has ended
+#define TRACE_ESCAPE 3      // into the background
+#define TRACE_END 4
 
 #define NO_PIXEL 0xffffffffu
 

@@ -94,5 +94,17 @@ struct Counters {
     uint non_finite_sample[NON_FINITE_RECORDS];
 };
 
+// A vertex of the path that is followed; see TRACE_...
+struct TraceRecord {
+    uint kind;
+    uint depth;     // scattering events so far
+    uint steps;     // of the segment that led here
+    vec3 position;  // render space
+    vec3 direction; // of travel
+    vec3 beta;
+    vec3 T;         // of the shadow ray, where one has ended
+    vec3 radiance;  // gathered so far
+};
+
 SHARED_END
 #endif

@@ -1,0 +1,54 @@
+// The state of a render between two submits, and the file that keeps it: a render that goes on from there ends with the
+// same bits as one that was never stopped.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compute_pass.h"
+#include "loaded_volume.h"
+#include "render_counts.h"
+#include "shared/items.h"
+
+namespace vkvol {
+
+// What must be equal for a render to be continued to the same bits.
+struct RenderIdentity {
+    std::string
+        kernel; // fingerprint of all that the kernels see: scene, estimators, seed, samples' offset, crop, grids
+    std::string program;                  // version of vkvol
+    std::string device;                   // and its driver
+    std::vector<std::uint32_t> band_rows; // how the film lies in buffers
+
+    bool operator==(const RenderIdentity&) const = default;
+};
+
+// Batches are rendered band by band; a band's pixels in any order, each with all samples of the batch at once.
+struct Checkpoint {
+    RenderIdentity identity;
+    std::uint32_t done = 0;                           // samples per pixel in whole batches
+    std::uint32_t batch = 0;                          // samples of the batch under way
+    std::uint32_t band = 0;                           // in which it is
+    std::optional<std::vector<std::uint32_t>> pixels; // of that band, still without the batch's samples; none: all
+    std::vector<shared::FilmPixel> film;              // all bands, row by row
+    RenderCounts counts;
+    std::vector<NonFiniteSample> non_finite;
+    double seconds = 0.0; // of rendering
+};
+
+RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization,
+                        const LoadedVolume& volume, std::uint32_t sample_offset, const std::string& device,
+                        std::vector<std::uint32_t> band_rows);
+
+// Atomically: the file is the last checkpoint or this one. Throws RenderError.
+void save_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);
+
+// Throws InputError if the file is no whole checkpoint.
+Checkpoint load_checkpoint(const std::filesystem::path& file);
+
+// Throws InputError, naming the first difference, unless the two are the same render.
+void check_identity(const RenderIdentity& saved, const RenderIdentity& here);
+
+} // namespace vkvol

@@ -1,0 +1,22 @@
+// What a render counts.
+#pragma once
+
+#include <cstdint>
+
+namespace vkvol {
+
+// Totals over the render; see shared::Counters for the meaning of each.
+struct RenderCounts {
+    std::uint64_t paths = 0, real_collisions = 0, null_collisions = 0, lookups = 0, cells = 0, shadow_rays = 0;
+    std::uint64_t depth_caps = 0, step_caps = 0, majorant_violations = 0, non_finite = 0, queue_overflows = 0;
+    std::uint64_t cleaned_voxels = 0;
+
+    bool any_cap() const { return depth_caps + step_caps + majorant_violations + non_finite + queue_overflows > 0; }
+};
+
+struct NonFiniteSample {
+    int x, y; // of the picture
+    std::uint32_t sample;
+};
+
+} // namespace vkvol

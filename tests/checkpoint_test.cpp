@@ -1,0 +1,165 @@
+// A render that is stopped and goes on from its checkpoint ends with the bits of one that never stopped, and no file that
+// is not a whole checkpoint of the same render is taken for one.
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "checkpoint.h"
+#include "error.h"
+#include "support/images.h"
+#include "support/scenes.h"
+#include "support/test_device.h"
+
+using namespace vkvol;
+
+namespace {
+
+Scene cloud(std::uint32_t samples) {
+    static const GridFile file = write_grid(cloud_grid());
+    Scene scene = scene_of(medium(file, 2.0, 0.9, 0.5), 13.0, 32);
+    scene.background = {0.3, 0.5, 0.9};
+    scene.lights = {sunlight()};
+    scene.settings.spp = samples;
+    return scene;
+}
+
+std::filesystem::path temporary(const char* name) {
+    return std::filesystem::temp_directory_path() / name;
+}
+
+RenderResult render_part(const Scene& scene, const RenderJob& job) {
+    RenderJob part = job;
+    part.crop = {0, scene.picture.width, 0, scene.picture.height};
+    part.seed = 5;
+    return render(test_device(), scene, part);
+}
+
+RenderCounts with_no_place(RenderCounts counts) {
+    counts.cells = 0; // steps amid which a path is laid aside are counted in both halves
+    return counts;
+}
+
+bool equal(const RenderCounts& a, const RenderCounts& b) {
+    return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+} // namespace
+
+TEST_CASE("a render resumed from any of its checkpoints has the same bits", "[gpu][checkpoint]") {
+    const std::size_t band_rows = GENERATE(0u, 10u); // the film in one buffer, or in several
+    const Scene scene = cloud(9);
+    RenderJob job;
+    job.tuning.slots = 64; // few, so that every checkpoint finds pixels left
+    job.tuning.submit_seconds = 1e-4;
+    job.tuning.most_film_bytes = band_rows * 32 * sizeof(shared::FilmPixel);
+    const RenderResult whole = render_part(scene, job);
+
+    std::vector<Checkpoint> checkpoints;
+    job.checkpoint = [&](const Checkpoint& checkpoint) { checkpoints.push_back(checkpoint); };
+    job.checkpoint_seconds = 0.002;
+    CHECK(same_bits(render_part(scene, job).film, whole.film)); // keeping them changes nothing
+    REQUIRE(checkpoints.size() > 4);
+    std::size_t amid_bands = 0;
+    const std::size_t every = std::max<std::size_t>(checkpoints.size() / 8, 1);
+    for (std::size_t i = 0; i < checkpoints.size(); i += every) {
+        amid_bands += checkpoints[i].pixels.has_value();
+        const auto file = temporary("vkvol-checkpoint-test");
+        save_checkpoint(file, checkpoints[i]);
+        const Checkpoint loaded = load_checkpoint(file);
+        std::filesystem::remove(file);
+        RenderJob rest = job;
+        rest.checkpoint = nullptr;
+        rest.resume = &loaded;
+        rest.tuning.slots = 512;
+        const RenderResult resumed = render_part(scene, rest);
+        CHECK(same_bits(resumed.film, whole.film));
+        CHECK(equal(with_no_place(resumed.counts), with_no_place(whole.counts)));
+    }
+    CHECK(amid_bands > 0);
+}
+
+TEST_CASE("an interrupted render keeps a checkpoint of all that is in the picture", "[gpu][checkpoint]") {
+    const Scene scene = cloud(9);
+    RenderJob job;
+    job.tuning.slots = 64;
+    job.tuning.submit_seconds = 1e-4;
+    const RenderResult whole = render_part(scene, job);
+    int asked = 0;
+    std::optional<Checkpoint> last;
+    job.interrupted = [&] { return ++asked > 7; };
+    job.checkpoint_seconds = 1e9;
+    job.checkpoint = [&](const Checkpoint& checkpoint) { last = checkpoint; };
+    const RenderResult begun = render_part(scene, job);
+    REQUIRE(begun.interrupted);
+    REQUIRE(last);
+    RenderJob rest;
+    rest.resume = &*last;
+    CHECK(same_bits(render_part(scene, rest).film, whole.film));
+    CHECK_FALSE(same_bits(begun.film, whole.film));
+    // More samples may be asked for than at first, but not fewer than there are.
+    CHECK(same_bits(render_part(cloud(12), rest).film, render_part(cloud(12), {}).film));
+    last->done = 10;
+    CHECK_THROWS_WITH(render_part(scene, rest), Catch::Contains("--spp"));
+}
+
+TEST_CASE("a checkpoint is continued by its own render alone", "[gpu][checkpoint]") {
+    std::optional<Checkpoint> last;
+    RenderJob job;
+    job.checkpoint_seconds = 0.0;
+    job.checkpoint = [&](const Checkpoint& checkpoint) { last = checkpoint; };
+    render_part(cloud(4), job);
+    REQUIRE(last);
+    RenderJob rest;
+    rest.resume = &*last;
+    Scene other = cloud(4);
+    SECTION("of the scene") { other.volumes.front().g = 0.4; }
+    SECTION("of the integrator") { other.settings.integrator = "weightedTracking"; }
+    SECTION("of the density field") {
+        GridRecipe recipe = cloud_grid();
+        recipe.value = [](glm::ivec3 voxel) { return cloud_noise(voxel + 1); };
+        other.volumes.front().shape = write_grid(recipe);
+    }
+    SECTION("of the samples' range") { rest.sample_offset = 1; }
+    SECTION("of the program") { last->identity.program += "x"; }
+    SECTION("of the device") { last->identity.device += "x"; }
+    CHECK_THROWS_WITH(render_part(other, rest), Catch::Contains("--resume: the checkpoint is of"));
+}
+
+TEST_CASE("damaged checkpoints are refused", "[cpu][checkpoint]") {
+    Checkpoint checkpoint;
+    checkpoint.identity = {"kernel", "program", "device", {3, 2}};
+    checkpoint.done = 7;
+    checkpoint.pixels = {1, 2, 3};
+    checkpoint.film.resize(20);
+    checkpoint.film[3].sum.y = 0.1f;
+    checkpoint.counts.lookups = 1ull << 40;
+    checkpoint.non_finite = {{4, 5, 6}};
+    checkpoint.seconds = 1.5;
+    const auto file = temporary("vkvol-damaged-checkpoint");
+    save_checkpoint(file, checkpoint);
+    const Checkpoint same = load_checkpoint(file);
+    CHECK(same.identity == checkpoint.identity);
+    CHECK((same.done == 7 && same.batch == 0 && same.band == 0));
+    CHECK(same.pixels == checkpoint.pixels);
+    CHECK((same.film.size() == 20 && same.film[3].sum.y == 0.1f));
+    CHECK(same.counts.lookups == 1ull << 40);
+    CHECK((same.non_finite.size() == 1 && same.non_finite[0].sample == 6));
+    CHECK(same.seconds == 1.5);
+
+    std::ifstream stream(file, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+    const auto refused = [&](const std::string& damaged) {
+        std::ofstream(file, std::ios::binary) << damaged;
+        CHECK_THROWS_AS(load_checkpoint(file), InputError);
+    };
+    for (const std::size_t size : {std::size_t{0}, std::size_t{5}, std::size_t{12}, bytes.size() / 2, bytes.size() - 1})
+        refused(bytes.substr(0, size));
+    for (std::size_t i = 0; i < bytes.size(); i += 13) {
+        std::string damaged = bytes;
+        damaged[i] = static_cast<char>(damaged[i] ^ 1);
+        refused(damaged);
+    }
+    std::filesystem::remove(file);
+    CHECK_THROWS_AS(load_checkpoint(file), InputError);
+}

@@ -1,0 +1,68 @@
+// The path that is followed is the one that was rendered.
+#include <catch2/catch.hpp>
+
+#include "support/images.h"
+#include "support/scenes.h"
+#include "support/test_device.h"
+#include "trace.h"
+
+using namespace vkvol;
+
+namespace {
+
+Scene cloud() {
+    static const GridFile file = write_grid(cloud_grid());
+    Scene scene = scene_of(medium(file, 2.0, 0.9, 0.5), 13.0, 24);
+    scene.background = {0.3, 0.5, 0.9};
+    scene.lights = {sunlight()};
+    return scene;
+}
+
+RenderResult one_sample(Scene scene, int x, int y, std::uint32_t sample, bool trace) {
+    scene.settings.spp = 1;
+    RenderJob job;
+    job.crop = {x, x + 1, y, y + 1};
+    job.seed = 3;
+    job.sample_offset = sample;
+    job.trace = trace;
+    return render(test_device(), scene, job);
+}
+
+} // namespace
+
+TEST_CASE("a followed path gathers the radiance of its sample, bit by bit", "[gpu][trace]") {
+    const std::string integrator =
+        GENERATE("ratioTracking", "ratioNEE", "deltaTracking", "weightedTracking", "ratioTracking:flight=regular");
+    const bool chromatic = GENERATE(false, true);
+    Scene scene = cloud();
+    scene.settings.integrator = integrator.substr(0, integrator.find(':'));
+    if (integrator.find(':') != std::string::npos)
+        scene.settings.choices.emplace("flight", "regular");
+    if (chromatic)
+        scene.volumes.front().sigma_s *= Rgb(1.0, 0.7, 0.2);
+    CAPTURE(integrator, chromatic);
+    std::size_t collisions = 0;
+    for (std::uint32_t sample = 0; sample < 12; ++sample) {
+        const RenderResult plain = one_sample(scene, 12, 11, sample, false);
+        const RenderResult traced = one_sample(scene, 12, 11, sample, true);
+        CHECK(plain.trace.empty());
+        REQUIRE(traced.trace.size() >= 2);
+        CHECK(traced.trace.front().kind == TRACE_DEPART);
+        CHECK(traced.trace.back().kind == TRACE_END);
+        CHECK(same_bits(plain.film, traced.film));
+        CHECK(traced.trace.back().radiance == plain.film.mean.front());
+        for (const shared::TraceRecord& r : traced.trace)
+            collisions += r.kind == TRACE_COLLISION;
+    }
+    CHECK(collisions > 5);
+}
+
+TEST_CASE("a followed path is printed", "[gpu][trace]") {
+    const RenderResult hit = one_sample(cloud(), 12, 11, 4, true);
+    const std::string table = trace_table(hit.trace, hit.trace_origin, cloud().background);
+    for (const char* word : {"camera", "position (world)", "end"})
+        CHECK_THAT(table, Catch::Contains(word));
+    const RenderResult missed = one_sample(cloud(), 0, 0, 4, true);
+    CHECK(missed.trace.empty());
+    CHECK_THAT(trace_table(missed.trace, missed.trace_origin, cloud().background), Catch::Contains("0.3 0.5 0.9"));
+}
