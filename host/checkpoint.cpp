@@ -27,6 +27,8 @@ constexpr char magic[] = {'v', 'k', 'v', 'o', 'l', 'c', 'h', '1'};
 class Fingerprint {
 public:
     void add(std::span<const std::byte> bytes) {
+        if (bytes.empty()) // zlib takes a null pointer for the wish to begin anew
+            return;
         const auto* data = reinterpret_cast<const Bytef*>(bytes.data());
         crc_ = crc32_z(crc_, data, bytes.size());
         adler_ = adler32_z(adler_, data, bytes.size());

@@ -194,7 +194,7 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
     job.time_limit = options.time_limit;
     job.disk_cache = !options.no_cache;
     job.interrupted = interrupted;
-    Progress progress(options.progress, options.quiet, scene.settings.spp, options.time_limit);
+    Progress progress(options.progress, options.quiet || options.trace, scene.settings.spp, options.time_limit);
     job.progress = [&](double samples, std::optional<double> noise) {
         progress.update(static_cast<std::uint32_t>(samples), noise);
     };

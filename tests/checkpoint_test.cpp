@@ -1,5 +1,5 @@
-// A render that is stopped and goes on from its checkpoint ends with the bits of one that never stopped, and no file that
-// is not a whole checkpoint of the same render is taken for one.
+// A render that is stopped and goes on from its checkpoint ends with the bits of one that never stopped, and no file
+// that is not a whole checkpoint of the same render is taken for one.
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <filesystem>
@@ -113,16 +113,26 @@ TEST_CASE("a checkpoint is continued by its own render alone", "[gpu][checkpoint
     RenderJob rest;
     rest.resume = &*last;
     Scene other = cloud(4);
-    SECTION("of the scene") { other.volumes.front().g = 0.4; }
-    SECTION("of the integrator") { other.settings.integrator = "weightedTracking"; }
+    SECTION("of the scene") {
+        other.volumes.front().g = 0.4;
+    }
+    SECTION("of the integrator") {
+        other.settings.integrator = "weightedTracking";
+    }
     SECTION("of the density field") {
         GridRecipe recipe = cloud_grid();
         recipe.value = [](glm::ivec3 voxel) { return cloud_noise(voxel + 1); };
         other.volumes.front().shape = write_grid(recipe);
     }
-    SECTION("of the samples' range") { rest.sample_offset = 1; }
-    SECTION("of the program") { last->identity.program += "x"; }
-    SECTION("of the device") { last->identity.device += "x"; }
+    SECTION("of the samples' range") {
+        rest.sample_offset = 1;
+    }
+    SECTION("of the program") {
+        last->identity.program += "x";
+    }
+    SECTION("of the device") {
+        last->identity.device += "x";
+    }
     CHECK_THROWS_WITH(render_part(other, rest), Catch::Contains("--resume: the checkpoint is of"));
 }
 
