@@ -17,7 +17,8 @@ void print_table(const std::vector<DeviceInfo>& devices) {
     for (const DeviceInfo& d : devices) {
         fmt::print("{}  {} ({}), Vulkan {}\n", d.index, d.name, d.type, d.api);
         fmt::print("   driver {}; uuid {}\n", d.driver, d.uuid);
-        fmt::print("   {:.0f} MiB of memory, {:.0f} MiB per storage buffer\n", d.memory / mib, d.storage_range / mib);
+        fmt::print("   {:.0f} MiB of memory, {:.0f} MiB per storage buffer; grids {}\n", d.memory / mib,
+                   d.storage_range / mib, d.addresses ? "may be larger" : "may be no larger");
         fmt::print("   {}\n", d.rejection.empty() ? "usable" : "not usable: " + d.rejection);
     }
 }
@@ -33,6 +34,7 @@ void print_json(const std::vector<DeviceInfo>& devices) {
                         {"api", d.api},
                         {"memory", d.memory},
                         {"storageBufferRange", d.storage_range},
+                        {"bufferDeviceAddress", d.addresses},
                         {"usable", d.rejection.empty()},
                         {"rejection", d.rejection}});
     fmt::print("{}\n", list.dump(2));

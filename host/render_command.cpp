@@ -89,7 +89,7 @@ void print_caps(const RenderOptions& options, const RenderCounts& c, const Rende
     line(c.majorant_violations,
          "collisions met a density above its majorant: delta estimators lose light there, ratio and weighted ones "
          "stay unbiased with more noise");
-    line(c.non_finite, "samples were not finite and were dropped");
+    line(c.non_finite, "samples were not finite, or beyond 2.8e14, and were dropped");
     for (const NonFiniteSample& s : result.non_finite)
         fmt::print(stderr, "vkvol: note: not finite: pixel {},{} sample {} seed {}; its path: {}\n", s.x, s.y, s.sample,
                    options.seed, replay_command(options, s));
@@ -218,6 +218,15 @@ bool has_samples(const Film& film) {
     return std::any_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n > 0; });
 }
 
+// Nothing to show, and perhaps a good picture to spoil.
+int complain_of_nothing(const RenderResult& result) {
+    fmt::print(stderr, "vkvol: {}: nothing is written\n",
+               result.interrupted             ? "interrupted before the first sample"
+               : result.counts.non_finite > 0 ? "no sample was finite"
+                                              : "out of time before the first sample");
+    return result.interrupted ? exit_interrupted : exit_render_failed;
+}
+
 void check_result(const Device& device, const RenderResult& result) {
     for (const std::string& message : device.validation_messages())
         fmt::print(stderr, "vkvol: validation: {}\n", message);
@@ -239,10 +248,9 @@ int run_render(const RenderOptions& options) {
     const RenderResult result = render_with_progress(options, scene, device);
     print_warnings(options, result.warnings);
     check_result(device, result);
-    if (!has_samples(result.film)) { // nothing to show, and perhaps a good picture to spoil
-        fmt::print(stderr, "vkvol: {} before the first sample; nothing is written\n",
-                   result.interrupted ? "interrupted" : "out of time");
-        return result.interrupted ? exit_interrupted : exit_render_failed;
+    if (!options.trace && !has_samples(result.film)) {
+        print_caps(options, result.counts, result);
+        return complain_of_nothing(result);
     }
     const double write_seconds = write_outputs(options, result.film, make_metadata(options, scene, device, result));
     if (options.report)

@@ -17,9 +17,12 @@ void add_compensated(inout vec3 high, inout vec3 low, vec3 x) {
     low = left;
 }
 
+// Radiance beyond this is as good as infinite: 2^32 squares of it are still a float.
+const float MOST_RADIANCE = 281474976710656.0; // 2^48
+
 // A sample that is not finite is dropped, counted, and its pixel and number recorded.
 void film_add(inout FilmPixel pixel, vec3 radiance, uint index, uint sample_index) {
-    if (any(isnan(radiance)) || any(isinf(radiance))) {
+    if (any(isnan(radiance)) || any(greaterThan(abs(radiance), vec3(MOST_RADIANCE)))) {
         uint record = atomicAdd(counters.non_finite, 1u);
         if (record < NON_FINITE_RECORDS) {
             counters.non_finite_pixel[record] = index;

@@ -1,0 +1,131 @@
+// The program as its users run it: exit codes, what it says, and what it leaves.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "error.h"
+#include "image_io.h"
+
+using namespace vkvol;
+using Catch::Contains;
+
+namespace {
+
+struct Run {
+    int code = -1;
+    std::string text; // standard output and error
+};
+
+Run run(const std::string& command) {
+    Run result;
+    FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+    REQUIRE(pipe);
+    char part[4096];
+    while (const std::size_t size = fread(part, 1, sizeof part, pipe))
+        result.text.append(part, size);
+    const int status = pclose(pipe);
+    result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return result;
+}
+
+// An empty folder to work in, with one scene: a ball of optical depth 4.
+class Folder {
+public:
+    explicit Folder(const std::string& elements) {
+        std::filesystem::create_directories(path_);
+        std::ofstream(path_ / "ball.xml")
+            << "<options><sphere radius=\"1\"/><sigma_a>1</sigma_a><sigma_s>1</sigma_s>"
+               "<width>16</width><height>16</height><rayPerPixelCount>8</rayPerPixelCount>"
+               "<camera z=\"5\" fov=\"30\"/><backgroundColor r=\"1\" g=\"1\" b=\"1\"/>"
+            << elements << "</options>";
+    }
+    ~Folder() { std::filesystem::remove_all(path_); }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+
+    Run vkvol(const std::string& arguments) const {
+        const char* device = std::getenv("VKVOL_TEST_DEVICE");
+        return run(fmt::format("cd '{}' && '{}' {}{}", path_.string(), VKVOL_BINARY, arguments,
+                               device ? fmt::format(" --device '{}'", device) : ""));
+    }
+    std::filesystem::path file(const char* name) const { return path_ / name; }
+
+private:
+    std::filesystem::path path_ = std::filesystem::temp_directory_path() / fmt::format("vkvol-command-{}", getpid());
+};
+
+} // namespace
+
+TEST_CASE("caps are in the summary, the report and the EXR, and --strict fails", "[gpu][command][hard]") {
+    const Folder folder("<maxDepth>1</maxDepth>");
+    const Run plain = folder.vkvol("ball.xml --report ball.json");
+    CHECK(plain.code == exit_done);
+    CHECK_THAT(plain.text, Contains("paths ended at maxDepth"));
+    Metadata metadata;
+    read_exr(folder.file("ball.exr"), &metadata);
+    CHECK(std::get<int>(metadata.at("vkvol/depthCaps")) > 0);
+    CHECK(std::get<int>(metadata.at("vkvol/capsHit")) == 1);
+    CHECK_THAT(std::get<std::string>(metadata.at("vkvol/biased")), Contains("paths ended at maxDepth"));
+    std::ifstream report(folder.file("ball.json"));
+    const std::string json((std::istreambuf_iterator<char>(report)), std::istreambuf_iterator<char>());
+    CHECK_THAT(json, Contains(fmt::format("\"depth\": {}", std::get<int>(metadata.at("vkvol/depthCaps")))));
+    CHECK(folder.vkvol("ball.xml --strict -q").code == exit_caps_hit);
+    CHECK(folder.vkvol("ball.xml --strict -q --integrator deltaTracking -D unused=1").code != exit_done);
+}
+
+TEST_CASE("a picture without caps is exact, and --strict is content", "[gpu][command]") {
+    const Folder folder("");
+    CHECK(folder.vkvol("ball.xml --strict -q").code == exit_done);
+    Metadata metadata;
+    read_exr(folder.file("ball.exr"), &metadata);
+    CHECK(std::get<int>(metadata.at("vkvol/capsHit")) == 0);
+    CHECK(metadata.count("vkvol/biased") == 0); // an empty text is not kept
+}
+
+// Glow of nearly the largest float, gathered at several collisions, is infinite.
+TEST_CASE("a sample that is not finite is dropped, and its path can be followed", "[gpu][command][hard]") {
+    const Folder folder("<medium r=\"3e38\" g=\"0\" b=\"0\"/>");
+    const Run render = folder.vkvol("ball.xml --seed 4 --integrator deltaTracking -o ball.exr");
+    CHECK(render.code == exit_done);
+    CHECK_THAT(render.text, Contains("samples were not finite"));
+    const std::size_t command = render.text.find("its path: vkvol ");
+    REQUIRE(command != std::string::npos);
+    const std::string line = render.text.substr(command + 16, render.text.find('\n', command) - command - 16);
+    CHECK_THAT(line, Contains("--seed 4") && Contains("--trace"));
+    const Run trace = folder.vkvol(line);
+    CHECK(trace.code == exit_done);
+    CHECK_THAT(trace.text, Contains("camera") && Contains("collision") && Contains("1.5e+38"));
+    for (const glm::vec3& mean : read_exr(folder.file("ball.exr")).mean)
+        CHECK(glm::all(glm::lessThan(mean, glm::vec3(3e14f))));
+    CHECK(folder.vkvol("ball.xml --seed 4 --integrator deltaTracking -q --strict").code == exit_caps_hit);
+}
+
+TEST_CASE("--trace writes no picture that was not asked for", "[gpu][command]") {
+    const Folder folder("");
+    const Run trace = folder.vkvol("ball.xml --pixel 8,8 --sample 3 --trace");
+    CHECK(trace.code == exit_done);
+    CHECK_THAT(trace.text, Contains("position (world)"));
+    CHECK_FALSE(std::filesystem::exists(folder.file("ball.exr")));
+    CHECK_FALSE(std::filesystem::exists(folder.file("ball.png")));
+    for (const char* wrong : {"--pixel 8,8", "--sample 1", "--trace", "--pixel 8 --sample 1 --trace",
+                              "--pixel 99,8 --sample 1 --trace", "--pixel 8,8 --sample 1 --trace --spp 4"}) {
+        CAPTURE(wrong);
+        CHECK(folder.vkvol(std::string("ball.xml ") + wrong).code == exit_bad_input);
+    }
+}
+
+TEST_CASE("--resume without a checkpoint begins, with a damaged one refuses, and when done leaves none",
+          "[gpu][command][checkpoint]") {
+    const Folder folder("");
+    const Run fresh = folder.vkvol("ball.xml -o ball.exr --checkpoint 10s --resume");
+    CHECK(fresh.code == exit_done);
+    CHECK_THAT(fresh.text, Contains("begins anew"));
+    CHECK_FALSE(std::filesystem::exists(folder.file("ball.checkpoint")));
+    std::ofstream(folder.file("ball.checkpoint")) << "rubbish";
+    const Run damaged = folder.vkvol("ball.xml -o ball.exr --resume");
+    CHECK(damaged.code == exit_bad_input);
+    CHECK_THAT(damaged.text, Contains("ball.checkpoint: not a checkpoint"));
+}
