@@ -89,6 +89,7 @@ public:
         result_.specialization = describe(specialization, volume, chromatic);
         const Tuning tuning = tune(device, volume.bvh ? volume.bvh->nodes.size() : 0, job.tuning);
         buffers_.emplace(device, commands_, volume, tuning.most_grid_bytes);
+        result_.specialization += buffers_->window_bits() ? ", grids in windows" : "";
         frame_ = make_frame(scene_, volume, method, job.crop, job.seed);
         bands_ = make_bands(device, commands_, job.crop, tuning.most_film_bytes);
         if (job.checkpoint || job.resume)

@@ -70,7 +70,7 @@ void add_options(CLI::App& app, Options& options) {
                                                   {"fp16", SampleType::fp16},     {"fpn", SampleType::fpn}};
     app.add_option("NAME", options.name, "the field, one of --list");
     app.add_option("-o,--output", options.output, ".nvdb or .vdb file (default: NAME.nvdb)");
-    app.add_option("--size", options.size, "samples along an edge")->check(CLI::Range(12, 512));
+    app.add_option("--size", options.size, "samples along an edge")->check(CLI::Range(12, 1024));
     app.add_option("--seed", options.seed, "another cloud of the same kind (default 1)");
     app.add_option("--codec", options.codec, "none, zip or blosc (default)")->transform(CLI::Transformer(codecs));
     app.add_option("--type", options.type, "float (default), fp4, fp8, fp16, fpn; half for .vdb only")
