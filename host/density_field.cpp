@@ -135,6 +135,14 @@ bool has_grid(const GridFile& file) {
     return std::find(names.begin(), names.end(), file.grid) != names.end();
 }
 
+bool is_empty_grid(const GridFile& file) {
+    try {
+        return load_density_field(file).active_voxels == 0;
+    } catch (const InputError&) {
+        return false; // whoever needs the grid will say why
+    }
+}
+
 DensityField load_density_field(const GridFile& file) {
     return make_density_field(read_grid(file), fmt::format("{}: \"{}\"", file.path.string(), file.grid));
 }

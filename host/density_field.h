@@ -38,6 +38,9 @@ DensityField load_density_field(const GridFile& file);
 // True if the file can be read and has a grid of that name. Throws InputError if it cannot be read.
 bool has_grid(const GridFile& file);
 
+// True if the grid can be read and has no active voxel.
+bool is_empty_grid(const GridFile& file);
+
 // From a NanoVDB grid in memory; `place` stands in messages.
 DensityField make_density_field(GridBytes bytes, const std::string& place);
 

@@ -20,4 +20,17 @@ double relative_noise(const Film& film) {
     return counted > 0 ? std::sqrt(sum / static_cast<double>(counted)) : 0.0;
 }
 
+ImageMean image_mean(const Film& film) {
+    glm::dvec3 sum(0.0), variance(0.0);
+    double counted = 0.0;
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        if (film.samples[i] == 0)
+            continue;
+        sum += glm::dvec3(film.mean[i]);
+        variance += glm::dvec3(film.variance[i]);
+        counted += 1.0;
+    }
+    return counted > 0.0 ? ImageMean{sum / counted, glm::sqrt(variance) / counted} : ImageMean{};
+}
+
 } // namespace vkvol

@@ -29,6 +29,14 @@ struct Film {
 // standard error.
 double relative_noise(const Film& film);
 
+// Of the picture, over the pixels that have samples. Pixels are independent, so their variances add; a pixel of one
+// sample counts as exact.
+struct ImageMean {
+    glm::dvec3 value{0.0};
+    glm::dvec3 standard_error{0.0};
+};
+ImageMean image_mean(const Film& film);
+
 // Key "vkvol/seed" etc. -> value; written into EXR headers, read back by merge and compare.
 using Metadata = std::map<std::string, std::variant<int, float, std::string>>;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "density_field.h"
 #include "error.h"
 #include "integrators.h"
 #include "shared/bindings.h"
@@ -237,8 +238,25 @@ Method choose_method(const Scene& scene, int field, bool chromatic_extinction, b
     return Resolution(scene, field, chromatic_extinction, emits).resolve();
 }
 
+namespace {
+
+// Analytic estimators are refused where the density varies. In a grid without voxels it does not; its file is opened
+// in this case alone.
+bool is_analytic_in_nothing(const Scene& scene) {
+    if (density_kind(scene) != FIELD_GRID)
+        return false;
+    const AxisChoices& choices = scene.settings.choices;
+    const Integrator& preset = choose_integrator(scene);
+    const bool analytic = choices.free_flight.value_or(preset.free_flight) == FREE_FLIGHT_ANALYTIC ||
+                          choices.transmittance.value_or(preset.transmittance) == TRANSMITTANCE_ANALYTIC;
+    return analytic && is_empty_grid(std::get<GridFile>(scene.volumes.front().shape));
+}
+
+} // namespace
+
 Method choose_method(const Scene& scene) {
-    return choose_method(scene, density_kind(scene), has_chromatic_extinction(scene), emits(scene));
+    const int field = is_analytic_in_nothing(scene) ? FIELD_CONSTANT : density_kind(scene);
+    return choose_method(scene, field, has_chromatic_extinction(scene), emits(scene));
 }
 
 Scene with_preset(Scene scene) {

@@ -53,6 +53,11 @@ Json caps_json(const RenderResult& r) {
             {"cleanedVoxels", c.cleaned_voxels}};
 }
 
+Json mean_json(const Film& film) {
+    const auto [value, error] = image_mean(film);
+    return {{"value", {value.x, value.y, value.z}}, {"standardError", {error.x, error.y, error.z}}};
+}
+
 } // namespace
 
 namespace {
@@ -131,6 +136,7 @@ std::string make_report(const RenderOptions& options, const Scene& scene, const 
         {"tentativeCollisions",
          static_cast<double>(result.counts.real_collisions + result.counts.null_collisions) / seconds}};
     report["caps"] = caps_json(result);
+    report["mean"] = mean_json(result.film);
     const double noise = relative_noise(result.film);
     report["meanRelativeVariance"] = noise * noise;
     report["memory"] = {{"peakHostBytes", peak_host_bytes()}, {"deviceBytes", result.device_bytes}};

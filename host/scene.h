@@ -139,6 +139,14 @@ struct RenderSettings {
     int majorant_cell = 0;       // voxels along an edge of a majorant cell; 0: automatic
 };
 
+// What the mean of the picture must be, for scenes that are tests: derived in the scene file, without effect on the
+// picture.
+struct Expected {
+    Rgb mean{0.0};
+    Rgb bias{0.0};      // >= 0, how far the true mean may be from `mean`: truncation and rounding, derived as well
+    bool exact = false; // every sample has this value, so noise is no excuse
+};
+
 struct Scene {
     Camera camera;
     Picture picture;
@@ -146,6 +154,7 @@ struct Scene {
     std::vector<DirectionalLight> lights;
     Rgb background{0.0}; // constant radiance from every direction
     RenderSettings settings;
+    std::optional<Expected> expected;
     std::vector<std::string> warnings; // "file:line:column: ..." for what was understood but is not honoured
 };
 

@@ -16,6 +16,7 @@ const std::vector<std::string> vocabulary = {
     "emission", "light", "backgroundColor", "camera", "width", "height", "rayPerPixelCount", "maxDepth", "integrator",
     "march", "filter", "russianRoulette", "majorant", "lightRayDensityMultiplier", "shadowRayDensityMultiplier",
     "stepSize", "importanceSampling", "fileName", "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds",
+    "expected",
     // Names that are read for old files' sake: a misspelling in the original's report, and the old name of integrator.
     "heynegreenstein_g", "intersectionHandler"};
 
@@ -35,6 +36,7 @@ Scene SceneReader::read() {
         scene.volumes.push_back(*medium);
     if (scene.volumes.empty() || !std::holds_alternative<GridFile>(scene.volumes.front().shape))
         scene.settings.march.unit = CoefficientUnit::world;
+    scene.expected = expected();
     check_method(scene);
     read_without_effect();
     read_bookkeeping();

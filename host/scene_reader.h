@@ -53,6 +53,8 @@ private:
     void read_coefficients(Volume& volume) const;
     TemperatureEmission temperature_emission(bool is_grid) const;
     CoefficientUnit unit(const XmlElement& sigma_a, const XmlElement& sigma_s, bool is_grid) const;
+    std::optional<Expected> expected() const;
+    Rgb channels(const XmlElement& element, const char* attribute, const Rgb& fallback) const;
     void warn_without_volume() const;
     void read_without_effect() const;
     void read_bookkeeping() const;

@@ -12,7 +12,7 @@
 namespace vkvol {
 
 static_assert(std::is_standard_layout_v<shared::FrameParams>);
-static_assert(sizeof(shared::CameraParams) == 4 * 12);
+static_assert(sizeof(shared::CameraParams) == 4 * 12 + 4);
 static_assert(sizeof(shared::GridParams) == 4 * 12 + 2 * 4);
 static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 5 * 4);
 static_assert(sizeof(shared::VolumeParams) == 3 * 16 + 3 * 12 + sizeof(shared::GridParams) + 12 + 5 * 4 + 2 * 12 + 4 +
@@ -42,6 +42,20 @@ Rgb albedo_of(const Volume& volume) {
     return albedo;
 }
 
+// Where the device counts a grid's voxels from. Some tools give grids far from the world's origin indices in the
+// millions, at which single precision knows a sixteenth of a voxel; below 4096 it knows half a thousandth, and grids
+// that reach as far as they are away would gain nothing. A multiple of 8, so that leaves stay leaves.
+glm::ivec3 index_base(const DensityField& field) {
+    const auto longest = [](glm::ivec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
+    const glm::ivec3 middle = (field.voxel_min >> 1) + (field.voxel_max >> 1);
+    const int size = longest(field.voxel_max - field.voxel_min);
+    return longest(middle) < std::max(4096, 4 * size) ? glm::ivec3(0) : middle & ~7;
+}
+
+glm::dmat4 index_to_world(const DensityField& field) {
+    return glm::translate(field.index_to_world, glm::dvec3(index_base(field)));
+}
+
 // Medium space -> world: a ball, a cube, the grid's own index space, or a mesh about its middle.
 glm::dmat4 medium_to_world(const Volume& volume, const LoadedVolume& loaded) {
     const auto placed = [](glm::dvec3 center, glm::dvec3 half) {
@@ -53,7 +67,7 @@ glm::dmat4 medium_to_world(const Volume& volume, const LoadedVolume& loaded) {
         return placed(box->center, box->size / 2.0);
     if (loaded.mesh)
         return placed(box_center(*loaded.mesh), glm::dvec3(1.0));
-    return loaded.field ? loaded.field->index_to_world : glm::dmat4(1.0);
+    return loaded.field ? index_to_world(*loaded.field) : glm::dmat4(1.0);
 }
 
 struct Bounds {
@@ -64,15 +78,17 @@ struct Bounds {
 Bounds medium_bounds(const LoadedVolume& loaded) {
     if (!loaded.field)
         return {};
-    return {glm::dvec3(loaded.field->voxel_min) - 1.0, glm::dvec3(loaded.field->voxel_max) + 1.0};
+    const glm::ivec3 base = index_base(*loaded.field);
+    return {glm::dvec3(loaded.field->voxel_min - base) - 1.0, glm::dvec3(loaded.field->voxel_max - base) + 1.0};
 }
 
 // `before`: the grid that lies ahead of this one in the buffers, if any.
 shared::GridParams make_grid(const DensityField& field, const DensityField* before) {
+    const glm::ivec3 base = index_base(field);
     shared::GridParams params{};
-    params.voxel_min = field.voxel_min;
-    params.voxel_max = field.voxel_max;
-    params.leaf_min = field.leaf_min;
+    params.voxel_min = field.voxel_min - base;
+    params.voxel_max = field.voxel_max - base;
+    params.leaf_min = field.leaf_min - (base >> 3);
     params.leaf_dims = field.leaf_dims;
     params.first_word = before ? static_cast<std::uint32_t>(before->bytes.size() / 4) : 0;
     params.first_entry = before ? static_cast<std::uint32_t>(before->leaf_table.size()) : 0;
@@ -101,7 +117,7 @@ shared::EmissionParams make_emission(const Volume& volume, const LoadedVolume& l
     const TemperatureEmission& emission = volume.temperature;
     params.color = (1.0 - albedo) * emission.color;
     params.grid = make_grid(*loaded.temperature, &*loaded.field);
-    fill_rows(params.to_index, loaded.temperature->index_to_world, origin);
+    fill_rows(params.to_index, index_to_world(*loaded.temperature), origin);
     params.kelvin_scale = static_cast<float>(emission.scale);
     params.kelvin_offset = static_cast<float>(emission.offset);
     params.kelvin_cutoff = static_cast<float>(emission.cutoff);
@@ -158,17 +174,38 @@ glm::dmat3 camera_rotation(const Camera& camera) {
     return glm::dmat3(m);
 }
 
-shared::CameraParams make_camera(const Scene& scene, glm::dvec3 origin) {
+// Of the medium, in world units.
+double diagonal_of(const Scene& scene, const LoadedVolume& loaded) {
+    if (scene.volumes.empty())
+        return 0.0;
+    if (loaded.mesh)
+        return 2.0 * glm::length(box_center(*loaded.mesh) - lowest_corner(*loaded.mesh));
+    const Bounds bounds = medium_bounds(loaded);
+    return glm::length(glm::dmat3(medium_to_world(scene.volumes.front(), loaded)) * (bounds.high - bounds.low));
+}
+
+// How far before the eye rays begin. In single precision a point at distance D is known to D * 6e-8, and so is where a
+// ray of unit direction from the eye comes to be there. From afar rays therefore begin on a plane before the medium,
+// one radius away from it; from nearer than 16 radii, where the eye itself is as good, at the eye.
+double ray_start(const Scene& scene, glm::dvec3 forward, glm::dvec3 center, double radius) {
+    const double depth = glm::dot(forward, center - scene.camera.position) - 2.0 * radius;
+    return depth > 16.0 * radius ? depth : 0.0;
+}
+
+// `origin`: of render space, the middle of the medium. `radius`: of a ball about it that holds the medium.
+shared::CameraParams make_camera(const Scene& scene, glm::dvec3 origin, double radius) {
     const Picture& picture = scene.picture;
     const double s = std::tan(glm::radians(scene.camera.fov) / 2.0);
     const double aspect = picture.reference_width / picture.reference_height;
     const double dx = 2.0 * aspect * s / picture.reference_width;
     const double dy = -2.0 * s / picture.reference_height;
     const glm::dmat3 rotation = camera_rotation(scene.camera);
-    const glm::dvec3 corner(-aspect * s + picture.start_x * dx, s + picture.start_y * dy, -1.0);
+    const glm::dvec3 corner = rotation * glm::dvec3(-aspect * s + picture.start_x * dx, s + picture.start_y * dy, -1.0);
+    const double start = ray_start(scene, rotation * glm::dvec3(0.0, 0.0, -1.0), origin, radius);
     shared::CameraParams params{};
-    params.position = scene.camera.position - origin;
-    params.corner = rotation * corner;
+    params.position = scene.camera.position - origin + start * corner;
+    params.start = static_cast<float>(start);
+    params.corner = corner;
     params.right = rotation * glm::dvec3(dx, 0.0, 0.0);
     params.down = rotation * glm::dvec3(0.0, dy, 0.0);
     return params;
@@ -215,16 +252,6 @@ Specialization specialize(const Scene& scene, const LoadedVolume& loaded, const 
 
 namespace {
 
-// Of the medium, in world units.
-double diagonal_of(const Scene& scene, const LoadedVolume& loaded) {
-    if (scene.volumes.empty())
-        return 0.0;
-    if (loaded.mesh)
-        return 2.0 * glm::length(box_center(*loaded.mesh) - lowest_corner(*loaded.mesh));
-    const Bounds bounds = medium_bounds(loaded);
-    return glm::length(glm::dmat3(medium_to_world(scene.volumes.front(), loaded)) * (bounds.high - bounds.low));
-}
-
 // Positions along a march are products of step number and length in single precision, and patience is finite too.
 void check_step(const char* name, double step, double diagonal, double unit) {
     constexpr double most_steps = 1e6;
@@ -270,7 +297,7 @@ shared::FrameParams make_frame(const Scene& scene, const LoadedVolume& loaded, c
     const glm::dvec3 origin = render_origin(scene, loaded);
     if (find_volume(scene))
         frame.volume = make_volume(scene, loaded, method, origin);
-    frame.camera = make_camera(scene, origin);
+    frame.camera = make_camera(scene, origin, 0.5 * diagonal_of(scene, loaded));
     if (!scene.lights.empty())
         frame.light = {scene.lights.front().direction, scene.lights.front().irradiance};
     frame.march = make_march(scene, loaded, method);

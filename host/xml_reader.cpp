@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>
+#include <sstream>
 
 #include "error.h"
 #include "nearest_name.h"
@@ -287,6 +288,32 @@ double XmlElement::attribute_number(const char* attribute_name, double fallback,
         if (const std::string wrong = read_number(attribute(attribute_name), limits, value); !wrong.empty())
             fail_attribute(attribute_name, fmt::format("<{}> {}: {}", name(), attribute_name, wrong));
     return value;
+}
+
+std::vector<double> XmlElement::attribute_numbers(const char* attribute_name, const Limits& limits) const {
+    std::vector<double> numbers;
+    if (!has(attribute_name))
+        return numbers;
+    std::istringstream words(attribute(attribute_name));
+    for (std::string word; words >> word;) {
+        double value = 0.0;
+        if (const std::string wrong = read_number(word, limits, value); !wrong.empty())
+            fail_attribute(attribute_name, fmt::format("<{}> {}: {}", name(), attribute_name, wrong));
+        numbers.push_back(value);
+    }
+    return numbers;
+}
+
+bool XmlElement::attribute_boolean(const char* attribute_name, bool fallback) const {
+    if (!has(attribute_name))
+        return fallback;
+    const std::string value = attribute(attribute_name);
+    if (!value.empty() && std::strchr("1tTyY", value[0]))
+        return true;
+    if (!value.empty() && std::strchr("0fFnN", value[0]))
+        return false;
+    fail_attribute(attribute_name,
+                   fmt::format("<{}> {}: {} is neither true nor false", name(), attribute_name, quoted(value)));
 }
 
 long long XmlElement::attribute_integer(const char* attribute_name, long long fallback, long long low,

@@ -94,6 +94,9 @@ public:
 
     std::string attribute(const char* name, const std::string& fallback = "") const;
     double attribute_number(const char* name, double fallback, const Limits& limits) const;
+    // Numbers between spaces; none if there is no such attribute.
+    std::vector<double> attribute_numbers(const char* name, const Limits& limits) const;
+    bool attribute_boolean(const char* name, bool fallback) const;
     long long attribute_integer(const char* name, long long fallback, long long low, long long high) const;
 
     [[noreturn]] void fail(const std::string& message) const;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "film.h"
 #include "film_sum.spv.h"
 #include "kernels/test_items.h"
 #include "support/kernel_runner.h"
@@ -103,4 +104,15 @@ TEST_CASE("samples that are not finite are dropped, counted and recorded", "[gpu
     CHECK(pixels[2].pixel.count == 3u);
     CHECK((pixels[2].pixel.sum == glm::vec3(3.0f, 6.0f, 9.0f)));
     CHECK((pixels[2].pixel.square == glm::vec3(3.0f, 12.0f, 27.0f)));
+}
+
+TEST_CASE("the mean of a picture and its error, by hand", "[cpu][film]") {
+    Film film;
+    film.mean = {glm::vec3(1, 2, 3), glm::vec3(3, 2, 1), glm::vec3(9, 9, 9)};
+    film.variance = {glm::vec3(9, 0, 1), glm::vec3(16, 0, 3), glm::vec3(7, 7, 7)};
+    film.samples = {4, 2, 0}; // the last was never sampled
+    const ImageMean mean = image_mean(film);
+    CHECK(mean.value == glm::dvec3(2.0));
+    CHECK(mean.standard_error == glm::dvec3(2.5, 0.0, 1.0)); // sqrt(9 + 16) / 2
+    CHECK(image_mean(Film{}).value == glm::dvec3(0.0));
 }

@@ -207,3 +207,27 @@ TEST_CASE("frames are orthonormal and right-handed, poles included", "[gpu][phas
         REQUIRE(glm::dot(glm::cross(t, b), n) > 0.9);
     }
 }
+
+// Where many implementations switch between two formulas. Here there is one, continuous in g; its derivative by g at 0,
+// 3 mu / 4 pi in relative terms 3 mu, is at most 3, so |g| of 1e-3 changes the value by 0.3 % (plus second order).
+TEST_CASE("the phase function is isotropic at g = 0 and continuous about it", "[gpu][phase][hard]") {
+    std::vector<glm::vec2> inputs;
+    const std::vector<float> small = {0.0f, -0.0f, 1e-30f, -1e-30f, 1e-7f, -1e-7f, 1e-5f, -1e-5f, 1e-3f, -1e-3f};
+    for (const float g : small)
+        for (int i = 0; i <= 200; ++i)
+            inputs.emplace_back(g, 0.01f * static_cast<float>(i));
+    const auto outputs = KernelRunner(hg_eval_spv).run<float>(inputs);
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        const double g = inputs[i].x, relative = outputs[i] * 4.0 * pi - 1.0;
+        CAPTURE(g, inputs[i].y);
+        REQUIRE(std::abs(relative) <= 3.0 * std::abs(g) + 6.0 * g * g + 12 * ulp);
+    }
+    for (const float g : small) { // uniform in the distance from the peak: 2 (1 - u), or 2 u seen from the other side
+        const auto draws = random_inputs(g, 1000, 5);
+        const auto samples = sample(draws);
+        for (std::size_t i = 0; i < draws.size(); ++i) {
+            const double x = 2.0 * (g < 0.0f ? draws[i].u.x : 1.0 - draws[i].u.x);
+            REQUIRE(std::abs(samples[i].from_peak - x) <= 2.0 * std::abs(g) + 12 * ulp);
+        }
+    }
+}

@@ -491,3 +491,30 @@ TEST_CASE("the schema knows every integrator", "[cpu][xml]") {
             CHECK_THAT(schema, Catch::Contains("\"" + name + "\""));
     }
 }
+
+TEST_CASE("what a picture is expected to show", "[cpu][xml]") {
+    CHECK_FALSE(parse_scene("<options/>", "s.xml").expected);
+    const auto read = [](const std::string& attributes) {
+        return *parse_scene("<options>\n<expected " + attributes + "/></options>", "s.xml").expected;
+    };
+    const Expected three = read(R"(mean=" 0.5  1 1.5" bias="1e-3" exact="true")");
+    CHECK(three.mean == Rgb(0.5, 1.0, 1.5));
+    CHECK(three.bias == Rgb(1e-3));
+    CHECK(three.exact);
+    const Expected one = read(R"(mean="2")");
+    CHECK(one.mean == Rgb(2.0));
+    CHECK(one.bias == Rgb(0.0));
+    CHECK_FALSE(one.exact);
+    for (const auto& [attributes, message] : std::vector<std::pair<std::string, std::string>>{
+             {"", "s.xml:2:1: <expected> lacks mean"},
+             {R"(mean="1 2")", "2 numbers; expected one, or three"},
+             {R"(mean="")", "0 numbers"},
+             {R"(mean="1 x 2")", "'x' is not a number"},
+             {R"(mean="-1")", "out of range"},
+             {R"(mean="1" bias="nan")", "bias"},
+             {R"(mean="1" exact="perhaps")", "neither true nor false"},
+             {R"(mean="1" tolerance="2")", "unknown attribute 'tolerance'"}}) {
+        INFO(attributes);
+        CHECK_THROWS_WITH(read(attributes), Catch::Contains(message));
+    }
+}

@@ -43,6 +43,9 @@ telescoping with wrong chances ~ shaders/include/transmittance/telescoping.glsl 
 control density not seen ~ shaders/include/transmittance/residual.glsl ~ T *= exp(-c.sigma_c * c.flown * ratio); ~ ; ~ [transmittance]
 null collisions lit in full ~ shaders/include/free_flight.glsl ~ : c.sigma_t / c.sigma_maj; ~ : 1.0; ~ [agreement]
 march without albedo ~ shaders/passes/track.comp ~ gather_light(v, position, deposit * to_spectrum(v.albedo), ~ gather_light(v, position, deposit, ~ [agreement]
+rays begin at far eyes ~ host/scene_upload.cpp ~ return depth > 16.0 * radius ? depth : 0.0; ~ return 0.0 * depth; ~ [precision]
+far indices stay far ~ host/scene_upload.cpp ~ longest(middle) < std::max(4096, 4 * size) ~ longest(middle) >= -size ~ [precision]
+faces a millionth too far ~ shaders/include/majorant.glsl ~ return max(w.t, min( ~ return max(w.t, 1.000001 * min( ~ [precision]
 crop forgotten in random numbers ~ shaders/include/camera.glsl ~ frame.crop_x + pixel ~ pixel ~ [determinism]
 END
 }

@@ -10,12 +10,20 @@ Rng pixel_rng(uint pixel, uint sample_index, uint draw) {
     return Rng(x | y << 16u, sample_index, draw, frame.seed);
 }
 
-// Unit direction through a uniformly random point of the pixel (box filter).
-vec3 camera_direction(uint pixel, uint sample_index) {
+struct CameraRay {
+    vec3 origin; // render space
+    vec3 direction;
+};
+
+// The ray through a uniformly random point of the pixel (box filter).
+CameraRay camera_ray(uint pixel, uint sample_index) {
     Rng rng = pixel_rng(pixel, sample_index, 0u);
     vec2 corner = vec2(rng.pixel & 0xffffu, rng.pixel >> 16u);
     vec2 p = corner + to_uniform(next_words(rng)).xy;
-    return normalize(frame.camera.corner + p.x * frame.camera.right + p.y * frame.camera.down);
+    CameraParams camera = frame.camera;
+    vec3 aside = p.x * camera.right + p.y * camera.down;
+    return CameraRay(camera.position + camera.start * aside,
+                     normalize(camera.corner + p.x * camera.right + p.y * camera.down));
 }
 
 #endif

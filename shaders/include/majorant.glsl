@@ -2,9 +2,30 @@
 // tentative collisions. Which tentative collisions are real, and what that means, is the estimators' business.
 //
 // Distances are world units from where the ray's present part within the medium begins, so their precision is that of
-// this part, wherever it lies. Faces are found from the cell's integer coordinates, never accumulated: no error grows
-// along the walk, and every step that leaves a cell changes that integer, so the walk ends after at most dims.x +
-// dims.y + dims.z faces.
+// this part, wherever it lies.
+//
+// How exact the walk is, with u = 2^-24, for a part from `origin` along `direction` as they stand in single precision:
+// * A face has integer coordinates, which are exact. face - origin rounds once (u), the division by the direction's
+//   component errs by 2.5 ulp at most (5 u): t_exit is known to 6 u t, and the end of the medium, found by an inverse,
+//   to 7 u t. Each is found anew from the origin, so that nothing adds up along the walk; and a common factor of all
+//   lengths changes no relative error: scales from 1e-5 to 1e6 are alike, powers of two bit for bit.
+// * The point at t, origin + t direction, is off by a product and a sum on top: 7 u t |direction| + u |point|, in
+//   voxels. A grid of 1000 voxels knows its points to 5e-4 of a voxel: its density is looked up so far aside.
+// * The optical depth left: passing a cell takes away sigma_maj (t_exit - t), whose difference and product round (2 u),
+//   and the subtraction rounds to u tau. Errors of t_exit itself cancel between neighbours but for the step of their
+//   majorants. After n cells: n u tau_0 + sum of 2 u sigma dt + sum of |sigma - next sigma| 6 u t, where tau_0, the
+//   depth drawn, is 16.7 at most and about 1 usually; 1e-5 after a hundred cells, as if extinction were off by that.
+// * A collision is at t + tau / sigma_maj: 4 u of the second, and u of the sum.
+//
+// Why it ends: every step that is no collision changes a coordinate of the cell by one, always to the same side, and
+// leaves after dims.x + dims.y + dims.z faces at most, also where t stands still because faces coincide. Collisions
+// stand still only if the mean free path 1 / sigma_maj is below an ulp of t, that is if some 2^24 of them fit in the
+// part: media of optical depth 1e7, whose real collisions end the flight; and beyond any doubt the step limit, which is
+// counted.
+//
+// What comes before the walk: the host composes render -> medium space in double precision about the medium's middle,
+// counts voxels from near it, and lets rays begin at the eye only if that is near (CameraParams). So offsets of the
+// world's origin, of indices and of the camera are gone before anything is rounded.
 #ifndef MAJORANT_GLSL
 #define MAJORANT_GLSL
 #include "interval.glsl"

@@ -17,10 +17,10 @@ uint take_pixel() {
     return index < counters.work_count ? work[index] : NO_PIXEL;
 }
 
-void begin_path(uint slot, uint pixel, uint sample_index, vec3 direction) {
+void begin_path(uint slot, uint pixel, uint sample_index, CameraRay ray) {
     PathState path;
-    path.position = frame.camera.position;
-    path.direction = direction;
+    path.position = ray.origin;
+    path.direction = ray.direction;
     path.radiance = vec3(0.0);
     path.pixel = pixel;
     path.sample_index = sample_index;
@@ -42,10 +42,10 @@ void main() {
     }
     if (pixel == NO_PIXEL)
         return; // no work left: the slot rests until the next batch
-    vec3 direction = camera_direction(pixel, sample_index);
+    CameraRay ray = camera_ray(pixel, sample_index);
     vec2 t;
-    bool hit = next_interval(frame.volume, to_medium(frame.volume, frame.camera.position, direction), 0.0, t);
-    begin_path(slot, pixel, sample_index, direction);
+    bool hit = next_interval(frame.volume, to_medium(frame.volume, ray.origin, ray.direction), 0.0, t);
+    begin_path(slot, pixel, sample_index, ray);
     if (!hit)
         paths[slot].radiance = frame.background;
     push_item(hit ? QUEUE_TRACK : QUEUE_ACCUMULATE, slot);

@@ -16,8 +16,8 @@ void main() {
     bool hit = false;
     for (uint i = push.sample_begin; i < push.sample_end && !hit; ++i) {
         vec2 t;
-        Ray ray = to_medium(frame.volume, frame.camera.position, camera_direction(pixel, i));
-        hit = next_interval(frame.volume, ray, 0.0, t);
+        CameraRay ray = camera_ray(pixel, i);
+        hit = next_interval(frame.volume, to_medium(frame.volume, ray.origin, ray.direction), 0.0, t);
         film_add(entry, frame.background, pixel, i);
     }
     if (hit) {

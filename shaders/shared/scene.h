@@ -7,15 +7,19 @@
 
 SHARED_BEGIN
 
-// Direction through the picture at (x, y) pixels from its top left corner: normalize(corner + x * right + y * down).
+// The ray through the picture at (x, y) pixels from its top left corner goes along corner + x * right + y * down. It
+// begins at position + start * (x * right + y * down): at the eye, with start 0; or, for eyes far from the medium, on a
+// plane between the two.
 struct CameraParams {
     vec3 position; // render space
+    float start;   // distance of that plane from the eye
     vec3 corner;
     vec3 right; // per pixel
     vec3 down;  // per pixel
 };
 
-// A grid within the buffers that hold all grids. Positions are in its index space, voxel centres at integers.
+// A grid within the buffers that hold all grids. Positions are in its index space, voxel centres at integers, counted from
+// near the grid.
 struct GridParams {
     ivec3 voxel_min; // active voxels, inclusive; 0 outside
     ivec3 voxel_max;

@@ -96,6 +96,7 @@ PUT(counters.non_finite_sample[2])
 PUT(counters.non_finite_sample[3])
 
 PUT(frame.camera.position)
+PUT(frame.camera.start)
 PUT(frame.camera.corner)
 PUT(frame.camera.right)
 PUT(frame.camera.down)

@@ -30,7 +30,7 @@ struct RayInput {
     vec3 origin;
     vec3 direction;
     uint key;     // of the random numbers
-    float e;      // unit exponential of the first free flight
+    float e;      // unit exponential of the first free flight; of a walk, 0: more than any grid holds
     float select; // of its channel
     vec3 beta;
 };

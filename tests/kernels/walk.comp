@@ -15,7 +15,7 @@ void main() {
     vec2 t;
     uint event = next_interval(v, ray, 0.0, t) ? EVENT_MOVING : EVENT_LEFT;
     Walk w;
-    w.tau = 1.0e4;
+    w.tau = inputs[i].e > 0.0 ? inputs[i].e : 1.0e4;
     begin_part(v, ray, event == EVENT_MOVING ? t : vec2(0.0), false, w);
     for (uint k = 0u; k < push.step_limit; ++k) {
         bool moving = event == EVENT_MOVING;

@@ -42,6 +42,10 @@ World load_world(const vkvol::Scene& scene) {
         return {scene, std::nullopt, resolve_method(scene, nothing)};
     }
     Medium medium = load(preset_volume(scene.settings.integrator, scene.volumes.front()), scene.settings.filter);
+    if (medium.grid() && medium.grid()->empty()) { // no voxels, no medium
+        Medium nothing;
+        return {scene, std::nullopt, resolve_method(scene, nothing)};
+    }
     if (auto* grid = std::get_if<Grid>(&medium.shape); grid && scene.settings.majorant_cell > 0)
         build_majorants(*grid, scene.settings.majorant_cell);
     return make_world(scene, std::move(medium));

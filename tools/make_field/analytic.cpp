@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bricks.h"
 #include "recipes.h"
@@ -17,11 +18,16 @@ IndexBox centred_box(int size) {
     return {min, min + (size - 1)};
 }
 
+// Of `size` samples, its first corner below 0 and no multiple of a leaf's width.
+IndexBox cube(int size) {
+    const glm::ivec3 min(-5);
+    return {min, min + (size - 1)};
+}
+
 } // namespace
 
 Field make_constant(int size, std::uint32_t) {
-    const glm::ivec3 min(-5);
-    return one_grid(0.5, glm::dvec3(0.0), grid_of({min, min + (size - 1)}, [](glm::ivec3) { return 1.0f; }));
+    return one_grid(0.5, glm::dvec3(0.0), grid_of(cube(size), [](glm::ivec3) { return 1.0f; }));
 }
 
 // 1 within size/2 - 4 samples of index (-1/2, -1/2, -1/2), 0 three samples further out, linear between.
@@ -77,6 +83,49 @@ Field make_tiles(int, std::uint32_t) {
 
 Field make_empty(int, std::uint32_t) {
     return one_grid(1.0, glm::dvec3(0.0), FieldGrid{});
+}
+
+Field make_sheared(int size, std::uint32_t seed) {
+    Field field = make_constant(size, seed);
+    field.axes = glm::dmat3({0.8, 0.3, 0.0}, {-0.4, 1.0, 0.2}, {0.2, -0.1, -1.5}); // left-handed
+    return field;
+}
+
+Field make_far(int size, std::uint32_t seed) {
+    Field field = make_constant(size, seed);
+    field.origin = {1e6, -1e6, 1e6};
+    return field;
+}
+
+// By k - min: 2 is NaN, 5 infinite, 8 minus infinite, 11 negative; all of them count as 0.
+Field make_unclean(int size, std::uint32_t) {
+    const IndexBox box = cube(size);
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    return one_grid(0.5, glm::dvec3(0.0), grid_of(box, [=](glm::ivec3 index) {
+                        switch (index.z - box.min.z) {
+                        case 2:
+                            return std::numeric_limits<float>::quiet_NaN();
+                        case 5:
+                            return infinity;
+                        case 8:
+                            return -infinity;
+                        case 11:
+                            return -1.0f;
+                        default:
+                            return 1.0f;
+                        }
+                    }));
+}
+
+// The temperature reaches beyond the density, so that it is 1 wherever something glows.
+Field make_glow(int size, std::uint32_t seed) {
+    Field field = make_constant(size, seed);
+    IndexBox wider = cube(size);
+    wider.min -= 4;
+    wider.max += 4;
+    field.grids.push_back(grid_of(wider, [](glm::ivec3) { return 1.0f; }));
+    field.grids.back().name = "temperature";
+    return field;
 }
 
 } // namespace vkvol

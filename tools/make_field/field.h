@@ -1,5 +1,5 @@
 // A field as plain sparse data, the way generators make it and before any file format sees it.
-// Index space: sample (i, j, k) sits at index position (i, j, k). World position = voxel_size * index + origin.
+// Index space: sample (i, j, k) sits at index position (i, j, k). World position = voxel_size * axes * index + origin.
 #pragma once
 
 #include <array>
@@ -36,6 +36,7 @@ struct Field {
     double voxel_size = 1.0;      // world units
     glm::dvec3 origin{0.0};       // world position of index (0, 0, 0)
     std::vector<FieldGrid> grids; // share the transform
+    glm::dmat3 axes{1.0};         // columns: where the index axes point
 };
 
 } // namespace vkvol

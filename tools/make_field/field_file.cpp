@@ -19,13 +19,25 @@ openvdb::Coord to_coord(glm::ivec3 index) {
     return {index.x, index.y, index.z};
 }
 
+// OpenVDB multiplies row vectors from the left: its rows are our columns.
+openvdb::math::Transform::Ptr transform_of(const Field& field) {
+    auto transform = openvdb::math::Transform::createLinearTransform(field.voxel_size);
+    if (field.axes != glm::dmat3(1.0)) {
+        openvdb::Mat4d matrix = openvdb::Mat4d::identity();
+        for (int axis = 0; axis < 3; ++axis)
+            for (int i = 0; i < 3; ++i)
+                matrix(axis, i) = field.voxel_size * field.axes[axis][i];
+        transform = openvdb::math::Transform::createLinearTransform(matrix);
+    }
+    transform->postTranslate({field.origin.x, field.origin.y, field.origin.z});
+    return transform;
+}
+
 openvdb::FloatGrid::Ptr to_openvdb(const FieldGrid& grid, const Field& field) {
     auto result = openvdb::FloatGrid::create(0.0f);
     result->setName(grid.name);
     result->setGridClass(openvdb::GRID_FOG_VOLUME);
-    auto transform = openvdb::math::Transform::createLinearTransform(field.voxel_size);
-    transform->postTranslate({field.origin.x, field.origin.y, field.origin.z});
-    result->setTransform(transform);
+    result->setTransform(transform_of(field));
     for (const Brick& brick : grid.bricks) {
         openvdb::FloatTree::LeafNodeType* leaf = result->tree().touchLeaf(to_coord(brick.origin));
         for (openvdb::Index n = 0; n < brick.value.size(); ++n)

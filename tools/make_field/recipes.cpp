@@ -14,6 +14,12 @@ const std::vector<Recipe>& recipes() {
         {"spike", "a ball of density 0.05 that hides one sample of 20, in a cube of SIZE samples", 32, make_spike},
         {"tiles", "active tiles of 128^3 and 8^3 samples beside one leaf of samples", 0, make_tiles},
         {"empty", "a grid without active samples", 0, make_empty},
+        {"sheared", "a cube of density 1 whose axes are turned, sheared, stretched and mirrored, SIZE samples wide", 16,
+         make_sheared},
+        {"far", "the cube of density 1, a million units from the origin", 16, make_far},
+        {"unclean", "the cube of density 1 with layers that are no density: NaN, infinite and negative", 16,
+         make_unclean},
+        {"glow", "a cube of density 1 within a larger cube of temperature 1", 16, make_glow},
         {"cumulus", "a cumulus cloud, about 60 units wide, in a box SIZE samples wide", 464, make_cumulus},
         {"explosion", "a rising fireball: density and temperature, SIZE samples wide", 160, make_explosion},
     };

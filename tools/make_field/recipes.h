@@ -31,6 +31,10 @@ Field make_voxel(int size, std::uint32_t seed);
 Field make_spike(int size, std::uint32_t seed);
 Field make_tiles(int size, std::uint32_t seed);
 Field make_empty(int size, std::uint32_t seed);
+Field make_sheared(int size, std::uint32_t seed);
+Field make_far(int size, std::uint32_t seed);
+Field make_unclean(int size, std::uint32_t seed);
+Field make_glow(int size, std::uint32_t seed);
 
 // Fields to look at.
 Field make_cumulus(int size, std::uint32_t seed);

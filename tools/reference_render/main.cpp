@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
@@ -17,6 +19,7 @@ namespace {
 
 struct Arguments {
     std::filesystem::path scene, output = "reference.exr";
+    std::optional<std::filesystem::path> report;
     std::optional<std::uint32_t> spp;
     std::uint32_t seed = 0, sample_offset = 0;
     unsigned threads = std::max(1u, std::thread::hardware_concurrency());
@@ -31,6 +34,8 @@ void parse(CLI::App& app, Arguments& arguments, int argc, char** argv) {
     std::vector<std::string> defines;
     app.add_option("scene", arguments.scene, "scene file")->required();
     app.add_option("-o", arguments.output, "image to write (.exr)")->capture_default_str();
+    app.add_option("--report", arguments.report,
+                   "the picture's mean and its standard error as JSON, as vkvol --report");
     app.add_option("--spp", arguments.spp, "samples per pixel, instead of the scene's");
     app.add_option("--seed", arguments.seed, "seed of the random numbers; compare renders of different seeds")
         ->capture_default_str();
@@ -71,6 +76,18 @@ vkvol::Crop window(const Arguments& arguments, const vkvol::Picture& picture) {
     return {arguments.crop[0], arguments.crop[1], arguments.crop[2], arguments.crop[3]};
 }
 
+void report(const std::filesystem::path& path, const vkvol::ImageMean& mean) {
+    std::ofstream file(path);
+    file << nlohmann::ordered_json{{"mean",
+                                    {{"value", {mean.value.x, mean.value.y, mean.value.z}},
+                                     {"standardError",
+                                      {mean.standard_error.x, mean.standard_error.y, mean.standard_error.z}}}}}
+         << '\n';
+    if (!file.flush())
+        throw vkvol::InputError(path.string() +
+                                ": cannot be written; does the folder exist, with room and permission?");
+}
+
 void run(const Arguments& arguments) {
     const reference::World world = open_world(arguments);
     const vkvol::Crop crop = window(arguments, world.scene.picture);
@@ -86,9 +103,14 @@ void run(const Arguments& arguments) {
                       {"vkvol/integrator", world.method.name},
                       {"vkvol/spp", static_cast<int>(spp)},
                       {"vkvol/seed", static_cast<int>(arguments.seed)}});
+    const vkvol::ImageMean mean = vkvol::image_mean(film);
+    if (arguments.report)
+        report(*arguments.report, mean);
     const double paths = static_cast<double>(film.pixel_count()) * spp;
     std::printf("%s: %u spp, %.2f s on %u threads, %.0f paths/s\n", arguments.output.c_str(), spp, seconds,
                 arguments.threads, paths / seconds);
+    std::printf("mean %.7g %.7g %.7g, standard error %.3g %.3g %.3g\n", mean.value.x, mean.value.y, mean.value.z,
+                mean.standard_error.x, mean.standard_error.y, mean.standard_error.z);
 }
 
 } // namespace

@@ -1,0 +1,191 @@
+// What single precision does to the walk over majorant cells: the bounds that majorant.glsl derives, at every scale,
+// and the places far away that the host brings near.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fmt/format.h>
+#include <random>
+
+#include "kernels/test_items.h"
+#include "support/images.h"
+#include "support/scenes.h"
+#include "support/test_scene.h"
+#include "walk.spv.h"
+
+using namespace vkvol;
+using shared::RayInput;
+using shared::WalkStep;
+
+namespace {
+
+constexpr double u = 0x1p-24; // unit roundoff
+constexpr int most_steps = 96;
+
+// Rays from within the grid, so that the walk's origin is the ray's own, to all sides and along axes. `e`: the optical
+// depth to fly. A voxel is `scale` world units long.
+std::vector<RayInput> rays_from_within(const TestGrid& grid, double scale) {
+    std::mt19937 engine(7);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> uniform;
+    std::vector<RayInput> rays;
+    for (int i = 0; i < 2000; ++i) {
+        const glm::dvec3 at(uniform(engine), uniform(engine), uniform(engine));
+        glm::dvec3 direction(normal(engine), normal(engine), normal(engine));
+        if (i % 10 == 0)
+            direction[i / 10 % 3] = 0.0;
+        const glm::dvec3 low(grid.voxel_min), high(grid.voxel_max);
+        rays.push_back({glm::mix(low, high, at), glm::normalize(direction) / scale, 0,
+                        static_cast<float>(-std::log(1.0 - uniform(engine)) * 3.0 + 1e-3), 0.0f, glm::vec3(1.0f)});
+    }
+    return rays;
+}
+
+// Where the ray leaves the cell or the medium, from the very numbers that the device has.
+double exact_exit(const RayInput& ray, const TestGrid& grid, glm::ivec3 cell) {
+    const MajorantGrid& m = grid.majorants();
+    double exit = 1e300;
+    for (int axis = 0; axis < 3; ++axis)
+        if (ray.direction[axis] != 0.0f) {
+            const double face = m.origin[axis] + (cell[axis] + (ray.direction[axis] > 0.0f ? 1 : 0)) * double(m.cell);
+            const double end = ray.direction[axis] > 0.0f ? grid.voxel_max[axis] + 1.0 : grid.voxel_min[axis] - 1.0;
+            for (const double plane : {face, end})
+                exit = std::min(exit, (plane - ray.origin[axis]) / ray.direction[axis]);
+        }
+    return exit;
+}
+
+// Follows one walk with exact distances and optical depths beside the device's; returns the largest errors in units of
+// their bounds. For t that is 8 u t: 6 for a face, 7 for the end of the medium, whose inverse direction rounds on its
+// own, and second order.
+struct Errors {
+    double t = 0.0, tau = 0.0, collision = 0.0;
+};
+Errors errors_of(const TestGrid& grid, const RayInput& ray, const WalkStep* steps, double sigma_t) {
+    const MajorantGrid& m = grid.majorants();
+    Errors errors;
+    double t = 0.0, tau = ray.e, before = 0.0, rounding = 0.0;
+    int k = 0;
+    for (; k < most_steps; ++k) {
+        const WalkStep& step = steps[k];
+        const float bound = m.bounds[(std::size_t(step.cell.x) * m.dims.y + step.cell.y) * m.dims.z + step.cell.z];
+        const double sigma = static_cast<float>(sigma_t) * double(bound);
+        const double exit = std::max(t, exact_exit(ray, grid, step.cell));
+        rounding += u * ray.e + 3.0 * u * sigma * (exit - t) + std::abs(sigma - before) * 8.0 * u * t;
+        if (step.event == 1u) { // collided
+            const double exact = t + tau / sigma;
+            const double allowed = rounding / sigma + 8.0 * u * exact + 4.0 * u * (exact - t);
+            errors.collision = std::max(errors.collision, std::abs(step.t - exact) / allowed);
+            break;
+        }
+        tau -= sigma * (exit - t);
+        before = sigma;
+        t = exit;
+        rounding += sigma * 8.0 * u * t; // of this end, until the next cell is known to be alike
+        errors.t = std::max(errors.t, std::abs(step.t - t) / (8.0 * u * t + 1e-300));
+        errors.tau = std::max(errors.tau, std::abs(step.tau - tau) / rounding);
+        rounding -= sigma * 8.0 * u * t;
+        if (step.event == 2u) // left
+            break;
+    }
+    CHECK(k < m.dims.x + m.dims.y + m.dims.z);
+    return errors;
+}
+
+GridRecipe wide_recipe() {
+    GridRecipe recipe = rough_recipe();
+    recipe.first = {-60, -8, -1};
+    recipe.last = {63, 30, 50};
+    recipe.cell = 4;
+    return recipe;
+}
+
+} // namespace
+
+TEST_CASE("walks err by no more than derived, at every scale", "[gpu][precision][hard]") {
+    const TestGrid grid = make_test_grid(wide_recipe());
+    const double scale = GENERATE(1e-5, 1e-2, 1.0, 1e3, 1e6);
+    Volume volume;
+    volume.sigma_a = Rgb(0.2 / scale);
+    volume.sigma_s = Rgb(0.0);
+    volume.unit = CoefficientUnit::world;
+    const TestScene scene = make_test_scene(grid.volume, volume);
+    KernelRunner runner(walk_spv, scene.specialization, scene.kernel);
+    runner.push.step_limit = most_steps;
+    const std::vector<RayInput> rays = rays_from_within(grid, scale);
+    const auto steps = runner.run<WalkStep>(rays, rays.size() * most_steps);
+    Errors worst;
+    int collided = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Errors errors = errors_of(grid, rays[i], &steps[i * most_steps], 0.2 / scale);
+        worst.t = std::max(worst.t, errors.t);
+        worst.tau = std::max(worst.tau, errors.tau);
+        worst.collision = std::max(worst.collision, errors.collision);
+        collided += errors.collision > 0.0;
+    }
+    CAPTURE(scale, worst.t, worst.tau, worst.collision, collided);
+    CHECK(worst.t <= 1.0);
+    CHECK(worst.tau <= 1.0);
+    CHECK(worst.collision <= 1.0);
+    CHECK(worst.t > 0.05); // the bounds mean something
+    CHECK(collided > 200);
+}
+
+// A million radii from a ball. Rays that began at the eye would miss their points by 0.06; the mean over a window that
+// the silhouette crosses would be 12 standard errors off at these samples.
+TEST_CASE("a camera a million radii away sees its window exactly", "[gpu][precision][hard]") {
+    Scene scene = scene_of(medium(Sphere{}, 1.0, 0.5, 0.3), 2.4, 32, 1e6, glm::dvec3(0.0), {-20.0, 30.0, 0.0});
+    scene.picture.width = scene.picture.height = 12;
+    scene.picture.start_x = 20.0;
+    scene.picture.start_y = 10.0;
+    scene.background = Rgb(1.0);
+    scene.lights = {sunlight()};
+    scene.settings.spp = 1024;
+    CHECK_AGREEMENT(agree(render_here(scene, 61).film, render_reference(scene, 62), "ball from a million radii"));
+    scene.volumes = {medium(write_grid(cloud_grid()), 1.0, 0.8, 0.3)};
+    scene.camera.position *= 10.0; // the cloud is ten wide
+    scene.settings.spp = 512;
+    CHECK_AGREEMENT(agree(render_here(scene, 63).film, render_reference(scene, 64), "cloud from afar"));
+}
+
+// As of tools that give every grid the same transform, wherever it lies. The medium stays where it is, its indices
+// move.
+TEST_CASE("indices of a million are as good as small ones", "[gpu][precision][hard]") {
+    GridRecipe far = cloud_grid();
+    const glm::ivec3 shift(1000001, -2000003, 3000005);
+    far.first += shift;
+    far.last += shift;
+    far.value = [=](glm::ivec3 i) { return cloud_noise(i - shift); };
+    far.translation = glm::dvec3(0.0);
+    far.translation = -center_of(far);
+    Scene scene = scene_of(medium(write_grid(far), 1.0, 0.9, 0.4), 10.0, 20, 25.0, glm::dvec3(0.0), {15.0, -35.0, 5.0});
+    scene.background = {0.3, 0.5, 0.9};
+    scene.lights = {sunlight()};
+    scene.settings.spp = 256;
+    for (const Filter filter : {Filter::nearest, Filter::trilinear}) {
+        scene.settings.filter = filter;
+        CHECK_AGREEMENT(agree(render_here(scene, 65).film, render_reference(scene, 66),
+                              fmt::format("far indices {}", int(filter))));
+    }
+}
+
+// Nothing scatters, so that paths do not part for good where one rounding falls otherwise. The host's doubles know 1e6
+// to 1e-10, 4e-10 of a voxel; that moves some floats by an ulp, which in 25600 paths of some ten cells of one in 10^7
+// each makes one more step or one fewer at most a few times.
+TEST_CASE("far from the origin walks take the same steps", "[gpu][precision][hard]") {
+    const auto counts = [](glm::dvec3 shift) {
+        GridRecipe grid = cloud_grid();
+        grid.translation += shift;
+        Scene scene = scene_of(medium(write_grid(grid), 1.5, 0.0), 10.0, 20, 25.0, shift, {15.0, -35.0, 5.0});
+        scene.background = Rgb(1.0);
+        scene.settings.spp = 64;
+        return render_here(scene, 67).counts;
+    };
+    const RenderCounts near = counts(glm::dvec3(0.0));
+    for (const double offset : {1e4, 1e5, 1e6}) {
+        const RenderCounts far = counts(glm::dvec3(offset, -offset, offset));
+        CAPTURE(offset, far.cells, near.cells, far.lookups, near.lookups);
+        CHECK(std::abs(double(far.cells) - double(near.cells)) <= 16.0);
+        CHECK(std::abs(double(far.lookups) - double(near.lookups)) <= 16.0);
+        CHECK(std::abs(double(far.real_collisions) - double(near.real_collisions)) <= 8.0);
+    }
+}
