@@ -7,17 +7,13 @@ namespace vkvol {
 ComputePass::ComputePass(const Device& device, const Bindings& bindings, std::span<const std::uint32_t> spirv,
                          const Specialization& specialization, VkPipelineCache cache)
     : device_(device), bindings_(bindings) {
+    const std::vector<std::uint32_t> code = specialized(spirv, specialization);
     VkShaderModuleCreateInfo module_info{};
     module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-    module_info.codeSize = spirv.size_bytes();
-    module_info.pCode = spirv.data();
+    module_info.codeSize = code.size() * sizeof(std::uint32_t);
+    module_info.pCode = code.data();
     VkShaderModule module = VK_NULL_HANDLE;
     VK_CHECK(vkCreateShaderModule(device.handle(), &module_info, nullptr, &module));
-
-    std::array<VkSpecializationMapEntry, SPEC_COUNT> entries;
-    for (std::uint32_t i = 0; i < SPEC_COUNT; ++i)
-        entries[i] = {i, i * static_cast<std::uint32_t>(sizeof(std::int32_t)), sizeof(std::int32_t)};
-    const VkSpecializationInfo constants{SPEC_COUNT, entries.data(), sizeof(specialization), specialization.data()};
 
     VkComputePipelineCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
@@ -25,7 +21,6 @@ ComputePass::ComputePass(const Device& device, const Bindings& bindings, std::sp
     create.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
     create.stage.module = module;
     create.stage.pName = "main";
-    create.stage.pSpecializationInfo = &constants;
     create.layout = bindings.layout();
     const VkResult result = vkCreateComputePipelines(device.handle(), cache, 1, &create, nullptr, &pipeline_);
     vkDestroyShaderModule(device.handle(), module, nullptr);

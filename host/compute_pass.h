@@ -1,16 +1,13 @@
 // One kernel with its specialization, ready to be recorded.
 #pragma once
 
-#include <array>
 #include <span>
 
 #include "bindings.h"
 #include "shared/scene.h"
+#include "specialization.h"
 
 namespace vkvol {
-
-// Value of every specialization constant, by SPEC_ number. Kernels take what they declare.
-using Specialization = std::array<std::int32_t, SPEC_COUNT>;
 
 class ComputePass {
 public:

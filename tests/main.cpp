@@ -9,5 +9,6 @@ int main(int argc, char** argv) {
     const std::vector<std::string> messages = vkvol::test_device_messages();
     for (const std::string& message : messages)
         Catch::cerr() << "validation layer: " << message << '\n';
+    vkvol::close_test_device();
     return failures != 0 ? failures : !messages.empty();
 }

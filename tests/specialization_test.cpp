@@ -1,17 +1,12 @@
-// A kernel for a scene without a feature contains none of its code. The track kernel is specialised as the driver does
-// it, but by spirv-opt, which freezes the constants and removes what cannot be reached; what is left is counted, and
-// the buffers it still touches are listed.
+// A kernel for a scene without a feature contains none of its code. The track kernel is specialised as it is for a
+// render; the instructions left are counted, and the buffers it still touches are listed.
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 #include <span>
-#include <unistd.h>
 
-#include "compute_pass.h"
 #include "shared/items.h"
+#include "specialization.h"
 #include "track.spv.h"
 #include "track_chromatic.spv.h"
 
@@ -78,35 +73,12 @@ Kernel read_kernel(const Words& words) {
     return kernel;
 }
 
-bool has_spirv_opt() {
-    static const bool found = std::system("spirv-opt --version > /dev/null 2>&1") == 0;
-    return found;
-}
-
-Kernel run_spirv_opt(std::span<const std::uint32_t> spirv, const Specialization& constants) {
-    const auto path = std::filesystem::temp_directory_path() / ("vkvol_specialization_" + std::to_string(getpid()));
-    const std::string before = path.string() + ".in.spv", after = path.string() + ".out.spv";
-    std::ofstream(before, std::ios::binary).write(reinterpret_cast<const char*>(spirv.data()), spirv.size_bytes());
-    std::string values;
-    for (int id = 0; id < SPEC_COUNT; ++id)
-        values += std::to_string(id) + ":" + std::to_string(constants[id]) + " ";
-    const std::string command = "spirv-opt --set-spec-const-default-value \"" + values +
-                                "\" --freeze-spec-const --fold-spec-const-op-composite -O " + before + " -o " + after;
-    REQUIRE(std::system(command.c_str()) == 0);
-    std::ifstream file(after, std::ios::binary | std::ios::ate);
-    Words words(std::size_t(file.tellg()) / 4);
-    file.seekg(0).read(reinterpret_cast<char*>(words.data()), std::streamsize(4 * words.size()));
-    std::filesystem::remove(before);
-    std::filesystem::remove(after);
-    return read_kernel(words);
-}
-
 // Each once: the tests below have many in common.
 const Kernel& specialise(std::span<const std::uint32_t> spirv, const Specialization& constants) {
     static std::map<std::pair<const std::uint32_t*, Specialization>, Kernel> known;
     const auto key = std::make_pair(spirv.data(), constants);
     if (!known.contains(key))
-        known[key] = run_spirv_opt(spirv, constants);
+        known[key] = read_kernel(specialized(spirv, constants));
     return known[key];
 }
 
@@ -134,16 +106,9 @@ Specialization with(std::initializer_list<std::pair<int, int>> changes) {
     return s;
 }
 
-#define REQUIRE_SPIRV_OPT()                                                                                            \
-    if (!has_spirv_opt()) {                                                                                            \
-        WARN("spirv-opt is not on the PATH: not tested");                                                              \
-        return;                                                                                                        \
-    }
-
 } // namespace
 
 TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "[gpu][specialization]") {
-    REQUIRE_SPIRV_OPT();
     const std::set<int> always = {BINDING_FRAME,       BINDING_PATHS,  BINDING_BETAS,   BINDING_SUSPENDED,
                                   BINDING_QUEUE_ITEMS, BINDING_QUEUES, BINDING_COUNTERS};
     const auto touches = [&](std::initializer_list<std::pair<int, int>> changes, std::set<int> more) {
@@ -174,7 +139,6 @@ TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "
 }
 
 TEST_CASE("every feature costs instructions only where a scene has it", "[gpu][specialization]") {
-    REQUIRE_SPIRV_OPT();
     const auto count = [](std::initializer_list<std::pair<int, int>> changes) {
         return specialise(track_spv, with(changes)).instructions;
     };

@@ -54,3 +54,37 @@ make_fields() {
     say "Density fields"
     "$vkvol_root/build/make_field" "$@" || die "a density field could not be made"
 }
+
+# use_driver NAME: what this script runs from here on sees that Vulkan driver alone.
+#   lavapipe      Mesa's
+#   swiftshader   Google's, of Debian's package chromium-common: its library is unpacked once, into build/, not installed
+use_driver() {
+    local manifest
+    case $1 in
+    lavapipe) manifest=$(compgen -G "/usr/share/vulkan/icd.d/lvp_icd.*.json" | head -n 1) ||
+        die "lavapipe is not installed; apt-get install mesa-vulkan-drivers brings it" ;;
+    swiftshader)
+        manifest=$vkvol_root/build/swiftshader/vk_swiftshader_icd.json
+        [ -f "$manifest" ] || unpack_swiftshader "$(dirname "$manifest")"
+        ;;
+    *) die "there is no driver $1; known are lavapipe and swiftshader" ;;
+    esac
+    [ -f "$manifest" ] || die "the driver $1 could not be made ready: $manifest is missing"
+    export VK_DRIVER_FILES=$manifest VK_ICD_FILENAMES=$manifest # the latter for Vulkan loaders before 1.3.207
+}
+
+# A subshell; its directory appears only once all is well.
+unpack_swiftshader() (
+    say "SwiftShader, from the package chromium-common"
+    temporary=$1.unpacking
+    rm -rf "$temporary"
+    mkdir -p "$temporary"
+    cd "$temporary"
+    apt-get -o APT::Sandbox::User=root download -qq chromium-common ||
+        die "chromium-common could not be downloaded: is there a network, and does apt-get update know Debian's security updates?"
+    dpkg-deb --fsys-tarfile chromium-common_*.deb | tar -x --strip-components=4 \
+        ./usr/lib/chromium/libvk_swiftshader.so ./usr/lib/chromium/vk_swiftshader_icd.json ||
+        die "this chromium-common has no SwiftShader at usr/lib/chromium: $(ls chromium-common_*.deb)"
+    rm chromium-common_*.deb
+    mv "$temporary" "$1"
+)

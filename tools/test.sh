@@ -3,24 +3,34 @@
 # is no GPU).
 #   tools/test.sh              the release build
 #   tools/test.sh --sanitize   host code under AddressSanitizer and UndefinedBehaviorSanitizer
+#   tools/test.sh --driver D   on a software driver: lavapipe or swiftshader (fetched; several times slower)
 #   tools/test.sh ... ARGS     further arguments go to ctest, e.g. -R density
 set -eu
 source "$(dirname "$0")/setup.sh"
 
 preset=release
-if [ "${1:-}" = --sanitize ]; then
-    preset=sanitize
+driver=
+while true; do
+    case ${1:-} in
+    --sanitize) preset=sanitize ;;
+    --driver)
+        driver=${2:?--driver needs a name: lavapipe or swiftshader}
+        shift
+        ;;
+    *) break ;;
+    esac
     shift
-fi
+done
 start=$SECONDS
 install_packages
+[ -z "$driver" ] || use_driver "$driver"
 build "$preset"
 
 say "Scene files against their schema"
 find "$vkvol_root/scenes" -name '*.xml' -print0 |
     xargs -0 xmllint --noout --schema "$vkvol_root/scenes/vkvol.xsd" 2>&1 | grep -v ' validates$' && die "a scene does not validate"
 
-say "Tests ($preset)"
+say "Tests ($preset${driver:+, $driver})"
 directory=$vkvol_root/build
 [ "$preset" = release ] || directory=$vkvol_root/build-$preset
 # Drivers keep memory until the process ends: leaks are looked for in our code by other means.

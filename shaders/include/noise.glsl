@@ -10,11 +10,12 @@ uint permuted(uint i) {
 }
 
 // The product of `d` with one of the twelve directions from a cube's centre to its edges, four of them named twice.
+// Without branches: lanes disagree at each, and SwiftShader took a minute to compile the eight nests of them.
 float gradient(uint hash, vec3 d) {
     uint h = hash & 15u;
-    float u = h < 8u ? d.x : d.y;
-    float v = h < 4u ? d.y : (h == 12u || h == 14u ? d.x : d.z);
-    return ((h & 1u) == 0u ? u : -u) + ((h & 2u) == 0u ? v : -v);
+    float u = mix(d.y, d.x, h < 8u);
+    float v = mix(mix(d.z, d.x, (h & 13u) == 12u), d.y, h < 4u);
+    return mix(-u, u, (h & 1u) == 0u) + mix(-v, v, (h & 2u) == 0u);
 }
 
 // In [-perlin_bound, perlin_bound]; 0 at the lattice's points; of period 256 along each axis.

@@ -45,11 +45,14 @@ void build_frame(vec3 n, out vec3 tangent, out vec3 bitangent) {
 vec3 hg_sample(float g, vec3 direction, vec2 u) {
     float from_peak = hg_sample_from_peak(g, u.x);
     float sine = sqrt(from_peak * (2.0 - from_peak));
-    float phi = 6.283185307179586 * u.y;
+    // The azimuth 2 pi u.y. Vulkan asks little of cos and sin, 2^-11, and that within [-pi, pi] only: from half a turn
+    // back, and of unit length, so that the polar angle keeps its digits.
+    float phi = 6.283185307179586 * (u.y - 0.5);
+    vec2 around = -normalize(vec2(cos(phi), sin(phi)));
     vec3 peak = g < 0.0 ? -direction : direction;
     vec3 tangent, bitangent;
     build_frame(peak, tangent, bitangent);
-    vec3 turned = peak * (1.0 - from_peak) + (tangent * cos(phi) + bitangent * sin(phi)) * sine;
+    vec3 turned = peak * (1.0 - from_peak) + (tangent * around.x + bitangent * around.y) * sine;
     return normalize(turned);
 }
 

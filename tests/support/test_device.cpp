@@ -21,4 +21,8 @@ std::vector<std::string> test_device_messages() {
     return device ? device->validation_messages() : std::vector<std::string>{};
 }
 
+void close_test_device() {
+    device.reset();
+}
+
 } // namespace vkvol

@@ -12,4 +12,7 @@ Device& test_device();
 // What the validation layer has said so far; empty if no test has opened the device.
 std::vector<std::string> test_device_messages();
 
+// Before main returns: later a driver's own static objects may be gone.
+void close_test_device();
+
 } // namespace vkvol

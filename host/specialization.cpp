@@ -1,0 +1,41 @@
+#include "specialization.h"
+
+#include <fmt/format.h>
+#include <spirv-tools/optimizer.hpp>
+#include <unordered_map>
+
+#include "error.h"
+
+namespace vkvol {
+
+std::vector<std::uint32_t> specialized(std::span<const std::uint32_t> spirv, const Specialization& specialization) {
+    std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> values;
+    for (std::uint32_t id = 0; id < SPEC_COUNT; ++id)
+        values[id] = {static_cast<std::uint32_t>(specialization[id])};
+    std::string trouble;
+    spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
+    optimizer.SetMessageConsumer(
+        [&](spv_message_level_t, const char*, const spv_position_t&, const char* message) { trouble += message; });
+    // First what whole functions can shed, then, with the few left in one, what follows from each other. More passes
+    // would spare drivers less time than they take themselves.
+    optimizer.RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(values))
+        .RegisterPass(spvtools::CreateFreezeSpecConstantValuePass())
+        .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass())
+        .RegisterPass(spvtools::CreateDeadBranchElimPass())
+        .RegisterPass(spvtools::CreateAggressiveDCEPass())
+        .RegisterPass(spvtools::CreateInlineExhaustivePass())
+        .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+        .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
+        .RegisterPass(spvtools::CreateCCPPass())
+        .RegisterPass(spvtools::CreateDeadBranchElimPass())
+        .RegisterPass(spvtools::CreateAggressiveDCEPass());
+    spvtools::OptimizerOptions options;
+    options.set_run_validator(false); // it was validated when built
+    std::vector<std::uint32_t> result;
+    if (!optimizer.Run(spirv.data(), spirv.size(), &result, options))
+        throw RenderError(
+            fmt::format("a kernel could not be specialised: {}; please report this with the scene", trouble));
+    return result;
+}
+
+} // namespace vkvol
