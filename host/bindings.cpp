@@ -15,6 +15,17 @@ Bindings::Bindings(const Device& device, const BoundBuffers& buffers)
     : device_(device),
       unused_(device, "placeholder", 256, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
               BufferPlace::device) {
+    try {
+        create();
+    } catch (...) {
+        release();
+        throw;
+    }
+    for (std::uint32_t i = 0; i < BINDING_COUNT; ++i)
+        bind(i, buffers[i] ? *buffers[i] : unused_);
+}
+
+void Bindings::create() {
     std::array<VkDescriptorSetLayoutBinding, BINDING_COUNT> slots{};
     for (std::uint32_t i = 0; i < BINDING_COUNT; ++i)
         slots[i] = {i, descriptor_type(i), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
@@ -22,7 +33,7 @@ Bindings::Bindings(const Device& device, const BoundBuffers& buffers)
     set_layout.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
     set_layout.bindingCount = BINDING_COUNT;
     set_layout.pBindings = slots.data();
-    VK_CHECK(vkCreateDescriptorSetLayout(device.handle(), &set_layout, nullptr, &set_layout_));
+    VK_CHECK(vkCreateDescriptorSetLayout(device_.handle(), &set_layout, nullptr, &set_layout_));
 
     const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(shared::PassPush)};
     VkPipelineLayoutCreateInfo layout{};
@@ -31,7 +42,7 @@ Bindings::Bindings(const Device& device, const BoundBuffers& buffers)
     layout.pSetLayouts = &set_layout_;
     layout.pushConstantRangeCount = 1;
     layout.pPushConstantRanges = &push;
-    VK_CHECK(vkCreatePipelineLayout(device.handle(), &layout, nullptr, &layout_));
+    VK_CHECK(vkCreatePipelineLayout(device_.handle(), &layout, nullptr, &layout_));
 
     const std::array<VkDescriptorPoolSize, 2> sizes{
         {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1}, {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BINDING_COUNT - 1}}};
@@ -40,16 +51,13 @@ Bindings::Bindings(const Device& device, const BoundBuffers& buffers)
     pool.maxSets = 1;
     pool.poolSizeCount = sizes.size();
     pool.pPoolSizes = sizes.data();
-    VK_CHECK(vkCreateDescriptorPool(device.handle(), &pool, nullptr, &pool_));
+    VK_CHECK(vkCreateDescriptorPool(device_.handle(), &pool, nullptr, &pool_));
     VkDescriptorSetAllocateInfo allocate{};
     allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
     allocate.descriptorPool = pool_;
     allocate.descriptorSetCount = 1;
     allocate.pSetLayouts = &set_layout_;
-    VK_CHECK(vkAllocateDescriptorSets(device.handle(), &allocate, &set_));
-
-    for (std::uint32_t i = 0; i < BINDING_COUNT; ++i)
-        bind(i, buffers[i] ? *buffers[i] : unused_);
+    VK_CHECK(vkAllocateDescriptorSets(device_.handle(), &allocate, &set_));
 }
 
 void Bindings::bind(std::uint32_t binding, const Buffer& buffer) {
@@ -65,6 +73,10 @@ void Bindings::bind(std::uint32_t binding, const Buffer& buffer) {
 }
 
 Bindings::~Bindings() {
+    release();
+}
+
+void Bindings::release() {
     vkDestroyDescriptorPool(device_.handle(), pool_, nullptr);
     vkDestroyPipelineLayout(device_.handle(), layout_, nullptr);
     vkDestroyDescriptorSetLayout(device_.handle(), set_layout_, nullptr);

@@ -25,6 +25,9 @@ public:
     VkDescriptorSet set() const { return set_; }
 
 private:
+    void create();
+    void release();
+
     const Device& device_;
     Buffer unused_; // stands where a scene needs no buffer
     VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;

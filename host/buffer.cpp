@@ -46,13 +46,18 @@ Buffer::Buffer(const Device& device, const std::string& name, VkDeviceSize bytes
     allocate.memoryTypeIndex = static_cast<std::uint32_t>(type);
     const VkResult result = vkAllocateMemory(device.handle(), &allocate, nullptr, &memory_);
     if (result != VK_SUCCESS) {
-        vkDestroyBuffer(device.handle(), buffer_, nullptr);
+        release();
         throw RenderError(fmt::format("{} for the {} ({:.1f} MiB) on \"{}\"; use a smaller picture or grid",
                                       result_name(result), name, bytes / 1048576.0, device.info().name));
     }
-    VK_CHECK(vkBindBufferMemory(device.handle(), buffer_, memory_, 0));
-    if (map)
-        VK_CHECK(vkMapMemory(device.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_));
+    try {
+        VK_CHECK(vkBindBufferMemory(device.handle(), buffer_, memory_, 0));
+        if (map)
+            VK_CHECK(vkMapMemory(device.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_));
+    } catch (...) {
+        release();
+        throw;
+    }
 }
 
 Buffer::Buffer(Buffer&& other) noexcept
@@ -67,6 +72,10 @@ VkDeviceAddress Buffer::address() const {
 }
 
 Buffer::~Buffer() {
+    release();
+}
+
+void Buffer::release() {
     vkDestroyBuffer(device_.handle(), buffer_, nullptr);
     vkFreeMemory(device_.handle(), memory_, nullptr);
 }

@@ -35,6 +35,8 @@ public:
     template <class T> std::span<T> view() const { return {static_cast<T*>(mapped_), bytes_ / sizeof(T)}; }
 
 private:
+    void release();
+
     const Device& device_;
     VkBuffer buffer_ = VK_NULL_HANDLE;
     VkDeviceMemory memory_ = VK_NULL_HANDLE;

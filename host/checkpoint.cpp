@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <fstream>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <zlib.h>
 
@@ -166,6 +167,8 @@ Checkpoint load_checkpoint(const std::filesystem::path& file) {
     try {
         return parse(read_file(file));
     } catch (const InputError&) {
+        throw;
+    } catch (const std::bad_alloc&) { // nothing is wrong with the file
         throw;
     } catch (const std::exception& error) {
         throw InputError(

@@ -7,23 +7,36 @@
 namespace vkvol {
 
 Commands::Commands(const Device& device) : device_(device) {
+    try {
+        create();
+    } catch (...) {
+        release();
+        throw;
+    }
+}
+
+void Commands::create() {
     VkCommandPoolCreateInfo pool{};
     pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
     pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
-    pool.queueFamilyIndex = device.queue_family();
-    VK_CHECK(vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_));
+    pool.queueFamilyIndex = device_.queue_family();
+    VK_CHECK(vkCreateCommandPool(device_.handle(), &pool, nullptr, &pool_));
     VkCommandBufferAllocateInfo allocate{};
     allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
     allocate.commandPool = pool_;
     allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
     allocate.commandBufferCount = 1;
-    VK_CHECK(vkAllocateCommandBuffers(device.handle(), &allocate, &buffer_));
+    VK_CHECK(vkAllocateCommandBuffers(device_.handle(), &allocate, &buffer_));
     VkFenceCreateInfo fence{};
     fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-    VK_CHECK(vkCreateFence(device.handle(), &fence, nullptr, &fence_));
+    VK_CHECK(vkCreateFence(device_.handle(), &fence, nullptr, &fence_));
 }
 
 Commands::~Commands() {
+    release();
+}
+
+void Commands::release() {
     vkDestroyFence(device_.handle(), fence_, nullptr);
     vkDestroyCommandPool(device_.handle(), pool_, nullptr);
 }

@@ -25,6 +25,9 @@ public:
     void fill(const Buffer& buffer, std::uint32_t word);
 
 private:
+    void create();
+    void release();
+
     const Device& device_;
     VkCommandPool pool_ = VK_NULL_HANDLE;
     VkCommandBuffer buffer_ = VK_NULL_HANDLE;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <optional>
 
+#include "pipeline_cache.h"
 #include "vulkan_error.h"
 
 namespace vkvol {
@@ -105,10 +106,15 @@ DeviceInfo describe(VkPhysicalDevice physical, int index) {
 }
 
 std::vector<VkPhysicalDevice> enumerate(VkInstance instance) {
+    const auto check = [](VkResult result) {
+        if (result < 0)
+            throw DeviceError(fmt::format(
+                "the Vulkan drivers do not list their devices: {}; does `vulkaninfo` show any?", result_name(result)));
+    };
     std::uint32_t count = 0;
-    VK_CHECK(vkEnumeratePhysicalDevices(instance, &count, nullptr));
+    check(vkEnumeratePhysicalDevices(instance, &count, nullptr));
     std::vector<VkPhysicalDevice> devices(count);
-    VK_CHECK(vkEnumeratePhysicalDevices(instance, &count, devices.data()));
+    check(vkEnumeratePhysicalDevices(instance, &count, devices.data()));
     return devices;
 }
 
@@ -192,6 +198,7 @@ std::vector<DeviceInfo> list_devices() {
 }
 
 Device::Device(const DeviceOptions& options) {
+    forgo_driver_cache_on_full_disk();
     try {
         create_instance(options);
         choose_physical(options.choice);
@@ -271,7 +278,10 @@ void Device::create_device(const DeviceOptions& options) {
     create.pNext = &features;
     create.queueCreateInfoCount = 1;
     create.pQueueCreateInfos = &queue;
-    VK_CHECK(vkCreateDevice(physical_, &create, nullptr, &device_));
+    if (const VkResult result = vkCreateDevice(physical_, &create, nullptr, &device_); result != VK_SUCCESS)
+        throw DeviceError(fmt::format("\"{}\" cannot be opened: {}; is another program using it up? --device names "
+                                      "another (`vkvol devices` lists them)",
+                                      info_.name, result_name(result)));
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
 }
 

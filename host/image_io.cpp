@@ -1,5 +1,6 @@
 #include "image_io.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <algorithm>
 #include <cerrno>
@@ -8,8 +9,10 @@
 #include <fmt/format.h>
 #include <functional>
 #include <memory>
+#include <system_error>
 #include <unistd.h>
 
+#include "atomic_file.h"
 #include "error.h"
 
 namespace vkvol {
@@ -21,45 +24,41 @@ using std::filesystem::path;
 constexpr int channel_count = 7;
 const std::vector<std::string> channel_names = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "samples"};
 
-// In the target's directory, so that the rename is atomic; with the target's extension, which names the format.
-path temporary_name(const path& target) {
-    path name = target;
-    name.replace_filename(fmt::format(".{}.{}.tmp{}", target.stem().string(), getpid(), target.extension().string()));
-    return name;
-}
-
-// A device or pipe (/dev/stdout, say) is written to, never replaced by a file.
-bool is_special(const path& target) {
-    std::error_code ignored;
-    const std::filesystem::file_status status = std::filesystem::status(target, ignored);
-    return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
-           !std::filesystem::is_directory(status);
-}
-
-// Runs `write` on a temporary name, then renames. Nothing is left behind when it fails.
-void write_atomically(const path& name, const std::function<void(const path&)>& write) {
-    std::error_code ignored;
-    // A link stays a link: the file behind it is replaced.
-    const path target = std::filesystem::is_symlink(name, ignored) && std::filesystem::exists(name, ignored)
-                            ? std::filesystem::canonical(name)
-                            : name;
-    const path temporary = temporary_name(target);
+// Fills a new file, which then takes the place of the old one.
+void write_atomically(const path& target, const std::function<void(AtomicFile&)>& write) {
+    std::string reason;
     try {
-        if (is_special(target))
-            return write(target);
-        write(temporary);
-        std::filesystem::rename(temporary, target);
-    } catch (const std::filesystem::filesystem_error& error) {
-        std::filesystem::remove(temporary, ignored);
-        throw RenderError(fmt::format("{}: cannot be written: {}; name another place with -o", target.string(),
-                                      error.code().message()));
+        AtomicFile file(target);
+        write(file);
+        file.put_in_place();
+        return;
+    } catch (const std::system_error& error) {
+        reason = error.code().message();
     } catch (const std::exception& error) {
-        std::filesystem::remove(temporary, ignored);
-        throw RenderError(fmt::format("{}: cannot be written: {}; check free space and permissions, or name another "
-                                      "place with -o",
-                                      target.string(), error.what()));
+        reason = error.what();
     }
+    throw RenderError(fmt::format("{}: cannot be written: {}; check free space and permissions, or name another place "
+                                  "with -o",
+                                  target.string(), reason));
 }
+
+// Lets OpenImageIO write into a file of ours: it would not see every failure itself.
+class FileProxy : public OIIO::Filesystem::IOProxy {
+public:
+    explicit FileProxy(AtomicFile& file) : IOProxy("", Write), file_(file) {}
+    const char* proxytype() const override { return "file"; }
+    std::size_t write(const void* data, std::size_t size) override {
+        const std::size_t written = pwrite(data, size, m_pos);
+        m_pos += static_cast<std::int64_t>(written);
+        return written;
+    }
+    std::size_t pwrite(const void* data, std::size_t size, std::int64_t at) override {
+        return file_.write(data, size, at) ? size : 0;
+    }
+
+private:
+    AtomicFile& file_;
+};
 
 std::string one_line(std::string text) {
     std::replace(text.begin(), text.end(), '\n', ' ');
@@ -68,11 +67,15 @@ std::string one_line(std::string text) {
     return text.empty() ? "unknown reason" : text;
 }
 
-void write_pixels(const path& file, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels) {
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(file.string());
+void write_pixels(AtomicFile& file, const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+                  const void* pixels) {
+    FileProxy proxy(file);
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format, &proxy);
     if (!output)
         throw std::runtime_error(one_line(OIIO::geterror()));
-    if (!output->open(file.string(), spec) || !output->write_image(type, pixels) || !output->close())
+    const bool done = output->open(format, spec) && output->write_image(type, pixels) && output->close();
+    file.check(); // the disk's own word comes first
+    if (!done)
         throw std::runtime_error(one_line(output->geterror()));
 }
 
@@ -198,7 +201,7 @@ void write_image(const path& target, const Film& film, const Metadata& metadata,
 }
 
 void write_exr(const path& target, const Film& film, const Metadata& metadata) {
-    write_atomically(target, [&](const path& file) {
+    write_atomically(target, [&](AtomicFile& file) {
         check_consistent(film);
         OIIO::ImageSpec spec(film.width(), film.height(), channel_count, OIIO::TypeDesc::FLOAT);
         spec.channelnames = channel_names;
@@ -211,17 +214,17 @@ void write_exr(const path& target, const Film& film, const Metadata& metadata) {
         const float chromaticities[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
         spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
         set_attributes(spec, metadata);
-        write_pixels(file, spec, OIIO::TypeDesc::FLOAT, interleaved(film).data());
+        write_pixels(file, "a.exr", spec, OIIO::TypeDesc::FLOAT, interleaved(film).data());
     });
 }
 
 void write_png(const path& target, const Film& film, const ToneMapping& mapping) {
-    write_atomically(target, [&](const path& file) {
+    write_atomically(target, [&](AtomicFile& file) {
         check_consistent(film);
         OIIO::ImageSpec spec(film.width(), film.height(), 3, OIIO::TypeDesc::UINT8);
         spec.attribute("oiio:ColorSpace", "sRGB");
         const std::vector<std::uint8_t> pixels = tone_map(film, mapping);
-        write_pixels(file, spec, OIIO::TypeDesc::UINT8, pixels.data());
+        write_pixels(file, "a.png", spec, OIIO::TypeDesc::UINT8, pixels.data());
     });
 }
 
@@ -245,12 +248,7 @@ Film read_exr(const path& file, Metadata* metadata) {
 }
 
 void write_text(const path& target, const std::string& text) {
-    write_atomically(target, [&](const path& file) {
-        const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "wb"), std::fclose);
-        if (!stream || std::fwrite(text.data(), 1, text.size(), stream.get()) != text.size() ||
-            std::fflush(stream.get()) != 0 || fsync(fileno(stream.get())) != 0)
-            throw std::runtime_error(std::strerror(errno));
-    });
+    write_atomically(target, [&](AtomicFile& file) { file.write(text.data(), text.size(), 0); });
 }
 
 } // namespace vkvol

@@ -8,7 +8,7 @@
 
 namespace vkvol {
 
-// Every writer fills a temporary file in the same directory and renames it: a file of this name is never half written.
+// Every writer fills a new file that then takes the place of the old one: a file of this name is never half written.
 // Failures throw RenderError with path, reason and remedy.
 
 // Throws InputError unless `path` ends in .exr or .png and a file can be made there. Leaves nothing behind.

@@ -28,6 +28,9 @@ void install_interrupt_handler() {
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+    if (std::signal(SIGHUP, SIG_IGN) != SIG_IGN) // nohup stays in force
+        sigaction(SIGHUP, &action, nullptr);
+    std::signal(SIGPIPE, SIG_IGN); // a reader of messages that is gone is no reason to end
 }
 
 bool interrupted() {

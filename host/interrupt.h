@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM end a render early but in order: what was rendered so far is written.
+// Ctrl-C, SIGTERM and a lost terminal end a render early but in order: what was rendered so far is written.
 #pragma once
 
 namespace vkvol {

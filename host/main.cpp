@@ -1,8 +1,12 @@
 // vkvol: command line in, exit code out. The only place that catches.
 
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <fcntl.h>
 #include <new>
+#include <unistd.h>
 
 #include "compare.h"
 #include "device_command.h"
@@ -14,6 +18,19 @@
 #include "render_command.h"
 
 namespace {
+
+// A file opened while one of the three standard streams is closed would take its number, and what is told its bytes. A
+// file that grows beyond `ulimit -f` is an error to report, not a death.
+void prepare_process() {
+    while (true) {
+        const int descriptor = open("/dev/null", O_RDWR);
+        if (descriptor > 2)
+            close(descriptor);
+        if (descriptor < 0 || descriptor > 2)
+            break;
+    }
+    std::signal(SIGXFSZ, SIG_IGN);
+}
 
 int run(const vkvol::Options& options) {
     switch (options.command) {
@@ -41,11 +58,16 @@ int complain(const char* message, vkvol::ExitCode code) {
     return code;
 }
 
-} // namespace
-
-int main(int argc, char** argv) {
+int run_and_complain(int argc, char** argv) {
     try {
-        return run(vkvol::parse_options(argc, argv));
+        const vkvol::Options options = vkvol::parse_options(argc, argv);
+        const int code = run(options);
+        // What a render prints is a word about its pictures; what the others print is their result.
+        const bool is_result = options.command != vkvol::Command::render || options.render.trace;
+        if (std::fflush(stdout) != 0 && is_result)
+            return complain("standard output takes no more: the result is incomplete; check free space",
+                            vkvol::exit_render_failed);
+        return code;
     } catch (const vkvol::InputError& e) {
         return complain(e.what(), vkvol::exit_bad_input);
     } catch (const vkvol::DeviceError& e) {
@@ -55,4 +77,15 @@ int main(int argc, char** argv) {
     } catch (const std::exception& e) {
         return complain(e.what(), vkvol::exit_render_failed);
     }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    prepare_process();
+    const int code = run_and_complain(argc, argv);
+    std::fflush(stdout);
+    // Without the shutdown of libraries that we do not know: OpenBLAS, which OpenImageIO brings, waits for ever for its
+    // threads where memory is short.
+    std::_Exit(code);
 }

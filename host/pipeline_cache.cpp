@@ -4,21 +4,38 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <fstream>
-#include <iterator>
-#include <unistd.h>
+#include <system_error>
 
+#include "atomic_file.h"
 #include "vulkan_error.h"
 
 namespace vkvol {
 
 namespace {
 
+std::filesystem::path environment_path(const char* name) {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+}
+
+// Of all programs; empty if there is none.
+std::filesystem::path cache_home() {
+    if (const std::filesystem::path xdg = environment_path("XDG_CACHE_HOME"); !xdg.empty())
+        return xdg;
+    const std::filesystem::path home = environment_path("HOME");
+    return home.empty() ? home : home / ".cache";
+}
+
 std::filesystem::path cache_directory() {
-    if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg && *xdg)
-        return std::filesystem::path(xdg) / "vkvol";
-    if (const char* home = std::getenv("HOME"); home && *home)
-        return std::filesystem::path(home) / ".cache" / "vkvol";
-    return {};
+    const std::filesystem::path home = cache_home();
+    return home.empty() ? home : home / "vkvol";
+}
+
+std::vector<char> read_if_possible(const std::filesystem::path& path) {
+    std::error_code error;
+    std::vector<char> data(std::filesystem::is_regular_file(path, error) ? std::filesystem::file_size(path, error) : 0);
+    std::ifstream file(path, std::ios::binary);
+    return !error && file.read(data.data(), static_cast<std::streamsize>(data.size())) ? data : std::vector<char>{};
 }
 
 // The file name holds all that makes a cache valid; the header inside is checked too, since files get copied.
@@ -45,8 +62,7 @@ PipelineCache::PipelineCache(const Device& device, bool use_disk) : device_(devi
     std::vector<char> data;
     if (const std::filesystem::path directory = cache_directory(); use_disk && !directory.empty()) {
         path_ = directory / file_name(device.properties());
-        std::ifstream file(path_, std::ios::binary);
-        data.assign(std::istreambuf_iterator<char>(file), {});
+        data = read_if_possible(path_);
         if (!header_fits(data, device.properties()))
             data.clear();
     }
@@ -56,6 +72,19 @@ PipelineCache::PipelineCache(const Device& device, bool use_disk) : device_(devi
     create.initialDataSize = data.size();
     create.pInitialData = data.data();
     VK_CHECK(vkCreatePipelineCache(device.handle(), &create, nullptr, &cache_));
+}
+
+void forgo_driver_cache_on_full_disk() {
+    constexpr std::uintmax_t enough = 16u << 20; // the index takes 1.3 MB, kernels some kB each
+    std::filesystem::path directory = environment_path("MESA_SHADER_CACHE_DIR");
+    if (directory.empty())
+        directory = cache_home();
+    std::error_code error;
+    while (directory.has_relative_path() && !std::filesystem::exists(directory, error))
+        directory = directory.parent_path();
+    const std::filesystem::space_info space = std::filesystem::space(directory, error);
+    if (!error && space.available < enough)
+        setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
 }
 
 PipelineCache::~PipelineCache() {
@@ -70,13 +99,14 @@ void PipelineCache::save() const {
     std::vector<char> data(size);
     if (vkGetPipelineCacheData(device_.handle(), cache_, &size, data.data()) != VK_SUCCESS)
         return;
-    std::error_code error;
-    std::filesystem::create_directories(path_.parent_path(), error);
-    const std::filesystem::path temporary = fmt::format("{}.{}", path_.string(), getpid());
-    std::ofstream(temporary, std::ios::binary).write(data.data(), static_cast<std::streamsize>(size));
-    std::filesystem::rename(temporary, path_, error);
-    if (error)
-        std::filesystem::remove(temporary, error);
+    try {
+        std::filesystem::create_directories(path_.parent_path());
+        AtomicFile file(path_);
+        file.write(data.data(), size, 0);
+        file.put_in_place();
+    } catch (const std::system_error&) {
+        // Said in the header.
+    }
 }
 
 } // namespace vkvol

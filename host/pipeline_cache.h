@@ -1,4 +1,5 @@
-// VkPipelineCache kept in ${XDG_CACHE_HOME:-~/.cache}/vkvol between runs, one file per device and driver.
+// What is kept of compiled kernels between runs: a VkPipelineCache in ${XDG_CACHE_HOME:-~/.cache}/vkvol, one
+// file per device and driver.
 #pragma once
 
 #include <filesystem>
@@ -25,5 +26,10 @@ private:
     std::size_t loaded_bytes_ = 0;
     VkPipelineCache cache_ = VK_NULL_HANDLE;
 };
+
+// Mesa keeps a cache of its own, beside ours, and maps its index from a sparse file: where the disk is full that ends
+// the process with SIGBUS. To be called before a driver is loaded, and before there are threads: Mesa is told by its
+// environment.
+void forgo_driver_cache_on_full_disk();
 
 } // namespace vkvol

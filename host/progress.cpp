@@ -6,6 +6,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "messages.h"
+
 namespace vkvol {
 
 namespace {
@@ -52,10 +54,9 @@ void Progress::update(std::uint32_t samples, std::optional<double> noise) {
     const bool know_noise = noise && std::isfinite(*noise);
 
     if (mode_ == Mode::json) {
-        fmt::print(out_,
-                   R"({{"progress": {:.4f}, "samples": {}, "total": {}, "seconds": {:.3f}, "remaining": {:.1f}, )",
-                   fraction, samples, total_, seconds, remaining);
-        fmt::print(out_, "\"noise\": {}}}\n", know_noise ? fmt::format("{:.6g}", *noise) : "null");
+        tell(out_, R"({{"progress": {:.4f}, "samples": {}, "total": {}, "seconds": {:.3f}, "remaining": {:.1f}, )",
+             fraction, samples, total_, seconds, remaining);
+        tell(out_, "\"noise\": {}}}\n", know_noise ? fmt::format("{:.6g}", *noise) : "null");
         std::fflush(out_);
         return;
     }
@@ -65,7 +66,7 @@ void Progress::update(std::uint32_t samples, std::optional<double> noise) {
     if (mode_ == Mode::lines) {
         if (const int tenth = static_cast<int>(fraction * 10.0); tenth > last_tenth_) {
             last_tenth_ = tenth;
-            fmt::print(out_, "{:3.0f} %  {}\n", 100.0 * fraction, status);
+            tell(out_, "{:3.0f} %  {}\n", 100.0 * fraction, status);
             std::fflush(out_);
         }
         return;
@@ -86,14 +87,14 @@ void Progress::draw_bar(double fraction, const std::string& status) {
         line += fmt::format("[{:#<{}}{:.<{}}] ", "", full, "", cells - full);
     }
     line += status.substr(0, std::size_t(std::max(0, terminal_width(out_) - 8)));
-    fmt::print(out_, "{}", line);
+    tell(out_, "{}", line);
     std::fflush(out_);
     drawn_ = true;
 }
 
 void Progress::finish() {
     if (drawn_) {
-        fmt::print(out_, "\r\033[K");
+        tell(out_, "\r\033[K");
         std::fflush(out_);
     }
     drawn_ = false;

@@ -12,12 +12,13 @@
 #include "error.h"
 #include "image_io.h"
 #include "interrupt.h"
+#include "messages.h"
 #include "progress.h"
+#include "render_notes.h"
 #include "renderer.h"
 #include "report.h"
 #include "scene_xml.h"
 #include "trace.h"
-#include "vulkan_error.h"
 
 namespace vkvol {
 
@@ -41,60 +42,6 @@ void check_outputs(const RenderOptions& options) {
         check_directory_writable(*options.report);
 }
 
-std::string samples_text(const Film& film) {
-    const auto [least, most] = std::minmax_element(film.samples.begin(), film.samples.end());
-    return *least == *most ? std::to_string(*most) : fmt::format("{} to {}", *least, *most);
-}
-
-void print_warnings(const RenderOptions& options, const std::vector<std::string>& warnings) {
-    if (!options.quiet)
-        for (const std::string& warning : warnings)
-            fmt::print(stderr, "vkvol: warning: {}\n", warning);
-}
-
-std::string quoted(const std::string& text) {
-    std::string result = "'";
-    for (const char c : text)
-        result += c == '\'' ? "'\\''" : std::string(1, c);
-    return result + "'";
-}
-
-// The command that follows just this path.
-std::string replay_command(const RenderOptions& options, const NonFiniteSample& s) {
-    std::string command = "vkvol " + quoted(options.scene.string());
-    for (const auto& [key, value] : options.defines)
-        command += " -D " + quoted(key + "=" + value);
-    if (options.integrator)
-        command += " --integrator " + quoted(*options.integrator);
-    if (options.grid)
-        command += " --grid " + quoted(options.grid->string());
-    if (options.width)
-        command += fmt::format(" --width {}", *options.width);
-    if (options.height)
-        command += fmt::format(" --height {}", *options.height);
-    if (options.device != "auto")
-        command += " --device " + quoted(options.device);
-    return command + fmt::format(" --seed {} --pixel {},{} --sample {} --trace", options.seed, s.x, s.y, s.sample);
-}
-
-// One line for each kind of thing that makes the picture less than it claims to be.
-void print_caps(const RenderOptions& options, const RenderCounts& c, const RenderResult& result) {
-    const auto line = [](std::uint64_t count, const char* what) {
-        if (count > 0)
-            fmt::print(stderr, "vkvol: note: {} {}\n", count, what);
-    };
-    line(c.cleaned_voxels, "voxels were NaN, infinite or negative and count as 0");
-    line(c.depth_caps, "paths ended at maxDepth: the light of further scatterings is missing (raise or drop maxDepth)");
-    line(c.step_caps, "segments were cut, by the step limit or by the driver: their light is missing");
-    line(c.majorant_violations,
-         "collisions met a density above its majorant: delta estimators lose light there, ratio and weighted ones "
-         "stay unbiased with more noise");
-    line(c.non_finite, "samples were not finite, or beyond 2.8e14, and were dropped");
-    for (const NonFiniteSample& s : result.non_finite)
-        fmt::print(stderr, "vkvol: note: not finite: pixel {},{} sample {} seed {}; its path: {}\n", s.x, s.y, s.sample,
-                   options.seed, replay_command(options, s));
-}
-
 std::filesystem::path checkpoint_file(const RenderOptions& options) {
     std::filesystem::path file = options.outputs.front();
     return file.replace_extension(".checkpoint");
@@ -106,7 +53,9 @@ std::string rescue(const Film& film, const Metadata& metadata) {
     const std::filesystem::path directory = std::filesystem::temp_directory_path(error);
     if (error)
         return "";
-    const std::filesystem::path file = directory / fmt::format("vkvol-rescued-{}.exr", getpid());
+    std::filesystem::path file = directory / fmt::format("vkvol-rescued-{}.exr", getpid());
+    for (int i = 2; std::filesystem::exists(file, error); ++i) // numbers of processes come again
+        file = directory / fmt::format("vkvol-rescued-{}-{}.exr", getpid(), i);
     try {
         write_exr(file, film, metadata);
     } catch (const RenderError&) {
@@ -138,15 +87,6 @@ std::string resume_advice(const RenderOptions& options, std::uint32_t saved_samp
                        checkpoint_file(options).string(), saved_samples);
 }
 
-void print_summary(const RenderOptions& options, const Device& device, const RenderResult& result) {
-    std::string outputs;
-    for (const std::filesystem::path& output : options.outputs)
-        outputs += (outputs.empty() ? "" : ", ") + output.string();
-    fmt::print("{}: {} samples per pixel, {:.2f} s, noise {:.2g} %, on {}{}\n", outputs, samples_text(result.film),
-               result.render_seconds, 100.0 * relative_noise(result.film), device.info().name,
-               device.is_cpu() ? " (software)" : "");
-}
-
 // Keeps checkpoints on disk. One that cannot be written is no reason to end the render.
 class Keeper {
 public:
@@ -156,8 +96,8 @@ public:
         try {
             save_checkpoint(checkpoint_file(options_), checkpoint);
             saved_ = checkpoint.done;
-        } catch (const RenderError& error) {
-            fmt::print(stderr, "vkvol: warning: {}: the last checkpoint stays\n", error.what());
+        } catch (const std::exception& error) {
+            tell(stderr, "vkvol: warning: {}: the last checkpoint stays\n", error.what());
         }
     }
     std::optional<std::uint32_t> saved() const { return saved_; } // samples per pixel
@@ -174,7 +114,7 @@ std::optional<Checkpoint> find_checkpoint(const RenderOptions& options) {
     if (std::filesystem::exists(checkpoint_file(options), ignored))
         return load_checkpoint(checkpoint_file(options));
     if (!options.quiet)
-        fmt::print(stderr, "vkvol: note: there is no {}: the render begins anew\n", checkpoint_file(options).string());
+        tell(stderr, "vkvol: note: there is no {}: the render begins anew\n", checkpoint_file(options).string());
     return std::nullopt;
 }
 
@@ -200,7 +140,7 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
     };
     try {
         return render(device, scene, job);
-    } catch (const VulkanError& error) {
+    } catch (const RenderError& error) {
         if (!keeper.saved() && !from)
             throw;
         throw RenderError(error.what() + resume_advice(options, keeper.saved().value_or(from ? from->done : 0)));
@@ -218,18 +158,9 @@ bool has_samples(const Film& film) {
     return std::any_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n > 0; });
 }
 
-// Nothing to show, and perhaps a good picture to spoil.
-int complain_of_nothing(const RenderResult& result) {
-    fmt::print(stderr, "vkvol: {}: nothing is written\n",
-               result.interrupted             ? "interrupted before the first sample"
-               : result.counts.non_finite > 0 ? "no sample was finite"
-                                              : "out of time before the first sample");
-    return result.interrupted ? exit_interrupted : exit_render_failed;
-}
-
 void check_result(const Device& device, const RenderResult& result) {
     for (const std::string& message : device.validation_messages())
-        fmt::print(stderr, "vkvol: validation: {}\n", message);
+        tell(stderr, "vkvol: validation: {}\n", message);
     if (!device.validation_messages().empty())
         throw RenderError(fmt::format("the validation layer has {} objections", device.validation_messages().size()));
     if (result.counts.queue_overflows > 0)
@@ -249,15 +180,16 @@ int run_render(const RenderOptions& options) {
     print_warnings(options, result.warnings);
     check_result(device, result);
     if (!options.trace && !has_samples(result.film)) {
-        print_caps(options, result.counts, result);
-        return complain_of_nothing(result);
+        print_caps(options, result);
+        print_no_samples(result); // and nothing is written, which might spoil a good picture
+        return result.interrupted ? exit_interrupted : exit_render_failed;
     }
     const double write_seconds = write_outputs(options, result.film, make_metadata(options, scene, device, result));
     if (options.report)
         write_text(*options.report, make_report(options, scene, device, result, write_seconds));
     remove_checkpoint(options, scene, result);
     if (!options.quiet)
-        print_caps(options, result.counts, result);
+        print_caps(options, result);
     if (options.trace)
         fmt::print("{}", trace_table(result.trace, result.trace_origin, scene.background));
     else if (!options.quiet)

@@ -5,8 +5,10 @@
 #include <fstream>
 #include <limits>
 #include <sys/stat.h>
+#include <system_error>
 #include <unistd.h>
 
+#include "atomic_file.h"
 #include "error.h"
 #include "image_io.h"
 
@@ -174,6 +176,32 @@ TEST_CASE("a link stays a link, and a device a device", "[cpu][image_io]") {
     CHECK_NOTHROW(check_directory_writable("/dev/null"));
     write_text("/dev/null", "x");
     CHECK(fs::is_character_file("/dev/null"));
+}
+
+TEST_CASE("a file is whole or not there", "[cpu][image_io]") {
+    const Scratch scratch;
+    const fs::path name = scratch.path / "a.json";
+    const auto text = [&] {
+        std::ifstream stream(name);
+        return std::string(std::istreambuf_iterator<char>(stream), {});
+    };
+    {
+        AtomicFile file(name);
+        REQUIRE(file.write("67", 2, 5));
+        REQUIRE(file.write("12345", 5, 0));
+        CHECK_FALSE(fs::exists(name));
+        file.put_in_place();
+    }
+    CHECK(text() == "1234567");
+    {
+        AtomicFile file(name);
+        CHECK(file.write("8", 1, 0));
+    }
+    CHECK(text() == "1234567");
+    CHECK(scratch.files() == 1);
+    AtomicFile full("/dev/full");
+    CHECK_FALSE(full.write("9", 1, 0));
+    CHECK_THROWS_AS(full.put_in_place(), std::system_error);
 }
 
 TEST_CASE("files that are no renders are refused", "[cpu][image_io]") {

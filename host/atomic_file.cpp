@@ -1,0 +1,119 @@
+#include "atomic_file.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <system_error>
+#include <unistd.h>
+
+namespace vkvol {
+
+namespace {
+
+using std::filesystem::path;
+
+[[noreturn]] void fail(int error) {
+    throw std::system_error(error, std::generic_category());
+}
+
+path behind_links(const path& name) {
+    std::error_code error;
+    const path real = std::filesystem::is_symlink(name, error) ? std::filesystem::canonical(name, error) : name;
+    return error ? name : real;
+}
+
+path name_of(int descriptor) {
+    return fmt::format("/proc/self/fd/{}", descriptor);
+}
+
+} // namespace
+
+path temporary_name(const path& target) {
+    path name = target;
+    name.replace_filename(fmt::format(".{}.{}.tmp{}", target.stem().string(), getpid(), target.extension().string()));
+    return name;
+}
+
+bool is_special(const path& target) {
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(target, ignored);
+    return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+           !std::filesystem::is_directory(status);
+}
+
+AtomicFile::AtomicFile(const path& name)
+    : target_(behind_links(name)), temporary_(temporary_name(target_)), special_(is_special(target_)) {
+    if (special_)
+        descriptor_ = open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+    else
+        open_new();
+    if (descriptor_ < 0)
+        fail(errno);
+}
+
+// Without a name, so that the file goes with the process, however that ends; with one where there is nothing better.
+void AtomicFile::open_new() {
+    const path directory = target_.has_parent_path() ? target_.parent_path() : path(".");
+    if (access("/proc/self/fd", X_OK) == 0)
+        descriptor_ = open(directory.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+    if (descriptor_ >= 0)
+        return;
+    descriptor_ = open(temporary_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    named_ = descriptor_ >= 0;
+}
+
+AtomicFile::~AtomicFile() {
+    if (descriptor_ >= 0)
+        close(descriptor_);
+    if (named_)
+        unlink(temporary_.c_str());
+}
+
+bool AtomicFile::write(const void* data, std::size_t size, std::int64_t at) noexcept {
+    const char* bytes = static_cast<const char*>(data);
+    if (special_ && at != position_)
+        error_ = ESPIPE; // a pipe cannot go back
+    while (size > 0 && !error_) {
+        const ssize_t written = special_ ? ::write(descriptor_, bytes, size) : pwrite(descriptor_, bytes, size, at);
+        if (written < 0 && errno != EINTR)
+            error_ = errno;
+        else if (written > 0) {
+            bytes += written;
+            size -= static_cast<std::size_t>(written);
+            position_ = at += written;
+        }
+    }
+    return !error_;
+}
+
+// Some file systems know files without a name, but cannot give them one.
+void AtomicFile::give_name() {
+    unlink(temporary_.c_str()); // of a process long dead, with our number
+    if (linkat(AT_FDCWD, name_of(descriptor_).c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) == 0) {
+        named_ = true;
+        return;
+    }
+    named_ = true;
+    std::filesystem::copy_file(name_of(descriptor_), temporary_);
+}
+
+void AtomicFile::check() const {
+    if (error_)
+        fail(error_);
+}
+
+void AtomicFile::put_in_place() {
+    check();
+    if (special_)
+        return;
+    if (fsync(descriptor_) != 0) // else a power cut could leave the new name on no bytes
+        fail(errno);
+    if (!named_)
+        give_name();
+    if (rename(temporary_.c_str(), target_.c_str()) != 0)
+        fail(errno);
+    named_ = false;
+}
+
+} // namespace vkvol

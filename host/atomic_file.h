@@ -1,0 +1,45 @@
+// A file that is whole or not there: it takes its name, and the place of the old file, when all of it is on the disk.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+
+namespace vkvol {
+
+class AtomicFile {
+public:
+    // Throws std::system_error if no file can be made in that place. A link stays a link: the file behind it is
+    // replaced. A device or pipe is written to.
+    explicit AtomicFile(const std::filesystem::path& name);
+    // Without put_in_place nothing of the new file is left.
+    ~AtomicFile();
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+
+    // Does not throw, since it is called from libraries in C. Nothing more is written after a failure.
+    bool write(const void* data, std::size_t size, std::int64_t at) noexcept;
+    // Throws std::system_error with the reason of the first failure.
+    void check() const;
+    // The same, and if it cannot be done; the old file is then as it was.
+    void put_in_place();
+
+private:
+    void open_new();
+    void give_name();
+
+    std::filesystem::path target_, temporary_;
+    bool special_ = false; // a device or pipe
+    bool named_ = false;   // temporary_ is there
+    int descriptor_ = -1;
+    int error_ = 0; // errno of the first write that failed
+    std::int64_t position_ = 0;
+};
+
+// Beside the target, so that it can be renamed, with the target's extension, which names the format.
+std::filesystem::path temporary_name(const std::filesystem::path& target);
+
+// A device or pipe (/dev/stdout, say): written to, never replaced by a file.
+bool is_special(const std::filesystem::path& target);
+
+} // namespace vkvol

@@ -1,0 +1,84 @@
+#include "render_notes.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "messages.h"
+
+namespace vkvol {
+
+namespace {
+
+std::string samples_text(const Film& film) {
+    const auto [least, most] = std::minmax_element(film.samples.begin(), film.samples.end());
+    return *least == *most ? std::to_string(*most) : fmt::format("{} to {}", *least, *most);
+}
+
+std::string quoted(const std::string& text) {
+    std::string result = "'";
+    for (const char c : text)
+        result += c == '\'' ? "'\\''" : std::string(1, c);
+    return result + "'";
+}
+
+// The command that follows just this path.
+std::string replay_command(const RenderOptions& options, const NonFiniteSample& s) {
+    std::string command = "vkvol " + quoted(options.scene.string());
+    for (const auto& [key, value] : options.defines)
+        command += " -D " + quoted(key + "=" + value);
+    if (options.integrator)
+        command += " --integrator " + quoted(*options.integrator);
+    if (options.grid)
+        command += " --grid " + quoted(options.grid->string());
+    if (options.width)
+        command += fmt::format(" --width {}", *options.width);
+    if (options.height)
+        command += fmt::format(" --height {}", *options.height);
+    if (options.device != "auto")
+        command += " --device " + quoted(options.device);
+    return command + fmt::format(" --seed {} --pixel {},{} --sample {} --trace", options.seed, s.x, s.y, s.sample);
+}
+
+} // namespace
+
+void print_warnings(const RenderOptions& options, const std::vector<std::string>& warnings) {
+    if (!options.quiet)
+        for (const std::string& warning : warnings)
+            tell(stderr, "vkvol: warning: {}\n", warning);
+}
+
+void print_caps(const RenderOptions& options, const RenderResult& result) {
+    const RenderCounts& c = result.counts;
+    const auto line = [](std::uint64_t count, const char* what) {
+        if (count > 0)
+            tell(stderr, "vkvol: note: {} {}\n", count, what);
+    };
+    line(c.cleaned_voxels, "voxels were NaN, infinite or negative and count as 0");
+    line(c.depth_caps, "paths ended at maxDepth: the light of further scatterings is missing (raise or drop maxDepth)");
+    line(c.step_caps, "segments were cut, by the step limit or by the driver: their light is missing");
+    line(c.majorant_violations,
+         "collisions met a density above its majorant: delta estimators lose light there, ratio and weighted ones "
+         "stay unbiased with more noise");
+    line(c.non_finite, "samples were not finite, or beyond 2.8e14, and were dropped");
+    for (const NonFiniteSample& s : result.non_finite)
+        tell(stderr, "vkvol: note: not finite: pixel {},{} sample {} seed {}; its path: {}\n", s.x, s.y, s.sample,
+             options.seed, replay_command(options, s));
+}
+
+void print_summary(const RenderOptions& options, const Device& device, const RenderResult& result) {
+    std::string outputs;
+    for (const std::filesystem::path& output : options.outputs)
+        outputs += (outputs.empty() ? "" : ", ") + output.string();
+    tell(stdout, "{}: {} samples per pixel, {:.2f} s, noise {:.2g} %, on {}{}\n", outputs, samples_text(result.film),
+         result.render_seconds, 100.0 * relative_noise(result.film), device.info().name,
+         device.is_cpu() ? " (software)" : "");
+}
+
+void print_no_samples(const RenderResult& result) {
+    tell(stderr, "vkvol: {}: nothing is written\n",
+         result.interrupted             ? "interrupted before the first sample"
+         : result.counts.non_finite > 0 ? "no sample was finite"
+                                        : "out of time before the first sample");
+}
+
+} // namespace vkvol

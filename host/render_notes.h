@@ -1,0 +1,21 @@
+// What `vkvol scene.xml` says of a render, besides its progress.
+#pragma once
+
+#include "options.h"
+#include "renderer.h"
+
+namespace vkvol {
+
+void print_warnings(const RenderOptions& options, const std::vector<std::string>& warnings);
+
+// One line for each kind of thing that makes the picture less than it claims to be; for samples that were not finite
+// also the command that follows their path.
+void print_caps(const RenderOptions& options, const RenderResult& result);
+
+// Where the picture is, samples per pixel, seconds, noise and device.
+void print_summary(const RenderOptions& options, const Device& device, const RenderResult& result);
+
+// Why there is no sample, and so no picture.
+void print_no_samples(const RenderResult& result);
+
+} // namespace vkvol

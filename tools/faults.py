@@ -1,0 +1,473 @@
+#!/usr/bin/env python3
+"""Puts vkvol under faults and prints a table of what became of it. Started by tools/faults.sh, which explains."""
+
+import argparse
+import json
+import os
+import pathlib
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+from fault_runs import LAYER, Lab, Place, Run, Table
+
+PAGE = 4096  # what a file system in memory gives out
+
+
+def with_layer(lab, fault=None, **more):
+    env = {"VK_LAYER_PATH": str(lab.build / "tests" / "fault_layer"), "VK_INSTANCE_LAYERS": LAYER, **more}
+    return {**env, "VKVOL_FAULT": fault} if fault else env
+
+
+def count_calls(lab):
+    counts = lab.work / "counts"
+    Run(lab, "counts", [*lab.render, "-o", lab.work / "counts.exr"], with_layer(lab, VKVOL_FAULT_COUNTS=str(counts))).go()
+    pairs = (line.split() for line in counts.read_text().splitlines())
+    return {name: int(number) for name, number in pairs}
+
+
+def spread(count, most):
+    """Numbers from 1 to count: the first ones, the last, and evenly between."""
+    if count <= most:
+        return list(range(1, count + 1))
+    early = min(4, most // 2)
+    rest = most - early
+    return sorted({*range(1, early + 1), *(early + (count - early) * (i + 1) // rest for i in range(rest))})
+
+
+def check_resume(run, place):
+    if place.checkpoint.exists() != ("--resume goes on" in run.text):
+        run.lose("the message and the checkpoint disagree")
+    return place.resume(run)
+
+
+def device_rows(lab, table, quick):
+    calls = count_calls(lab)
+
+    def lose_device(function, n, checkpoint):
+        place = Place(lab, "lost", old=n % 2 == 0)
+        more = ["--checkpoint", "0.1s"] if checkpoint else []
+        run = Run(lab, "lost", [*lab.render, *place.outputs, *more],
+                  with_layer(lab, f"{function}:{n}:VK_ERROR_DEVICE_LOST")).go()
+        if run.code == 0:  # a machine with time on its hands needs fewer calls
+            return place.judge(run, "same")
+        place.judge(run.expect(1).expect_message("VK_ERROR_DEVICE_LOST"), "unchanged")
+        return check_resume(run, place) if checkpoint else run
+
+    for function in ("vkQueueSubmit", "vkWaitForFences"):
+        numbers = spread(calls[function], 4 if quick else 15)
+        for checkpoint in (False, True):
+            name = f"device lost in {function}" + (", with checkpoints" if checkpoint else "")
+            table.row(name, lambda n, f=function, c=checkpoint: lose_device(f, n, c), numbers)
+
+    def fail(function, n, result, code):
+        place = Place(lab, "call", old=n % 2 == 0)
+        run = Run(lab, "call", [*lab.render, *place.outputs], with_layer(lab, f"{function}:{n}:{result}")).go()
+        if code == 0 or run.code == 0 and n == calls[function]:  # the last call of all may not be needed each time
+            return place.judge(run.expect(0), "same")
+        return place.judge(run.expect(code).expect_message(result), "unchanged")
+
+    rows = [("vkAllocateMemory", "VK_ERROR_OUT_OF_DEVICE_MEMORY", 1), ("vkCreateBuffer", "VK_ERROR_OUT_OF_HOST_MEMORY", 1),
+            ("vkBindBufferMemory", "VK_ERROR_OUT_OF_DEVICE_MEMORY", 1), ("vkMapMemory", "VK_ERROR_MEMORY_MAP_FAILED", 1),
+            ("vkCreateComputePipelines", "VK_ERROR_OUT_OF_HOST_MEMORY", 1),
+            ("vkCreateShaderModule", "VK_ERROR_OUT_OF_HOST_MEMORY", 1),
+            ("vkCreatePipelineCache", "VK_ERROR_OUT_OF_HOST_MEMORY", 1),
+            ("vkGetPipelineCacheData", "VK_ERROR_OUT_OF_HOST_MEMORY", 0),
+            ("vkCreateDescriptorSetLayout", "VK_ERROR_OUT_OF_HOST_MEMORY", 1),
+            ("vkCreatePipelineLayout", "VK_ERROR_OUT_OF_HOST_MEMORY", 1),
+            ("vkCreateDescriptorPool", "VK_ERROR_OUT_OF_DEVICE_MEMORY", 1),
+            ("vkAllocateDescriptorSets", "VK_ERROR_OUT_OF_POOL_MEMORY", 1),
+            ("vkCreateCommandPool", "VK_ERROR_OUT_OF_HOST_MEMORY", 1),
+            ("vkAllocateCommandBuffers", "VK_ERROR_OUT_OF_DEVICE_MEMORY", 1),
+            ("vkBeginCommandBuffer", "VK_ERROR_OUT_OF_HOST_MEMORY", 1),
+            ("vkEndCommandBuffer", "VK_ERROR_OUT_OF_DEVICE_MEMORY", 1), ("vkCreateFence", "VK_ERROR_OUT_OF_HOST_MEMORY", 1),
+            ("vkResetFences", "VK_ERROR_OUT_OF_DEVICE_MEMORY", 1),
+            ("vkCreateQueryPool", "VK_ERROR_OUT_OF_DEVICE_MEMORY", 1), ("vkCreateDevice", "VK_ERROR_INITIALIZATION_FAILED", 3),
+            ("vkCreateInstance", "VK_ERROR_OUT_OF_HOST_MEMORY", 3),
+            ("vkEnumeratePhysicalDevices", "VK_ERROR_INITIALIZATION_FAILED", 3)]
+    most = 3 if quick else 40
+    for function, result, code in rows:
+        many = function in ("vkBeginCommandBuffer", "vkEndCommandBuffer", "vkResetFences")
+        numbers = spread(calls[function], 4 if many else most)
+        table.row(f"{function}: {result[len('VK_ERROR_'):].lower().replace('_', ' ')}",
+                  lambda n, f=function, r=result, c=code: fail(f, n, r, c), numbers)
+
+
+class Disk:
+    """A small file system in memory. Nobody outside sees it."""
+
+    def __init__(self, lab, bytes_):
+        self.path = lab.place("disk")
+        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={bytes_}", "none", self.path], check=True)
+
+    def leave(self, free):
+        """Fills it up to so many bytes."""
+        state = os.statvfs(self.path)
+        filler = self.path / "filler"
+        with open(filler, "wb") as file:
+            file.write(bytes(max(0, state.f_bavail * state.f_frsize - free)))
+
+    def read_only(self):
+        subprocess.run(["mount", "-o", "remount,ro", self.path], check=True)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        subprocess.run(["umount", "-l", self.path], check=False)
+
+
+def free_sizes(need, quick):
+    pages = (need + PAGE - 1) // PAGE
+    if quick:
+        return [0, pages // 2 * PAGE, (pages - 1) * PAGE, (pages + 8) * PAGE]
+    parts = [pages * i // 10 * PAGE for i in range(10)]
+    return sorted({0, PAGE, *parts, *(max(0, pages + i) * PAGE for i in range(-4, 9))})
+
+
+def disk_rows(lab, table, quick):
+    whole_exr, whole_png = lab.whole, lab.whole.with_suffix(".png")
+
+    def rescued(run):
+        kept = run.text.rpartition("kept as ")[2].strip()
+        if "kept as " not in run.text or not lab.same(kept):
+            run.lose(f"no whole picture is rescued: {run.text[-300:]}")
+        return run
+
+    def picture(extension, free, rescue=True):
+        with Disk(lab, 8 << 20) as disk:
+            place = Place(lab, "full", directory=disk.path, pictures=[f"a.{extension}"])
+            place.known.add("filler")
+            disk.leave(free)
+            env = {} if rescue else {"TMPDIR": str(disk.path)}
+            run = Run(lab, "full", [*lab.render, *place.outputs], env).go().expect(0, 1)
+            if run.code == 0:
+                return place.judge(run, "same")
+            place.judge(run.expect_message(place.pictures[0], "No space left"), "unchanged")
+            if not rescue and "kept as" in run.text:
+                run.lose("the rescue is a tale")
+            return rescued(run) if rescue else run
+
+    for extension, whole in (("exr", whole_exr), ("png", whole_png)):
+        sizes = free_sizes(whole.stat().st_size, quick)
+        table.row(f"disk full: the {extension.upper()}, an old one there", lambda f, e=extension: picture(e, f), sizes)
+    table.row("disk full, and the temporary directory too", lambda f: picture("exr", f, rescue=False), [0, 64 << 10])
+
+    def beside(free):
+        """The PNG has room, the EXR does not."""
+        with Disk(lab, 8 << 20) as disk:
+            place = Place(lab, "full", directory=disk.path, pictures=["a.exr"])
+            place.known.add("filler")
+            disk.leave(free)
+            good = Place(lab, "good", pictures=["a.png"])
+            run = Run(lab, "full", [*lab.render, *place.outputs, *good.outputs]).go().expect(1)
+            rescued(run.expect_message(place.pictures[0]))
+            place.judge(run, "unchanged")
+            return good.judge(run, "same")
+
+    table.row("disk full: the EXR, the PNG elsewhere", beside, [0, 64 << 10])
+
+    def report(free):
+        with Disk(lab, 1 << 20) as disk:
+            file = disk.path / "report.json"
+            file.write_text("old")
+            disk.leave(free)
+            place = Place(lab, "report")
+            run = Run(lab, "report", [*lab.render, *place.outputs, "--report", file]).go().expect(1).expect_message(file)
+            if file.read_text() != "old":
+                run.lose("the old report is lost")
+            return place.judge(run, "same")
+
+    table.row("disk full: the report", report, [0])
+
+    def checkpoint(free):
+        """The first picture fits; a checkpoint, which is larger, does not, or not a second one beside the first."""
+        with Disk(lab, 8 << 20) as disk:
+            place = Place(lab, "full", directory=disk.path, pictures=["a.png"])
+            place.known.add("filler")
+            disk.leave(whole_png.stat().st_size + free)
+            good = Place(lab, "good", pictures=["a.exr"])
+            run = Run(lab, "full", [*lab.render, *place.outputs, *good.outputs, "--checkpoint", "0.2s"]).go().expect(0)
+            if "the last checkpoint stays" not in run.text:
+                run.lose("no warning")
+            place.judge(run, "same")
+            return good.judge(run, "same")
+
+    size = 64 * lab.pixels
+    table.row("disk full: the checkpoint", checkpoint, [PAGE, 256 << 10])
+
+    def second_checkpoint(seed):
+        with Disk(lab, 16 << 20) as disk:
+            place = Place(lab, "full", directory=disk.path, pictures=["a.png"])
+            place.known.add("filler")
+            disk.leave(size * 5 // 4)
+            moment = lab.seconds * random.Random(seed).uniform(0.7, 1.0)
+            run = Run(lab, "full", [*lab.render, *place.outputs, "--checkpoint", "0.1s"],
+                      signals=[(moment, signal.SIGKILL)]).go().expect(0, -signal.SIGKILL)
+            (disk.path / "filler").unlink()
+            return place.resume(place.judge(run, "unchanged" if run.code else "same", strays=True))
+
+    table.row("disk full: the second checkpoint, then kill -9", second_checkpoint, range(2 if quick else 8))
+
+    def cache(how):
+        with Disk(lab, 4 << 20) as disk:
+            if how == "read-only":
+                disk.read_only()
+            else:
+                disk.leave(int(how))
+            place = Place(lab, "cache")
+            env = with_layer(lab, XDG_CACHE_HOME=str(disk.path), VKVOL_FAULT_CACHE_BYTES="1000000")
+            run = Run(lab, "cache", [*lab.render, *place.outputs], env).go().expect(0)
+            for file in (disk.path / "vkvol").glob("*"):
+                if file.suffix != ".bin" or file.stat().st_size <= 1000000:
+                    run.lose(f"half a cache: {file.name}, {file.stat().st_size} bytes")
+            return place.judge(run, "same")
+
+    table.row("pipeline cache: disk full or read-only", cache, ["0", str(PAGE), str(64 << 10), str(900 << 10), "2000000", "read-only"])
+
+    def read_only_place(_):
+        with Disk(lab, 1 << 20) as disk:
+            place = Place(lab, "ro", directory=disk.path)
+            disk.read_only()
+            run = Run(lab, "ro", [*lab.render, *place.outputs]).go().expect(2).expect_message(place.pictures[0])
+            return place.judge(run, "unchanged")
+
+    table.row("output directory read-only", read_only_place, [0])
+
+    def vanish(part):
+        place = Place(lab, "vanish")
+        gone = place.directory.with_name(place.directory.name + "-gone")
+        timer = threading.Timer(lab.seconds * part, lambda: place.directory.rename(gone))
+        timer.start()
+        run = Run(lab, "vanish", [*lab.render, *place.outputs, "--checkpoint", "0.3s"]).go().expect(1)
+        timer.join()
+        place.directory = gone
+        place.pictures = [gone / p.name for p in place.pictures]
+        return rescued(place.judge(run, "unchanged"))
+
+    table.row("output directory vanishes during the render", vanish, [0.6] if quick else [0.5, 0.6, 0.7])
+
+
+def signal_rows(lab, table, quick, seed):
+    def moment(i, rng):
+        """A fifth while loading and compiling, two while rendering, one while writing, one anywhere."""
+        t = lab.seconds
+        begin, end = lab.phase["render"]
+        return {0: rng.uniform(0.0, begin), 3: rng.uniform(end - 0.05, t + 0.02), 4: rng.uniform(0.0, 1.1 * t)}.get(
+            i % 5, rng.uniform(begin, end))
+
+    def interrupt(number, i):
+        rng = random.Random(f"{seed} {number} {i}")
+        checkpoint = i % 2 == 0
+        place = Place(lab, "signal", old=i % 4 < 2)
+        more = ["--checkpoint", "0.2s"] if checkpoint else []
+        run = Run(lab, "signal", [*lab.render, *place.outputs, *more], signals=[(moment(i, rng), number)]).go()
+        return judge_signalled(run, place, number, checkpoint)
+
+    def judge_signalled(run, place, number, checkpoint):
+        # Before the program has begun, the signal ends it as it would any other.
+        run.expect(0, 130, -number)
+        place.judge(run, *{0: ["same"], 130: ["unchanged", "other", "same"]}.get(run.code, ["unchanged"]))
+        if checkpoint and run.code != 0:
+            place.resume(run)
+        place.clear()
+        return run
+
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        runs = 6 if quick else 10 if number == signal.SIGHUP else 50
+        table.row(f"{number.name} at random moments", lambda i, n=number: interrupt(n, i), range(runs))
+
+    def twice(i):
+        rng = random.Random(f"{seed} twice {i}")
+        first = moment(i, rng)
+        second = first + rng.uniform(0.001, 0.05)
+        place = Place(lab, "twice", old=i % 4 < 2)
+        run = Run(lab, "twice", [*lab.render, *place.outputs, "--checkpoint", "0.2s"],
+                  signals=[(first, signal.SIGINT), (second, signal.SIGINT)]).go()
+        if run.seconds > second + 2.0:
+            run.lose(f"it took {run.seconds - second:.1f} s to end")
+        return judge_signalled(run, place, signal.SIGINT, True)
+
+    table.row("SIGINT twice: ends at once", twice, range(5 if quick else 25))
+
+    kills = []
+
+    def kill(i):
+        rng = random.Random(f"{seed} kill {i}")
+        place = Place(lab, "kill", old=i % 2 == 0)
+        arguments = [*lab.render, *place.outputs, "--checkpoint", "0.2s", "--resume"]
+        losses = []
+        for _ in range(1 + i % 4):
+            run = Run(lab, "kill", arguments, signals=[(moment(3 + i % 2 if i % 3 == 0 else 1, rng), signal.SIGKILL)]).go()
+            place.judge(run.expect(0, -signal.SIGKILL), "unchanged", "same", strays=True)
+            losses += run.losses
+            if run.code == 0:
+                break
+            kills.append(len(place.strays()))
+        if run.code != 0:
+            run = place.resume(run)
+        run.losses = losses + [l for l in run.losses if l not in losses]
+        return run
+
+    if table.row("kill -9 at random moments, up to four times, and --resume", kill, range(5 if quick else 20)):
+        table.note(f"{len(kills)} kills; temporary files left behind: {sum(kills)}")
+
+
+def file_rows(lab, table, quick, seed):
+    place = Place(lab, "good")
+    if table.wants("checkpoint") or table.wants("grid"):
+        found = []
+
+        def far_enough():
+            data = place.checkpoint.read_bytes() if place.checkpoint.exists() else None
+            header = data and json.loads(data[16 : 16 + int.from_bytes(data[8:16], "little")])
+            if header and 1 < header["done"] + header["batch"] <= lab.spp:
+                found.append(data)
+            return found
+
+        arguments = lab.render_with("--spp", 4096)  # longer than it is waited for
+        run = Run(lab, "begun", [*arguments, *place.outputs, "--checkpoint", "0.01s"],
+                  signals=[(far_enough, signal.SIGKILL)]).go()
+        if not found:
+            raise SystemExit(f"faults: no checkpoint was made: {run.code} {run.text}")
+        good = found[0]
+
+    def refuse(damaged, option="--seed", value=0):
+        here = Place(lab, "damaged")
+        here.checkpoint.write_bytes(damaged)
+        run = Run(lab, "damaged", [*lab.render_with(option, value), *here.outputs, "--resume"]).go().expect(2)
+        if here.checkpoint.read_bytes() != damaged:
+            run.lose("the checkpoint is touched")
+        return here.judge(run.expect_message("checkpoint"), "unchanged")
+
+    rng = random.Random(f"{seed} files")
+    if table.wants("checkpoint"):
+        sizes = [0, 1, 8, 15, 16, 20, len(good) - 1, *(rng.randrange(len(good)) for _ in range(2 if quick else 13))]
+        table.row("checkpoint truncated", lambda n: refuse(good[:n]), sizes)
+
+        def flipped(bit):
+            data = bytearray(good)
+            data[bit // 8] ^= 1 << bit % 8
+            return refuse(bytes(data))
+
+        bits = [*range(0, 24 * 8, 19), *(rng.randrange(8 * len(good)) for _ in range(5 if quick else 20))]
+        table.row("checkpoint with a flipped bit", flipped, bits)
+        others = [["--seed", "7"], ["--width", "319"], ["--spp", "1"], ["--sample-offset", "3"], ["--integrator", "deltaTracking"],
+                  ["--crop", "0,9,0,9"], ["--grid", lab.grid.with_name("other.nvdb")]]
+        subprocess.run([lab.build / "make_field", "sphere", "--output", others[-1][1]], check=True, stdout=subprocess.DEVNULL)
+        table.row("checkpoint of another render", lambda o: refuse(good, *o), others)
+
+    grid = lab.grid.read_bytes()
+
+    def with_grid(content, during=None):
+        here = Place(lab, "grid")
+        here.checkpoint.write_bytes(good)
+        file = here.directory / "cloud.nvdb"
+        here.known.add(file.name)
+        if content is not None:
+            file.write_bytes(content)
+        timer = threading.Timer(during or 0, lambda: os.truncate(file, len(grid) // 2) if during else None)
+        timer.start()
+        run = Run(lab, "grid", [*lab.render_with("--grid", file), *here.outputs, "--resume"]).go()
+        timer.join()
+        if during:  # the file was read by then, or not
+            return here.judge(run.expect(0, 2), "unchanged" if run.code else "same")
+        return here.judge(run.expect(2).expect_message(file), "unchanged")
+
+    table.row("grid file gone before --resume", with_grid, [None])
+    sizes = [0, 1, 16, 671, 672, len(grid) - 1, *(rng.randrange(len(grid)) for _ in range(2 if quick else 10))]
+    table.row("grid file truncated before --resume", with_grid, [grid[:n] for n in sizes])
+    moments = [lab.seconds * rng.uniform(0.01, 0.6) for _ in range(3 if quick else 15)]
+    table.row("grid file truncated while it is read", lambda t: with_grid(grid, t), moments)
+
+
+def stream_rows(lab, table):
+    loud = [a for a in lab.render if a != "-q"]
+
+    def closed_pipe():
+        reading, writing = os.pipe()
+        os.close(reading)
+        return writing
+
+    ways = {"stdout closed": 'exec "$@" >&-', "stderr closed": 'exec "$@" 2>&-', "all closed": 'exec "$@" <&- >&- 2>&-',
+            "stdout full": 'exec "$@" >/dev/full', "stderr full": 'exec "$@" 2>/dev/full', "both full": 'exec "$@" >/dev/full 2>&1',
+            "stdout to nobody": '"$@" 9>&- | true; exit "${PIPESTATUS[0]}"', "stderr to nobody": None, "both to nobody": None}
+
+    def render(way):
+        place = Place(lab, "stream")
+        more = ["--checkpoint", "0.3s", "--progress", "json"]
+        pipes = {}
+        if ways[way] is None:
+            pipes = {name: closed_pipe() for name in (["stderr"] if way.startswith("stderr") else ["stdout", "stderr"])}
+        wrap = ["bash", "-c", ways[way], "bash"] if ways[way] else []
+        run = Run(lab, "stream", [*loud, *place.outputs, *more], wrap=wrap, **pipes).go().expect(0)
+        for pipe in pipes.values():
+            os.close(pipe)
+        return place.judge(run, "same")
+
+    table.row("render: stdout, stderr closed, full or read by nobody", render, ways)
+
+    def result(command):
+        run = Run(lab, "result", command, wrap=["bash", "-c", 'exec "$@" >/dev/full', "bash"]).go()
+        return run.expect(1).expect_message()
+
+    table.row("a result that stdout does not take", result,
+              [["info", lab.grid], ["compare", lab.whole, lab.whole], ["devices"], ["integrators"], ["--help"],
+               [*lab.render[:5], "-o", lab.work / "t.exr", "--pixel", "80,40", "--sample", "0", "--trace"]])
+
+
+def limit_rows(lab, table, quick):
+    def limited(option, bytes_, codes, *more):
+        place = Place(lab, "limit")
+        run = Run(lab, "limit", [*lab.render, *place.outputs, *more], wrap=["prlimit", f"--{option}={bytes_}"]).go()
+        # One picture may fit where the other does not.
+        place.judge(run.expect(*codes), *(["same"] if run.code == 0 else ["unchanged", "same"]))
+        return run.expect_message() if run.code in (1, 2, 3) else run
+
+    sizes = [4096, 65536, lab.whole.stat().st_size - 1] if quick else [0, 1, 4096, 65536, 262144, lab.whole.stat().st_size - 1]
+    table.row("ulimit -f", lambda n: limited("fsize", n, [0, 1]), sizes)
+    if lab.sanitized:
+        table.skip("ulimit -v", "the sanitizer needs its address space")
+        return
+    steps = range(100, 2600, 500 if quick else 100)
+    # The driver may give up in its own way: an abort in LLVM, a crash in a thread that could not be made.
+    driver = (-signal.SIGABRT, -signal.SIGSEGV, 127)
+    runs = table.row("ulimit -v", lambda n: limited("as", n << 20, [0, 1, 2, 3, *driver]), steps)
+    if died := [run for run in runs if run.code in driver]:
+        table.note(f"{len(died)} ended by driver or dynamic linker: {died[-1].text[-160:]!r}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--only", default="")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--no-mounts", action="store_true")
+    options = parser.parse_args()
+    root = pathlib.Path(__file__).resolve().parent.parent
+    start = time.monotonic()
+    with tempfile.TemporaryDirectory(prefix="vkvol-faults-") as work:
+        lab = Lab(options.build.resolve(), root, work, spp=8 if options.quick else 16)
+        print(f"tools/faults.sh{' --quick' if options.quick else ''} --seed {options.seed}; {lab.device}")
+        print(f"Each run is of scenes/cumulus.xml, {lab.size}, {lab.seconds:.1f} s undisturbed.\n")
+        table = Table(options.only)
+        device_rows(lab, table, options.quick)
+        if options.no_mounts:
+            table.skip("disk full (7 rows), read-only or vanishing directories", "nothing may be mounted here")
+        else:
+            disk_rows(lab, table, options.quick)
+        signal_rows(lab, table, options.quick, options.seed)
+        file_rows(lab, table, options.quick, options.seed)
+        stream_rows(lab, table)
+        limit_rows(lab, table, options.quick)
+    print(f"\n{table.runs} runs, {table.lost} with losses; {time.monotonic() - start:.0f} s")
+    return 1 if table.lost else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
