@@ -44,6 +44,8 @@ using Triangles = std::span<Triangle>;
 // heuristic over 16 bins (Wald, "On Fast Construction of SAH-Based Bounding Volume Hierarchies", 2007).
 float best_cut(Triangles triangles, const Box& middles, int axis) {
     const float low = middles.low[axis], width = (middles.high[axis] - low) / bin_count;
+    if (!(width > 0.0f)) // all in one place
+        return low;
     std::array<Box, bin_count> boxes;
     std::array<std::size_t, bin_count> counts{};
     for (const Triangle& t : triangles) {

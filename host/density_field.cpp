@@ -10,6 +10,7 @@
 #include "error.h"
 #include "grid_tree.h"
 #include "nearest_name.h"
+#include "one_line.h"
 #include "shared/bindings.h"
 #include "vdb_import.h"
 
@@ -55,9 +56,9 @@ std::vector<std::string> grid_names(const std::filesystem::path& file) {
 
 [[noreturn]] void no_such_grid(const GridFile& file, const std::vector<std::string>& names) {
     const std::string nearest = nearest_name(file.grid, names);
-    throw InputError(fmt::format("{}: has no grid \"{}\"{}; it holds {}", file.path.string(), file.grid,
-                                 nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest),
-                                 list_names(names)));
+    throw InputError(one_line(fmt::format("{}: has no grid \"{}\"{}; it holds {}", file.path.string(), file.grid,
+                                          nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest),
+                                          list_names(names))));
 }
 
 GridBytes read_grid(const GridFile& file) {
@@ -96,12 +97,29 @@ bool DensityField::is_empty_block(glm::ivec3 ijk) const {
     return !(entry & 1u) && read_float(bytes.data() + std::size_t{entry >> 1} * 4) == 0.0f;
 }
 
+DensityField::Block DensityField::block(glm::ivec3 block) const {
+    const glm::ivec3 first = (leaf_min + block) * 8;
+    Block result{glm::max(first, voxel_min), glm::min(first + 7, voxel_max), std::nullopt};
+    if (const std::uint32_t entry = block_entry(*this, first); !(entry & 1u))
+        result.constant = read_float(bytes.data() + std::size_t{entry >> 1} * 4);
+    return result;
+}
+
 float DensityField::max_value() const {
     float largest = 0.0f;
-    for (int x = voxel_min.x; x <= voxel_max.x; ++x)
-        for (int y = voxel_min.y; y <= voxel_max.y; ++y)
-            for (int z = voxel_min.z; z <= voxel_max.z; ++z)
-                largest = std::max(largest, value({x, y, z}));
+    glm::ivec3 b;
+    for (b.x = 0; b.x < leaf_dims.x; ++b.x)
+        for (b.y = 0; b.y < leaf_dims.y; ++b.y)
+            for (b.z = 0; b.z < leaf_dims.z; ++b.z) {
+                const Block part = block(b);
+                largest = std::max(largest, part.constant.value_or(0.0f));
+                if (part.constant)
+                    continue;
+                for (int x = part.low.x; x <= part.high.x; ++x)
+                    for (int y = part.low.y; y <= part.high.y; ++y)
+                        for (int z = part.low.z; z <= part.high.z; ++z)
+                            largest = std::max(largest, value({x, y, z}));
+            }
     return largest;
 }
 
@@ -144,7 +162,7 @@ bool is_empty_grid(const GridFile& file) {
 }
 
 DensityField load_density_field(const GridFile& file) {
-    return make_density_field(read_grid(file), fmt::format("{}: \"{}\"", file.path.string(), file.grid));
+    return make_density_field(read_grid(file), one_line(fmt::format("{}: \"{}\"", file.path.string(), file.grid)));
 }
 
 } // namespace vkvol

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "nvdb_file.h"
@@ -28,6 +29,12 @@ struct DensityField {
     bool is_empty_block(glm::ivec3 ijk) const;
     // The largest voxel value.
     float max_value() const;
+    // Part of the box that the 8^3 block has, and its value if it is one constant, else none. `block`: from leaf_min.
+    struct Block {
+        glm::ivec3 low, high; // voxels, inclusive
+        std::optional<float> constant;
+    };
+    Block block(glm::ivec3 block) const;
     // World units per voxel: |det|^(1/3) of index_to_world.
     double voxel_size() const;
 };

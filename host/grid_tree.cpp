@@ -1,10 +1,13 @@
 #include "grid_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>
+#include <limits>
 #include <nanovdb/NanoVDB.h>
+#include <set>
 
 #include "error.h"
 #include "shared/bindings.h"
@@ -31,8 +34,17 @@ static_assert(offsetof(Leaf, mValues) == leaf_values);
 static_assert(sizeof(nanovdb::NanoLeaf<nanovdb::Fp4>::DataType) == leaf_values + 256);
 static_assert(sizeof(nanovdb::NanoLeaf<nanovdb::FpN>::DataType) == leaf_values);
 
+// Of a transform and its inverse: products of three stay finite in the kernels.
+constexpr double largest_entry = 1e11;
+
+// Word offsets times two fit 32 bits.
+constexpr std::size_t largest_grid = std::size_t{1} << 33;
+
 // A table this large means a box of 4300^3 voxels.
 constexpr std::int64_t most_blocks = 160'000'000;
+// One of 2048^3. Beyond it a thousandth of the blocks must hold a leaf, so that a file of a few stray voxels neither
+// fills the memory nor takes minutes.
+constexpr std::int64_t small_table = 1 << 24;
 
 unsigned log2_bits(int type, const std::byte* leaf) {
     return type == GRID_FP4    ? 2u
@@ -77,8 +89,14 @@ public:
         const auto* tree = at<nanovdb::TreeData<3>>(tree_offset);
         const std::size_t root_offset = tree_offset + tree->mNodeOffset[3];
         Root* root = at<Root>(root_offset);
+        if (field_.bytes.size() > largest_grid)
+            throw InputError(
+                fmt::format("{}: the grid has {} bytes, but a table of leaves reaches {} bytes; quantise it "
+                            "(nanovdb_convert --fp8), or split it",
+                            place_, field_.bytes.size(), largest_grid));
         if (root->mTableSize > field_.bytes.size() / sizeof(Root::Tile))
             damaged();
+        bytes_left_ = field_.bytes.size();
         read_transform(*grid);
         field_.active_voxels = tree->mVoxelCount;
         const nanovdb::CoordBBox box = root->mBBox;
@@ -88,7 +106,9 @@ public:
             field_.active_voxels = 0;
             return;
         }
+        check_box(*root, root_offset);
         size_table();
+        bytes_left_ = field_.bytes.size();
         clean(root->mBackground);
         std::fill(field_.leaf_table.begin(), field_.leaf_table.end(), entry_of_value(&root->mBackground));
         for (std::uint32_t i = 0; i < root->mTableSize; ++i)
@@ -101,6 +121,14 @@ private:
             fmt::format("{}: the grid's tree points outside its data: the file is damaged; copy or convert "
                         "it again",
                         place_));
+    }
+
+    // Nodes are disjoint: together they are no larger than the grid. Where children are shared or go round in a circle
+    // they would be.
+    void spend(std::size_t size) {
+        if (size > bytes_left_)
+            damaged();
+        bytes_left_ -= size;
     }
 
     template <class T> T* at(std::size_t offset, std::size_t size = sizeof(T)) {
@@ -119,23 +147,82 @@ private:
         if (!(det > 0.0) || !std::isfinite(det))
             throw InputError(
                 fmt::format("{}: the grid's transform is singular; export it with a voxel size > 0", place_));
+        // The kernels have both directions in single precision.
+        const glm::dmat4 inverse = glm::inverse(field_.index_to_world);
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 3; ++row)
+                if (!(std::abs(field_.index_to_world[column][row]) <= largest_entry) ||
+                    (column < 3 && !(std::abs(inverse[column][row]) <= largest_entry)))
+                    throw InputError(
+                        fmt::format("{}: the grid's transform has entries beyond 1e11, or as small; export "
+                                    "it with another voxel size, or nearer the origin",
+                                    place_));
+    }
+
+    // The active voxels lie in the root's tiles and children, and each of these stands once in its table.
+    void check_box(const Root& root, std::size_t root_offset) {
+        glm::ivec3 low(std::numeric_limits<int>::max()), high(std::numeric_limits<int>::min());
+        std::set<std::array<int, 3>> seen;
+        for (std::uint32_t i = 0; i < root.mTableSize; ++i) {
+            const auto* tile = at<Root::Tile>(root_offset + sizeof(Root) + i * sizeof(Root::Tile));
+            const nanovdb::Coord key = tile->origin();
+            const glm::ivec3 origin(key[0], key[1], key[2]);
+            if (!seen.insert({origin.x, origin.y, origin.z}).second)
+                damaged();
+            if (tile->isChild())
+                include_children<Upper>(child_offset(root_offset, tile->child), origin, low, high);
+            else
+                include(origin, 4096, low, high);
+        }
+        for (int axis = 0; axis < 3; ++axis)
+            if (field_.voxel_min[axis] < low[axis] || field_.voxel_max[axis] > high[axis])
+                throw InputError(
+                    fmt::format("{}: the box of active voxels reaches beyond the grid's nodes: the file is "
+                                "damaged; copy or convert it again",
+                                place_));
+    }
+
+    static void include(glm::ivec3 origin, int size, glm::ivec3& low, glm::ivec3& high) {
+        low = glm::min(low, origin);
+        high = glm::max(high, origin + (size - 1));
+    }
+
+    // What has a value of its own below `Node`: children, and tiles that are active.
+    template <class Node>
+    void include_children(std::size_t offset, glm::ivec3 origin, glm::ivec3& low, glm::ivec3& high) {
+        constexpr bool is_upper = std::is_same_v<Node, Upper>;
+        spend(sizeof(Node));
+        const Node* node = at<Node>(offset);
+        for (int n = 0; n < 1 << (3 * log2_dim<Node>); ++n) {
+            const bool has_child = node->mChildMask.isOn(n);
+            if (!has_child && !node->mValueMask.isOn(n))
+                continue;
+            const glm::ivec3 child_origin = origin + place_of_child<Node>(n);
+            if constexpr (is_upper)
+                if (has_child) {
+                    include_children<Lower>(child_offset(offset, node->mTable[n].child), child_origin, low, high);
+                    continue;
+                }
+            include(child_origin, is_upper ? 128 : 8, low, high);
+        }
     }
 
     void size_table() {
-        const glm::ivec3 size = field_.voxel_max - field_.voxel_min;
         const std::int64_t limit = 1 << 24;
         for (int axis = 0; axis < 3; ++axis)
             if (field_.voxel_max[axis] < field_.voxel_min[axis] ||
                 std::abs(std::int64_t{field_.voxel_min[axis]}) > limit ||
-                std::abs(std::int64_t{field_.voxel_max[axis]}) > limit || size[axis] < 0)
+                std::abs(std::int64_t{field_.voxel_max[axis]}) > limit)
                 throw InputError(
                     fmt::format("{}: the box of active voxels reaches beyond +-16 million; crop the grid or "
                                 "move its index origin",
                                 place_));
+        const glm::ivec3 size = field_.voxel_max - field_.voxel_min;
         field_.leaf_min = field_.voxel_min >> 3;
         field_.leaf_dims = (field_.voxel_max >> 3) - field_.leaf_min + 1;
         const std::int64_t blocks = std::int64_t{field_.leaf_dims.x} * field_.leaf_dims.y * field_.leaf_dims.z;
-        if (blocks > most_blocks)
+        const auto bytes = static_cast<std::int64_t>(field_.bytes.size());
+        if (blocks > std::min(most_blocks, small_table + bytes / 2))
             throw InputError(
                 fmt::format("{}: the box of active voxels spans {} x {} x {} voxels, too much for a table of "
                             "its blocks; crop stray voxels or split the grid",
@@ -166,7 +253,7 @@ private:
     }
 
     std::size_t child_offset(std::size_t parent, std::int64_t child) const {
-        return static_cast<std::size_t>(static_cast<std::int64_t>(parent) + child);
+        return parent + static_cast<std::size_t>(child); // wraps where it points outside, which at() finds
     }
 
     void visit_root_tile(Root::Tile& tile, std::size_t root_offset) {
@@ -180,15 +267,21 @@ private:
         }
     }
 
+    template <class Node> static constexpr int log2_dim = std::is_same_v<Node, Upper> ? 5 : 4;
+
+    // Voxels from the node's origin to its n-th child's.
+    template <class Node> static glm::ivec3 place_of_child(int n) {
+        constexpr int log2 = log2_dim<Node>, mask = (1 << log2) - 1;
+        return glm::ivec3(n >> (2 * log2), (n >> log2) & mask, n & mask) * (std::is_same_v<Node, Upper> ? 128 : 8);
+    }
+
     template <class Node> void visit(std::size_t offset, glm::ivec3 origin) {
         constexpr bool is_upper = std::is_same_v<Node, Upper>;
-        constexpr int log2_dim = is_upper ? 5 : 4;
         constexpr int child_size = is_upper ? 128 : 8;
+        spend(sizeof(Node));
         Node* node = at<Node>(offset);
-        for (int n = 0; n < 1 << (3 * log2_dim); ++n) {
-            const int mask = (1 << log2_dim) - 1;
-            const glm::ivec3 place(n >> (2 * log2_dim), (n >> log2_dim) & mask, n & mask);
-            const glm::ivec3 child_origin = origin + place * child_size;
+        for (int n = 0; n < 1 << (3 * log2_dim<Node>); ++n) {
+            const glm::ivec3 child_origin = origin + place_of_child<Node>(n);
             if (!node->mChildMask.isOn(n)) {
                 clean(node->mTable[n].value);
                 enter(child_origin, child_size, entry_of_value(&node->mTable[n].value));
@@ -203,6 +296,7 @@ private:
     void visit_leaf(std::size_t offset, glm::ivec3 origin) {
         std::byte* leaf = at<std::byte>(offset, leaf_values);
         if (field_.type == GRID_FLOAT) {
+            spend(sizeof(Leaf));
             auto* values = reinterpret_cast<float*>(at<std::byte>(offset, sizeof(Leaf)) + leaf_values);
             for (int n = 0; n < 512; ++n)
                 clean(values[n]);
@@ -210,6 +304,7 @@ private:
             const unsigned log2 = log2_bits(field_.type, leaf);
             if (log2 > 4)
                 damaged();
+            spend(leaf_values + (std::size_t{64} << log2));
             at<std::byte>(offset, leaf_values + (std::size_t{64} << log2));
             clean_quantised(leaf);
         }
@@ -231,6 +326,7 @@ private:
 
     DensityField& field_;
     const std::string& place_;
+    std::size_t bytes_left_ = 0; // that nodes not yet seen can have
 };
 
 } // namespace

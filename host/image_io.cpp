@@ -3,6 +3,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -14,6 +15,8 @@
 
 #include "atomic_file.h"
 #include "error.h"
+#include "exr_check.h"
+#include "one_line.h"
 
 namespace vkvol {
 
@@ -60,11 +63,12 @@ private:
     AtomicFile& file_;
 };
 
-std::string one_line(std::string text) {
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    while (!text.empty() && text.back() == ' ')
-        text.pop_back();
-    return text.empty() ? "unknown reason" : text;
+// What OpenImageIO says of a failure.
+std::string reason_of(const std::string& message) {
+    std::string reason = one_line(message);
+    while (!reason.empty() && reason.back() == ' ')
+        reason.pop_back();
+    return reason.empty() ? "unknown reason" : reason;
 }
 
 void write_pixels(AtomicFile& file, const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
@@ -72,11 +76,11 @@ void write_pixels(AtomicFile& file, const char* format, const OIIO::ImageSpec& s
     FileProxy proxy(file);
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format, &proxy);
     if (!output)
-        throw std::runtime_error(one_line(OIIO::geterror()));
+        throw std::runtime_error(reason_of(OIIO::geterror()));
     const bool done = output->open(format, spec) && output->write_image(type, pixels) && output->close();
     file.check(); // the disk's own word comes first
     if (!done)
-        throw std::runtime_error(one_line(output->geterror()));
+        throw std::runtime_error(reason_of(output->geterror()));
 }
 
 void set_attributes(OIIO::ImageSpec& spec, const Metadata& metadata) {
@@ -137,8 +141,8 @@ Film film_of(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, cons
     const int variance[3] = {channel("variance.R"), channel("variance.G"), channel("variance.B")};
     const int samples = channel("samples");
     if (*std::min_element(color, color + 3) < 0)
-        throw InputError(fmt::format("{}: has channels {}; R, G and B are needed", file.string(),
-                                     fmt::join(spec.channelnames, ", ")));
+        throw InputError(one_line(fmt::format("{}: has channels {}; R, G and B are needed", file.string(),
+                                              fmt::join(spec.channelnames, ", "))));
     Film film;
     film.picture_width = spec.full_width;
     film.picture_height = spec.full_height;
@@ -161,6 +165,32 @@ Film film_of(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, cons
             film.samples[i] = static_cast<std::uint32_t>(pixel[samples]);
     }
     return film;
+}
+
+// A header is soon written: what it promises is held against the file's own size before memory is given, and its
+// windows against what a picture can be.
+void check_size(const OIIO::ImageSpec& spec, const path& file) {
+    constexpr std::int64_t largest_edge = 65536;
+    const auto is_window = [](std::int64_t begin, std::int64_t size) {
+        return size >= 1 && size <= largest_edge && begin >= -largest_edge && begin <= largest_edge;
+    };
+    if (!is_window(std::int64_t{spec.x} - spec.full_x, spec.width) ||
+        !is_window(std::int64_t{spec.y} - spec.full_y, spec.height) || !is_window(0, spec.full_width) ||
+        !is_window(0, spec.full_height) || spec.depth > 1)
+        throw InputError(fmt::format("{}: has a data window of {}x{} at {},{} in a picture of {}x{} at {},{}; expected "
+                                     "edges from 1 to {}, nearby",
+                                     file.string(), spec.width, spec.height, spec.x, spec.y, spec.full_width,
+                                     spec.full_height, spec.full_x, spec.full_y, largest_edge));
+    constexpr std::uint64_t best_compression = 1040, small = 16 << 20; // as of zlib, and what any file may have
+    std::error_code error;
+    const std::uint64_t file_bytes = std::filesystem::file_size(file, error);
+    const std::uint64_t bytes =
+        std::uint64_t(spec.width) * std::uint64_t(spec.height) * std::uint64_t(spec.nchannels) * sizeof(float);
+    if (error || spec.nchannels > 1024 || bytes > small + best_compression * file_bytes)
+        throw InputError(
+            fmt::format("{}: states {}x{} pixels of {} channels, which a file of {} bytes cannot hold; copy "
+                        "or render it again",
+                        file.string(), spec.width, spec.height, spec.nchannels, error ? 0 : file_bytes));
 }
 
 } // namespace
@@ -234,14 +264,16 @@ Film read_exr(const path& file, Metadata* metadata) {
         throw InputError(fmt::format("{}: no such file", file.string()));
     if (file.extension() != ".exr")
         throw InputError(fmt::format("{}: expected an .exr file", file.string()));
+    check_exr_header(file);
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
     if (!input)
-        throw InputError(fmt::format("{}: cannot be read: {}", file.string(), one_line(OIIO::geterror())));
+        throw InputError(fmt::format("{}: cannot be read: {}", file.string(), reason_of(OIIO::geterror())));
     const OIIO::ImageSpec& spec = input->spec();
+    check_size(spec, file);
     std::vector<float> pixels(std::size_t(spec.width) * spec.height * spec.nchannels);
     if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()))
         throw InputError(
-            fmt::format("{}: cannot be read: {}; is it complete?", file.string(), one_line(input->geterror())));
+            fmt::format("{}: cannot be read: {}; is it complete?", file.string(), reason_of(input->geterror())));
     if (metadata)
         get_attributes(spec, *metadata);
     return film_of(spec, pixels, file);

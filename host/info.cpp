@@ -1,6 +1,7 @@
 #include "info.h"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 
 #include "density_field.h"
@@ -18,40 +19,82 @@ struct Statistics {
     std::uint64_t positive = 0;
     // Sums of values along the lines of voxels parallel to each axis: largest, and mean over lines that are not empty.
     glm::dvec3 largest_column{0.0}, mean_column{0.0};
+
+    void add(double value, std::uint64_t voxels) {
+        low = positive == 0 ? value : std::min(low, value);
+        high = std::max(high, value);
+        sum += value * static_cast<double>(voxels);
+        positive += voxels;
+    }
 };
 
-void add_columns(Statistics& s, const std::array<std::vector<double>, 3>& columns) {
-    for (int axis = 0; axis < 3; ++axis) {
-        std::size_t filled = 0;
-        for (const double column : columns[axis]) {
-            s.largest_column[axis] = std::max(s.largest_column[axis], column);
-            filled += column > 0.0;
-        }
-        s.mean_column[axis] = filled > 0 ? s.sum / static_cast<double>(filled) : 0.0;
+// Sums along the 8 x 8 lines through one column of blocks, along `axis`.
+struct Lines {
+    std::array<double, 64> sums{};
+    double everywhere = 0.0; // to be added to each
+
+    void add(const DensityField::Block& part, const DensityField& field, int axis, Statistics* s) {
+        if (part.constant)
+            return add_constant(part, *part.constant, axis, s);
+        for (int x = part.low.x; x <= part.high.x; ++x)
+            for (int y = part.low.y; y <= part.high.y; ++y)
+                for (int z = part.low.z; z <= part.high.z; ++z)
+                    if (const double value = field.value({x, y, z}); value > 0.0) {
+                        line({x, y, z}, axis) += value;
+                        if (s)
+                            s->add(value, 1);
+                    }
     }
+
+private:
+    double& line(glm::ivec3 voxel, int axis) {
+        return sums[std::size_t((voxel[(axis + 1) % 3] & 7) * 8 + (voxel[(axis + 2) % 3] & 7))];
+    }
+
+    void add_constant(const DensityField::Block& part, double value, int axis, Statistics* s) {
+        if (value <= 0.0)
+            return;
+        const glm::ivec3 size = part.high - part.low + 1;
+        if (s)
+            s->add(value, std::uint64_t(size.x) * std::uint64_t(size.y) * std::uint64_t(size.z));
+        if (size == glm::ivec3(8)) {
+            everywhere += 8.0 * value;
+            return;
+        }
+        glm::ivec3 last = part.high; // one voxel of each line
+        last[axis] = part.low[axis];
+        for (int x = part.low.x; x <= last.x; ++x)
+            for (int y = part.low.y; y <= last.y; ++y)
+                for (int z = part.low.z; z <= last.z; ++z)
+                    line({x, y, z}, axis) += size[axis] * value;
+    }
+};
+
+// Column by column of blocks, since a box of stray voxels can have more lines than fit in memory.
+void add_columns(const DensityField& field, int axis, Statistics& s) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    std::uint64_t filled = 0;
+    double sum = 0.0;
+    glm::ivec3 block;
+    for (block[u] = 0; block[u] < field.leaf_dims[u]; ++block[u])
+        for (block[v] = 0; block[v] < field.leaf_dims[v]; ++block[v]) {
+            Lines lines;
+            for (block[axis] = 0; block[axis] < field.leaf_dims[axis]; ++block[axis])
+                lines.add(field.block(block), field, axis, axis == 0 ? &s : nullptr);
+            for (const double part : lines.sums) {
+                const double line = part + lines.everywhere;
+                s.largest_column[axis] = std::max(s.largest_column[axis], line);
+                sum += line;
+                filled += line > 0.0;
+            }
+        }
+    s.mean_column[axis] = filled > 0 ? sum / static_cast<double>(filled) : 0.0;
 }
 
 Statistics gather(const DensityField& field) {
     Statistics s;
-    const glm::ivec3 n = field.voxel_max - field.voxel_min + 1;
-    std::array<std::vector<double>, 3> columns = {std::vector<double>(std::size_t(n.y) * n.z),
-                                                  std::vector<double>(std::size_t(n.x) * n.z),
-                                                  std::vector<double>(std::size_t(n.x) * n.y)};
-    for (int x = 0; x < n.x; ++x)
-        for (int y = 0; y < n.y; ++y)
-            for (int z = 0; z < n.z; ++z) {
-                const double value = field.value(field.voxel_min + glm::ivec3(x, y, z));
-                if (value <= 0.0)
-                    continue;
-                s.low = s.positive == 0 ? value : std::min(s.low, value);
-                s.high = std::max(s.high, value);
-                s.sum += value;
-                ++s.positive;
-                columns[0][std::size_t(y) * n.z + z] += value;
-                columns[1][std::size_t(x) * n.z + z] += value;
-                columns[2][std::size_t(x) * n.y + y] += value;
-            }
-    add_columns(s, columns);
+    for (int axis = 0; axis < 3; ++axis)
+        add_columns(field, axis, s);
     return s;
 }
 

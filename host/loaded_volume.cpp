@@ -5,6 +5,7 @@
 
 #include "blackbody.h"
 #include "error.h"
+#include "render_limits.h"
 #include "shared/bindings.h"
 
 namespace vkvol {
@@ -60,6 +61,11 @@ void load_temperature(const Volume& volume, const GridFile& file, LoadedVolume& 
             loaded.warnings.push_back(fmt::format("{}: \"{}\" reaches {:.0f} kelvin by temperatureScale and "
                                                   "temperatureOffset; flames have 1000 to 3000",
                                                   file.path.string(), emission.grid, loaded.hottest));
+        if (!(loaded.hottest <= hottest_kelvin))
+            throw InputError(
+                fmt::format("{}: \"{}\" reaches {:.3g} kelvin by temperatureScale and temperatureOffset, but "
+                            "{:g} is the most; lower temperatureScale",
+                            file.path.string(), emission.grid, loaded.hottest, hottest_kelvin));
         loaded.hottest = std::max(loaded.hottest, 1.0);
         loaded.blackbody = make_blackbody_table(0.0, loaded.hottest, emission.reference, BLACKBODY_ENTRIES);
     }
@@ -86,16 +92,10 @@ void load_grid(const Scene& scene, const Volume& volume, const Method& method, c
     load_temperature(volume, file, loaded);
 }
 
-} // namespace
-
-LoadedVolume load_volume(const Scene& scene, const Method& method) {
-    LoadedVolume loaded;
-    const Volume* volume = find_volume(scene);
-    if (!volume)
-        return loaded;
-    if (const auto* file = std::get_if<GridFile>(&volume->shape))
-        load_grid(scene, *volume, method, *file, loaded);
-    if (const auto* files = std::get_if<MeshFiles>(&volume->shape)) {
+void load_files(const Scene& scene, const Volume& volume, const Method& method, LoadedVolume& loaded) {
+    if (const auto* file = std::get_if<GridFile>(&volume.shape))
+        load_grid(scene, volume, method, *file, loaded);
+    if (const auto* files = std::get_if<MeshFiles>(&volume.shape)) {
         loaded.mesh = load_mesh(*files);
         loaded.bvh = build_bvh(*loaded.mesh, box_center(*loaded.mesh));
         if (method.material_colour)
@@ -103,6 +103,23 @@ LoadedVolume load_volume(const Scene& scene, const Method& method) {
         if (method.material_colour && !loaded.mesh->diffuse)
             loaded.warnings.push_back(fmt::format("{}: has no material with a diffuse colour; <medium> is what glows",
                                                   files->paths.front().string()));
+    }
+}
+
+} // namespace
+
+LoadedVolume load_volume(const Scene& scene, const Method& method) {
+    LoadedVolume loaded;
+    const Volume* volume = find_volume(scene);
+    if (!volume)
+        return loaded;
+    try {
+        load_files(scene, *volume, method, loaded);
+        check_limits(scene, loaded, method);
+    } catch (const InputError& error) { // of the file, say; the scene says who asked for it
+        if (volume->place.empty())
+            throw;
+        throw InputError(fmt::format("{}: {}", volume->place, error.what()));
     }
     return loaded;
 }

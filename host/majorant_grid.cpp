@@ -19,11 +19,11 @@ std::int64_t count(glm::ivec3 dims) {
     return std::int64_t{dims.x} * dims.y * dims.z;
 }
 
-// Raises the bounds of every cell that the voxel at `relative` (to the grid's origin) is a corner of.
-void raise(MajorantGrid& grid, glm::ivec3 relative, float value) {
-    const glm::ivec3 high = glm::min(relative / grid.cell, grid.dims - 1);
+// Raises the bounds of every cell that a voxel from `first` to `last` (relative to the grid's origin) is a corner of.
+void raise(MajorantGrid& grid, glm::ivec3 first, glm::ivec3 last, float value) {
+    const glm::ivec3 high = glm::min(last / grid.cell, grid.dims - 1);
     // A voxel on a face between cells is a corner of both.
-    const glm::ivec3 low = glm::max((relative - 1) / grid.cell, glm::ivec3(0));
+    const glm::ivec3 low = glm::max((first - 1) / grid.cell, glm::ivec3(0));
     for (int x = low.x; x <= high.x; ++x)
         for (int y = low.y; y <= high.y; ++y)
             for (int z = low.z; z <= high.z; ++z) {
@@ -32,17 +32,19 @@ void raise(MajorantGrid& grid, glm::ivec3 relative, float value) {
             }
 }
 
-// All voxels of the 8^3 block at `first`. Tiles of value 0 are most of a sparse grid and cost one look.
-void raise_block(MajorantGrid& grid, const DensityField& field, glm::ivec3 first) {
-    if (field.is_empty_block(first))
+// All voxels of a block. Tiles of value 0 are most of a sparse grid and cost one look, other tiles little more.
+void raise_block(MajorantGrid& grid, const DensityField& field, glm::ivec3 block) {
+    const auto [low, high, constant] = field.block(block);
+    if (constant) {
+        if (*constant > 0.0f)
+            raise(grid, low - grid.origin, high - grid.origin, *constant);
         return;
-    const glm::ivec3 low = glm::max(first, field.voxel_min);
-    const glm::ivec3 high = glm::min(first + 7, field.voxel_max);
+    }
     for (int x = low.x; x <= high.x; ++x)
         for (int y = low.y; y <= high.y; ++y)
             for (int z = low.z; z <= high.z; ++z)
                 if (const float value = field.value({x, y, z}); value > 0.0f)
-                    raise(grid, glm::ivec3(x, y, z) - grid.origin, value);
+                    raise(grid, glm::ivec3(x, y, z) - grid.origin, glm::ivec3(x, y, z) - grid.origin, value);
 }
 
 MajorantGrid build(const DensityField& field, int cell) {
@@ -57,7 +59,7 @@ MajorantGrid build(const DensityField& field, int cell) {
     for (block.x = 0; block.x < field.leaf_dims.x; ++block.x)
         for (block.y = 0; block.y < field.leaf_dims.y; ++block.y)
             for (block.z = 0; block.z < field.leaf_dims.z; ++block.z)
-                raise_block(grid, field, (field.leaf_min + block) * 8);
+                raise_block(grid, field, block);
     return grid;
 }
 

@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "image_io.h"
+#include "one_line.h"
 
 namespace vkvol {
 
@@ -34,7 +35,7 @@ int int_of(const Metadata& metadata, const std::string& key) {
 }
 
 [[noreturn]] void refuse(const MergeInput& a, const MergeInput& b, const std::string& why) {
-    throw InputError(fmt::format("{} and {} do not belong together: {}", a.name, b.name, why));
+    throw InputError(one_line(fmt::format("{} and {} do not belong together: {}", a.name, b.name, why)));
 }
 
 // The same seed and overlapping sample ranges: the same random numbers, counted twice.
@@ -99,6 +100,19 @@ Crop bounding_window(const std::vector<MergeInput>& inputs) {
                   std::max(window.y1, crop.y1)};
     }
     return window;
+}
+
+// Specks far apart in a huge picture would need all the memory for the black between them.
+void check_coverage(const std::vector<MergeInput>& inputs, const Crop& window) {
+    constexpr std::uint64_t any = 1 << 24, sparsest = 64; // pixels of any window, and per pixel that is there
+    std::uint64_t pixels = 0;
+    for (const MergeInput& input : inputs)
+        pixels += input.film.pixel_count();
+    const std::uint64_t width = std::uint64_t(window.x1 - window.x0), height = std::uint64_t(window.y1 - window.y0);
+    if (width * height > any && width * height / sparsest > pixels)
+        throw InputError(fmt::format("the images hold {} pixels of a window of {}x{}; merge what lies side by side, or "
+                                     "render the rest of the picture",
+                                     pixels, width, height));
 }
 
 void add_film(const Film& film, const Crop& window, std::vector<Moments>& moments) {
@@ -189,6 +203,7 @@ MergeResult merge_films(const std::vector<MergeInput>& inputs) {
             check_pair(inputs[j], inputs[i]);
     }
     const Crop window = bounding_window(inputs);
+    check_coverage(inputs, window);
     std::vector<Moments> moments(std::size_t(window.x1 - window.x0) * std::size_t(window.y1 - window.y0));
     for (const MergeInput& input : inputs)
         add_film(input.film, window, moments);

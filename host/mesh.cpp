@@ -158,6 +158,7 @@ Mesh load_mesh(const MeshFiles& files) {
         check_closed(obj, edges, file);
         turn_outward(obj, find_bodies(obj.triangles.size(), edges));
         append(mesh, obj);
+        mesh.warnings.insert(mesh.warnings.end(), obj.warnings.begin(), obj.warnings.end());
         if (first)
             mesh.diffuse = obj.diffuse;
         if (obj.several_diffuse || obj.diffuse != mesh.diffuse)

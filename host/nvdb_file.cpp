@@ -8,6 +8,7 @@
 #include <zlib.h>
 
 #include "error.h"
+#include "one_line.h"
 
 namespace vkvol {
 
@@ -157,7 +158,7 @@ std::vector<GridEntry> read_nvdb_entries(const std::filesystem::path& file) {
         for (std::size_t i = first; i < entries.size(); ++i) {
             entries[i].file_offset = reader.position();
             if (entries[i].file_bytes > reader.remaining())
-                reader.truncated(fmt::format("grid \"{}\"", entries[i].name).c_str());
+                reader.truncated(fmt::format("grid \"{}\"", one_line(entries[i].name)).c_str());
             reader.seek(reader.position() + entries[i].file_bytes);
         }
     } while (!reader.at_end());
@@ -170,8 +171,8 @@ GridBytes read_nvdb_grid(const std::filesystem::path& file, const GridEntry& ent
     const auto codec = static_cast<Codec>(entry.codec);
     const std::uint64_t bound = codec == Codec::NONE ? entry.file_bytes : entry.file_bytes * best_compression;
     if (entry.memory > bound || entry.memory < sizeof(nanovdb::GridData))
-        reader.damaged(
-            fmt::format("grid \"{}\" cannot have the {} bytes that its header states", entry.name, entry.memory));
+        reader.damaged(fmt::format("grid \"{}\" cannot have the {} bytes that its header states", one_line(entry.name),
+                                   entry.memory));
     GridBytes grid(entry.memory);
     switch (codec) {
     case Codec::NONE:

@@ -7,24 +7,35 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <sstream>
 #include <tiny_obj_loader.h>
 
 #include "error.h"
+#include "one_line.h"
+#include "xml_reader.h"
 
 namespace vkvol {
 
 namespace {
 
-// World units. Far beyond any scene, and small enough that products of three stay finite in the kernels.
-constexpr double largest_coordinate = 1e11;
+constexpr double largest_coordinate = largest_length;
 
 std::string read_text(const std::filesystem::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream || std::filesystem::is_directory(path))
+    // Devices and pipes may have no end.
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    const bool is_other = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+    std::ifstream stream;
+    if (!is_other)
+        stream.open(path, std::ios::binary);
+    if (is_other || !stream)
         throw InputError(fmt::format("{}: cannot be opened: {}; check the path in the scene (it starts from the scene "
                                      "file's directory)",
-                                     path.string(), stream ? "it is a directory" : std::strerror(errno)));
+                                     path.string(),
+                                     std::filesystem::is_directory(status) ? "it is a directory"
+                                     : is_other                            ? "it is no regular file"
+                                                                           : std::strerror(errno)));
     std::string text{std::istreambuf_iterator<char>(stream), {}};
     if (stream.bad())
         throw InputError(fmt::format("{}: cannot be read; check the disk, or copy the file again", path.string()));
@@ -43,7 +54,8 @@ glm::dvec3 parse_vertex(std::string_view line, const std::filesystem::path& path
         if (error != std::errc() || !(std::abs(vertex[axis]) <= largest_coordinate))
             throw InputError(fmt::format("{}:{}: a vertex needs three finite numbers of at most {:g}, but has \"{}\"; "
                                          "export the mesh again",
-                                         path.string(), number, largest_coordinate, line.substr(0, 60)));
+                                         path.string(), number, largest_coordinate,
+                                         one_line(std::string(line.substr(0, 60)))));
         at = next;
     }
     return vertex;
@@ -99,6 +111,17 @@ void add_face(Progress& progress, const tinyobj::index_t* corners, int count) {
     progress.obj->several_diffuse = progress.obj->several_diffuse || progress.diffuse != progress.obj->diffuse;
 }
 
+std::optional<Rgb> diffuse_of(const tinyobj::material_t& material, Progress& progress) {
+    constexpr double brightest = 1e12; // as of colours in the scene
+    const Rgb color(material.diffuse[0], material.diffuse[1], material.diffuse[2]);
+    if (glm::all(glm::greaterThanEqual(color, Rgb(0.0))) && glm::all(glm::lessThanEqual(color, Rgb(brightest))))
+        return color;
+    progress.obj->warnings.push_back(
+        one_line(fmt::format("{}: the Kd of material \"{}\" is no colour, and is left out; numbers >= 0 are",
+                             progress.path->string(), material.name)));
+    return std::nullopt;
+}
+
 tinyobj::callback_t make_callbacks() {
     tinyobj::callback_t callbacks;
     callbacks.vertex_cb = [](void* user, tinyobj::real_t, tinyobj::real_t, tinyobj::real_t, tinyobj::real_t) {
@@ -108,10 +131,10 @@ tinyobj::callback_t make_callbacks() {
         add_face(*static_cast<Progress*>(user), corners, count);
     };
     callbacks.mtllib_cb = [](void* user, const tinyobj::material_t* materials, int count) {
-        auto& list = static_cast<Progress*>(user)->materials;
-        list.clear();
+        auto& progress = *static_cast<Progress*>(user);
+        progress.materials.clear();
         for (int i = 0; i < count; ++i)
-            list.emplace_back(Rgb(materials[i].diffuse[0], materials[i].diffuse[1], materials[i].diffuse[2]));
+            progress.materials.push_back(diffuse_of(materials[i], progress));
     };
     callbacks.usemtl_cb = [](void* user, const char*, int material) {
         auto& progress = *static_cast<Progress*>(user);
@@ -120,6 +143,36 @@ tinyobj::callback_t make_callbacks() {
     };
     return callbacks;
 }
+
+// Material libraries, beside the .obj file. One that cannot be read is no error: the mesh has its shape without.
+class MaterialReader : public tinyobj::MaterialReader {
+public:
+    MaterialReader(const std::filesystem::path& obj, std::vector<std::string>& warnings)
+        : obj_(obj), warnings_(warnings) {}
+
+    bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
+                    std::map<std::string, int>* indices, std::string*, std::string*) override {
+        const std::filesystem::path file = obj_.parent_path() / name;
+        try {
+            std::istringstream stream(read_text(file));
+            std::string warning, error;
+            tinyobj::LoadMtl(indices, materials, &stream, &warning, &error);
+            return true;
+        } catch (const InputError&) {
+            constexpr std::size_t most_warnings = 10;
+            if (warnings_.size() < most_warnings)
+                warnings_.push_back(
+                    one_line(fmt::format("{}: its material library {} cannot be read, and its colours are "
+                                         "left out; put it beside the mesh",
+                                         obj_.string(), file.string())));
+            return false;
+        }
+    }
+
+private:
+    const std::filesystem::path& obj_;
+    std::vector<std::string>& warnings_;
+};
 
 } // namespace
 
@@ -131,12 +184,11 @@ ObjFile read_obj(const std::filesystem::path& path) {
     progress.obj = &obj;
     progress.path = &path;
     std::istringstream stream(text);
-    // The base directory is put before the name as it stands.
-    tinyobj::MaterialFileReader materials((path.parent_path() / "").string());
-    std::string warnings, errors; // a missing .mtl is no error
+    MaterialReader materials(path, obj.warnings);
+    std::string warnings, errors;
     if (!tinyobj::LoadObjWithCallback(stream, make_callbacks(), &progress, &materials, &warnings, &errors))
         throw InputError(fmt::format("{}: not readable as Wavefront .obj: {}; export the mesh again", path.string(),
-                                     errors.substr(0, errors.find('\n'))));
+                                     one_line(errors.substr(0, errors.find('\n')))));
     if (obj.triangles.empty())
         throw InputError(fmt::format("{}: has no faces; it must be a Wavefront .obj file that holds a closed surface",
                                      path.string()));

@@ -15,6 +15,7 @@ struct ObjFile {
     std::vector<glm::uvec3> triangles; // of every polygon, in the order of the file
     std::optional<Rgb> diffuse;        // Kd of the first face's material
     bool several_diffuse = false;      // faces of another Kd follow
+    std::vector<std::string> warnings; // material libraries that cannot be read
 };
 
 // InputError for a file that cannot be read, has no faces, a number that is none, or a vertex that does not exist.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "one_line.h"
 
 namespace vkvol {
 
@@ -32,7 +33,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
 } // namespace
 
 void fail_command_line(const std::string& message) {
-    throw InputError("command line: " + message);
+    throw InputError("command line: " + one_line(message));
 }
 
 CropRequest parse_crop(const std::string& text) {
@@ -90,7 +91,8 @@ double parse_duration(const std::string& text, const char* option) {
         number.pop_back();
     }
     const double seconds = parse_number(number, option) * unit;
-    if (!(seconds > 0.0))
+    constexpr double longest = 1e9; // thirty years
+    if (!(seconds > 0.0 && seconds <= longest))
         fail_command_line(fmt::format("{}: '{}' is no time to render in; expected e.g. 30s, 5m or 2h", option, text));
     return seconds;
 }

@@ -242,6 +242,9 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
         render.outputs = {render.scene.stem().string() + ".exr", render.scene.stem().string() + ".png"};
     if (!texts.time.empty())
         render.time_limit = parse_duration(texts.time);
+    if (render.time_limit && !render.spp && render.sample_offset >= max_samples)
+        fail_command_line(fmt::format("--sample-offset: {} leaves no samples to take; expected less than {}",
+                                      render.sample_offset, max_samples));
     if (!texts.checkpoint.empty())
         render.checkpoint = parse_duration(texts.checkpoint, "--checkpoint");
     if (!texts.crop.empty())

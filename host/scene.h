@@ -15,6 +15,9 @@ namespace vkvol {
 
 using Rgb = glm::dvec3; // linear Rec.709, >= 0
 
+// What is hotter is no flame but a slip of the unit.
+inline constexpr double hottest_kelvin = 1e9;
+
 // Looks along -z at zero rotation. Direction of a camera-space d: Rz(roll) * Ry(yaw) * Rx(pitch) * d.
 struct Camera {
     glm::dvec3 position{0.0};
@@ -90,6 +93,7 @@ struct Noise {
 // A participating medium filling a shape. Coefficients multiply the density: that of the grid, of the noise, or 1.
 struct Volume {
     std::variant<Sphere, Box, MeshFiles, GridFile> shape;
+    std::string place;                             // of the shape, "file:line:column", for messages; or empty
     std::optional<Noise> noise;                    // not for grids
     Rgb sigma_a{0.5};                              // absorption, >= 0 [1/unit]
     Rgb sigma_s{0.5};                              // scattering, >= 0 [1/unit]

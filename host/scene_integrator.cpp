@@ -30,9 +30,13 @@ void SceneReader::read_integrator(RenderSettings& settings) const {
         legacy.warn("<intersectionHandler> is without effect, as in the original renderer; write <integrator>");
     element.allow(axis_names(), true);
     if (overrides_.integrator) {
-        const IntegratorRequest request = parse_integrator(*overrides_.integrator);
-        settings.integrator = request.name;
-        settings.choices = request.choices;
+        try {
+            const IntegratorRequest request = parse_integrator(*overrides_.integrator);
+            settings.integrator = request.name;
+            settings.choices = request.choices;
+        } catch (const InputError& error) {
+            throw InputError(one_line(fmt::format("--integrator: {}", error.what())));
+        }
         return;
     }
     settings.integrator = element.text();
@@ -55,8 +59,8 @@ March SceneReader::march() const {
     const XmlElement element = one("march");
     element.allow({"step", "shadowStep", "opticalStep", "jitter", "unit"});
     March march;
-    march.step = element.attribute_number("step", march.step, positive);
-    march.shadow_step = element.attribute_number("shadowStep", march.shadow_step, positive);
+    march.step = element.attribute_number("step", march.step, length);
+    march.shadow_step = element.attribute_number("shadowStep", march.shadow_step, length);
     march.optical_step = element.attribute_number("opticalStep", march.optical_step, positive);
     if (element.has("jitter")) {
         const std::string value = element.attribute("jitter");

@@ -1,5 +1,6 @@
 // The part of SceneReader that reads the medium's coefficients.
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 #include "scene_reader.h"
@@ -8,7 +9,7 @@ namespace vkvol {
 
 std::optional<Volume> SceneReader::volume(const std::string& integrator) const {
     Volume volume;
-    const std::optional<Shape> authored = shape(integrator);
+    const std::optional<Shape> authored = shape(integrator, volume.place);
     if (authored)
         volume.shape = *authored;
     const bool is_grid = std::holds_alternative<GridFile>(volume.shape);
@@ -44,6 +45,10 @@ void SceneReader::read_coefficients(Volume& volume) const {
     const XmlElement g = one({"heyneygreenstein_g", "heynegreenstein_g"});
     g.allow({}, true);
     volume.g = g.number(volume.g, {-1, 1, false, false, "a number between -1 and 1, both excluded"});
+    constexpr double sharpest = 0.99999; // single precision still has 1 - g to a thousandth
+    if (std::abs(volume.g) > sharpest)
+        g.fail_text(fmt::format("<{}> {} is too near 1 for single precision; expected at most {} in magnitude",
+                                g.name(), volume.g, sharpest));
 
     const XmlElement medium = one("medium");
     medium.allow(color_attributes);
@@ -59,6 +64,22 @@ void SceneReader::read_coefficients(Volume& volume) const {
         shadow_density.warn(fmt::format("shadow rays cannot have a density of their own; they use "
                                         "lightRayDensityMultiplier, {}",
                                         volume.density_scale));
+    check_extinction(volume);
+}
+
+// What multiplies the density must neither overflow nor vanish in single precision.
+void SceneReader::check_extinction(const Volume& volume) const {
+    const Rgb sigma_t = (volume.sigma_a + volume.sigma_s) * volume.density_scale;
+    const double most = std::max({sigma_t.x, sigma_t.y, sigma_t.z});
+    if (most == 0.0 || (most >= smallest_number && most <= no_limit))
+        return;
+    XmlElement cause = one("sigma_s");
+    for (const char* name : {"sigma_a", "lightRayDensityMultiplier"})
+        if (const XmlElement other = one(name); other.exists())
+            cause = other;
+    cause.fail(fmt::format("sigma_a and sigma_s, times lightRayDensityMultiplier, amount to {:g}; expected 0, or from "
+                           "{:g} to {:g}",
+                           most, smallest_number, no_limit));
 }
 
 TemperatureEmission SceneReader::temperature_emission(bool is_grid) const {
@@ -78,10 +99,14 @@ TemperatureEmission SceneReader::temperature_emission(bool is_grid) const {
                                fmt::format("<emission> model: '{}' is unknown; expected color (the grid's value "
                                            "times r, g, b) or blackbody",
                                            model));
+    constexpr Limits kelvin{0.0, hottest_kelvin, true, true, "a number from 0 to 1e9"};
     emission.scale = element.attribute_number("temperatureScale", emission.scale, any_number);
-    emission.offset = element.attribute_number("temperatureOffset", emission.offset, any_number);
-    emission.cutoff = element.attribute_number("temperatureCutoff", emission.cutoff, not_negative);
-    emission.reference = element.attribute_number("referenceTemperature", emission.reference, positive);
+    emission.offset =
+        element.attribute_number("temperatureOffset", emission.offset,
+                                 {-hottest_kelvin, hottest_kelvin, true, true, "a number from -1e9 to 1e9"});
+    emission.cutoff = element.attribute_number("temperatureCutoff", emission.cutoff, kelvin);
+    emission.reference = element.attribute_number("referenceTemperature", emission.reference,
+                                                  {0.0, hottest_kelvin, false, true, "a number > 0, at most 1e9"});
     if (emission.model == TemperatureEmission::Model::color)
         for (const char* name : blackbody_only)
             if (!element.attribute(name).empty())

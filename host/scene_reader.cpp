@@ -53,8 +53,9 @@ XmlElement SceneReader::one(std::initializer_list<const char*> names) const {
         if (!matches)
             continue;
         if (found)
-            throw InputError(fmt::format("{}: a second <{}>, after the one at {}; remove one", document_.place(child),
-                                         child.name(), document_.place(found)));
+            XmlElement(document_, child)
+                .fail(fmt::format("a second <{}>, after the one at {}; remove one", child.name(),
+                                  document_.place(found)));
         found = child;
     }
     return XmlElement(document_, found);
@@ -77,7 +78,8 @@ RenderSettings SceneReader::settings() const {
                                                             {0, 1, true, true, "a number from 0 (never) to 1"});
     const XmlElement majorant = one("majorant");
     majorant.allow({"scale", "cell"});
-    settings.majorant_scale = majorant.attribute_number("scale", settings.majorant_scale, positive);
+    settings.majorant_scale = majorant.attribute_number("scale", settings.majorant_scale,
+                                                        {1e-6, 1e6, true, true, "a number from 1e-6 to 1e6"});
     settings.majorant_cell = static_cast<int>(majorant.attribute_integer("cell", settings.majorant_cell, 0, 1024));
 
     const XmlElement filter = one("filter");
@@ -97,14 +99,22 @@ RenderSettings SceneReader::settings() const {
 Camera SceneReader::camera() const {
     const XmlElement element = one("camera");
     element.allow({"x", "y", "z", "pitch", "yaw", "roll", "fov"});
-    const auto number = [&](const char* name) { return element.attribute_number(name, 0.0, any_number); };
+    const auto number = [&](const char* name, const Limits& limits) {
+        return element.attribute_number(name, 0.0, limits);
+    };
     Camera camera;
-    camera.position = {number("x"), number("y"), number("z")};
-    camera.pitch = number("pitch");
-    camera.yaw = number("yaw");
-    camera.roll = number("roll");
+    camera.position = {number("x", coordinate), number("y", coordinate), number("z", coordinate)};
+    camera.pitch = number("pitch", any_number);
+    camera.yaw = number("yaw", any_number);
+    camera.roll = number("roll", any_number);
     camera.fov = element.attribute_number("fov", camera.fov,
                                           {0, 180, false, false, "an angle between 0 and 180 degrees, both excluded"});
+    constexpr double narrowest = 1e-6, widest = 179.9999; // pixels further apart than floats can tell, and no further
+    if (camera.fov < narrowest || camera.fov > widest)
+        element.fail_attribute("fov",
+                               fmt::format("<camera> fov: {:g} cannot be told from 0 or 180 in single precision; "
+                                           "expected an angle from {:g} to {:.4f}",
+                                           camera.fov, narrowest, widest));
     return camera;
 }
 
@@ -112,10 +122,14 @@ void SceneReader::read_edge(const char* name, int& size, double& start, double& 
     const XmlElement element = one(name);
     element.allow({"startOffset", "reference"}, true);
     size = static_cast<int>(element.integer(size, 1, max_edge));
-    start = element.attribute_number("startOffset", 0.0, any_number);
-    reference = element.attribute_number("reference", 0.0, not_negative);
-    if (reference > 0.0)
+    start = element.attribute_number("startOffset", 0.0, {-1e9, 1e9, true, true, "a number from -1e9 to 1e9"});
+    reference = element.attribute_number("reference", 0.0, {0.0, 1e9, true, true, "a number from 0 to 1e9"});
+    if (reference >= 1.0)
         return;
+    if (reference > 0.0)
+        element.fail_attribute("reference", fmt::format("<{}> reference: a frame of {:g} pixels holds no picture; "
+                                                        "expected at least 1, or 0 for the picture's own size",
+                                                        name, reference));
     reference = size;
     if (start != 0.0)
         element.warn(
@@ -132,7 +146,16 @@ Picture SceneReader::picture() const {
 Rgb SceneReader::color(const XmlElement& element) const {
     const auto channel = [&](const char* name) { return element.attribute_number(name, 0.0, not_negative); };
     const double multiplier = element.attribute_number("multiplier", 1.0, not_negative);
-    return Rgb(channel("r"), channel("g"), channel("b")) * multiplier;
+    const Rgb color = Rgb(channel("r"), channel("g"), channel("b")) * multiplier;
+    // Radiance is squared and summed over the samples in single precision, which ends at 3e38.
+    constexpr double brightest = 1e12;
+    for (const char* name : {"r", "g", "b"})
+        if (channel(name) * multiplier > brightest)
+            element.fail_attribute(name,
+                                   fmt::format("<{}> {} times multiplier is {:g}, but {:g} is the most; lower one "
+                                               "of them",
+                                               element.name(), name, channel(name) * multiplier, brightest));
+    return color;
 }
 
 void SceneReader::read_light(Scene& scene) const {

@@ -41,7 +41,7 @@ private:
     Rgb color(const XmlElement& element) const;
     void read_light(Scene& scene) const;
     std::optional<Volume> volume(const std::string& integrator) const;
-    std::optional<Shape> shape(const std::string& integrator) const;
+    std::optional<Shape> shape(const std::string& integrator, std::string& place) const;
     XmlElement shape_element(const std::string& integrator) const;
     Sphere sphere(const XmlElement& element) const;
     Box box(const XmlElement& element) const;
@@ -51,6 +51,7 @@ private:
     std::optional<Noise> noise(bool is_grid) const;
     Rgb coefficient(const char* name, const Rgb& fallback) const;
     void read_coefficients(Volume& volume) const;
+    void check_extinction(const Volume& volume) const;
     TemperatureEmission temperature_emission(bool is_grid) const;
     CoefficientUnit unit(const XmlElement& sigma_a, const XmlElement& sigma_s, bool is_grid) const;
     std::optional<Expected> expected() const;

@@ -7,8 +7,8 @@
 
 namespace vkvol {
 
-// A grid from the command line takes the place of whatever is here.
-std::optional<Shape> SceneReader::shape(const std::string& integrator) const {
+// A grid from the command line takes the place of whatever is here, and has none in the file.
+std::optional<Shape> SceneReader::shape(const std::string& integrator, std::string& place) const {
     const XmlElement element = shape_element(integrator);
     std::optional<Shape> shape;
     if (element.exists() && element.name() == "sphere")
@@ -19,6 +19,8 @@ std::optional<Shape> SceneReader::shape(const std::string& integrator) const {
         shape = mesh_files();
     else if (element.exists())
         shape = grid_file(element);
+    if (element.exists() && !overrides_.grid)
+        place = element.place();
     if (overrides_.grid) {
         const GridFile* authored = shape ? std::get_if<GridFile>(&*shape) : nullptr;
         shape = GridFile{*overrides_.grid, authored ? authored->grid : GridFile{}.grid};
@@ -65,17 +67,17 @@ XmlElement SceneReader::shape_element(const std::string& integrator) const {
 
 Sphere SceneReader::sphere(const XmlElement& element) const {
     element.allow({"x", "y", "z", "radius"});
-    const auto number = [&](const char* name) { return element.attribute_number(name, 0.0, any_number); };
+    const auto number = [&](const char* name) { return element.attribute_number(name, 0.0, coordinate); };
     Sphere sphere;
     sphere.center = {number("x"), number("y"), number("z")};
-    sphere.radius = element.attribute_number("radius", sphere.radius, positive);
+    sphere.radius = element.attribute_number("radius", sphere.radius, length);
     return sphere;
 }
 
 Box SceneReader::box(const XmlElement& element) const {
     element.allow({"x", "y", "z", "width", "height", "depth"});
-    const auto number = [&](const char* name) { return element.attribute_number(name, 0.0, any_number); };
-    const auto edge = [&](const char* name) { return element.attribute_number(name, 1.0, positive); };
+    const auto number = [&](const char* name) { return element.attribute_number(name, 0.0, coordinate); };
+    const auto edge = [&](const char* name) { return element.attribute_number(name, 1.0, length); };
     return {{number("x"), number("y"), number("z")}, {edge("width"), edge("height"), edge("depth")}};
 }
 
@@ -89,6 +91,9 @@ std::filesystem::path SceneReader::file_path(const XmlElement& element, const ch
         path += '/';
     path += name;
     std::replace(path.begin(), path.end(), '\\', '/');
+    if (one_line(path) != path)
+        element.fail(fmt::format("<{}> names a file that is very long or has control characters: '{}'; rename the file",
+                                 element.name(), path.substr(0, 60)));
     return (document_.file().parent_path() / path).lexically_normal();
 }
 

@@ -24,14 +24,15 @@ std::string trimmed(const std::string& text) {
     return text.substr(first, text.find_last_not_of(spaces) - first + 1);
 }
 
-// For messages: one line of sane length, whatever the file holds.
+// For messages.
 std::string quoted(std::string text) {
     if (text.size() > 60)
         text = text.substr(0, 57) + "...";
-    for (char& c : text)
-        if (std::iscntrl(static_cast<unsigned char>(c)))
-            c = ' ';
-    return "'" + text + "'";
+    return fmt::format("'{}'", one_line(std::move(text)));
+}
+
+[[noreturn]] void fail_at(const std::string& place, const std::string& message) {
+    throw InputError(place + ": " + one_line(message));
 }
 
 bool is_text(pugi::xml_node node) {
@@ -59,8 +60,11 @@ std::string read_number(const std::string& text, const Limits& limits, double& v
         return fmt::format("{} is out of range; expected {}", quoted(text), limits.expected);
     if (error != std::errc() || end != last || !std::isfinite(value))
         return fmt::format("{} is not a number; expected {}", quoted(text), limits.expected);
+    if (std::abs(value) < smallest_number)
+        value = 0.0;
     if (!inside(value, limits))
-        return fmt::format("{} is out of range; expected {}", quoted(text), limits.expected);
+        return fmt::format("{} is out of range; expected {}{}", quoted(text), limits.expected,
+                           std::abs(value) > no_limit ? fmt::format(", at most {:g}", no_limit) : "");
     return "";
 }
 
@@ -88,6 +92,10 @@ std::string element_hint(const std::string& name, const std::string& parent, std
 
 } // namespace
 
+void XmlDocument::warn(const std::string& place, const std::string& message) {
+    warnings_.push_back(place + ": " + one_line(message));
+}
+
 XmlDocument::XmlDocument(const std::string& text, std::filesystem::path file,
                          const std::map<std::string, std::string>& defines, const std::string& root)
     : text_(text), buffer_(text.begin(), text.end()), file_(std::move(file)), defines_(defines) {
@@ -114,7 +122,7 @@ void XmlDocument::parse() {
     if (!result) {
         std::string reason = result.description();
         reason[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(reason[0])));
-        throw InputError(fmt::format("{}: malformed XML: {}", place_of_offset(result.offset), reason));
+        fail_at(place_of_offset(result.offset), "malformed XML: " + reason);
     }
 }
 
@@ -124,13 +132,11 @@ void XmlDocument::find_root(const std::string& name) {
             continue;
         record_position(node);
         if (root_)
-            throw InputError(
-                fmt::format("{}: a second root element <{}>; a scene has one <{}>", place(node), node.name(), name));
+            fail_at(place(node), fmt::format("a second root element <{}>; a scene has one <{}>", node.name(), name));
         root_ = node;
     }
     if (root_.name() != name)
-        throw InputError(
-            fmt::format("{}: the root element is <{}>; a scene has <{}>", place(root_), root_.name(), name));
+        fail_at(place(root_), fmt::format("the root element is <{}>; a scene has <{}>", root_.name(), name));
 }
 
 void XmlDocument::record_position(pugi::xml_node node) {
@@ -148,18 +154,20 @@ void XmlDocument::record_position(pugi::xml_node node) {
 
 void XmlDocument::fill_in(pugi::xml_node node) {
     if (is_text(node) && std::strchr(node.value(), '$'))
-        node.set_value(substitute(node.value(), text_place(node.parent())).c_str());
+        node.set_value(substitute(node.value(), [&] { return text_place(node.parent()); }).c_str());
     std::set<std::string> seen;
     for (pugi::xml_attribute attribute : node.attributes()) {
         if (!seen.insert(attribute.name()).second)
-            throw InputError(fmt::format("{}: attribute {} given twice in <{}>; remove one", place(attribute),
-                                         attribute.name(), node.name()));
+            fail_at(place(attribute),
+                    fmt::format("attribute {} given twice in <{}>; remove one", attribute.name(), node.name()));
         if (std::strchr(attribute.value(), '$'))
-            attribute.set_value(substitute(attribute.value(), place(attribute)).c_str());
+            attribute.set_value(substitute(attribute.value(), [&] { return place(attribute); }).c_str());
     }
 }
 
-std::string XmlDocument::substitute(const std::string& raw, const std::string& place) {
+// `place` is called for messages alone: it counts lines from the beginning.
+template <class Place> std::string XmlDocument::substitute(const std::string& raw, const Place& place) {
+    constexpr std::size_t longest = 16 << 20; // of all values filled in, like the file itself
     std::string result;
     for (std::size_t i = 0; i < raw.size();) {
         if (raw[i] != '$') {
@@ -178,12 +186,16 @@ std::string XmlDocument::substitute(const std::string& raw, const std::string& p
             ++last;
         const std::string key = raw.substr(first, last - first);
         if (key.empty() || (braced && (last == raw.size() || raw[last] != '}')))
-            throw InputError(place + ": a $ that names no key; write $key, ${key}, or $$ for a dollar sign");
+            fail_at(place(), "a $ that names no key; write $key, ${key}, or $$ for a dollar sign");
         keys_.insert(key);
         const auto value = defines_.find(key);
         if (value == defines_.end())
-            throw InputError(fmt::format("{}: ${} has no value; give it with -D {}=VALUE", place, key, key));
+            fail_at(place(), fmt::format("${} has no value; give it with -D {}=VALUE", key, key));
         result += value->second;
+        filled_in_ += value->second.size();
+        if (filled_in_ > longest)
+            fail_at(place(),
+                    fmt::format("the values of $keys amount to more than 16 MiB by ${}; give shorter ones", key));
         i = last + (braced ? 1 : 0);
     }
     return result;
@@ -195,7 +207,7 @@ void XmlDocument::check_defines_used() const {
             continue;
         const std::vector<std::string> known(keys_.begin(), keys_.end());
         const std::string hint = known.empty() ? "; the scene has no $keys" : name_hint(key, known);
-        throw InputError(fmt::format("{}: -D {}={} is used nowhere in the scene{}", file_.string(), key, value, hint));
+        fail_at(file_.string(), fmt::format("-D {}={} is used nowhere in the scene{}", key, value, hint));
     }
 }
 
@@ -228,14 +240,14 @@ void XmlElement::allow(const std::vector<std::string>& attributes, bool text,
         if (std::find(attributes.begin(), attributes.end(), attribute.name()) != attributes.end())
             continue;
         const std::string hint = attributes.empty() ? "; it has none" : name_hint(attribute.name(), attributes);
-        throw InputError(fmt::format("{}: unknown attribute {} of <{}>{}", document_->place(attribute),
-                                     quoted(attribute.name()), name(), hint));
+        fail_at(document_->place(attribute),
+                fmt::format("unknown attribute {} of <{}>{}", quoted(attribute.name()), name(), hint));
     }
     for (const pugi::xml_node child : node_.children()) {
         if (child.type() == pugi::node_element &&
             std::find(children.begin(), children.end(), child.name()) == children.end())
-            throw InputError(fmt::format("{}: unknown element <{}>{}", document_->place(child), child.name(),
-                                         element_hint(child.name(), name(), children)));
+            fail_at(document_->place(child),
+                    fmt::format("unknown element <{}>{}", child.name(), element_hint(child.name(), name(), children)));
         if (!text && is_text(child) && !trimmed(child.value()).empty())
             fail_text(fmt::format("unexpected text {} in <{}>; its values are {}", quoted(trimmed(child.value())),
                                   name(), children.empty() ? "attributes" : "elements"));
@@ -326,15 +338,15 @@ long long XmlElement::attribute_integer(const char* attribute_name, long long fa
 }
 
 void XmlElement::fail(const std::string& message) const {
-    throw InputError(place() + ": " + message);
+    fail_at(place(), message);
 }
 
 void XmlElement::fail_text(const std::string& message) const {
-    throw InputError(document_->text_place(node_) + ": " + message);
+    fail_at(document_->text_place(node_), message);
 }
 
 void XmlElement::fail_attribute(const char* attribute_name, const std::string& message) const {
-    throw InputError(document_->place(node_.attribute(attribute_name)) + ": " + message);
+    fail_at(document_->place(node_.attribute(attribute_name)), message);
 }
 
 } // namespace vkvol

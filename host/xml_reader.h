@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "one_line.h"
+
 namespace vkvol {
 
 // A document in memory, with its $keys filled in and with what is needed to say where in it something is.
@@ -29,7 +31,7 @@ public:
     std::string place(pugi::xml_attribute attribute) const;
     std::string text_place(pugi::xml_node element) const; // of its first text; of the element if it has none
 
-    void warn(const std::string& place, const std::string& message) { warnings_.push_back(place + ": " + message); }
+    void warn(const std::string& place, const std::string& message);
     const std::vector<std::string>& warnings() const { return warnings_; }
 
 private:
@@ -42,7 +44,7 @@ private:
     void find_root(const std::string& name);
     void record_position(pugi::xml_node node);
     void fill_in(pugi::xml_node node);
-    std::string substitute(const std::string& raw, const std::string& place);
+    template <class Place> std::string substitute(const std::string& raw, const Place& place);
     std::string place_of_offset(std::ptrdiff_t offset) const;
     void check_defines_used() const;
 
@@ -55,6 +57,7 @@ private:
     pugi::xml_document document_;
     pugi::xml_node root_;
     std::vector<std::string> warnings_;
+    std::size_t filled_in_ = 0; // bytes, of the values of all $keys
 };
 
 struct Limits {
@@ -65,10 +68,17 @@ struct Limits {
     const char* expected; // completes "expected ..."
 };
 
-inline constexpr double no_limit = 1e300;
+// Single precision on the device ends at 3e38 and 1e-38; the margin is for what is multiplied or divided there. What is
+// nearer to 0 than `smallest_number` counts as 0.
+inline constexpr double no_limit = 1e30;
+inline constexpr double smallest_number = 1e-30;
 inline constexpr Limits any_number{-no_limit, no_limit, true, true, "a number"};
 inline constexpr Limits not_negative{0.0, no_limit, true, true, "a number >= 0"};
 inline constexpr Limits positive{0.0, no_limit, false, true, "a number > 0"};
+// World units. Far beyond any scene, and small enough that products of three stay finite on the device.
+inline constexpr double largest_length = 1e11;
+inline constexpr Limits coordinate{-largest_length, largest_length, true, true, "a number from -1e11 to 1e11"};
+inline constexpr Limits length{1.0 / largest_length, largest_length, true, true, "a number > 0, from 1e-11 to 1e11"};
 
 // One element, or a missing one: then every getter gives its fallback.
 class XmlElement {

@@ -1,5 +1,5 @@
-// Grids that lie in windows, because no storage buffer may be as large: the same numbers as from one buffer. The windows
-// here are of a few kilobytes, so that nodes and grids straddle their borders.
+// Grids that lie in windows, because no storage buffer may be as large: the same numbers as from one buffer. The
+// windows here are of a few kilobytes, so that nodes and grids straddle their borders.
 #include <catch2/catch.hpp>
 #include <random>
 

@@ -1,0 +1,135 @@
+#include "render_limits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <numeric>
+
+#include "error.h"
+#include "noise.h"
+#include "shared/bindings.h"
+
+namespace vkvol {
+
+namespace {
+
+// Per ray: at a million a second it takes ten seconds, and a pixel takes many.
+constexpr double most_collisions = 1e7;
+// As of other marches.
+constexpr double most_steps = 1e6;
+// Of the sigmas in world units, times the largest density.
+constexpr double largest_extinction = 1e30;
+constexpr double brightest = 1e12; // as of colours in the scene
+
+// The medium's box as a camera meets it, world space.
+struct Extent {
+    glm::dvec3 center{0.0};
+    double diagonal = 0.0;
+};
+
+Extent extent_of(const Volume& volume, const LoadedVolume& loaded) {
+    if (const auto* sphere = std::get_if<Sphere>(&volume.shape))
+        return {sphere->center, 2.0 * sphere->radius};
+    if (const auto* box = std::get_if<Box>(&volume.shape))
+        return {box->center, glm::length(box->size)};
+    if (loaded.mesh)
+        return {box_center(*loaded.mesh), 2.0 * glm::length(box_center(*loaded.mesh) - lowest_corner(*loaded.mesh))};
+    const glm::dvec3 low(loaded.field->voxel_min), high(loaded.field->voxel_max);
+    const glm::dmat4& to_world = loaded.field->index_to_world;
+    return {glm::dvec3(to_world * glm::dvec4(0.5 * (low + high), 1.0)),
+            glm::length(glm::dmat3(to_world) * (high - low + 2.0))};
+}
+
+// The majorant's optical depth along a ray through the whole medium at its mean, and through the densest cell. A sum
+// over all cells at the largest bound would refuse media for a single spike.
+double majorant_depth(const Scene& scene, const LoadedVolume& loaded, double diagonal, double sigma_t) {
+    const Volume& volume = scene.volumes.front();
+    if (!loaded.majorants) {
+        const double bound = volume.noise ? noise_bound(*volume.noise) : 1.0;
+        return sigma_t * bound * scene.settings.majorant_scale * diagonal;
+    }
+    const std::vector<float>& bounds = loaded.majorants->bounds;
+    const double mean = std::accumulate(bounds.begin(), bounds.end(), 0.0) / static_cast<double>(bounds.size());
+    const double most = *std::max_element(bounds.begin(), bounds.end());
+    const double cell = std::sqrt(3.0) * loaded.majorants->cell * loaded.field->voxel_size();
+    return sigma_t * (mean * diagonal + most * std::min(cell, diagonal));
+}
+
+void check_patience(const Scene& scene, const Method& method, double depth) {
+    const bool shadows = method.nee != NEE_NONE;
+    const bool null_collisions =
+        method.free_flight >= FREE_FLIGHT_DELTA ||
+        (shadows && (method.transmittance == TRANSMITTANCE_DELTA || method.transmittance == TRANSMITTANCE_RATIO ||
+                     method.transmittance == TRANSMITTANCE_RESIDUAL));
+    if (null_collisions && !(depth <= most_collisions))
+        throw InputError(
+            fmt::format("a ray through the medium meets {:.3g} tentative collisions, and would never get "
+                        "through; lower sigma_a, sigma_s, lightRayDensityMultiplier or the majorant's scale "
+                        "until it meets {:g}, or check the unit of sigma_a and sigma_s",
+                        depth, most_collisions));
+    const double optical_step = scene.settings.march.optical_step;
+    if (method.free_flight == FREE_FLIGHT_ADAPTIVE && !(depth / optical_step <= most_steps))
+        throw InputError(fmt::format("<march> opticalStep: {:g} takes {:.3g} steps across the medium, more than a "
+                                     "million; {:.3g} takes a thousand",
+                                     optical_step, depth / optical_step, depth / 1000.0));
+}
+
+void check_extinction(const Volume& volume, const LoadedVolume& loaded) {
+    const double sigma_t = largest(world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr));
+    double densest = 1.0;
+    if (loaded.majorants)
+        densest = std::max(densest,
+                           double(*std::max_element(loaded.majorants->bounds.begin(), loaded.majorants->bounds.end())));
+    const bool vanishes = sigma_t > 0.0 && sigma_t < 1.0 / largest_extinction;
+    if (vanishes || !(sigma_t * densest <= largest_extinction))
+        throw InputError(
+            fmt::format("the extinction is {:.3g} per world unit at density 1 and {:.3g} where the medium is "
+                        "densest, beyond single precision; change sigma_a and sigma_s, or the grid's voxel "
+                        "size",
+                        sigma_t, sigma_t * densest));
+}
+
+// Nothing so small is seen, and squares of distances in units of the medium must be finite.
+void check_distance(const Scene& scene, const Extent& extent) {
+    constexpr double farthest = 1e12; // diagonals
+    if (!(extent.diagonal * farthest >= glm::length(scene.camera.position - extent.center)))
+        throw InputError(fmt::format("the medium measures {:.3g} and the camera is {:.3g} away, more than {:g} times "
+                                     "that; move the camera or enlarge the medium",
+                                     extent.diagonal, glm::length(scene.camera.position - extent.center), farthest));
+}
+
+void check_glow(const Volume& volume, const LoadedVolume& loaded) {
+    if (!loaded.temperature)
+        return;
+    double most = 0.0;
+    if (volume.temperature.model == TemperatureEmission::Model::blackbody)
+        for (const glm::vec3& color : loaded.blackbody)
+            for (int i = 0; i < 3; ++i)
+                most = std::isfinite(color[i]) ? std::max(most, double(color[i]))
+                                               : std::numeric_limits<double>::infinity();
+    else
+        most = loaded.temperature->max_value();
+    most *= largest(volume.temperature.color);
+    if (!(most <= brightest))
+        throw InputError(fmt::format("<emission> reaches a radiance of {:.3g} where \"{}\" is hottest, but {:g} is the "
+                                     "most; lower its multiplier or temperatureScale, or raise referenceTemperature",
+                                     most, volume.temperature.grid, brightest));
+}
+
+} // namespace
+
+void check_limits(const Scene& scene, const LoadedVolume& loaded, const Method& method) {
+    const Volume* volume = find_volume(scene);
+    const bool empty_grid = volume && std::holds_alternative<GridFile>(volume->shape) && !loaded.field;
+    if (!volume || empty_grid)
+        return;
+    check_extinction(*volume, loaded);
+    const Extent extent = extent_of(*volume, loaded);
+    check_distance(scene, extent);
+    const double sigma_t = largest(world_sigma_t(*volume, loaded.field ? &*loaded.field : nullptr));
+    check_patience(scene, method, majorant_depth(scene, loaded, extent.diagonal, sigma_t));
+    check_glow(*volume, loaded);
+}
+
+} // namespace vkvol

@@ -1,0 +1,331 @@
+#include "vdb_check.h"
+
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <fmt/format.h>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "error.h"
+#include "one_line.h"
+
+namespace vkvol {
+
+namespace {
+
+// As in openvdb/io: bits of a grid's compression, and what a node's values begin with.
+constexpr std::uint32_t compress_zip = 1, compress_active = 2, compress_blosc = 4;
+enum ValuesKind : std::int8_t { one_inactive = 2, mask = 3, mask_one_inactive = 4, mask_two_inactive = 5, all = 6 };
+constexpr std::uint32_t oldest_version = 222, newest_version = 224; // of the format: since OpenVDB 2.0
+constexpr std::uint32_t longest_string = 4096;
+
+// Metadata whose reader looks at its type and not at the size that the file states.
+const std::map<std::string, std::uint32_t> metadata_sizes = {
+    {"bool", 1},   {"float", 4},  {"double", 8}, {"int32", 4},  {"int64", 8},  {"vec2i", 8},   {"vec2s", 8},
+    {"vec2d", 16}, {"vec3i", 12}, {"vec3s", 12}, {"vec3d", 24}, {"vec4i", 16}, {"vec4s", 16},  {"vec4d", 32},
+    {"quats", 16}, {"quatd", 32}, {"mat3s", 36}, {"mat3d", 72}, {"mat4s", 64}, {"mat4d", 128}, {"half", 2}};
+
+// Doubles that each kind of map consists of. Frusta are no affine maps and cannot be rendered.
+const std::map<std::string, std::uint32_t> map_doubles = {{"AffineMap", 16},
+                                                          {"UnitaryMap", 16},
+                                                          {"ScaleMap", 15},
+                                                          {"UniformScaleMap", 15},
+                                                          {"TranslationMap", 3},
+                                                          {"ScaleTranslateMap", 18},
+                                                          {"UniformScaleTranslateMap", 18}};
+
+struct Descriptor {
+    std::string name, type;
+    std::uint64_t position = 0, blocks = 0, end = 0;
+};
+
+class Walk {
+public:
+    explicit Walk(const std::filesystem::path& file) : file_(file), stream_(file, std::ios::binary) {
+        std::error_code error;
+        size_ = std::filesystem::file_size(file, error);
+        if (!stream_ || error)
+            throw InputError(fmt::format("{}: cannot be opened: {}; check the path", file.string(),
+                                         error ? error.message() : std::strerror(errno)));
+    }
+
+    void walk(const char* grid) {
+        for (const Descriptor& descriptor : headers()) {
+            seek(descriptor.position);
+            if (const std::uint32_t compression = get<std::uint32_t>(); compression <= 7)
+                compression_ = compression;
+            else
+                damaged("a grid's compression");
+            metadata();
+            // Copies of one name are told apart by what follows this character.
+            const std::string name = descriptor.name.substr(0, descriptor.name.find('\x1e'));
+            const bool wanted = grid && name == grid;
+            if (wanted && !descriptor.type.starts_with("Tree_float_5_4_3"))
+                throw InputError(fmt::format("{}: grid \"{}\" is not a grid of floats; only float and half are read",
+                                             file_.string(), one_line(name)));
+            transform(wanted); // read for the list of grids too
+            if (wanted) {
+                tree();
+                if (position_ != descriptor.end)
+                    damaged("the end of a grid");
+            }
+        }
+    }
+
+private:
+    [[noreturn]] void damaged(const char* what) const {
+        throw InputError(
+            fmt::format("{}: not readable as OpenVDB: {} makes no sense at byte {}: the file is damaged; copy "
+                        "or export it again",
+                        file_.string(), what, position_));
+    }
+
+    void read(void* data, std::uint64_t bytes) {
+        if (bytes > size_ - position_)
+            damaged("what lies beyond the end");
+        stream_.read(static_cast<char*>(data), static_cast<std::streamsize>(bytes));
+        position_ += bytes;
+        if (!stream_)
+            damaged("what cannot be read");
+    }
+
+    template <class T> T get() {
+        T value;
+        read(&value, sizeof value);
+        return value;
+    }
+
+    void skip(std::uint64_t bytes) {
+        if (bytes > size_ - position_)
+            damaged("what lies beyond the end");
+        seek(position_ + bytes);
+    }
+
+    void seek(std::uint64_t position) {
+        if (position > size_)
+            damaged("an offset");
+        position_ = position;
+        stream_.seekg(static_cast<std::streamoff>(position));
+    }
+
+    std::string string() {
+        const auto length = get<std::uint32_t>();
+        if (length > longest_string)
+            damaged("the length of a name");
+        std::string text(length, '\0');
+        read(text.data(), length);
+        return text;
+    }
+
+    std::vector<Descriptor> headers() {
+        if (get<std::int64_t>() != 0x56444220) // "VDB "
+            throw InputError(fmt::format("{}: not an OpenVDB file; .nvdb files are read if their name ends in .nvdb",
+                                         file_.string()));
+        const auto version = get<std::uint32_t>();
+        if (version < oldest_version || version > newest_version)
+            throw InputError(
+                fmt::format("{}: has version {} of the OpenVDB format, but {} to {} are read; save it again "
+                            "with a current program",
+                            file_.string(), version, oldest_version, newest_version));
+        skip(8); // of the library
+        if (get<std::uint8_t>() != 1)
+            throw InputError(
+                fmt::format("{}: an OpenVDB stream without offsets; save it again as a file", file_.string()));
+        skip(36); // UUID
+        metadata();
+        std::vector<Descriptor> grids;
+        std::set<std::string> names;
+        for (auto count = get<std::uint32_t>(); count > 0; --count) {
+            Descriptor grid;
+            grid.name = string();
+            grid.type = string();
+            if (!string().empty())
+                throw InputError(fmt::format("{}: grid \"{}\" shares its tree with another; save it again without "
+                                             "instances",
+                                             file_.string(), one_line(grid.name)));
+            grid.position = get<std::uint64_t>();
+            grid.blocks = get<std::uint64_t>();
+            grid.end = get<std::uint64_t>();
+            if (grid.position < position_ || grid.blocks < grid.position || grid.end < grid.blocks || grid.end > size_)
+                damaged("a grid's place");
+            if (!names.insert(grid.name).second)
+                damaged("a grid's name");
+            grids.push_back(grid);
+            seek(grid.end);
+        }
+        return grids;
+    }
+
+    // Notes whether values are halves.
+    void metadata() {
+        half_ = false;
+        for (auto count = get<std::uint32_t>(); count > 0; --count) {
+            const std::string name = string(), type = string();
+            const auto bytes = get<std::uint32_t>();
+            const auto known = metadata_sizes.find(type);
+            if (known != metadata_sizes.end() && known->second != bytes)
+                damaged("the size of metadata");
+            if (name == "is_saved_as_half_float") {
+                if (type != "bool")
+                    damaged("metadata about half precision");
+                half_ = get<std::uint8_t>() != 0;
+            } else if (type == "__delayedload") {
+                delayed_loading(bytes);
+            } else {
+                skip(bytes);
+            }
+        }
+    }
+
+    // A table with an entry per leaf, of which each takes at least two masks of 64 bytes.
+    void delayed_loading(std::uint32_t bytes) {
+        const std::uint64_t end = position_ + bytes;
+        if (bytes < 4 || end > size_)
+            damaged("the table for delayed loading");
+        const std::uint64_t leaves = get<std::uint32_t>();
+        if (leaves > size_ / 128)
+            damaged("the table for delayed loading");
+        // Masks, then sizes; each begins with the bytes it has compressed, 0 if it is not. All ones: there are no
+        // sizes.
+        for (const std::uint64_t entry : {1u, 8u}) {
+            if (position_ == end)
+                break;
+            const auto stated = get<std::uint32_t>();
+            const std::uint64_t length = stated == ~0u ? 0 : stated > 0 ? stated : leaves * entry;
+            if (length > end - std::min(position_, end))
+                damaged("the table for delayed loading");
+            if (stated > 0 && stated != ~0u)
+                compressed(length);
+            else
+                skip(length);
+        }
+        seek(end);
+    }
+
+    // BLOSC's own header states its size a second time, which its reader goes by.
+    void compressed(std::uint64_t bytes) {
+        struct {
+            std::uint8_t versions_flags_and_type[4];
+            std::uint32_t unpacked, block, packed;
+        } header;
+        static_assert(sizeof header == 16);
+        if (bytes < sizeof header)
+            damaged("the size of compressed data");
+        read(&header, sizeof header);
+        if (header.packed != bytes || header.block == 0)
+            damaged("the size of compressed data");
+        skip(bytes - sizeof header);
+    }
+
+    void transform(bool wanted) {
+        const std::string type = string();
+        const auto known = map_doubles.find(type);
+        if (known == map_doubles.end() && !wanted)
+            return;
+        if (known == map_doubles.end())
+            throw InputError(
+                fmt::format("{}: has a transform of unknown kind; resample the grid to an affine one, e.g. in "
+                            "Houdini with VDB Resample",
+                            file_.string()));
+        skip(known->second * sizeof(double));
+    }
+
+    void tree() {
+        leaves_.clear();
+        if (get<std::uint32_t>() != 1)
+            damaged("the number of buffers");
+        skip(sizeof(float)); // background
+        const auto tiles = get<std::uint32_t>(), children = get<std::uint32_t>();
+        std::set<std::array<std::int32_t, 3>> origins;
+        for (std::uint32_t i = 0; i < tiles; ++i) {
+            root_entry(origins);
+            skip(sizeof(float));
+            if (get<std::uint8_t>() > 1)
+                damaged("the state of a tile");
+        }
+        for (std::uint32_t i = 0; i < children; ++i) {
+            root_entry(origins);
+            internal_node<5>();
+        }
+        for (const std::bitset<512>& leaf : leaves_) {
+            if (get<std::bitset<512>>() != leaf)
+                damaged("the mask of a leaf");
+            values(leaf);
+        }
+    }
+
+    void root_entry(std::set<std::array<std::int32_t, 3>>& origins) {
+        const auto origin = get<std::array<std::int32_t, 3>>();
+        for (const std::int32_t coordinate : origin)
+            if (coordinate % 4096 != 0)
+                damaged("the place of a node");
+        if (!origins.insert(origin).second)
+            damaged("the place of a node");
+    }
+
+    template <int log2> void internal_node() {
+        using Mask = std::bitset<std::size_t{1} << (3 * log2)>;
+        const auto children = get<Mask>(), active = get<Mask>();
+        if ((children & active).any())
+            damaged("the mask of a node");
+        values(active);
+        for (std::size_t i = 0; i < children.size(); ++i)
+            if (children[i]) {
+                if constexpr (log2 == 5)
+                    internal_node<4>();
+                else
+                    leaves_.push_back(get<std::bitset<512>>());
+            }
+    }
+
+    template <class Mask> void values(const Mask& active) {
+        const auto kind = get<std::int8_t>();
+        if (kind < 0 || kind > ValuesKind::all)
+            damaged("the kind of a node's values");
+        if (kind == one_inactive || kind == mask_one_inactive || kind == mask_two_inactive)
+            skip(sizeof(float));
+        if (kind == mask_two_inactive)
+            skip(sizeof(float));
+        if (kind == mask || kind == mask_one_inactive || kind == mask_two_inactive)
+            skip(sizeof(Mask));
+        const bool packed = (compression_ & compress_active) != 0 && kind != ValuesKind::all;
+        const std::uint64_t count = packed ? active.count() : active.size();
+        const std::uint64_t bytes = count * (half_ ? 2 : 4);
+        if (half_ && count == 0)
+            return; // and no size either
+        if ((compression_ & (compress_zip | compress_blosc)) == 0)
+            return skip(bytes);
+        // The size of what is compressed, or less than 0: as it is.
+        const auto size = get<std::int64_t>();
+        if (size > 0 && (compression_ & compress_blosc) != 0)
+            compressed(static_cast<std::uint64_t>(size));
+        else if (size > 0)
+            skip(static_cast<std::uint64_t>(size));
+        else if (static_cast<std::uint64_t>(-size) == bytes)
+            skip(bytes);
+        else
+            damaged("the size of a node's values");
+    }
+
+    const std::filesystem::path& file_;
+    std::ifstream stream_;
+    std::uint64_t size_ = 0, position_ = 0;
+    std::uint32_t compression_ = 0;
+    bool half_ = false;
+    std::vector<std::bitset<512>> leaves_; // masks, in the order of the file
+};
+
+} // namespace
+
+void check_vdb(const std::filesystem::path& file, const char* grid) {
+    Walk(file).walk(grid);
+}
+
+} // namespace vkvol

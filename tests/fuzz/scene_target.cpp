@@ -1,0 +1,213 @@
+// Scene files: built from the vocabulary, or taken from scenes/, then damaged as elements, as words and as bytes.
+#include <algorithm>
+#include <fmt/format.h>
+#include <string_view>
+#include <utility>
+
+#include "corpus.h"
+#include "mutate.h"
+#include "scene_words.h"
+#include "scene_xml.h"
+#include "target.h"
+#include "use_scene.h"
+
+namespace vkvol::fuzz {
+
+namespace {
+
+// Most values are ordinary, or no scene would be read to its end.
+struct Source : Random {
+    explicit Source(Random& random) : Random(random.next()), rate(pick(rates)) {}
+    bool at_edge() { return rate > 0 && one_in(rate); }
+
+    static constexpr std::uint64_t rates[] = {0, 0, 60, 20};
+    std::uint64_t rate; // one in how many values; 0: none
+};
+
+std::string number(Source& random) {
+    return random.at_edge() ? random.pick(edge_values) : random.pick(ordinary_numbers);
+}
+
+std::string one_of(std::string_view alternatives, Random& random) {
+    const auto count = 1 + std::count(alternatives.begin(), alternatives.end(), '|');
+    for (std::uint64_t skip = random.below(static_cast<std::uint64_t>(count)); skip > 0; --skip)
+        alternatives.remove_prefix(alternatives.find('|') + 1);
+    return std::string(alternatives.substr(0, alternatives.find('|')));
+}
+
+std::string attribute_value(std::string_view name, Source& random) {
+    if (random.at_edge())
+        return random.pick(edge_values);
+    if (name == "unit")
+        return one_of("voxel|world|world", random);
+    if (name == "model")
+        return one_of("color|blackbody", random);
+    if (name == "grid")
+        return one_of("density|temperature|density|other", random);
+    if (name == "baseDir")
+        return one_of(".|./|", random);
+    if (name == "jitter")
+        return one_of("true|false", random);
+    if (name == "scattering")
+        return one_of("none|single|multiple", random);
+    if (name == "flight")
+        return one_of("analytic|regular|march|adaptive|delta|weighted|decomposition|spectral", random);
+    if (name == "transmittance")
+        return one_of("analytic|regular|delta|ratio|residual|march|telescoping|jackknife", random);
+    if (name == "nee")
+        return one_of("none|collisions|tentative", random);
+    if (name == "emission")
+        return one_of("collisions|steps", random);
+    if (name == "octaves" || name == "cell")
+        return std::to_string(1 + random.below(16));
+    if (name == "lacunarity" || name == "reference")
+        return one_of("2|1|100|640", random);
+    return number(random);
+}
+
+std::string element(const Words& words, Source& random) {
+    std::string xml = fmt::format("  <{}", words.element);
+    const bool all = random.one_in(2) || std::string_view(words.element).starts_with("sigma");
+    for (const char* name : words.attributes)
+        if (name && (all ? !(std::string_view(name) == "unit" && random.one_in(2)) : random.one_in(3)))
+            xml += fmt::format(" {}=\"{}\"", name, attribute_value(name, random));
+    const std::string_view kind = words.text;
+    if (kind.empty())
+        return xml + "/>\n";
+    const std::string text = random.at_edge() ? random.pick(edge_values)
+                             : kind == "n"    ? number(random)
+                             : kind == "i"    ? std::to_string(1 + random.below(200))
+                                              : one_of(kind, random);
+    return xml + fmt::format(">{}</{}>\n", text, words.element);
+}
+
+std::string build(Source& random) {
+    std::string xml = "<options>\n";
+    switch (random.below(5)) { // one medium, mostly
+    case 0:
+        xml += element(grammar[0], random);
+        break;
+    case 1:
+        xml += "  <models><model>ball.obj</model></models>\n";
+        break;
+    default:
+        xml += element(grammar[1 + random.below(2)], random);
+    }
+    bool both_sigmas[2] = {false, false};
+    for (std::size_t i = 3; i < std::size(grammar); ++i) {
+        const std::string_view name = grammar[i].element;
+        if (!random.one_in(4) || (name == "noise" && !random.one_in(3)))
+            continue;
+        if (name.starts_with("sigma") && std::exchange(both_sigmas[name.back() == 's'], true))
+            continue;
+        xml += element(grammar[i], random);
+    }
+    return xml + "</options>\n";
+}
+
+// Between < and >, or an element on its line.
+void damage_elements(std::string& xml, Source& random) {
+    switch (random.below(6)) {
+    case 0: {
+        const std::string added = element(random.pick(grammar), random);
+        const std::size_t line = xml.find('\n', random.below(xml.size()));
+        xml.insert(line == std::string::npos ? xml.size() : line + 1, added);
+        break;
+    }
+    case 1: { // deep nesting
+        const std::string name = random.pick(element_names);
+        const std::uint64_t depth = 1 + random.below(random.one_in(20) ? 20000 : 20);
+        std::string open, close;
+        for (std::uint64_t i = 0; i < depth; ++i) {
+            open += "<" + name + ">";
+            if (!random.one_in(5000))
+                close += "</" + name + ">";
+        }
+        const std::size_t line = xml.find('\n', random.below(xml.size()));
+        xml.insert(line == std::string::npos ? xml.size() : line + 1, open + close);
+        break;
+    }
+    case 2: { // something very long
+        std::string piece = random.pick(edge_values);
+        piece += random.pick(element_names);
+        const std::uint64_t times = 1 + random.below(random.one_in(20) ? 10000 : 100);
+        std::string many;
+        for (std::uint64_t i = 0; i < times; ++i)
+            many += piece;
+        xml.insert(random.below(xml.size()), many);
+        break;
+    }
+    case 3:
+        replace_token(xml, random, element_names);
+        break;
+    default:
+        shuffle_lines(xml, random);
+    }
+}
+
+class SceneTarget : public Target {
+public:
+    SceneTarget() : Target("scene", ".xml", 64, 0) {}
+
+    void prepare(const std::filesystem::path& directory) override {
+        directory_ = directory;
+        write_scene_files(directory);
+        const std::filesystem::path scenes = source_directory() / "scenes";
+        for (const std::filesystem::path& folder : {scenes, scenes / "thesis"})
+            for (const auto& entry : std::filesystem::directory_iterator(folder))
+                if (entry.path().extension() == ".xml")
+                    files_.push_back(entry.path());
+        std::sort(files_.begin(), files_.end()); // directories have no order of their own
+        for (const std::filesystem::path& file : files_)
+            corpus_.push_back(read_file(file));
+    }
+
+    std::string make(Random& seeded) override {
+        Source random(seeded);
+        std::string xml = random.one_in(3) ? random.pick(corpus_) : build(random);
+        if (random.one_in(3))
+            for (std::uint64_t n = 1 + random.below(4); n > 0 && !xml.empty(); --n)
+                replace_token(xml, random, edge_values);
+        if (random.one_in(6) && !xml.empty())
+            damage_elements(xml, random);
+        if (random.one_in(6))
+            mutate_bytes(xml, random, random.pick(corpus_));
+        return xml;
+    }
+
+    void use(const std::string& input, Random& seeded) override {
+        Source random(seeded);
+        Defines defines;
+        if (random.one_in(8) || input.find("$a") != std::string::npos)
+            defines["a"] = number(random);
+        if (input.find("$long") != std::string::npos)
+            defines["long"] = std::string(random.below(100000), 'x');
+        SceneOverrides overrides;
+        if (random.one_in(10))
+            overrides.integrator = one_of(grammar[18].text, random) +
+                                   (random.one_in(2) ? ":flight=" + attribute_value("flight", random) : "");
+        if (random.one_in(20))
+            overrides.grid = directory_ / "cloud.nvdb";
+        Scene scene = parse_scene(input, directory_ / "scene.xml", defines, overrides);
+        for (const std::string& warning : scene.warnings)
+            expect(warning.size() <= 4000 && warning.find('\n') == std::string::npos,
+                   "a warning is not one short line");
+        if (random.one_in(4))
+            resize_picture(scene.picture, static_cast<int>(1 + random.below(65536)), std::nullopt);
+        use_scene(scene);
+    }
+
+private:
+    std::filesystem::path directory_;
+    std::vector<std::filesystem::path> files_;
+    std::vector<std::string> corpus_;
+};
+
+} // namespace
+
+Target& scene_target() {
+    static SceneTarget target;
+    return target;
+}
+
+} // namespace vkvol::fuzz

@@ -1,0 +1,153 @@
+#include "use_scene.h"
+
+#include <cmath>
+#include <limits>
+
+#include "method.h"
+#include "scene_hash.h"
+#include "scene_upload.h"
+#include "shared/bindings.h"
+#include "target.h"
+
+namespace vkvol::fuzz {
+
+namespace {
+
+void expect_finite(float value, const char* what) {
+    expect(std::isfinite(value), what);
+}
+
+void expect_finite(const glm::vec3& v, const char* what) {
+    for (int i = 0; i < 3; ++i)
+        expect_finite(v[i], what);
+}
+
+void expect_finite(const glm::vec4 (&rows)[3], const char* what) {
+    for (const glm::vec4& row : rows)
+        for (int i = 0; i < 4; ++i)
+            expect_finite(row[i], what);
+}
+
+// Radiance is squared and summed over up to 2^31 samples, in pairs of floats.
+void expect_radiance(const glm::vec3& v, const char* what) {
+    for (int i = 0; i < 3; ++i)
+        expect(v[i] >= 0.0f && v[i] * v[i] < std::numeric_limits<float>::max() * 0x1p-31f, what);
+}
+
+void check_camera(const shared::CameraParams& camera) {
+    expect_finite(camera.position, "the camera's position is not finite");
+    expect_finite(camera.corner, "the picture's corner is not finite");
+    expect_finite(camera.right, "the width of a pixel is not finite");
+    expect_finite(camera.down, "the height of a pixel is not finite");
+    expect(glm::length(camera.right) > 0.0f && glm::length(camera.down) > 0.0f, "pixels have no extent");
+    const float squared = glm::dot(camera.corner, camera.corner);
+    expect(std::isfinite(squared) && squared > 0.0f, "the picture's corner has no direction");
+}
+
+void check_volume(const shared::VolumeParams& v) {
+    expect_finite(v.to_medium, "the map to the medium is not finite");
+    expect_finite(v.bounds_min, "the medium's bounds are not finite");
+    expect_finite(v.bounds_max, "the medium's bounds are not finite");
+    expect_finite(v.extent, "the medium's extent is not finite");
+    expect(std::isfinite(v.sigma_t) && v.sigma_t >= 0.0f, "the extinction is not finite");
+    expect_finite(v.sigma_ratio, "the ratio of extinctions is not finite");
+    expect_finite(v.albedo, "the albedo is not finite");
+    expect(std::abs(v.g) < 1.0f, "g is not between -1 and 1 in single precision");
+    expect_radiance(v.emission.constant, "constant emission is out of range");
+    expect_radiance(v.emission.color, "the temperature's colour is out of range");
+    expect_finite(v.emission.to_index, "the map to the temperature grid is not finite");
+    expect_finite(v.emission.kelvin_scale, "temperatureScale is not finite");
+    expect_finite(v.emission.kelvin_offset, "temperatureOffset is not finite");
+    expect_finite(v.emission.kelvin_cutoff, "temperatureCutoff is not finite");
+    expect_finite(v.emission.table_high, "the hottest temperature is not finite");
+    expect(std::isfinite(v.majorant) && std::isfinite(v.control) && std::isfinite(v.residual),
+           "bounds of the density are not finite");
+    expect(std::isfinite(v.majorant * v.sigma_t), "the majorant of the extinction is not finite");
+    for (std::uint32_t k = 0; k < v.noise.octaves; ++k)
+        for (int i = 0; i < 4; ++i)
+            expect_finite(v.noise.to_noise[k][i], "an octave of noise is not finite");
+}
+
+void check_frame(const shared::FrameParams& frame, int shape) {
+    check_camera(frame.camera);
+    if (shape != SHAPE_NONE)
+        check_volume(frame.volume);
+    expect_radiance(frame.light.irradiance, "the light is out of range");
+    expect_finite(frame.light.direction, "the light's direction is not finite");
+    expect_radiance(frame.background, "the background is out of range");
+    expect(std::isfinite(frame.march.step) && frame.march.step > 0.0f, "the step is not a positive float");
+    expect(std::isfinite(frame.march.shadow_step) && frame.march.shadow_step > 0.0f,
+           "the step of shadow rays is not a positive float");
+    expect(std::isfinite(frame.march.optical_step) && frame.march.optical_step > 0.0f,
+           "the optical step is not a positive float");
+}
+
+void check_loaded(const LoadedVolume& loaded) {
+    if (loaded.field)
+        check_field(*loaded.field);
+    if (loaded.temperature)
+        check_field(*loaded.temperature);
+    if (loaded.majorants)
+        for (const float bound : loaded.majorants->bounds)
+            expect(std::isfinite(bound) && bound >= 0.0f, "a majorant is not finite");
+    for (const shared::ControlCell& cell : loaded.controls)
+        expect(std::isfinite(cell.control) && std::isfinite(cell.residual), "a control density is not finite");
+    for (const glm::vec3& color : loaded.blackbody)
+        expect_radiance(color, "a black body is out of range");
+    if (loaded.bvh)
+        for (const glm::vec3& corner : loaded.bvh->triangles)
+            expect_finite(corner, "a corner of a triangle is not finite");
+}
+
+} // namespace
+
+void check_field(const DensityField& field) {
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 3; ++row)
+            expect(std::isfinite(field.index_to_world[column][row]), "a grid's transform is not finite");
+    if (field.active_voxels == 0)
+        return;
+    const glm::ivec3 n = field.leaf_dims;
+    expect(n.x > 0 && n.y > 0 && n.z > 0 &&
+               field.leaf_table.size() == std::size_t(n.x) * std::size_t(n.y) * std::size_t(n.z),
+           "the leaf table has another size than its dimensions say");
+    expect((field.voxel_min >> 3) == field.leaf_min && (field.voxel_max >> 3) == field.leaf_min + n - 1,
+           "the leaf table does not cover the active voxels");
+    constexpr std::size_t values_offset = 96; // of a leaf's values, as in density.glsl
+    const auto log2_bits = [&](std::size_t leaf) {
+        return field.type == GRID_FLOAT  ? 5u
+               : field.type == GRID_FP4  ? 2u
+               : field.type == GRID_FP8  ? 3u
+               : field.type == GRID_FP16 ? 4u
+                                         : std::to_integer<unsigned>(field.bytes.data()[leaf + 15]) >> 5u;
+    };
+    std::uint32_t before = 0;
+    for (const std::uint32_t entry : field.leaf_table) {
+        if (entry == before)
+            continue;
+        before = entry;
+        const std::size_t at = std::size_t{entry >> 1} * 4;
+        expect(at < field.bytes.size(), "an entry of the leaf table points outside the grid");
+        std::size_t size = 4;
+        if (entry & 1u) {
+            expect(at + values_offset <= field.bytes.size(), "a leaf begins at the end of the grid");
+            expect(log2_bits(at) <= 5u, "a leaf has too many bits per value");
+            size = values_offset + (std::size_t{64} << log2_bits(at));
+        }
+        expect(at + size <= field.bytes.size(), "an entry of the leaf table reaches beyond the grid");
+    }
+}
+
+void use_scene(const Scene& authored) {
+    const Scene scene = with_preset(authored);
+    const Method method = choose_method(scene);
+    expect(scene_hash(scene).size() == 16, "a scene hash has 16 digits");
+    const LoadedVolume loaded = load_volume(scene, method);
+    check_loaded(loaded);
+    const Specialization constants = specialize(scene, loaded, method);
+    is_chromatic(scene);
+    const Crop crop{0, scene.picture.width, 0, scene.picture.height};
+    check_frame(make_frame(scene, loaded, method, crop, 1), static_cast<int>(constants[SPEC_SHAPE]));
+}
+
+} // namespace vkvol::fuzz

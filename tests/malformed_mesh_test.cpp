@@ -1,0 +1,69 @@
+// Meshes that are none, and materials that are not there: found by tests/fuzz, kept here.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
+
+#include "bvh.h"
+#include "error.h"
+#include "mesh.h"
+
+using namespace vkvol;
+using Catch::Contains;
+
+namespace {
+
+struct Directory {
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("vkvol_malformed_mesh_" + std::to_string(::getpid()));
+
+    Directory() { std::filesystem::create_directories(path); }
+    ~Directory() { std::filesystem::remove_all(path); }
+    std::filesystem::path write(const std::string& name, const std::string& text) const {
+        std::ofstream(path / name, std::ios::binary) << text;
+        return path / name;
+    }
+};
+
+const std::string tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl red\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+
+} // namespace
+
+TEST_CASE("a material library that cannot be read is named", "[cpu][mesh]") {
+    const Directory directory;
+    for (const std::string name : {"none.mtl", "/dev/zero", "."}) {
+        CAPTURE(name);
+        const Mesh mesh = load_mesh({{directory.write("mesh.obj", "mtllib " + name + "\n" + tetrahedron)}});
+        CHECK(!mesh.diffuse);
+        REQUIRE(mesh.warnings.size() == 1);
+        CHECK_THAT(mesh.warnings[0],
+                   Contains("mesh.obj: its material library") && Contains(name) && Contains("put it"));
+    }
+    // Of several names the first that can be read is taken, and then all is well.
+    directory.write("red.mtl", "newmtl red\nKd 1 0 0\n");
+    CHECK(load_mesh({{directory.write("mesh.obj", "mtllib red.mtl\n" + tetrahedron)}}).warnings.empty());
+}
+
+TEST_CASE("a material whose colour is none is left out", "[cpu][mesh]") {
+    const Directory directory;
+    for (const std::string number : {"-1", "1e30"}) {
+        CAPTURE(number);
+        directory.write("red.mtl", "newmtl red\nKd 0.5 " + number + " 0\n");
+        const Mesh mesh = load_mesh({{directory.write("mesh.obj", "mtllib red.mtl\n" + tetrahedron)}});
+        CHECK(!mesh.diffuse);
+        REQUIRE(mesh.warnings.size() == 1);
+        CHECK_THAT(mesh.warnings[0], Contains("Kd of material \"red\""));
+    }
+}
+
+TEST_CASE("a mesh that has no end is not begun", "[cpu][mesh]") {
+    CHECK_THROWS_WITH(load_mesh({{"/dev/zero"}}), Contains("no regular file"));
+    CHECK_THROWS_AS(load_mesh({{std::string(10000, 'x')}}), InputError);
+}
+
+TEST_CASE("triangles all in one place have a hierarchy", "[cpu][mesh]") {
+    Mesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles.assign(100, {0, 1, 2});
+    CHECK(build_bvh(mesh, glm::dvec3(0.0)).triangles.size() == 300);
+}
