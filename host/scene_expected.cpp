@@ -5,6 +5,10 @@
 
 namespace vkvol {
 
+namespace {
+constexpr Limits expected_radiance{0.0, no_limit, true, true, "a number >= 0", false};
+}
+
 std::optional<Expected> SceneReader::expected() const {
     const XmlElement element = one("expected");
     element.allow({"mean", "bias", "exact"});
@@ -20,7 +24,7 @@ std::optional<Expected> SceneReader::expected() const {
 Rgb SceneReader::channels(const XmlElement& element, const char* attribute, const Rgb& fallback) const {
     if (!element.has(attribute))
         return fallback;
-    const std::vector<double> numbers = element.attribute_numbers(attribute, not_negative);
+    const std::vector<double> numbers = element.attribute_numbers(attribute, expected_radiance);
     if (numbers.size() == 1)
         return Rgb(numbers[0]);
     if (numbers.size() != 3)

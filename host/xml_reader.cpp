@@ -60,7 +60,7 @@ std::string read_number(const std::string& text, const Limits& limits, double& v
         return fmt::format("{} is out of range; expected {}", quoted(text), limits.expected);
     if (error != std::errc() || end != last || !std::isfinite(value))
         return fmt::format("{} is not a number; expected {}", quoted(text), limits.expected);
-    if (std::abs(value) < smallest_number)
+    if (limits.device && std::abs(value) < smallest_number)
         value = 0.0;
     if (!inside(value, limits))
         return fmt::format("{} is out of range; expected {}{}", quoted(text), limits.expected,

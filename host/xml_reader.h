@@ -66,6 +66,7 @@ struct Limits {
     bool low_included;
     bool high_included;
     const char* expected; // completes "expected ..."
+    bool device = true;   // the device has to take it: what is too small counts as 0
 };
 
 // Single precision on the device ends at 3e38 and 1e-38; the margin is for what is multiplied or divided there. What is
