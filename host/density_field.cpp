@@ -92,11 +92,6 @@ float DensityField::value(glm::ivec3 ijk) const {
     return leaf_value(type, at, static_cast<unsigned>(low.x << 6 | low.y << 3 | low.z));
 }
 
-bool DensityField::is_empty_block(glm::ivec3 ijk) const {
-    const std::uint32_t entry = block_entry(*this, ijk);
-    return !(entry & 1u) && read_float(bytes.data() + std::size_t{entry >> 1} * 4) == 0.0f;
-}
-
 DensityField::Block DensityField::block(glm::ivec3 block) const {
     const glm::ivec3 first = (leaf_min + block) * 8;
     Block result{glm::max(first, voxel_min), glm::min(first + 7, voxel_max), std::nullopt};

@@ -25,8 +25,6 @@ struct DensityField {
 
     // Decoded value of a voxel, >= 0; 0 outside the box of active voxels.
     float value(glm::ivec3 ijk) const;
-    // True if the block that holds this voxel of the box is one constant 0.
-    bool is_empty_block(glm::ivec3 ijk) const;
     // The largest voxel value.
     float max_value() const;
     // Part of the box that the 8^3 block has, and its value if it is one constant, else none. `block`: from leaf_min.

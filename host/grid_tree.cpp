@@ -37,7 +37,7 @@ static_assert(sizeof(nanovdb::NanoLeaf<nanovdb::FpN>::DataType) == leaf_values);
 // Of a transform and its inverse: products of three stay finite in the kernels.
 constexpr double largest_entry = 1e11;
 
-// Word offsets times two fit 32 bits.
+// The table of leaves keeps word offsets in 31 bits.
 constexpr std::size_t largest_grid = std::size_t{1} << 33;
 
 // A table this large means a box of 4300^3 voxels.
@@ -80,7 +80,7 @@ public:
     Builder(DensityField& field, const std::string& place) : field_(field), place_(place) {}
 
     void build() {
-        if (field_.bytes.size() > std::uint64_t{1} << 33) // the table keeps word offsets in 31 bits
+        if (field_.bytes.size() > largest_grid)
             throw InputError(fmt::format("{}: the grid takes {:.1f} GiB, and 8 GiB are the most; crop it or write it "
                                          "quantised (nanovdb_convert --fp8 takes a quarter of the bytes of floats)",
                                          place_, field_.bytes.size() / 1073741824.0));
@@ -89,11 +89,6 @@ public:
         const auto* tree = at<nanovdb::TreeData<3>>(tree_offset);
         const std::size_t root_offset = tree_offset + tree->mNodeOffset[3];
         Root* root = at<Root>(root_offset);
-        if (field_.bytes.size() > largest_grid)
-            throw InputError(
-                fmt::format("{}: the grid has {} bytes, but a table of leaves reaches {} bytes; quantise it "
-                            "(nanovdb_convert --fp8), or split it",
-                            place_, field_.bytes.size(), largest_grid));
         if (root->mTableSize > field_.bytes.size() / sizeof(Root::Tile))
             damaged();
         bytes_left_ = field_.bytes.size();
