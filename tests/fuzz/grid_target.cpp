@@ -20,6 +20,11 @@ using Root = nanovdb::NanoRoot<float>::DataType;
 using Upper = nanovdb::NanoUpper<float>::DataType;
 using Lower = nanovdb::NanoLower<float>::DataType;
 
+// Their sum, modulo 2^64: offsets in a damaged tree may be anything.
+std::int64_t beyond(std::int64_t a, std::int64_t b) {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+}
+
 template <class Node> Node* node_at(std::span<std::byte> grid, std::int64_t offset) {
     if (offset < 0 || offset % 32 != 0 || static_cast<std::size_t>(offset) + sizeof(Node) > grid.size())
         return nullptr;
@@ -37,7 +42,7 @@ template <class Node> std::int64_t random_child(Node* node, std::int64_t offset,
     for (int attempt = 0; attempt < 50000; ++attempt) { // few bits are set
         const auto n = static_cast<std::uint32_t>(random.below(child_count<Node>));
         if (node->mChildMask.isOn(n))
-            return offset + node->mTable[n].child;
+            return beyond(offset, node->mTable[n].child);
     }
     return -1;
 }
@@ -45,7 +50,7 @@ template <class Node> std::int64_t random_child(Node* node, std::int64_t offset,
 Way random_way(std::span<std::byte> grid, Random& random) {
     Way way;
     const auto* tree = node_at<nanovdb::TreeData<3>>(grid, sizeof(nanovdb::GridData));
-    way.root = sizeof(nanovdb::GridData) + static_cast<std::int64_t>(tree->mNodeOffset[3]);
+    way.root = beyond(sizeof(nanovdb::GridData), static_cast<std::int64_t>(tree->mNodeOffset[3]));
     const Root* root = node_at<Root>(grid, way.root);
     if (!root || root->mTableSize == 0)
         return way;
@@ -53,7 +58,7 @@ Way random_way(std::span<std::byte> grid, Random& random) {
     const auto* tile = node_at<Root::Tile>(grid, way.tile);
     if (!tile || tile->child == 0)
         return way;
-    way.upper = way.root + tile->child;
+    way.upper = beyond(way.root, tile->child);
     if (auto* upper = node_at<Upper>(grid, way.upper))
         way.lower = random_child(upper, way.upper, random);
     if (auto* lower = node_at<Lower>(grid, way.lower))
@@ -70,12 +75,13 @@ template <class Node> void redirect_child(std::span<std::byte> grid, std::int64_
     const auto n = static_cast<std::uint32_t>(random.below(child_count<Node>));
     if (random.one_in(2)) {
         node->mChildMask.setOn(n);
-        node->mTable[n].child =
-            random.one_in(2) ? child - offset : static_cast<std::int64_t>(random.below(grid.size())) / 32 * 32 - offset;
+        node->mTable[n].child = random.one_in(2)
+                                    ? beyond(child, -offset)
+                                    : static_cast<std::int64_t>(random.below(grid.size())) / 32 * 32 - offset;
     } else if (random.one_in(20)) { // the whole table: nothing but one child
         for (std::uint32_t i = 0; i < child_count<Node>; ++i) {
             node->mChildMask.setOn(i);
-            node->mTable[i].child = child - offset;
+            node->mTable[i].child = beyond(child, -offset);
         }
     } else {
         put_interesting(grid, static_cast<std::size_t>(reinterpret_cast<std::byte*>(&node->mTable[n]) - grid.data()),
