@@ -8,6 +8,7 @@
 #include <new>
 #include <unistd.h>
 
+#include "bench.h"
 #include "compare.h"
 #include "device_command.h"
 #include "error.h"
@@ -46,6 +47,8 @@ int run(const vkvol::Options& options) {
         return vkvol::run_compare(options.compare);
     case vkvol::Command::merge:
         return vkvol::run_merge(options.merge);
+    case vkvol::Command::bench:
+        return vkvol::run_bench(options.bench);
     case vkvol::Command::print:
         std::fputs(options.text.c_str(), stdout);
         break;

@@ -1,12 +1,13 @@
 #include "options.h"
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <fmt/format.h>
 
+#include "bench_options.h"
 #include "error.h"
 #include "integrators.h"
 #include "nearest_name.h"
+#include "option_groups.h"
 #include "option_values.h"
 #include "options_help.h"
 
@@ -35,57 +36,6 @@ ToneCurve tone_curve(const std::string& name) {
                               {"reinhard", ToneCurve::reinhard}});
 }
 
-std::vector<std::string> option_names(const CLI::App& app) {
-    std::vector<std::string> names;
-    for (const CLI::Option* option : app.get_options()) {
-        for (const std::string& name : option->get_lnames())
-            names.push_back("--" + name);
-        for (const std::string& name : option->get_snames())
-            names.push_back("-" + name);
-    }
-    return names;
-}
-
-// Parses, and turns what CLI11 throws into one line. False: help was asked for and is in options.text.
-bool run_parser(CLI::App& app, const std::vector<std::string>& arguments, Options& options) {
-    app.allow_extras(); // so that the hint can be ours
-    app.get_formatter()->column_width(34);
-    try {
-        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-    } catch (const CLI::CallForHelp&) {
-        options.command = Command::print;
-        options.text = app.help();
-        return false;
-    } catch (const CLI::ParseError& error) {
-        std::string message = error.what();
-        std::replace(message.begin(), message.end(), '\n', ' ');
-        fail_command_line(fmt::format("{}; see {} --help", message, app.get_name()));
-    }
-    const std::vector<std::string> rest = app.remaining();
-    for (const std::string& argument : rest)
-        if (argument.size() > 1 && argument[0] == '-') {
-            const std::string name = argument.substr(0, argument.find('='));
-            const std::string nearest = nearest_name(name, option_names(app));
-            fail_command_line(fmt::format("unknown option {}{}; see {} --help", name,
-                                          nearest.empty() ? "" : "; did you mean " + nearest + "?", app.get_name()));
-        }
-    if (!rest.empty())
-        fail_command_line(fmt::format("unexpected argument '{}'; see {} --help", rest.front(), app.get_name()));
-    return true;
-}
-
-// CLI::Range lets NaN pass.
-CLI::Validator in_range(double low, double high) {
-    return CLI::Validator(
-        [low, high](std::string& text) {
-            double value = 0.0;
-            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-            const bool good = error == std::errc() && end == text.data() + text.size() && value >= low && value <= high;
-            return good ? "" : fmt::format("'{}' is not a number from {:g} to {:g}", text, low, high);
-        },
-        "");
-}
-
 struct ToneTexts {
     std::string curve = "srgb";
 
@@ -99,13 +49,6 @@ struct ToneTexts {
             ->group("Picture");
     }
 };
-
-template <typename T> CLI::Option* add_list(CLI::App& app, const char* name, std::vector<T>& list, const char* help) {
-    return app.add_option(name, list, help)
-        ->expected(1)
-        ->allow_extra_args(false)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-}
 
 // The options of `render` that need a second look after CLI11 has read them.
 struct RenderTexts {
@@ -122,14 +65,7 @@ void add_picture_options(CLI::App& app, RenderOptions& render, RenderTexts& text
     add_list(app, "-o,--output", texts.outputs, "Where to write, .exr or .png; may be given several times")
         ->option_text("FILE [SCENE.exr and SCENE.png here]")
         ->group(group);
-    app.add_option("--width", render.width, "Pixels across; the view stays, and the shape too if given alone")
-        ->check(CLI::Range(1, 65536))
-        ->option_text("W [scene]")
-        ->group(group);
-    app.add_option("--height", render.height, "Pixels down; likewise")
-        ->check(CLI::Range(1, 65536))
-        ->option_text("H [scene]")
-        ->group(group);
+    add_size_options(app, render);
     app.add_option("--crop", texts.crop,
                    "Render only this window of the picture: pixels, x1 and y1 excluded; or fractions if written with "
                    "a dot and all at most 1")
@@ -161,20 +97,11 @@ void add_sampling_options(CLI::App& app, RenderOptions& render, RenderTexts& tex
            "In place of the scene's, e.g. ratioTracking or ratioTracking:flight=weighted; see vkvol integrators")
         ->option_text("NAME[:AXIS=CHOICE...] [scene]")
         ->group(group);
-    app.add_option("--grid", render.grid, "A .nvdb or .vdb file in place of the scene's density field")
-        ->option_text("FILE [scene]")
-        ->group(group);
-    add_list(app, "-D,--define", texts.defines, "Fills $KEY in the scene; may be given several times")
-        ->option_text("KEY=VALUE")
-        ->group(group);
+    add_scene_options(app, render, texts.defines, group);
 }
 
 void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
-    app.add_option("--device", render.device, "auto, a number from vkvol devices, part of a name, a UUID, or cpu")
-        ->option_text("DEVICE [auto]")
-        ->group("Device");
-    app.add_flag("--robust", render.robust, "Robust buffer access: out-of-range reads give zero")->group("Device");
-    app.add_flag("--validate", render.validate, "Switch the Vulkan validation layer on")->group("Device");
+    add_device_options(app, render);
     app.add_flag("--no-cache", render.no_cache, "Neither read nor write the pipeline cache")->group("Device");
 
     app.add_option("--report", render.report, "Write what was done and how long it took, as JSON")
@@ -358,7 +285,8 @@ Options parse_options(int argc, const char* const* argv) {
     const std::vector<std::pair<std::string, std::pair<Command, Parser>>> commands = {
         {"render", {Command::render, parse_render}},    {"devices", {Command::devices, parse_devices}},
         {"info", {Command::info, parse_info}},          {"integrators", {Command::integrators, parse_integrators}},
-        {"compare", {Command::compare, parse_compare}}, {"merge", {Command::merge, parse_merge}}};
+        {"compare", {Command::compare, parse_compare}}, {"merge", {Command::merge, parse_merge}},
+        {"bench", {Command::bench, parse_bench}}};
     Options options;
     Parser parse = parse_render;
     if (!arguments.empty()) {

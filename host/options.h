@@ -14,7 +14,7 @@
 
 namespace vkvol {
 
-enum class Command { render, devices, info, integrators, compare, merge, print };
+enum class Command { render, devices, info, integrators, compare, merge, bench, print };
 enum class ProgressStyle { automatic, json, none };
 
 // x0, x1, y0, y1: pixels of the picture, or fractions of it.
@@ -63,11 +63,21 @@ struct MergeOptions {
     bool quiet = false;
 };
 
+struct BenchOptions {
+    RenderOptions render;                 // scene, defines, grid, size, seed, device: as for a render
+    std::vector<std::string> integrators; // NAME:axis=choice...; empty: the unbiased ones that suit the scene
+    double seconds = 60.0;                // of measured rendering, shared by all
+    std::optional<std::filesystem::path> reference;
+    std::filesystem::path name; // NAME.bench.json, NAME.bench.csv and NAME.INTEGRATOR.exr are written
+    std::string command;        // as it was typed, for the record
+};
+
 struct Options {
     Command command = Command::render;
     RenderOptions render;
     CompareOptions compare;
     MergeOptions merge;
+    BenchOptions bench;
     std::filesystem::path info_file;
     bool devices_json = false;
     bool integrators_json = false;

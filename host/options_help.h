@@ -14,6 +14,7 @@ inline constexpr const char* render_footer = R"(Other commands (each has its own
   vkvol integrators           the estimators there are, by name, and which of them are biased
   vkvol compare A.exr B.exr   are these renders of the same picture?
   vkvol merge A.exr B.exr -o OUT.exr   one image of all their samples
+  vkvol bench SCENE.xml       error against time of the integrators that suit a scene
 
 Examples:
   vkvol scenes/demo.xml                            writes demo.exr and demo.png here
@@ -42,5 +43,16 @@ be equal. Exit codes: 0 the same; 4 different; 2 the images cannot be compared.)
 inline constexpr const char* merge_description =
     "Merges renders of one picture: disjoint sample ranges or seeds of the same window, weighted by samples per "
     "pixel, or disjoint windows side by side.";
+
+inline constexpr const char* bench_description = "Measures integrators on a scene, error against time: relMSE at 1, 2, "
+                                                 "4, ... samples per pixel against a reference.";
+
+inline constexpr const char* bench_footer =
+    R"(Writes NAME.bench.json, NAME.bench.csv and each integrator's last picture, NAME.INTEGRATOR.exr. All
+integrators must estimate the same picture; biased ones are measured when named. A reference is rendered
+first, for at most half of the time again, and kept in the user's cache directory.
+
+Example:
+  vkvol bench cloud.xml --width 120 --integrators ratioTracking,ratioTracking:flight=weighted --time 2m)";
 
 } // namespace vkvol

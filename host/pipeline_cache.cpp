@@ -7,29 +7,12 @@
 #include <system_error>
 
 #include "atomic_file.h"
+#include "cache_directory.h"
 #include "vulkan_error.h"
 
 namespace vkvol {
 
 namespace {
-
-std::filesystem::path environment_path(const char* name) {
-    const char* value = std::getenv(name);
-    return value ? value : "";
-}
-
-// Of all programs; empty if there is none.
-std::filesystem::path cache_home() {
-    if (const std::filesystem::path xdg = environment_path("XDG_CACHE_HOME"); !xdg.empty())
-        return xdg;
-    const std::filesystem::path home = environment_path("HOME");
-    return home.empty() ? home : home / ".cache";
-}
-
-std::filesystem::path cache_directory() {
-    const std::filesystem::path home = cache_home();
-    return home.empty() ? home : home / "vkvol";
-}
 
 std::vector<char> read_if_possible(const std::filesystem::path& path) {
     std::error_code error;
@@ -76,7 +59,8 @@ PipelineCache::PipelineCache(const Device& device, bool use_disk) : device_(devi
 
 void forgo_driver_cache_on_full_disk() {
     constexpr std::uintmax_t enough = 16u << 20; // the index takes 1.3 MB, kernels some kB each
-    std::filesystem::path directory = environment_path("MESA_SHADER_CACHE_DIR");
+    const char* own = std::getenv("MESA_SHADER_CACHE_DIR");
+    std::filesystem::path directory = own ? own : "";
     if (directory.empty())
         directory = cache_home();
     std::error_code error;

@@ -1,0 +1,223 @@
+#include "bench.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <utility>
+
+#include "bench_figures.h"
+#include "bench_render.h"
+#include "bench_report.h"
+#include "bench_schedule.h"
+#include "error.h"
+#include "image_io.h"
+#include "interrupt.h"
+#include "messages.h"
+#include "render_notes.h"
+
+namespace vkvol {
+
+namespace {
+
+// Odd multipliers and shifts to the right: each step can be undone, so no two numbers meet (the finaliser of
+// MurmurHash3).
+std::uint32_t mix(std::uint32_t x) {
+    x = (x ^ (x >> 16)) * 0x85ebca6bu;
+    x = (x ^ (x >> 13)) * 0xc2b2ae35u;
+    return x ^ (x >> 16);
+}
+
+double load_average() {
+    double load = 0.0;
+    return getloadavg(&load, 1) == 1 ? load : 0.0;
+}
+
+class Bench {
+public:
+    explicit Bench(const BenchOptions& options)
+        : options_(options), device_({options.render.device, options.render.validate, options.render.robust}) {}
+
+    BenchResult run(const std::vector<Estimator>& estimators);
+    const Device& device() const { return device_; }
+
+private:
+    void warm_up(const std::vector<Estimator>& estimators);
+    void leave_out_slow();
+    std::uint32_t next_seed() { return seed_of_run(options_.render.seed, ++renders_); }
+    bool get_reference(const std::vector<Estimator>& estimators);
+    std::optional<double> measure(std::size_t index, std::uint32_t samples, double time_limit);
+
+    const BenchOptions& options_;
+    const Device device_;
+    BenchResult result_;
+    std::vector<double> seconds_per_sample_; // of the warm-up
+    std::uint32_t renders_ = 0;              // number of the next seed; 0 is the reference's
+    double spent_ = 0.0;
+};
+
+// One sample that is not measured, for kernels to be compiled and files to be in memory, and then one for the speed. An
+// estimator that nobody asked for is left out if it cannot be rendered after all.
+void Bench::warm_up(const std::vector<Estimator>& estimators) {
+    const double hopeless = std::max(options_.seconds, 10.0); // the second render is spared then
+    for (const Estimator& estimator : estimators) {
+        if (interrupted())
+            return;
+        try {
+            RenderResult result = render_whole(options_, estimator, device_, 1, next_seed(), std::nullopt);
+            print_warnings(options_.render, result.warnings);
+            if (result.render_seconds < hopeless)
+                result = render_whole(options_, estimator, device_, 1, next_seed(), std::nullopt);
+            seconds_per_sample_.push_back(result.render_seconds);
+        } catch (const InputError& error) {
+            if (!options_.integrators.empty() || estimator.is_default)
+                throw;
+            if (!options_.render.quiet)
+                tell(stderr, "vkvol: note: {} is left out: {}\n", estimator.integrator, error.what());
+            continue;
+        }
+        result_.measurements.push_back({estimator, {}, {}, {}});
+    }
+}
+
+// Of those that nobody asked for, the slowest, as long as its share of the time does not suffice for a figure.
+void Bench::leave_out_slow() {
+    std::vector<Measurement>& list = result_.measurements;
+    while (options_.integrators.empty() && list.size() > 1) {
+        std::size_t slowest = 0;
+        for (std::size_t i = 0; i < list.size(); ++i)
+            if (!list[i].estimator.is_default &&
+                (list[slowest].estimator.is_default || seconds_per_sample_[i] > seconds_per_sample_[slowest]))
+                slowest = i;
+        if (is_worth_measuring(seconds_per_sample_[slowest], options_.seconds / double(list.size())))
+            return;
+        if (!options_.render.quiet)
+            tell(stderr,
+                 "vkvol: note: {} is left out: {:.3g} s a sample are too many for --time; raise it, or name it\n",
+                 list[slowest].estimator.integrator, seconds_per_sample_[slowest]);
+        list.erase(list.begin() + std::ptrdiff_t(slowest));
+        seconds_per_sample_.erase(seconds_per_sample_.begin() + std::ptrdiff_t(slowest));
+    }
+}
+
+bool Bench::get_reference(const std::vector<Estimator>& estimators) {
+    std::uint32_t most = 1;
+    for (const double seconds : seconds_per_sample_)
+        most = std::max(most, predicted_count(seconds, options_.seconds / double(seconds_per_sample_.size())));
+    constexpr std::uint32_t better = 16; // times the samples of what it is to judge
+    ReferenceWish wish;
+    wish.samples = std::min<std::uint32_t>(most, (1u << 30) / better) * better;
+    wish.seconds = 0.5 * options_.seconds;
+    wish.seed = seed_of_run(options_.render.seed, 0);
+    if (!options_.reference)
+        result_.reference = find_reference(options_, estimators, device_, wish);
+    const Reference& reference = result_.reference;
+    if (!options_.render.quiet && !interrupted())
+        tell(stderr, "vkvol: reference {}{}: {} samples per pixel{}\n", reference.cached ? "read" : "rendered",
+             reference.file.empty() ? "" : ", " + reference.file, reference.samples,
+             reference.relmse ? fmt::format(", its own relMSE {:.3g}", *reference.relmse) : "");
+    return !reference.interrupted;
+}
+
+// A render that the time limit or a signal cut short has pixels of fewer samples, and is no measurement.
+std::optional<double> Bench::measure(std::size_t index, std::uint32_t samples, double time_limit) {
+    Measurement& measurement = result_.measurements[index];
+    const std::uint32_t seed = next_seed();
+    RenderResult result = render_whole(options_, measurement.estimator, device_, samples, seed, time_limit);
+    if (result.interrupted || result.samples < samples)
+        return std::nullopt;
+    const Film& reference = result_.reference.film;
+    BenchRun run{samples, seed, result.render_seconds, relative_mse(result.film, reference), std::nullopt};
+    if (samples > 1)
+        run.relmse_from_variance = relative_variance(result.film, reference);
+    measurement.runs.push_back(run);
+    measurement.last = std::exchange(result.film, {});
+    measurement.results.push_back(std::move(result));
+    spent_ += run.seconds;
+    if (!options_.render.quiet)
+        tell(stderr, "vkvol: {:5.1f} of {:g} s: {}, {} samples, relMSE {:.3g}\n", spent_, options_.seconds,
+             measurement.estimator.integrator, samples, run.relmse);
+    return run.seconds;
+}
+
+BenchResult Bench::run(const std::vector<Estimator>& estimators) {
+    if (options_.reference)
+        result_.reference = read_reference(*options_.reference, estimators);
+    result_.load_before = load_average();
+    warm_up(estimators);
+    leave_out_slow();
+    if (!interrupted() && get_reference(estimators))
+        run_rounds(
+            seconds_per_sample_, options_.seconds,
+            [this](std::size_t index, std::uint32_t samples, double limit) { return measure(index, samples, limit); },
+            interrupted);
+    result_.load_after = load_average();
+    result_.interrupted = interrupted();
+    for (const Measurement& measurement : result_.measurements)
+        if (measurement.runs.empty() && !result_.interrupted)
+            tell(stderr, "vkvol: warning: {}: no render fitted in --time\n", measurement.estimator.integrator);
+    std::erase_if(result_.measurements, [](const Measurement& m) { return m.runs.empty(); });
+    return std::move(result_);
+}
+
+void check_outputs(const BenchOptions& options) {
+    for (const char* extension : {".bench.json", ".bench.csv"})
+        check_directory_writable(options.name.string() + extension);
+}
+
+void print_notes(const BenchOptions& options, const BenchResult& result) {
+    if (options.render.quiet)
+        return;
+    for (const Measurement& measurement : result.measurements) {
+        const RenderResult& last = measurement.results.back();
+        if (!last.counts.any_cap())
+            continue;
+        tell(stderr, "vkvol: note: {}, in its last render:\n", measurement.estimator.integrator);
+        RenderOptions as = options.render;
+        as.integrator = measurement.estimator.integrator;
+        as.seed = measurement.runs.back().seed;
+        print_caps(as, last);
+    }
+    const std::optional<double> own = result.reference.relmse;
+    double best = 0.0;
+    for (const Measurement& measurement : result.measurements)
+        for (const BenchPoint& point : points_of(measurement.runs))
+            if (best == 0.0 || point.relmse < best)
+                best = point.relmse;
+    if (!own)
+        tell(stderr,
+             "vkvol: warning: the reference does not know its variance: its error counts as the integrators'\n");
+    else if (*own > 0.1 * best)
+        tell(stderr,
+             "vkvol: warning: the reference's own relMSE, {:.3g}, is more than a tenth of the least measured, {:.3g}; "
+             "more --time, or a better --reference, makes the figures surer\n",
+             *own, best);
+}
+
+} // namespace
+
+std::uint32_t seed_of_run(std::uint32_t seed, std::uint32_t number) {
+    return mix(number + mix(seed ^ 0x9e3779b9u));
+}
+
+int run_bench(const BenchOptions& options) {
+    install_interrupt_handler();
+    const std::vector<Estimator> estimators = find_estimators(options);
+    for (const Estimator& estimator : estimators)
+        if (estimator.is_default || !options.integrators.empty())
+            print_warnings(options.render, estimator.scene.warnings);
+    check_outputs(options);
+    Bench bench(options);
+    const BenchResult result = bench.run(estimators);
+    if (result.measurements.empty()) {
+        tell(stderr, "vkvol: {}: nothing is written\n",
+             result.interrupted ? "interrupted before the first measured render"
+                                : "--time is too short for a single render; raise it, or lower --width");
+        return result.interrupted ? exit_interrupted : exit_render_failed;
+    }
+    write_bench(options, bench.device(), result);
+    print_bench(result);
+    print_notes(options, result);
+    return result.interrupted ? exit_interrupted : exit_done;
+}
+
+} // namespace vkvol

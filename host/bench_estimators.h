@@ -1,0 +1,32 @@
+// What a bench measures: integrators that estimate one and the same picture, and those that could tell it what that
+// picture is.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "method.h"
+#include "options.h"
+
+namespace vkvol {
+
+struct Estimator {
+    std::string integrator; // name and explicit choices
+    Scene scene;
+    Method method;
+    bool is_default = false; // what `vkvol scene.xml` renders by, or would if that were unbiased
+};
+
+// Those asked for, or the unbiased presets that estimate what the default does and come to different methods in this
+// scene, the default first. Throws InputError, also if those asked for estimate different pictures.
+std::vector<Estimator> find_estimators(const BenchOptions& options);
+
+// Hash of the exact picture that the estimator is after: of biased ones, the hash that an unbiased estimator of the
+// same light has. Throws InputError if there is none.
+std::string expected_hash(const Estimator& estimator);
+
+// Unbiased estimators of the same picture that are none of `measured`: presets, or else what differs from the first of
+// them in one choice of flight or transmittance. If there is none of that kind either, the first unbiased one measured.
+std::vector<Estimator> reference_candidates(const std::vector<Estimator>& measured);
+
+} // namespace vkvol

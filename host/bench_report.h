@@ -1,0 +1,12 @@
+// The files a bench leaves: JSON, CSV, and each estimator's last picture.
+#pragma once
+
+#include "bench.h"
+
+namespace vkvol {
+
+// Writes NAME.bench.json, NAME.bench.csv and NAME.INTEGRATOR.exr; the keys are documented in the README. A picture that
+// cannot be written is missing in the JSON, with a warning; for the other two RenderError is thrown.
+void write_bench(const BenchOptions& options, const Device& device, const BenchResult& result);
+
+} // namespace vkvol
