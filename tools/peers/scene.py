@@ -1,0 +1,225 @@
+"""Reads vkvol's scene files for other renderers: what scenes/README.md says, as far as they can follow.
+
+What they cannot, such as emission, noise or meshes, is an error here, so that no comparison is of different scenes."""
+import dataclasses
+import math
+import pathlib
+import re
+import sys
+import xml.etree.ElementTree as ET
+
+import numpy as np
+
+import grid as grids
+
+# Paths that scatter once, or not at all: no path tracer has them.
+NOT_MULTIPLE = ("densitySampling", "homogeneousRayMarcherNEE", "homogeneousRayMarcherImproved",
+                "heterogeneousPerlinNoise", "nanoVDBSimple", "nanoVDBEmission")
+WITHOUT_LIGHT = ("deltaTracking", "densitySampling")
+LEFT_OUT = {"noise": "procedural noise", "models": "a medium in a mesh"}
+
+
+@dataclasses.dataclass
+class Camera:
+    position: np.ndarray
+    forward: np.ndarray
+    up: np.ndarray
+    fov: float  # degrees, vertical, of the reference frame
+
+
+@dataclasses.dataclass
+class Picture:
+    width: int
+    height: int
+    start: tuple  # left and top pixel in the reference frame
+    reference: tuple  # its width and height
+
+
+@dataclasses.dataclass
+class Medium:
+    shape: object  # grids.Grid, Sphere or Box
+    sigma_a: np.ndarray  # per world unit, density scale included
+    sigma_s: np.ndarray
+    g: float
+    nearest: bool  # no interpolation
+
+    @property
+    def sigma_t(self):
+        return self.sigma_a + self.sigma_s
+
+
+@dataclasses.dataclass
+class Sphere:
+    center: np.ndarray
+    radius: float
+
+    def contains(self, point):
+        return np.linalg.norm(point - self.center) < self.radius
+
+    def corners(self):
+        return box_corners(self.center - self.radius, self.center + self.radius)
+
+
+@dataclasses.dataclass
+class Box:
+    center: np.ndarray
+    size: np.ndarray  # full edges
+
+    def contains(self, point):
+        return bool(np.all(np.abs(point - self.center) < self.size / 2))
+
+    def corners(self):
+        return box_corners(self.center - self.size / 2, self.center + self.size / 2)
+
+
+@dataclasses.dataclass
+class Scene:
+    path: pathlib.Path
+    camera: Camera
+    picture: Picture
+    medium: Medium
+    light_direction: np.ndarray  # towards the light; None without one
+    irradiance: np.ndarray
+    background: np.ndarray
+    max_depth: int  # scattering events; None: unlimited
+
+
+def box_corners(low, high):
+    return np.array([[(low, high)[i >> axis & 1][axis] for axis in range(3)] for i in range(8)])
+
+
+class Reader:
+    def __init__(self, path, keys):
+        self.path, self.keys = pathlib.Path(path), dict(key.split("=", 1) for key in keys)
+        try:
+            self.root = ET.parse(path).getroot()
+        except (OSError, ET.ParseError) as error:
+            sys.exit(f"{path}: cannot be read as a scene: {error}")
+
+    def fail(self, what):
+        sys.exit(f"{self.path}: {what}")
+
+    def filled(self, text):
+        """With $key and ${key} replaced."""
+        def value(match):
+            name = match[1] or match[2]
+            if name is None:
+                return "$"
+            return self.keys[name] if name in self.keys else self.fail(f"${name} has no value; give one with -D {name}=VALUE")
+        return re.sub(r"\$(?:\$|(\w+)|\{(\w+)\})", value, text).strip()
+
+    def find(self, *names):
+        return next((e for e in map(self.root.find, names) if e is not None), None)
+
+    def text(self, name, default=""):
+        element = self.find(name)
+        return default if element is None else self.filled(element.text or "")
+
+    def number(self, element, attribute, default):
+        text = None if element is None else element.get(attribute)
+        return default if text is None else self.to_number(text)
+
+    def to_number(self, text):
+        try:
+            return float(self.filled(text))
+        except ValueError:
+            return self.fail(f"'{text}' is no number")
+
+    def vector(self, element, names="xyz"):
+        return np.array([self.number(element, name, 0.0) for name in names])
+
+    def color(self, name):
+        element = self.find(name)
+        return self.vector(element, "rgb") * self.number(element, "multiplier", 1.0)
+
+    def scene(self, grid_override):
+        for name, what in LEFT_OUT.items():
+            if self.find(name) is not None:
+                self.fail(f"has {what} (<{name}>), which is not translated; take a scene with a grid, a sphere or a box")
+        if self.color("medium").any() or self.color("emission").any():
+            self.fail("the medium glows, which is not translated; remove <medium> and <emission>")
+        integrator = self.text("integrator")
+        choices = {} if self.find("integrator") is None else self.find("integrator").attrib
+        if integrator in NOT_MULTIPLE or choices.get("scattering", "multiple") != "multiple":
+            self.fail("the integrator leaves multiple scattering out, which the peers cannot; take another one")
+        irradiance = self.color("light")
+        has_light = irradiance.any() and integrator not in WITHOUT_LIGHT and choices.get("nee") != "none"
+        direction = self.vector(self.find("light"))
+        depth = self.text("maxDepth")
+        return Scene(path=self.path, camera=self.camera(), picture=self.picture(), medium=self.medium(grid_override),
+                     light_direction=direction / np.linalg.norm(direction) if has_light else None,
+                     irradiance=irradiance, background=self.color("backgroundColor"),
+                     max_depth=int(depth) if depth else None)
+
+    def camera(self):
+        element = self.find("camera")
+        pitch, yaw, roll = (math.radians(self.number(element, name, 0.0)) for name in ("pitch", "yaw", "roll"))
+        rotation = rotation_about(2, roll) @ rotation_about(1, yaw) @ rotation_about(0, pitch)
+        return Camera(self.vector(element), rotation @ [0, 0, -1], rotation @ [0, 1, 0], self.number(element, "fov", 90.0))
+
+    def picture(self):
+        size, start, reference = [], [], []
+        for name in ("width", "height"):
+            element = self.find(name)
+            size.append(int(self.text(name, "400") or 400))
+            start.append(self.number(element, "startOffset", 0.0))
+            reference.append(self.number(element, "reference", 0.0) or size[-1])
+        return Picture(*size, tuple(start), tuple(reference))
+
+    def coefficient(self, name):
+        element = self.find(name)
+        if element is not None and element.get("r") is not None:
+            return self.vector(element, "rgb")
+        return np.full(3, self.to_number(self.text(name, "0.5") or "0"))
+
+    def shape(self, grid_override):
+        """The grid, sphere or box."""
+        field, sphere, box = (self.find(name) for name in ("densityField", "sphere", "box"))
+        if grid_override or field is not None:
+            name = "density" if field is None else field.get("grid", "density")
+            folder = "" if field is None else self.filled(field.get("baseDir", "")).replace("\\", "/")
+            path = grid_override or self.path.parent / folder / self.filled(field.text).replace("\\", "/")
+            return grids.read(path, name)
+        if sphere is not None:
+            return Sphere(self.vector(sphere), self.number(sphere, "radius", 1.0))
+        if box is not None:
+            return Box(self.vector(box), np.array([self.number(box, name, 1.0) for name in ("width", "height", "depth")]))
+        return self.fail("has no medium; there is nothing to compare")
+
+    def medium(self, grid_override):
+        shape = self.shape(grid_override)
+        sigma_a, sigma_s = self.coefficient("sigma_a"), self.coefficient("sigma_s")
+        scale = self.to_number(self.text("lightRayDensityMultiplier", "1"))
+        units = {e.get("unit", "voxel") for e in (self.find("sigma_a"), self.find("sigma_s")) if e is not None}
+        if isinstance(shape, grids.Grid) and units != {"world"}:
+            scale /= shape.voxel_size
+        element = self.find("heyneygreenstein_g", "heynegreenstein_g")
+        g = self.to_number(element.text) if element is not None else 0.0
+        return Medium(shape, sigma_a * scale, sigma_s * scale, g, self.text("filter") == "nearest")
+
+
+def rotation_about(axis, angle):
+    c, s = math.cos(angle), math.sin(angle)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    matrix = np.eye(3)
+    matrix[[i, j], [i, j]] = c
+    matrix[i, j], matrix[j, i] = -s, s
+    return matrix
+
+
+def resize(picture, width, height):
+    """As vkvol's --width and --height: the view stays, and with one of the two the shape as well."""
+    if not width and not height:
+        return picture
+    # To the nearest pixel, halves up, as vkvol has it.
+    width = width or max(1, math.floor(picture.width * height / picture.height + 0.5))
+    height = height or max(1, math.floor(picture.height * width / picture.width + 0.5))
+    factors = (width / picture.width, height / picture.height)
+    return Picture(width, height, tuple(s * f for s, f in zip(picture.start, factors)),
+                   tuple(r * f for r, f in zip(picture.reference, factors)))
+
+
+def read(path, width=None, height=None, keys=(), grid=None):
+    scene = Reader(path, keys).scene(grid)
+    scene.picture = resize(scene.picture, width, height)
+    return scene
