@@ -7,22 +7,33 @@ namespace vkvol {
 
 namespace {
 VkDescriptorType descriptor_type(std::uint32_t binding) {
-    return binding == BINDING_FRAME ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    return binding == BINDING_FRAME    ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+           : binding < BINDING_BUFFERS ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
+                                       : VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+}
+
+VkFormat texel_format(std::uint32_t binding) {
+    return binding == BINDING_LATTICE_TEXELS    ? VK_FORMAT_R32G32B32A32_SFLOAT
+           : binding == BINDING_MAJORANT_TEXELS ? VK_FORMAT_R32_SFLOAT
+                                                : VK_FORMAT_R32_UINT;
 }
 } // namespace
 
 Bindings::Bindings(const Device& device, const BoundBuffers& buffers)
-    : device_(device),
-      unused_(device, "placeholder", 256, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
-              BufferPlace::device) {
+    : device_(device), unused_(device, "placeholder", 256,
+                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                                   VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
+                               BufferPlace::device) {
     try {
         create();
+        for (std::uint32_t i = 0; i < BINDING_BUFFERS; ++i)
+            bind(i, buffers[i] ? *buffers[i] : unused_);
+        for (std::uint32_t i = BINDING_BUFFERS; i < BINDING_COUNT; ++i)
+            bind_texels(i, buffers[i] ? *buffers[i] : unused_);
     } catch (...) {
         release();
         throw;
     }
-    for (std::uint32_t i = 0; i < BINDING_COUNT; ++i)
-        bind(i, buffers[i] ? *buffers[i] : unused_);
 }
 
 void Bindings::create() {
@@ -44,8 +55,10 @@ void Bindings::create() {
     layout.pPushConstantRanges = &push;
     VK_CHECK(vkCreatePipelineLayout(device_.handle(), &layout, nullptr, &layout_));
 
-    const std::array<VkDescriptorPoolSize, 2> sizes{
-        {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1}, {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BINDING_COUNT - 1}}};
+    const std::array<VkDescriptorPoolSize, 3> sizes{
+        {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
+         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BINDING_BUFFERS - 1},
+         {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, BINDING_COUNT - BINDING_BUFFERS}}};
     VkDescriptorPoolCreateInfo pool{};
     pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
     pool.maxSets = 1;
@@ -72,11 +85,30 @@ void Bindings::bind(std::uint32_t binding, const Buffer& buffer) {
     vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
 }
 
+void Bindings::bind_texels(std::uint32_t binding, const Buffer& buffer) {
+    VkBufferViewCreateInfo create{};
+    create.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO;
+    create.buffer = buffer.handle();
+    create.format = texel_format(binding);
+    create.range = VK_WHOLE_SIZE;
+    VK_CHECK(vkCreateBufferView(device_.handle(), &create, nullptr, &views_.emplace_back(VK_NULL_HANDLE)));
+    VkWriteDescriptorSet write{};
+    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.dstSet = set_;
+    write.dstBinding = binding;
+    write.descriptorCount = 1;
+    write.descriptorType = descriptor_type(binding);
+    write.pTexelBufferView = &views_.back();
+    vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
+}
+
 Bindings::~Bindings() {
     release();
 }
 
 void Bindings::release() {
+    for (const VkBufferView view : views_)
+        vkDestroyBufferView(device_.handle(), view, nullptr);
     vkDestroyDescriptorPool(device_.handle(), pool_, nullptr);
     vkDestroyPipelineLayout(device_.handle(), layout_, nullptr);
     vkDestroyDescriptorSetLayout(device_.handle(), set_layout_, nullptr);

@@ -2,13 +2,15 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "buffer.h"
 #include "shared/bindings.h"
 
 namespace vkvol {
 
-// Buffers by binding number. Bindings that a scene has no use for may be left null.
+// Buffers by binding number. Bindings that a scene has no use for may be left null. Those from BINDING_BUFFERS on are
+// read as texels, and made with VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT.
 using BoundBuffers = std::array<const Buffer*, BINDING_COUNT>;
 
 class Bindings {
@@ -27,6 +29,7 @@ public:
 private:
     void create();
     void release();
+    void bind_texels(std::uint32_t binding, const Buffer& buffer);
 
     const Device& device_;
     Buffer unused_; // stands where a scene needs no buffer
@@ -34,6 +37,7 @@ private:
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
     VkDescriptorPool pool_ = VK_NULL_HANDLE;
     VkDescriptorSet set_ = VK_NULL_HANDLE;
+    std::vector<VkBufferView> views_;
 };
 
 } // namespace vkvol

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "method.h"
 #include "nearest_name.h"
 #include "shared/bindings.h"
 
@@ -27,7 +28,7 @@ const std::vector<Axis>& axes() {
         {"transmittance",
          &AxisChoices::transmittance,
          {"analytic", "regular", "delta", "ratio", "residual", "march", "telescoping", "jackknife"}},
-        {"nee", &AxisChoices::nee, {"none", "collisions", "tentative"}},
+        {"nee", &AxisChoices::nee, {"none", "collisions", "tentative", "cached"}},
         {"emission", &AxisChoices::emission, {"collisions", "steps"}},
     };
     return table;
@@ -62,6 +63,10 @@ const std::vector<Integrator>& integrators() {
         {"ratioTracking", SCATTERING_MULTIPLE, FREE_FLIGHT_DELTA, TRANSMITTANCE_RATIO, NEE_COLLISIONS, adjust_nothing,
          thesis_grids, "", "maxDepth, filter, majorant, russianRoulette",
          "analog multiple scattering with a ratio-tracked shadow ray from every collision", "Novak et al. 2014"},
+        {"cachedRatioTracking", SCATTERING_MULTIPLE, FREE_FLIGHT_DELTA, TRANSMITTANCE_RATIO, NEE_CACHED, adjust_nothing,
+         own, "", "maxDepth, filter, majorant, russianRoulette",
+         "ratioTracking with few shadow rays: they correct, by chance, what a coarse table of transmittances says",
+         "Novak et al. 2014; Glynn and Szechtman 2002"},
         {"ratioNEE", SCATTERING_MULTIPLE, FREE_FLIGHT_DELTA, TRANSMITTANCE_RATIO, NEE_TENTATIVE, adjust_nothing, own,
          "", "maxDepth, filter, majorant, russianRoulette",
          "ratioTracking with shadow rays from every tentative collision, null ones too: dearer, less noise in thin "
@@ -142,7 +147,8 @@ void check_integrator(const std::string& name) {
 const Integrator& choose_integrator(const Scene& scene) {
     const std::string name = !scene.settings.integrator.empty() ? scene.settings.integrator
                              : scene.lights.empty()             ? "deltaTracking"
-                                                                : "ratioTracking";
+                             : !can_cache_light(scene)          ? "ratioTracking"
+                                                                : "cachedRatioTracking";
     check_integrator(name);
     return *find_integrator(name);
 }

@@ -5,6 +5,7 @@
 
 #include "blackbody.h"
 #include "error.h"
+#include "pilot_paths.h"
 #include "render_limits.h"
 #include "shared/bindings.h"
 
@@ -72,6 +73,19 @@ void load_temperature(const Volume& volume, const GridFile& file, LoadedVolume& 
     loaded.temperature = std::move(field);
 }
 
+PilotScene pilot_scene(const Scene& scene, const Method& method, const DensityField& field, double sigma_t) {
+    const Volume& volume = scene.volumes.front();
+    const glm::dmat4 to_index = glm::inverse(field.index_to_world);
+    PilotScene pilot;
+    pilot.eye = to_index * glm::dvec4(scene.camera.position, 1.0);
+    if (method.nee == NEE_COLLISIONS || method.nee == NEE_TENTATIVE)
+        pilot.light = glm::normalize(glm::dvec3(to_index * glm::dvec4(scene.lights.front().direction, 0.0)));
+    pilot.sigma_t = sigma_t;
+    pilot.albedo = largest(volume.sigma_s) / std::max(largest(volume.sigma_a + volume.sigma_s), 1e-300);
+    pilot.g = volume.g;
+    return pilot;
+}
+
 // The cells' bounds are scaled after the controls are made: these bound the density itself.
 void load_grid(const Scene& scene, const Volume& volume, const Method& method, const GridFile& file,
                LoadedVolume& loaded) {
@@ -80,7 +94,9 @@ void load_grid(const Scene& scene, const Volume& volume, const Method& method, c
         return;
     const double scale = scene.settings.majorant_scale;
     const double voxel_sigma_t = largest(world_sigma_t(volume, &field)) * field.voxel_size();
-    loaded.majorants = make_majorant_grid(field, scene.settings.majorant_cell, voxel_sigma_t * scale);
+    const int cell = scene.settings.majorant_cell;
+    loaded.majorants = cell > 0 ? make_majorant_grid(field, cell)
+                                : choose_majorant_grid(field, pilot_scene(scene, method, field, voxel_sigma_t * scale));
     const bool decomposes = method.free_flight == FREE_FLIGHT_DECOMPOSITION;
     if (decomposes || (method.nee != NEE_NONE && method.transmittance == TRANSMITTANCE_RESIDUAL))
         loaded.controls = make_controls(field, *loaded.majorants, decomposes ? 0.0 : voxel_sigma_t);

@@ -1,8 +1,9 @@
 #include "majorant_grid.h"
 
+#include "pilot_paths.h"
+
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace vkvol {
 
@@ -80,13 +81,6 @@ MajorantGrid merge_cells(const MajorantGrid& fine) {
     return coarse;
 }
 
-// Steps per voxel of a ray's length, averaged over the grid's box and all directions: a ray meets a face every
-// cell / 1.5 voxels, 1.5 being the mean of |x| + |y| + |z| over unit vectors.
-double steps_per_voxel(const MajorantGrid& grid, double sigma_t) {
-    const double sum = std::accumulate(grid.bounds.begin(), grid.bounds.end(), 0.0);
-    return sigma_t * sum / static_cast<double>(grid.bounds.size()) + 1.5 / grid.cell;
-}
-
 struct CellValues {
     double least = 1e300, mean = 0.0;
 };
@@ -112,13 +106,21 @@ CellValues cell_values(const DensityField& field, const MajorantGrid& grid, glm:
 
 } // namespace
 
-MajorantGrid make_majorant_grid(const DensityField& field, int cell, double sigma_t) {
-    if (cell > 0)
-        return build(field, cell);
-    MajorantGrid best = build(field, 4);
-    for (MajorantGrid next = merge_cells(best); next.cell <= 64; next = merge_cells(next))
-        if (steps_per_voxel(next, sigma_t) < steps_per_voxel(best, sigma_t))
-            best = next;
+MajorantGrid make_majorant_grid(const DensityField& field, int cell) {
+    return build(field, cell);
+}
+
+MajorantGrid choose_majorant_grid(const DensityField& field, const PilotScene& scene) {
+    MajorantGrid grid = build(field, 4), best = grid;
+    const std::vector<PilotSegment> segments = pilot_paths(field, grid, scene);
+    double fewest = pilot_steps(segments, grid, scene.sigma_t);
+    while (grid.cell < 64) {
+        grid = merge_cells(grid);
+        if (const double steps = pilot_steps(segments, grid, scene.sigma_t); steps < fewest) {
+            fewest = steps;
+            best = grid;
+        }
+    }
     return best;
 }
 

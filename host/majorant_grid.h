@@ -20,11 +20,14 @@ struct MajorantGrid {
     std::vector<float> bounds;
 };
 
-// `cell` voxels along an edge; 0 chooses the power of two from 4 to 64 for which a ray through the grid takes the
-// fewest steps: the majorant's optical depth, which is the number of lookups, plus the cells it crosses (Yue et al.,
-// "Toward Optimal Space Partitioning for Unbiased, Adaptive Free Path Sampling", 2011). A lookup and a cell step take
-// about the same time. `sigma_t`: extinction at density 1 per voxel. More than 2^24 cells are never made.
-MajorantGrid make_majorant_grid(const DensityField& field, int cell, double sigma_t);
+// `cell` voxels along an edge, > 0. More than 2^24 cells are never made.
+MajorantGrid make_majorant_grid(const DensityField& field, int cell);
+
+// Of cells of 4, 8 ... 64 voxels those over which paths of this scene take the fewest steps (after Yue et al., "Toward
+// Optimal Space Partitioning for Unbiased, Adaptive Free Path Sampling", 2011; but along paths, not over the grid's
+// box: they stay where the medium is thin, or near its surface where it is dense).
+struct PilotScene;
+MajorantGrid choose_majorant_grid(const DensityField& field, const PilotScene& scene);
 
 // A control density for each cell of `grid` (whose bounds are the densities' own, not scaled), with the bound of what
 // the density differs from it: the least value in the cell, or, where the rest is optically thin across the cell, the

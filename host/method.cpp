@@ -108,14 +108,19 @@ void Resolution::choose_nee() {
                                        : "nee is without effect: nothing scatters");
         nee = NEE_NONE;
     } else if (is_through(method_)) {
-        if (choices_.nee == NEE_COLLISIONS)
+        if (choices_.nee == NEE_COLLISIONS || choices_.nee == NEE_CACHED)
             warn("a march through the medium has no collisions; shadow rays start at every step");
         // A march with single scattering that sends no shadow rays would not scatter at all: only if told so.
-        if (!choices_.nee || nee == NEE_COLLISIONS)
+        if (!choices_.nee || nee == NEE_COLLISIONS || nee == NEE_CACHED)
             nee = NEE_TENTATIVE;
     } else if (nee == NEE_TENTATIVE && !samples_null_collisions(method_.free_flight)) {
         if (choices_.nee)
             warn("these flights have no null collisions; shadow rays start at real ones");
+        nee = NEE_COLLISIONS;
+    } else if (nee == NEE_CACHED && (field_ == FIELD_CONSTANT || !can_cache_light(scene_))) {
+        if (choices_.nee)
+            warn("a cache of transmittances is for grids, and for noise in spheres and boxes; shadow rays start at "
+                 "every collision");
         nee = NEE_COLLISIONS;
     }
 }
@@ -216,6 +221,10 @@ int density_kind(const Scene& scene) {
         return FIELD_CONSTANT;
     const Volume& volume = scene.volumes.front();
     return std::holds_alternative<GridFile>(volume.shape) ? FIELD_GRID : volume.noise ? FIELD_NOISE : FIELD_CONSTANT;
+}
+
+bool can_cache_light(const Scene& scene) {
+    return density_kind(scene) != FIELD_CONSTANT && !std::holds_alternative<MeshFiles>(scene.volumes.front().shape);
 }
 
 bool has_chromatic_extinction(const Scene& scene) {

@@ -37,7 +37,9 @@ bool is_through(const Method& method);
 // FIELD_..., FIELD_CONSTANT without a volume.
 int density_kind(const Scene& scene);
 bool has_chromatic_extinction(const Scene& scene); // sigma_t differs between channels
-bool emits(const Scene& scene);                    // judged by coefficients: the temperature grid may be missing
+// Where transmittances towards a light can be cached: the density varies, and the shape is no mesh.
+bool can_cache_light(const Scene& scene);
+bool emits(const Scene& scene); // judged by coefficients: the temperature grid may be missing
 
 // `field`: FIELD_... Expects the scene of with_preset(). Throws InputError, with the remedy, for what cannot be.
 Method choose_method(const Scene& scene, int field, bool chromatic_extinction, bool emits);

@@ -9,6 +9,7 @@
 #include "error.h"
 #include "film_bands.h"
 #include "integrators.h"
+#include "light_cache.h"
 #include "scene_buffers.h"
 #include "scene_upload.h"
 #include "trace.h"
@@ -61,9 +62,11 @@ std::string describe(const Specialization& s, const LoadedVolume& volume, bool c
     text += fmt::format("{}, {} flight", chromatic ? ", chromatic" : "", choice(1, s[SPEC_FREE_FLIGHT]));
     text += scatterings[s[SPEC_SCATTERING]];
     if (s[SPEC_NEE] != NEE_NONE)
-        text +=
-            fmt::format(", light at {} by {} transmittance",
-                        s[SPEC_NEE] == NEE_COLLISIONS ? "collisions" : "every step", choice(2, s[SPEC_TRANSMITTANCE]));
+        text += fmt::format(", light at {} by {} transmittance",
+                            s[SPEC_NEE] == NEE_COLLISIONS ? "collisions"
+                            : s[SPEC_NEE] == NEE_CACHED   ? "collisions from a cache corrected"
+                                                          : "every step",
+                            choice(2, s[SPEC_TRANSMITTANCE]));
     text += emissions[s[SPEC_EMISSION]];
     return text + (s[SPEC_EMISSION_AT] == EMISSION_AT_STEPS ? " along flights" : "");
 }
@@ -88,7 +91,8 @@ public:
         result_.biased = method.biased;
         result_.specialization = describe(specialization, volume, chromatic);
         const Tuning tuning = tune(device, volume.bvh ? volume.bvh->nodes.size() : 0, job.tuning);
-        buffers_.emplace(device, commands_, volume, tuning.most_grid_bytes);
+        buffers_.emplace(device, commands_, volume, tuning.most_grid_bytes, tuning.most_texel_bytes);
+        specialization[SPEC_TEXELS] = buffers_->texels() ? 1 : 0;
         result_.specialization += buffers_->window_bits() ? ", grids in windows" : "";
         frame_ = make_frame(scene_, volume, method, job.crop, job.seed);
         bands_ = make_bands(device, commands_, job.crop, tuning.most_film_bytes);
@@ -106,10 +110,19 @@ public:
             specialization[SPEC_TRACE] = 1;
             bound[BINDING_TRACE] = &trace_->buffer();
         }
+        if (specialization[SPEC_NEE] == NEE_CACHED && specialization[SPEC_SHAPE] != SHAPE_NONE) {
+            buffers_->set_frame(commands_, frame_);
+            light_cache_.emplace(device, commands_, bound, frame_.lattice, specialization, buffers_->window_bits(),
+                                 cache.handle());
+            bound[BINDING_LATTICE] = &light_cache_->buffer();
+            if (buffers_->texels())
+                bound[BINDING_LATTICE_TEXELS] = &light_cache_->buffer();
+        }
         wavefront_.emplace(device, bound, bands_.front().rows * width_, specialization,
                            TrackVariant{chromatic, buffers_->window_bits()}, tuning, cache.handle());
         cache.save();
         result_.device_bytes = buffers_->bytes() + wavefront_->bytes();
+        result_.device_bytes += light_cache_ ? light_cache_->buffer().bytes() : 0;
         for (const Band& band : bands_)
             result_.device_bytes += band.film.bytes();
         result_.pipeline_seconds = watch.lap();
@@ -298,6 +311,7 @@ private:
     shared::FrameParams frame_{};
     std::vector<Band> bands_;
     std::optional<TraceBuffer> trace_;
+    std::optional<LightCache> light_cache_;
     std::optional<Wavefront> wavefront_;
     RenderIdentity identity_; // only for checkpoints
     RenderResult result_;

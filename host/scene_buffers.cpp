@@ -11,6 +11,8 @@ namespace vkvol {
 namespace {
 
 constexpr double mebibyte = 1048576.0;
+constexpr VkBufferUsageFlags storage_and_texels =
+    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
 
 template <class T> std::span<const std::byte> bytes_of(const std::vector<T>& values) {
     return std::as_bytes(std::span(values));
@@ -33,15 +35,14 @@ void upload_range(Commands& commands, const Buffer& buffer, const Parts& parts, 
 } // namespace
 
 SceneBuffers::SceneBuffers(const Device& device, Commands& commands, const LoadedVolume& volume,
-                           std::uint64_t most_grid_bytes)
+                           std::uint64_t most_grid_bytes, std::uint64_t most_texel_bytes)
     : frame_(device, "frame parameters", sizeof(shared::FrameParams), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
              BufferPlace::host) {
     const auto make = [&](std::optional<Buffer>& buffer, const char* name, std::span<const std::byte> first,
                           std::span<const std::byte> second = {}) {
         if (first.empty())
             return;
-        buffer.emplace(device, name, first.size() + second.size(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                       BufferPlace::device);
+        buffer.emplace(device, name, first.size() + second.size(), storage_and_texels, BufferPlace::device);
         upload_range(commands, *buffer, std::array{first, second}, 0, buffer->bytes());
     };
     if (volume.bvh) {
@@ -57,13 +58,14 @@ SceneBuffers::SceneBuffers(const Device& device, Commands& commands, const Loade
     make(majorants_, "majorant grid", bytes_of(volume.majorants->bounds));
     make(controls_, "control grid", bytes_of(volume.controls));
     make(blackbody_, "black-body table", bytes_of(volume.blackbody));
+    texels_ = grids_ && std::max({grids_->bytes(), leaf_table_->bytes(), majorants_->bytes()}) <= most_texel_bytes;
 }
 
 void SceneBuffers::make_grids(const Device& device, Commands& commands, const Parts& grids, std::uint64_t most_bytes) {
     const std::uint64_t bytes = grids[0].size() + grids[1].size();
     if (bytes > most_bytes)
         return make_windows(device, commands, grids, bytes);
-    grids_.emplace(device, "grids", bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device);
+    grids_.emplace(device, "grids", bytes, storage_and_texels, BufferPlace::device);
     upload_range(commands, *grids_, grids, 0, bytes);
 }
 
@@ -103,6 +105,11 @@ BoundBuffers SceneBuffers::bound() const {
     buffers[BINDING_GRID] = place(grids_);
     buffers[BINDING_LEAF_TABLE] = place(leaf_table_);
     buffers[BINDING_MAJORANTS] = place(majorants_);
+    if (texels_) {
+        buffers[BINDING_GRID_TEXELS] = place(grids_);
+        buffers[BINDING_LEAF_TEXELS] = place(leaf_table_);
+        buffers[BINDING_MAJORANT_TEXELS] = place(majorants_);
+    }
     buffers[BINDING_CONTROLS] = place(controls_);
     buffers[BINDING_BLACKBODY] = place(blackbody_);
     buffers[BINDING_TRIANGLES] = place(triangles_);

@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "error.h"
+#include "light_cache.h"
 #include "noise.h"
 #include "shared/items.h"
 
@@ -18,7 +19,8 @@ static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridPara
 static_assert(sizeof(shared::VolumeParams) == 3 * 16 + 3 * 12 + sizeof(shared::GridParams) + 12 + 5 * 4 + 2 * 12 + 4 +
                                                   sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) + 4);
 static_assert(sizeof(shared::Walk) == 2 * 12 + 8 * 4 + 12 + 7 * 4);
-static_assert(sizeof(shared::Suspended) == 2 * sizeof(shared::Walk) + 3 * 12 + 3 * 4);
+static_assert(sizeof(shared::LatticeParams) == 3 * 12);
+static_assert(sizeof(shared::Suspended) == 2 * sizeof(shared::Walk) + 4 * 12 + 4 * 4);
 static_assert(sizeof(shared::PassPush) <= 128, "the least push constant space that Vulkan promises");
 
 namespace {
@@ -281,6 +283,16 @@ shared::MarchParams make_march(const Scene& scene, const LoadedVolume& loaded, c
     return params;
 }
 
+shared::LatticeParams make_lattice_of(const Scene& scene, const LoadedVolume& loaded) {
+    const Bounds bounds = medium_bounds(loaded);
+    const glm::dmat3 to_world(medium_to_world(scene.volumes.front(), loaded));
+    glm::dvec3 edges;
+    for (int axis = 0; axis < 3; ++axis)
+        edges[axis] = glm::length(to_world[axis]) * (bounds.high[axis] - bounds.low[axis]);
+    const glm::ivec3 voxels = loaded.field ? loaded.field->voxel_max - loaded.field->voxel_min + 1 : glm::ivec3(0);
+    return make_lattice(bounds.low, bounds.high, edges, voxels);
+}
+
 } // namespace
 
 glm::dvec3 render_origin(const Scene& scene, const LoadedVolume& loaded) {
@@ -301,6 +313,8 @@ shared::FrameParams make_frame(const Scene& scene, const LoadedVolume& loaded, c
     if (!scene.lights.empty())
         frame.light = {scene.lights.front().direction, scene.lights.front().irradiance};
     frame.march = make_march(scene, loaded, method);
+    if (method.nee == NEE_CACHED)
+        frame.lattice = make_lattice_of(scene, loaded);
     frame.background = scene.background;
     frame.roulette_threshold = static_cast<float>(scene.settings.roulette_threshold);
     // Beyond a million scatterings a path of any albedo that scenes have is worth nothing; the bound is counted.

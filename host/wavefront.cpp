@@ -76,6 +76,9 @@ Tuning tune(const Device& device, std::size_t mesh_nodes, const Tuning& wish) {
     tuning.most_film_bytes =
         pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
     tuning.most_grid_bytes = pick(wish.most_grid_bytes, std::uint64_t{device.limits().maxStorageBufferRange});
+    // GPUs read storage as fast as texels; software drivers gather only these.
+    const std::uint64_t texels = device.is_cpu() ? 4ull * device.limits().maxTexelBufferElements : 1u;
+    tuning.most_texel_bytes = pick(wish.most_texel_bytes, texels);
     return tuning;
 }
 
@@ -216,7 +219,9 @@ void Wavefront::record_round(VkCommandBuffer commands, std::uint32_t round) {
     record_timestamp(commands, round, 0);
     record_pass(commands, QUEUE_GENERATE, *generate_, tuning_.slots);
     record_timestamp(commands, round, 1);
-    record_pass(commands, QUEUE_TRACK, *track_, tuning_.lanes);
+    record_prepare(commands, QUEUE_RESUME, QUEUE_RESUME, tuning_.lanes);
+    record_prepare(commands, QUEUE_TRACK, QUEUE_RESUME, tuning_.lanes);
+    record_consumer(commands, QUEUE_TRACK, *track_);
     record_timestamp(commands, round, 2);
     record_pass(commands, QUEUE_ACCUMULATE, *accumulate_, tuning_.slots);
     record_timestamp(commands, round, 3);
@@ -224,10 +229,20 @@ void Wavefront::record_round(VkCommandBuffer commands, std::uint32_t round) {
 
 void Wavefront::record_pass(VkCommandBuffer commands, std::uint32_t queue, const ComputePass& pass,
                             std::uint32_t lanes) {
+    record_prepare(commands, queue, queue, lanes);
+    record_consumer(commands, queue, pass);
+}
+
+void Wavefront::record_prepare(VkCommandBuffer commands, std::uint32_t queue, std::uint32_t before,
+                               std::uint32_t lanes) {
     push_.queue = queue;
+    push_.before = before;
     push_.lanes = lanes;
     prepare_->record(commands, push_, 1);
     record_barrier(commands);
+}
+
+void Wavefront::record_consumer(VkCommandBuffer commands, std::uint32_t queue, const ComputePass& pass) {
     const VkDeviceSize header = queue * sizeof(shared::QueueHeader);
     pass.record_indirect(commands, push_, queues_, header + offsetof(shared::QueueHeader, groups_x));
     record_barrier(commands);

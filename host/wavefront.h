@@ -15,14 +15,15 @@ namespace vkvol {
 
 // Sizes of the machine, none of which changes the picture.
 struct Tuning {
-    std::uint32_t slots = 0;           // paths in flight
-    std::uint32_t lanes = 0;           // invocations that share the track queue
-    std::uint32_t budget = 0;          // iterations after which a lane lays its path aside
-    std::uint32_t step_limit = 0;      // steps after which a flight is cut, and counted
-    double submit_seconds = 0.08;      // aimed at; no submit should hold a device much longer
-    std::uint32_t steps_per_look = 0;  // tracking steps between two looks at what they led to
-    std::uint64_t most_film_bytes = 0; // in one buffer; a larger film lies in several
-    std::uint64_t most_grid_bytes = 0; // likewise, of all grids together
+    std::uint32_t slots = 0;            // paths in flight
+    std::uint32_t lanes = 0;            // invocations that share the track queue
+    std::uint32_t budget = 0;           // iterations after which a lane lays its path aside
+    std::uint32_t step_limit = 0;       // steps after which a flight is cut, and counted
+    double submit_seconds = 0.08;       // aimed at; no submit should hold a device much longer
+    std::uint32_t steps_per_look = 0;   // tracking steps between two looks at what they led to
+    std::uint64_t most_film_bytes = 0;  // in one buffer; a larger film lies in several
+    std::uint64_t most_grid_bytes = 0;  // likewise, of all grids together
+    std::uint64_t most_texel_bytes = 0; // what has more is read as storage
 };
 
 // What suits the device and a mesh with that many nodes, 0 without one; fields of `wish` that are not 0 win.
@@ -74,6 +75,8 @@ private:
     void free_slots(std::uint32_t begin, std::uint32_t end);
     void sort_pixels(std::uint32_t pixels);
     void record_pass(VkCommandBuffer commands, std::uint32_t queue, const ComputePass& pass, std::uint32_t lanes);
+    void record_prepare(VkCommandBuffer commands, std::uint32_t queue, std::uint32_t before, std::uint32_t lanes);
+    void record_consumer(VkCommandBuffer commands, std::uint32_t queue, const ComputePass& pass);
     void record_timestamp(VkCommandBuffer commands, std::uint32_t round, std::uint32_t mark);
     void record_readback(VkCommandBuffer commands);
     void read_timestamps();

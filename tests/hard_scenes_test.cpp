@@ -84,8 +84,8 @@ TEST_CASE("a constant grid scatters as its closed form whatever the integrator",
     Scene scene = load_hard_scene(VKVOL_SOURCE_DIR "/scenes/hard/32-constant-grid-scattering.xml");
     scene.settings.spp = 64;
     const std::vector<const char*> integrators = {
-        "ratioTracking",    "ratioNEE",         "deltaTrackingNEE",      "residualRatioTracking", "regularTracking",
-        "weightedTracking", "spectralTracking", "decompositionTracking", "unbiasedRayMarching"};
+        "ratioTracking",   "cachedRatioTracking", "ratioNEE",         "deltaTrackingNEE",      "residualRatioTracking",
+        "regularTracking", "weightedTracking",    "spectralTracking", "decompositionTracking", "unbiasedRayMarching"};
     for (const char* integrator : integrators) {
         scene.settings.integrator = integrator;
         check_mean(integrator, render_here(scene, 53).film, *scene.expected, 3.0 * double(integrators.size()));

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "kernels/test_items.h"
+#include "pilot_paths.h"
 #include "support/test_grids.h"
 #include "support/test_scene.h"
 #include "walk.spv.h"
@@ -215,29 +216,55 @@ TEST_CASE("majorants bound the interpolated density at random points", "[cpu][ma
     CHECK(violations == 0);
 }
 
-TEST_CASE("left to itself the cell has the size of fewest steps", "[cpu][majorant]") {
-    // Majorant optical depth plus faces per voxel of a random ray: see majorant_grid.h.
-    const double sigma_t = GENERATE(0.001, 0.05, 1.0, 20.0);
+TEST_CASE("left to itself the cell has the size over which paths take the fewest steps", "[cpu][majorant]") {
     const TestGrid grid = make_test_grid(larger_recipe(Storage::float32));
-    const auto steps = [&](const MajorantGrid& m) {
-        const double sum = std::accumulate(m.bounds.begin(), m.bounds.end(), 0.0);
-        return sigma_t * sum / m.bounds.size() + 1.5 / m.cell;
-    };
-    const MajorantGrid chosen = make_majorant_grid(grid.field(), 0, sigma_t);
+    PilotScene scene;
+    scene.eye = glm::dvec3(grid.voxel_min) - glm::dvec3(30.0, 50.0, 20.0);
+    scene.light = glm::normalize(glm::dvec3(1.0, 2.0, -0.5));
+    scene.sigma_t = GENERATE(0.001, 0.05, 1.0, 20.0);
+    scene.albedo = 0.9;
+    scene.g = GENERATE(0.0, 0.7);
+    const std::vector<PilotSegment> segments = pilot_paths(grid.field(), make_majorant_grid(grid.field(), 4), scene);
+    REQUIRE(segments.size() >= 256);
+    const MajorantGrid chosen = choose_majorant_grid(grid.field(), scene);
+    const double fewest = pilot_steps(segments, chosen, scene.sigma_t);
     for (const int cell : {4, 8, 16, 32, 64}) {
-        CAPTURE(cell, sigma_t);
-        const MajorantGrid m = make_majorant_grid(grid.field(), cell, sigma_t);
-        CHECK(steps(chosen) <= steps(m));
+        CAPTURE(cell, scene.sigma_t);
+        const MajorantGrid m = make_majorant_grid(grid.field(), cell);
+        CHECK(fewest <= pilot_steps(segments, m, scene.sigma_t));
         if (chosen.cell == cell) {
             CHECK(chosen.origin == m.origin);
             CHECK(chosen.dims == m.dims);
             CHECK(chosen.bounds == m.bounds);
         }
     }
+}
+
+TEST_CASE("steps along a segment are the majorant's optical depth and the cells", "[cpu][majorant]") {
+    MajorantGrid cells{8, {-3, 2, 5}, {3, 1, 1}, {1.0f, 0.0f, 4.0f}};
+    const std::vector<PilotSegment> across = {{{-3.0, 4.0, 7.0}, {1.0, 0.0, 0.0}, 20.0}};
+    CHECK(pilot_steps(across, cells, 0.5) == Approx(0.5 * (8.0 * 1.0 + 4.0 * 4.0) + 3.0));
+    // Backwards from a face: the cell it begins in counts, though it is left at once.
+    const std::vector<PilotSegment> back = {{{13.0, 4.0, 7.0}, {-1.0, 0.0, 0.0}, 10.0}};
+    CHECK(pilot_steps(back, cells, 0.5) == Approx(0.5 * 2.0 * 1.0 + 3.0));
+}
+
+TEST_CASE("a pilot ends where majorants are far too high", "[cpu][majorant]") {
+    // One voxel of density 1e9 makes every cell's bound a billion: the path's own end is out of reach.
+    GridRecipe spike{{0, 0, 0}, {40, 40, 40}, nullptr, Storage::float32};
+    spike.value = [](glm::ivec3 i) { return i == glm::ivec3(20) ? 1e9f : 1e-9f; };
+    const TestGrid grid = make_test_grid(spike);
+    PilotScene scene;
+    scene.sigma_t = 1.0;
+    scene.eye = {-50.0, 20.0, 20.0};
+    CHECK(choose_majorant_grid(grid.field(), scene).cell == 4);
+}
+
+TEST_CASE("majorant grids have no more than 2^24 cells", "[cpu][majorant]") {
     DensityField vast;
     vast.active_voxels = 2;
     vast.voxel_max = {2100, 2100, 2100}; // 263^3 cells of 8 voxels are more than 2^24
-    CHECK(make_majorant_grid(vast, 4, sigma_t).cell == 16);
+    CHECK(make_majorant_grid(vast, 4).cell == 16);
 }
 
 TEST_CASE("the device walks the cells that a ray passes", "[gpu][majorant]") {

@@ -106,7 +106,7 @@ TEST_CASE("large tiles cost no more than small ones", "[cpu][density]") {
     reinterpret_cast<Grid*>(bytes.data())->tree().root().data()->mBBox = {{4090, 0, 0}, {8200, 1000, 1000}};
     const DensityField field = make_density_field(std::move(bytes), "tiles");
     CHECK(field.max_value() == 4.0f);
-    const MajorantGrid majorants = make_majorant_grid(field, 64, 1.0);
+    const MajorantGrid majorants = make_majorant_grid(field, 64);
     const glm::ivec3 inside = (glm::ivec3(6000, 500, 500) - majorants.origin) / majorants.cell;
     CHECK(majorants.bounds[(std::size_t(inside.x) * majorants.dims.y + inside.y) * majorants.dims.z + inside.z] ==
           4.0f);

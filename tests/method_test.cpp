@@ -62,7 +62,7 @@ TEST_CASE("every axis has a name for each of its ids", "[cpu][method]") {
     CHECK(find_axis("scattering").names.size() == SCATTERING_MULTIPLE + 1);
     CHECK(find_axis("flight").names.size() == FREE_FLIGHT_COUNT);
     CHECK(find_axis("transmittance").names.size() == TRANSMITTANCE_COUNT);
-    CHECK(find_axis("nee").names.size() == NEE_TENTATIVE + 1);
+    CHECK(find_axis("nee").names.size() == NEE_CACHED + 1);
     CHECK(find_axis("emission").names.size() == EMISSION_AT_STEPS + 1);
     CHECK(find_choice(find_axis("flight"), "spectral") == FREE_FLIGHT_SPECTRAL);
     CHECK(find_choice(find_axis("flight"), "march") == FREE_FLIGHT_MARCH);
@@ -107,13 +107,14 @@ TEST_CASE("every integrator renders some medium", "[cpu][method]") {
         CHECK(method.biased.empty() == std::string(integrator.biased).empty());
         CHECK(method.biased.empty() == (method.biases == bias_none));
     }
-    CHECK(names.size() == 18);
+    CHECK(names.size() == 19);
 }
 
 TEST_CASE("the best unbiased choice is taken where none is named", "[cpu][method]") {
-    CHECK(method_of("", FIELD_GRID).integrator == "ratioTracking");
+    CHECK(method_of("", FIELD_GRID).integrator == "cachedRatioTracking");
+    CHECK(method_of("", FIELD_CONSTANT).integrator == "ratioTracking");
     CHECK(method_of("", FIELD_GRID, false).integrator == "deltaTracking");
-    CHECK(method_of(":flight=weighted", FIELD_GRID).integrator == "ratioTracking:flight=weighted");
+    CHECK(method_of(":flight=weighted", FIELD_GRID).integrator == "cachedRatioTracking:flight=weighted");
     CHECK_NOTHROW(choose_method(Scene{}));
     for (const Integrator& integrator : integrators()) {
         Scene empty;
@@ -196,6 +197,10 @@ TEST_CASE("next-event estimation needs a light, scattering, and the right flight
     absorber.volumes.front().sigma_s = Rgb(0.0);
     CHECK(choose_method(absorber).nee == NEE_NONE);
 
+    CHECK(method_of("cachedRatioTracking", FIELD_GRID).nee == NEE_CACHED);
+    CHECK(method_of("cachedRatioTracking", FIELD_NOISE).nee == NEE_CACHED);
+    CHECK(method_of("cachedRatioTracking", FIELD_CONSTANT).nee == NEE_COLLISIONS);
+    CHECK_THAT(warning_of(method_of("ratioTracking:nee=cached", FIELD_CONSTANT)), Catch::Contains("for grids"));
     CHECK(method_of("ratioNEE", FIELD_GRID).nee == NEE_TENTATIVE);
     const Method silent = method_of("ratioNEE", FIELD_CONSTANT);
     CHECK(silent.nee == NEE_COLLISIONS);

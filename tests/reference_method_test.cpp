@@ -40,7 +40,8 @@ TEST_CASE("every preset is what its name says, in a grey grid", "[cpu][reference
     check("heterogeneousPerlinNoise", single, FREE_FLIGHT_MARCH, TRANSMITTANCE_MARCH, collisions);
     check("deltaTracking", multiple, FREE_FLIGHT_DELTA, ratio, NEE_NONE);
     check("ratioTracking", multiple, FREE_FLIGHT_DELTA, ratio, collisions);
-    check("", multiple, FREE_FLIGHT_DELTA, ratio, collisions);
+    check("", multiple, FREE_FLIGHT_DELTA, ratio, NEE_CACHED);
+    check("cachedRatioTracking", multiple, FREE_FLIGHT_DELTA, ratio, NEE_CACHED);
     check("ratioNEE", multiple, FREE_FLIGHT_DELTA, ratio, NEE_TENTATIVE);
     check("deltaTrackingNEE", multiple, FREE_FLIGHT_DELTA, TRANSMITTANCE_DELTA, collisions);
     check("regularTracking", multiple, FREE_FLIGHT_REGULAR, TRANSMITTANCE_REGULAR, collisions);

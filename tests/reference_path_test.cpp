@@ -148,8 +148,8 @@ TEST_CASE("all flights and shadow rays see the same multiple scattering", "[cpu]
     scene.settings.integrator = "regularTracking";
     const RgbMean expected = sample_ray(world_of(sample, scene), sample.ray, 40000, 239);
     for (const char* name :
-         {"ratioTracking", "ratioNEE", "deltaTrackingNEE", "weightedTracking", "decompositionTracking",
-          "spectralTracking", "residualRatioTracking", "unbiasedRayMarching"}) {
+         {"ratioTracking", "cachedRatioTracking", "ratioNEE", "deltaTrackingNEE", "weightedTracking",
+          "decompositionTracking", "spectralTracking", "residualRatioTracking", "unbiasedRayMarching"}) {
         CAPTURE(chromatic, name);
         scene.settings.integrator = name;
         CHECK(z_between(sample_ray(world_of(sample, scene), sample.ray, 10000, 241), expected) < 4.0);

@@ -125,6 +125,9 @@ TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "
     };
     touches({}, grid);
     touches({{SPEC_NEE, NEE_COLLISIONS}, {SPEC_TRANSMITTANCE, TRANSMITTANCE_RATIO}}, grid);
+    touches({{SPEC_NEE, NEE_CACHED}, {SPEC_TRANSMITTANCE, TRANSMITTANCE_RATIO}}, grid_and(BINDING_LATTICE));
+    touches({{SPEC_NEE, NEE_CACHED}, {SPEC_TRANSMITTANCE, TRANSMITTANCE_RATIO}, {SPEC_TEXELS, 1}},
+            {BINDING_GRID_TEXELS, BINDING_LEAF_TEXELS, BINDING_MAJORANT_TEXELS, BINDING_LATTICE_TEXELS});
     touches({{SPEC_EMISSION, EMISSION_CONSTANT}}, grid);
     touches({{SPEC_EMISSION, EMISSION_COLOR}}, grid);
     touches({{SPEC_EMISSION, EMISSION_BLACKBODY}}, grid_and(BINDING_BLACKBODY));
@@ -175,7 +178,7 @@ TEST_CASE("a grey path's throughput is one number, and its state holds nothing o
     CHECK(
         read_kernel(Words(std::begin(track_chromatic_spv), std::end(track_chromatic_spv))).elements.at(BINDING_BETAS) ==
         3);
-    // Position, direction, radiance; pixel, sample, draw, depth, and whether a segment was laid aside. No throughput,
-    // no shadow ray, no temperature.
-    CHECK(sizeof(shared::PathState) == 3 * sizeof(glm::vec3) + 5 * sizeof(std::uint32_t));
+    // Position, direction, radiance; pixel, place, sample, draw, depth, and whether a segment was laid aside. No
+    // throughput, no shadow ray, no temperature.
+    CHECK(sizeof(shared::PathState) == 3 * sizeof(glm::vec3) + 6 * sizeof(std::uint32_t));
 }

@@ -37,8 +37,8 @@ RenderResult one_sample(Scene scene, int x, int y, std::uint32_t sample, bool tr
 } // namespace
 
 TEST_CASE("a followed path gathers the radiance of its sample, bit by bit", "[gpu][trace]") {
-    const std::string integrator =
-        GENERATE("ratioTracking", "ratioNEE", "deltaTracking", "weightedTracking", "regularTracking");
+    const std::string integrator = GENERATE("ratioTracking", "cachedRatioTracking", "ratioNEE", "deltaTracking",
+                                            "weightedTracking", "regularTracking");
     const bool chromatic = GENERATE(false, true);
     Scene scene = cloud();
     scene.settings.integrator = integrator;

@@ -51,6 +51,8 @@ window a word off ~ shaders/include/grid.glsl ~ frame.grid_windows[i >> WINDOW_B
 pixels lost at a checkpoint ~ host/wavefront.cpp ~ first * sizeof(std::uint32_t)); ~ 0 * first); ~ [checkpoint]
 fingerprint without grids ~ host/checkpoint.cpp ~ fingerprint.add(field->bytes.span()); ~ ; ~ [checkpoint]
 huge samples kept ~ shaders/include/film.glsl ~ 281474976710656.0 ~ 3.0e38 ~ [command]
+cache corrected without its chance ~ shaders/passes/track.comp ~ (T - lane.cached) / lane.chance ~ (T - lane.cached) ~ [agreement]
+lattice a node off ~ shaders/include/lattice.glsl ~ uint i = lattice_index(which, node); ~ uint i = lattice_index(which, node) + 1u; ~ [light_cache]
 crop forgotten in random numbers ~ shaders/include/camera.glsl ~ frame.crop_x + pixel ~ pixel ~ [determinism]
 END
 }

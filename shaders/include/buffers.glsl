@@ -2,6 +2,7 @@
 #ifndef BUFFERS_GLSL
 #define BUFFERS_GLSL
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
 
 #include "../shared/bindings.h"
 #include "../shared/items.h"
@@ -21,6 +22,7 @@ layout(constant_id = SPEC_TRANSMITTANCE) const int TRANSMITTANCE = TRANSMITTANCE
 layout(constant_id = SPEC_TEMPERATURE_TYPE) const int TEMPERATURE_TYPE = GRID_FLOAT;
 layout(constant_id = SPEC_STEPS) const int STEPS = 1;
 layout(constant_id = SPEC_TRACE) const int TRACE = 0;
+layout(constant_id = SPEC_TEXELS) const int TEXELS = 0;
 
 // Estimators that walk from one tentative collision to the next.
 const bool NULL_FLIGHT = FREE_FLIGHT >= FREE_FLIGHT_DELTA;
@@ -54,6 +56,11 @@ layout(scalar, binding = BINDING_TRACE) buffer TraceBlock {
     uint trace_count;
     TraceRecord trace_records[];
 };
+layout(scalar, binding = BINDING_LATTICE) buffer LatticeBlock { vec4 lattice[]; };
+layout(binding = BINDING_GRID_TEXELS) uniform utextureBuffer grid_texels;
+layout(binding = BINDING_LEAF_TEXELS) uniform utextureBuffer leaf_texels;
+layout(binding = BINDING_MAJORANT_TEXELS) uniform textureBuffer majorant_texels;
+layout(binding = BINDING_LATTICE_TEXELS) uniform textureBuffer lattice_texels;
 layout(scalar, binding = BINDING_COUNTERS) buffer CounterBlock { Counters counters; };
 
 #endif

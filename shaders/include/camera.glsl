@@ -3,11 +3,16 @@
 #define CAMERA_GLSL
 #include "rng.glsl"
 
-// Key of a film entry's random numbers: its place in the picture, the same whatever the crop.
-Rng pixel_rng(uint pixel, uint sample_index, uint draw) {
+// Of a film entry, in the picture: x | y << 16. It is the key of the pixel's random numbers, the same whatever the crop.
+// The division costs software drivers as much as a step of a walk: once per path is enough.
+uint place_of(uint pixel) {
     uint x = frame.crop_x + pixel % frame.crop_width;
     uint y = frame.crop_y + pixel / frame.crop_width;
-    return Rng(x | y << 16u, sample_index, draw, frame.seed);
+    return x | y << 16u;
+}
+
+Rng pixel_rng(uint place, uint sample_index, uint draw) {
+    return Rng(place, sample_index, draw, frame.seed);
 }
 
 struct CameraRay {
@@ -16,9 +21,9 @@ struct CameraRay {
 };
 
 // The ray through a uniformly random point of the pixel (box filter).
-CameraRay camera_ray(uint pixel, uint sample_index) {
-    Rng rng = pixel_rng(pixel, sample_index, 0u);
-    vec2 corner = vec2(rng.pixel & 0xffffu, rng.pixel >> 16u);
+CameraRay camera_ray(uint place, uint sample_index) {
+    Rng rng = pixel_rng(place, sample_index, 0u);
+    vec2 corner = vec2(place & 0xffffu, place >> 16u);
     vec2 p = corner + to_uniform(next_words(rng)).xy;
     CameraParams camera = frame.camera;
     vec3 aside = p.x * camera.right + p.y * camera.down;

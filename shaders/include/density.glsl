@@ -32,7 +32,7 @@ float leaf_value(int type, uint leaf, uint n) {
 float voxel(GridParams g, int type, ivec3 ijk) {
     ivec3 inside = clamp(ijk, g.voxel_min, g.voxel_max);
     ivec3 block = (inside >> 3) - g.leaf_min;
-    uint entry = leaf_table[g.first_entry + uint((block.x * g.leaf_dims.y + block.y) * g.leaf_dims.z + block.z)];
+    uint entry = leaf_entry(g.first_entry + uint((block.x * g.leaf_dims.y + block.y) * g.leaf_dims.z + block.z));
     ivec3 low = inside & 7;
     uint n = uint(low.x << 6 | low.y << 3 | low.z);
     bool in_leaf = (entry & 1u) != 0u;

@@ -1,5 +1,6 @@
-// The words of all grids. They lie in one storage buffer or, where that would be larger than the device allows, in windows
-// of 2^WINDOW_BITS words, each a buffer of its own, reached by its address. A kernel is compiled for the one or the other.
+// How kernels reach what the walk reads at every step: the words of all grids, their leaf tables, and the majorants.
+// Grids lie in one buffer or, where that would be larger than the device allows, in windows of 2^WINDOW_BITS words, each a
+// buffer of its own, reached by its address. What lies in one buffer is read as storage, or as texels.
 #ifndef GRID_GLSL
 #define GRID_GLSL
 #include "buffers.glsl"
@@ -15,8 +16,16 @@ uint grid_word(uint i) {
 }
 #else
 uint grid_word(uint i) {
-    return grid_words[i];
+    return TEXELS != 0 ? texelFetch(grid_texels, int(i)).x : grid_words[i];
 }
 #endif
+
+uint leaf_entry(uint i) {
+    return TEXELS != 0 ? texelFetch(leaf_texels, int(i)).x : leaf_table[i];
+}
+
+float cell_majorant(uint i) {
+    return TEXELS != 0 ? texelFetch(majorant_texels, int(i)).x : majorants[i];
+}
 
 #endif

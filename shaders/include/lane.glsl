@@ -5,6 +5,7 @@
 #include "camera.glsl"
 #include "emission.glsl"
 #include "light.glsl"
+#include "light_cache.glsl"
 #include "segment.glsl"
 
 // What a lane does next.
@@ -29,6 +30,8 @@ struct Lane {
     uint todo;
     uint resume; // what to do after the shadow ray
     uint steps;  // of the segment
+    Spectrum cached; // transmittance that the shadow ray corrects
+    float chance;    // with which it was sent
 };
 
 // What the shadow ray lights, and from where. At collisions that is the path's own vertex, and need not be kept.
@@ -43,6 +46,7 @@ uint after_looking(Lane lane) {
 }
 
 void suspend(uint slot, Lane lane) {
+    lane.path.pixel = paths[slot].pixel;
     paths[slot] = lane.path;
     betas[slot] = lane.beta;
     if (lane.path.suspended == 0u)
@@ -52,6 +56,10 @@ void suspend(uint slot, Lane lane) {
     suspended[slot].steps = lane.steps;
     if (LOOKS)
         suspended[slot].T = vec3(lane.T);
+    if (LOOKS && NEE == NEE_CACHED) {
+        suspended[slot].cached = vec3(lane.cached);
+        suspended[slot].chance = lane.chance;
+    }
     if (LOOKS && NEE == NEE_TENTATIVE) {
         suspended[slot].flight = kept(lane.flight);
         suspended[slot].lit = vec3(lane.lit);
@@ -62,25 +70,39 @@ void suspend(uint slot, Lane lane) {
 
 void resume(uint slot, inout Lane lane) {
     lane.path = paths[slot];
+    lane.beta = betas[slot];
     lane.todo = TODO_DEPART;
-    lane.beta = to_spectrum(vec3(1.0));
-    if (lane.path.depth != 0u || lane.path.suspended != 0u)
-        lane.beta = betas[slot];
-    // At most once. A loop and no `if`, since software drivers carry out both sides of an `if`, here some 70 loads.
-    while (lane.path.suspended != 0u) {
-        lane.path.suspended = 0u;
-        lane.walk = kept(suspended[slot].walk);
-        lane.todo = suspended[slot].todo;
-        lane.steps = suspended[slot].steps;
-        if (LOOKS)
-            lane.T = to_spectrum(suspended[slot].T);
-        if (LOOKS && NEE == NEE_TENTATIVE) {
-            lane.flight = kept(suspended[slot].flight);
-            lane.lit = to_spectrum(suspended[slot].lit);
-            lane.position = suspended[slot].position;
-            lane.resume = suspended[slot].resume;
-        }
+    if (lane.path.suspended == 0u)
+        return;
+    lane.walk = kept(suspended[slot].walk);
+    lane.todo = suspended[slot].todo;
+    lane.steps = suspended[slot].steps;
+    if (LOOKS)
+        lane.T = to_spectrum(suspended[slot].T);
+    if (LOOKS && NEE == NEE_CACHED) {
+        lane.cached = to_spectrum(suspended[slot].cached);
+        lane.chance = suspended[slot].chance;
     }
+    if (LOOKS && NEE == NEE_TENTATIVE) {
+        lane.flight = kept(suspended[slot].flight);
+        lane.lit = to_spectrum(suspended[slot].lit);
+        lane.position = suspended[slot].position;
+        lane.resume = suspended[slot].resume;
+    }
+}
+
+// At the camera. Its ray is found anew: that is quicker than to read it.
+void begin_path(uint slot, inout Lane lane) {
+    lane.path.place = paths[slot].place;
+    lane.path.sample_index = paths[slot].sample_index;
+    CameraRay ray = camera_ray(lane.path.place, lane.path.sample_index);
+    lane.path.position = ray.origin;
+    lane.path.direction = ray.direction;
+    lane.path.radiance = vec3(0.0);
+    lane.path.draw = 0u;
+    lane.path.depth = 0u;
+    lane.beta = to_spectrum(vec3(1.0));
+    lane.todo = TODO_DEPART;
 }
 
 // Russian roulette on the throughput: unbiased, survivors are raised to the threshold.
@@ -131,13 +153,20 @@ uint step_segment(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum d
 }
 
 // Light at a point that an interaction of throughput `lit` there scatters into the path. Known at once in a homogeneous
-// medium, else the lane goes to look, and then does as `next` says.
-void gather_light(VolumeParams v, vec3 position, Spectrum lit, uint next, inout Lane lane) {
+// medium, else the lane goes to look, or, by chance, makes do with the cache; and then does as `next` says.
+void gather_light(VolumeParams v, vec3 position, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
     if (LOOKS) {
         lane.position = position;
         lane.lit = lit;
         lane.resume = next;
         lane.todo = TODO_LOOK;
+        if (NEE == NEE_CACHED) {
+            lane.cached = cached_transmittance(v, position);
+            Spectrum scattered = lit * hg_eval(v.g, hg_from_peak(v.g, lane.path.direction, frame.light.direction));
+            lane.path.radiance += scattered * lane.cached * frame.light.irradiance;
+            lane.chance = looking_chance(largest(scattered) / INV_4PI, lane.cached);
+            lane.todo = to_uniform(next_words(rng)).x < lane.chance ? TODO_LOOK : next;
+        }
     } else {
         Spectrum T = analytic_shadow(v, position, frame.light.direction);
         lane.path.radiance += sun_contribution(v, frame.light, lane.path.direction, lit * T);
@@ -146,7 +175,7 @@ void gather_light(VolumeParams v, vec3 position, Spectrum lit, uint next, inout 
 }
 
 // At a real collision: emission, absorption, light. Then the path departs, or ends.
-void collide(VolumeParams v, Spectrum deposit, inout Lane lane, inout Tally tally) {
+void collide(VolumeParams v, Spectrum deposit, inout Lane lane, inout Rng rng, inout Tally tally) {
     lane.path.position += (lane.walk.start + lane.walk.t) * lane.path.direction;
     if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_COLLISIONS)
         lane.path.radiance += lane.beta * emitted_radiance(v.emission, lane.path.position);
@@ -158,12 +187,12 @@ void collide(VolumeParams v, Spectrum deposit, inout Lane lane, inout Tally tall
     lane.todo = ended || SCATTERING == SCATTERING_SINGLE ? TODO_END : TODO_DEPART;
     if (NEE != NEE_NONE && !ended) {
         Spectrum lit = NEE == NEE_TENTATIVE ? deposit * to_spectrum(v.albedo) : lane.beta;
-        gather_light(v, lane.path.position, lit, lane.todo, lane);
+        gather_light(v, lane.path.position, lit, lane.todo, lane, rng);
     }
 }
 
 // Amid a flight: a null collision, or a step of a march through.
-void touch(VolumeParams v, Spectrum deposit, inout Lane lane) {
+void touch(VolumeParams v, Spectrum deposit, inout Lane lane, inout Rng rng) {
     vec3 position = lane.path.position + (lane.walk.start + lane.walk.at) * lane.path.direction;
     uint next = TODO_FLY;
     if (goes_through()) {
@@ -173,7 +202,7 @@ void touch(VolumeParams v, Spectrum deposit, inout Lane lane) {
     }
     lane.todo = next;
     if (NEE == NEE_TENTATIVE && lane.path.depth < frame.max_depth)
-        gather_light(v, position, deposit * to_spectrum(v.albedo), next, lane);
+        gather_light(v, position, deposit * to_spectrum(v.albedo), next, lane, rng);
 }
 
 #endif

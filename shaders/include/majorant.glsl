@@ -28,6 +28,7 @@
 // world's origin, of indices and of the camera are gone before anything is rounded.
 #ifndef MAJORANT_GLSL
 #define MAJORANT_GLSL
+#include "grid.glsl"
 #include "interval.glsl"
 
 #define EVENT_MOVING 0u  // nothing happened but distance
@@ -44,7 +45,7 @@ void load_cell(VolumeParams v, bool residual, inout Walk w) {
     if (residual)
         w.sigma_maj = v.sigma_t * (cells ? controls[i].residual : v.residual);
     else
-        w.sigma_maj = v.sigma_t * (cells ? majorants[i] : v.majorant);
+        w.sigma_maj = v.sigma_t * (cells ? cell_majorant(i) : v.majorant);
 }
 
 void begin_cells(VolumeParams v, bool residual, inout Walk w) {

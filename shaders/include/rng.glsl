@@ -14,6 +14,7 @@
 //   step of a march        x: position in the step; y: roulette of a march through the medium
 //   emission along a step  x: position in the step; after the step's own draw; none in an empty cell
 //   shadow ray             e_x: first distance; y, z, select: telescoping's level, offset and residue
+//   light from the cache   x: whether a shadow ray corrects it
 //   scattering             e_x: next free flight; y, z: phase function; w: roulette; select
 #ifndef RNG_GLSL
 #define RNG_GLSL

@@ -17,19 +17,6 @@ uint take_pixel() {
     return index < counters.work_count ? work[index] : NO_PIXEL;
 }
 
-void begin_path(uint slot, uint pixel, uint sample_index, CameraRay ray) {
-    PathState path;
-    path.position = ray.origin;
-    path.direction = ray.direction;
-    path.radiance = vec3(0.0);
-    path.pixel = pixel;
-    path.sample_index = sample_index;
-    path.draw = 0u;
-    path.depth = 0u;
-    path.suspended = 0u;
-    paths[slot] = path;
-}
-
 void main() {
     uint slot;
     if (!pop_item(QUEUE_GENERATE, slot))
@@ -42,10 +29,13 @@ void main() {
     }
     if (pixel == NO_PIXEL)
         return; // no work left: the slot rests until the next batch
-    CameraRay ray = camera_ray(pixel, sample_index);
+    uint place = place_of(pixel);
+    CameraRay ray = camera_ray(place, sample_index);
     vec2 t;
     bool hit = next_interval(frame.volume, to_medium(frame.volume, ray.origin, ray.direction), 0.0, t);
-    begin_path(slot, pixel, sample_index, ray);
+    paths[slot].pixel = pixel;
+    paths[slot].place = place;
+    paths[slot].sample_index = sample_index;
     if (!hit)
         paths[slot].radiance = frame.background;
     push_item(hit ? QUEUE_TRACK : QUEUE_ACCUMULATE, slot);

@@ -11,7 +11,10 @@ void main() {
         header.head = header.limit;
     header.base = header.head;
     header.limit = header.tail;
-    uint lanes = min(header.limit - header.head, push.lanes);
+    uint items = header.limit - header.head;
+    if (push.before != push.queue)
+        items += queues[push.before].limit - queues[push.before].head;
+    uint lanes = min(items, push.lanes);
     header.groups_x = (lanes + WORKGROUP_SIZE - 1u) / WORKGROUP_SIZE;
     queues[push.queue] = header;
 }

@@ -13,10 +13,11 @@ void main() {
     if (pixel >= push.pixel_end)
         return;
     FilmPixel entry = film[pixel];
+    uint place = place_of(pixel);
     bool hit = false;
     for (uint i = push.sample_begin; i < push.sample_end && !hit; ++i) {
         vec2 t;
-        CameraRay ray = camera_ray(pixel, i);
+        CameraRay ray = camera_ray(place, i);
         hit = next_interval(frame.volume, to_medium(frame.volume, ray.origin, ray.direction), 0.0, t);
         film_add(entry, frame.background, pixel, i);
     }

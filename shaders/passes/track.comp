@@ -23,12 +23,17 @@ void main() {
     Rng rng;
     Lane lane;
     lane.todo = TODO_TAKE;
+    // What was laid aside is taken up here, once, and not in the loop: there every iteration would pay for it.
+    if (pop_item(QUEUE_RESUME, slot)) {
+        resume(slot, lane);
+        rng = pixel_rng(lane.path.place, lane.path.sample_index, lane.path.draw);
+    }
     for (uint i = 0u; i < push.budget; ++i) {
         if (lane.todo == TODO_TAKE) {
             if (!pop_item(QUEUE_TRACK, slot))
                 break;
-            resume(slot, lane);
-            rng = pixel_rng(lane.path.pixel, lane.path.sample_index, lane.path.draw);
+            begin_path(slot, lane);
+            rng = pixel_rng(lane.path.place, lane.path.sample_index, 0u);
         }
         if (lane.todo == TODO_DEPART || lane.todo == TODO_LOOK) {
             bool looks = LOOKS && lane.todo == TODO_LOOK;
@@ -66,7 +71,8 @@ void main() {
         tally.step_caps += cut ? 1u : 0u; // loses light, and is counted
         if (seeing && (cut || event != EVENT_MOVING)) {
             Spectrum T = event == EVENT_LEFT ? end_transmittance(v, lane.walk, lane.T) : to_spectrum(vec3(0.0));
-            lane.path.radiance += sun_contribution(v, frame.light, lane.path.direction, lit_beta(lane) * T);
+            Spectrum more = NEE == NEE_CACHED ? (T - lane.cached) / lane.chance : T;
+            lane.path.radiance += sun_contribution(v, frame.light, lane.path.direction, lit_beta(lane) * more);
             lane.T = T;
             trace(TRACE_LIGHT, lane, looking_from(lane), frame.light.direction);
             lane.todo = after_looking(lane);
@@ -82,10 +88,10 @@ void main() {
             trace(TRACE_ESCAPE, lane, lane.path.position, lane.path.direction);
             lane.todo = TODO_END;
         } else if (event == EVENT_COLLIDED) {
-            collide(v, deposit, lane, tally);
+            collide(v, deposit, lane, rng, tally);
             trace(TRACE_COLLISION, lane, lane.path.position, lane.path.direction);
         } else if (event == EVENT_TOUCHED) {
-            touch(v, deposit, lane);
+            touch(v, deposit, lane, rng);
         }
         if (lane.todo == TODO_END) {
             trace(TRACE_END, lane, lane.path.position, lane.path.direction);
@@ -98,7 +104,7 @@ void main() {
         lane.path.draw = rng.draw;
         lane.path.suspended = lane.todo == TODO_DEPART ? 0u : 1u;
         suspend(slot, lane);
-        push_item(QUEUE_TRACK, slot);
+        push_item(QUEUE_RESUME, slot);
     }
     add_tally(tally);
 }

@@ -20,9 +20,16 @@
 #define BINDING_BVH 14        // BvhNode
 #define BINDING_SUSPENDED 15  // Suspended per slot
 #define BINDING_TRACE 16      // TraceHeader and TraceRecords, only where one path is followed
-#define BINDING_TEST_INPUT 17 // test kernels only
-#define BINDING_TEST_OUTPUT 18
-#define BINDING_COUNT 19
+#define BINDING_LATTICE 17    // vec4 per node of two lattices, see lattice.glsl
+#define BINDING_TEST_INPUT 18 // test kernels only
+#define BINDING_TEST_OUTPUT 19
+#define BINDING_BUFFERS 20
+// The same buffers as texels: software drivers gather these, and read storage buffers lane by lane.
+#define BINDING_GRID_TEXELS 20
+#define BINDING_LEAF_TEXELS 21
+#define BINDING_MAJORANT_TEXELS 22
+#define BINDING_LATTICE_TEXELS 23
+#define BINDING_COUNT 24
 
 #define WORKGROUP_SIZE 64
 
@@ -41,7 +48,8 @@
 #define SPEC_STEPS 11            // tracking steps between two looks at what they led to
 #define SPEC_WINDOW_BITS 12      // log2 of the words in a window, where grids lie in windows
 #define SPEC_TRACE 13            // 1: vertices are recorded, of the one path there is
-#define SPEC_COUNT 14
+#define SPEC_TEXELS 14           // 1: grids, their tables and lattices are read as texels
+#define SPEC_COUNT 15
 
 #define SHAPE_NONE 0 // background only
 #define SHAPE_SPHERE 1
@@ -69,6 +77,7 @@
 #define NEE_NONE 0
 #define NEE_COLLISIONS 1 // at real collisions
 #define NEE_TENTATIVE 2  // at every tentative collision, weighted by sigma_t / sigma_maj
+#define NEE_CACHED 3     // at real collisions, by chance: they correct a cached transmittance
 
 #define EMISSION_NONE 0
 #define EMISSION_CONSTANT 1
@@ -100,9 +109,10 @@
 
 // A slot is in exactly one queue, or held by a lane.
 #define QUEUE_GENERATE 0
-#define QUEUE_TRACK 1
-#define QUEUE_ACCUMULATE 2
-#define QUEUE_COUNT 3
+#define QUEUE_RESUME 1 // paths laid aside, which the lanes of the track pass take first
+#define QUEUE_TRACK 2  // at the camera
+#define QUEUE_ACCUMULATE 3
+#define QUEUE_COUNT 4
 
 #define BLACKBODY_ENTRIES 4096
 

@@ -5,13 +5,15 @@
 
 SHARED_BEGIN
 
-// A path in flight at its last vertex: the camera, or a real collision. One slot per path. Its throughput beta is in a
-// buffer of its own, since its type depends on the scene; at a collision it includes that collision's albedo.
+// A path in flight at its last vertex: the camera, or a real collision. One slot per path. One that has not left the
+// camera has a pixel, place and number, and the rest says nothing yet. Its throughput beta is in a buffer of its own, since
+// its type depends on the scene; at a collision it includes that collision's albedo.
 struct PathState {
     vec3 position;  // render space
     vec3 direction; // unit, of travel: the camera ray's, or that which led to this collision
     vec3 radiance;  // gathered so far
     uint pixel;     // index into the film, or NO_PIXEL
+    uint place;     // of the pixel in the picture, x | y << 16
     uint sample_index;
     uint draw;      // random draws consumed; 0 at the camera, whose draw also holds the first free flight
     uint depth;     // scattering events, this one included; 0 at the camera
@@ -50,6 +52,8 @@ struct Suspended {
     uint todo;
     uint resume;
     uint steps; // of the segment
+    vec3 cached;  // transmittance that the shadow ray corrects
+    float chance; // with which it was sent
 };
 
 // A ring of slot numbers. Items of queue q start at q * capacity; positions grow without end and wrap modulo the

@@ -95,6 +95,14 @@ struct VolumeParams {
     uint bvh_nodes; // of a mesh
 };
 
+// Nodes over the medium's box, z fastest. Two lattices of these dimensions lie one after the other: of the density, and
+// of optical depths towards the light. See lattice.glsl.
+struct LatticeParams {
+    vec3 low;     // medium space, the first node
+    vec3 spacing; // medium space
+    ivec3 dims;   // at least 2 along each axis
+};
+
 struct LightParams {
     vec3 direction; // unit, towards the light
     vec3 irradiance;
@@ -105,6 +113,7 @@ struct FrameParams {
     VolumeParams volume;
     LightParams light;
     MarchParams march;
+    LatticeParams lattice; // NEE_CACHED only
     vec3 background;
     float roulette_threshold;
     uint max_depth;
@@ -120,6 +129,7 @@ struct FrameParams {
 // The same for all passes.
 struct PassPush {
     uint queue;        // prepare: the queue whose consumer comes next
+    uint before;       // prepare: a queue that its invocations take from first, prepared already; or the same
     uint lanes;        // prepare: how many invocations may share the queue
     uint sample_begin; // of the batch
     uint sample_end;

@@ -128,7 +128,7 @@ void damage_tree(GridBytes& bytes, Random& random) {
 
 void check_majorants(const DensityField& field, Random& random) {
     const int cell = static_cast<int>(random.one_in(2) ? 0 : 1 + random.below(64));
-    const MajorantGrid grid = make_majorant_grid(field, cell, 1.0);
+    const MajorantGrid grid = make_majorant_grid(field, cell);
     const glm::ivec3 n = grid.dims;
     expect(grid.bounds.size() == std::size_t(n.x) * std::size_t(n.y) * std::size_t(n.z) && !grid.bounds.empty(),
            "majorant cells are not as many as their dimensions say");

@@ -71,7 +71,7 @@ inline constexpr Words grammar[] = {
     {"rayPerPixelCount", "i", {}},
     {"maxDepth", "i", {}},
     {"integrator",
-     "deltaTracking|ratioTracking|ratioNEE|deltaTrackingNEE|residualRatioTracking|weightedTracking|"
+     "deltaTracking|ratioTracking|cachedRatioTracking|ratioNEE|deltaTrackingNEE|residualRatioTracking|weightedTracking|"
      "decompositionTracking|spectralTracking|unbiasedRayMarching|regularTracking|rayMarching|adaptiveRayMarching|"
      "densitySampling|homogeneousRayMarcherNEE|homogeneousRayMarcherImproved|heterogeneousPerlinNoise|nanoVDBSimple|"
      "nanoVDBEmission",

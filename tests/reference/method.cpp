@@ -19,7 +19,7 @@ struct Preset {
 };
 
 constexpr int none = SCATTERING_NONE, single = SCATTERING_SINGLE, multiple = SCATTERING_MULTIPLE;
-constexpr std::array<Preset, 18> presets{{
+constexpr std::array<Preset, 19> presets{{
     {"densitySampling", none, FREE_FLIGHT_ANALYTIC, TRANSMITTANCE_ANALYTIC, NEE_NONE},
     {"homogeneousRayMarcherNEE", single, FREE_FLIGHT_MARCH, TRANSMITTANCE_ANALYTIC, NEE_TENTATIVE},
     {"homogeneousRayMarcherImproved", single, FREE_FLIGHT_MARCH, TRANSMITTANCE_ANALYTIC, NEE_TENTATIVE},
@@ -28,6 +28,7 @@ constexpr std::array<Preset, 18> presets{{
     {"nanoVDBEmission", single, FREE_FLIGHT_MARCH, TRANSMITTANCE_MARCH, NEE_TENTATIVE},
     {"deltaTracking", multiple, FREE_FLIGHT_DELTA, TRANSMITTANCE_RATIO, NEE_NONE},
     {"ratioTracking", multiple, FREE_FLIGHT_DELTA, TRANSMITTANCE_RATIO, NEE_COLLISIONS},
+    {"cachedRatioTracking", multiple, FREE_FLIGHT_DELTA, TRANSMITTANCE_RATIO, NEE_CACHED},
     {"ratioNEE", multiple, FREE_FLIGHT_DELTA, TRANSMITTANCE_RATIO, NEE_TENTATIVE},
     {"deltaTrackingNEE", multiple, FREE_FLIGHT_DELTA, TRANSMITTANCE_DELTA, NEE_COLLISIONS},
     {"regularTracking", multiple, FREE_FLIGHT_REGULAR, TRANSMITTANCE_REGULAR, NEE_COLLISIONS},
@@ -93,7 +94,8 @@ vkvol::Volume preset_volume(const std::string& integrator, vkvol::Volume volume)
 Method resolve_method(const vkvol::Scene& scene, Medium& medium) {
     const vkvol::RenderSettings& settings = scene.settings;
     const vkvol::AxisChoices& choices = settings.choices;
-    const std::string best = scene.lights.empty() ? "deltaTracking" : "ratioTracking";
+    const bool cached = !medium.homogeneous() && !std::holds_alternative<Mesh>(medium.shape);
+    const std::string best = scene.lights.empty() ? "deltaTracking" : cached ? "cachedRatioTracking" : "ratioTracking";
     const Preset& preset = find_preset(settings.integrator.empty() ? best : settings.integrator);
     Method method{preset.name,
                   choices.scattering.value_or(preset.scattering),
@@ -118,6 +120,8 @@ Method resolve_method(const vkvol::Scene& scene, Medium& medium) {
     if (scene.lights.empty() || method.scattering == SCATTERING_NONE)
         method.nee = NEE_NONE;
     if (method.nee == NEE_TENTATIVE && depth_sampled(method.free_flight))
+        method.nee = NEE_COLLISIONS;
+    if (method.nee == NEE_CACHED && !cached)
         method.nee = NEE_COLLISIONS;
     if (depth_sampled(method.free_flight) && !medium.grey())
         method.emission = EMISSION_AT_COLLISIONS;

@@ -6,6 +6,7 @@
 
 #include "camera.h"
 #include "free_flight.h"
+#include "light_cache.h"
 #include "phase.h"
 #include "shaders/shared/bindings.h"
 #include "transmittance.h"
@@ -97,6 +98,8 @@ Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng
         beta *= medium.albedo;
         if (method.nee == NEE_COLLISIONS)
             L += beta * direct_light(world, ray.origin, ray.direction, rng);
+        if (method.nee == NEE_CACHED)
+            L += beta * cached_light(world, ray.origin, ray.direction, beta, rng);
         if (method.scattering == SCATTERING_SINGLE)
             return L;
 

@@ -117,7 +117,7 @@ std::vector<Combination> unbiased_combinations(const Scene& scene) {
     for (int flight = 0; flight < FREE_FLIGHT_COUNT; ++flight)
         for (int emission = 0; emission <= (glows ? EMISSION_AT_STEPS : EMISSION_AT_COLLISIONS); ++emission) {
             for (int transmittance = 0; transmittance < TRANSMITTANCE_COUNT; ++transmittance)
-                for (const int nee : {NEE_COLLISIONS, NEE_TENTATIVE})
+                for (const int nee : {NEE_COLLISIONS, NEE_TENTATIVE, NEE_CACHED})
                     consider(flight, transmittance, nee, emission);
         }
     return all;

@@ -22,11 +22,13 @@ KernelRunner::KernelRunner(std::span<const std::uint32_t> spirv, const Specializ
     const LoadedVolume nothing;
     scene_buffers_.emplace(test_device(), commands_, scene.volume ? *scene.volume : nothing,
                            scene.most_grid_bytes != 0 ? scene.most_grid_bytes
-                                                      : std::uint64_t{test_device().limits().maxStorageBufferRange});
+                                                      : std::uint64_t{test_device().limits().maxStorageBufferRange},
+                           std::uint64_t{4} * test_device().limits().maxTexelBufferElements);
     scene_buffers_->set_frame(commands_, scene.frame);
     BoundBuffers bound = scene_buffers_->bound();
     bound[BINDING_COUNTERS] = &counters_;
     Specialization constants = specialization;
+    constants[SPEC_TEXELS] = scene_buffers_->texels() ? 1 : 0;
     constants[SPEC_WINDOW_BITS] = static_cast<std::int32_t>(scene_buffers_->window_bits().value_or(0));
     bindings_.emplace(test_device(), bound);
     pass_.emplace(test_device(), *bindings_, spirv, constants, VK_NULL_HANDLE);

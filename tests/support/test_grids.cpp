@@ -129,7 +129,7 @@ TestGrid make_test_grid(GridBytes bytes, int cell) {
     grid.volume.field = make_density_field(std::move(bytes), "test grid");
     if (grid.field().active_voxels == 0)
         return grid;
-    grid.volume.majorants = make_majorant_grid(grid.field(), cell, 1.0);
+    grid.volume.majorants = make_majorant_grid(grid.field(), cell);
     for (const float bound : grid.majorants().bounds)
         grid.highest = std::max(grid.highest, bound);
     return grid;

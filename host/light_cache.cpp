@@ -1,0 +1,60 @@
+#include "light_cache.h"
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+
+#include "average.spv.h"
+#include "average_windows.spv.h"
+#include "shade.spv.h"
+
+namespace vkvol {
+
+namespace {
+
+constexpr double most_nodes = 64.0; // along an edge: twice as many were no better
+
+std::uint64_t count(const shared::LatticeParams& lattice) {
+    return std::uint64_t(lattice.dims.x) * std::uint64_t(lattice.dims.y) * std::uint64_t(lattice.dims.z);
+}
+
+} // namespace
+
+shared::LatticeParams make_lattice(glm::dvec3 low, glm::dvec3 high, glm::dvec3 edges, glm::ivec3 voxels) {
+    shared::LatticeParams lattice{};
+    const double spacing = std::max({edges.x, edges.y, edges.z}) / (most_nodes - 1.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        const double wanted = std::ceil(edges[axis] / spacing) + 1.0;
+        const double most = voxels == glm::ivec3(0) ? most_nodes : std::min(most_nodes, voxels[axis] + 2.0);
+        lattice.dims[axis] = static_cast<int>(std::clamp(wanted, 2.0, most));
+        lattice.spacing[axis] = static_cast<float>((high[axis] - low[axis]) / (lattice.dims[axis] - 1));
+    }
+    lattice.low = low;
+    return lattice;
+}
+
+LightCache::LightCache(const Device& device, Commands& commands, BoundBuffers scene,
+                       const shared::LatticeParams& lattice, Specialization specialization,
+                       std::optional<std::uint32_t> window_bits, VkPipelineCache cache)
+    : buffer_(device, "light cache", 2 * count(lattice) * sizeof(glm::vec4),
+              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, BufferPlace::device) {
+    scene[BINDING_LATTICE] = scene[BINDING_LATTICE_TEXELS] = &buffer_;
+    specialization[SPEC_WINDOW_BITS] = static_cast<std::int32_t>(window_bits.value_or(0));
+    const Bindings bindings(device, scene);
+    const auto make = [&](std::span<const std::uint32_t> spirv) {
+        return std::make_unique<ComputePass>(device, bindings, spirv, specialization, cache);
+    };
+    auto shade = std::async(std::launch::async, [&] { return make(shade_spv); });
+    const auto average = make(window_bits ? std::span<const std::uint32_t>(average_windows_spv) : average_spv);
+    const auto nodes = static_cast<std::uint32_t>(count(lattice));
+    commands.fill(buffer_, 0); // the corners beyond the border are read, with weight 0
+    const shared::PassPush push{};
+    const auto shading = shade.get();
+    for (const ComputePass* pass : {average.get(), shading.get()})
+        commands.run([&](VkCommandBuffer recorded) {
+            pass->record(recorded, push, nodes);
+            record_barrier(recorded);
+        });
+}
+
+} // namespace vkvol

@@ -1,0 +1,99 @@
+// The cache of transmittances towards the light. That its use is unbiased is the agreement tests' business, where the
+// reference has a cache of its own; here is what the cache holds, and what it saves.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "light_cache.h"
+#include "support/images.h"
+#include "support/scenes.h"
+#include "support/test_device.h"
+#include "support/test_scene.h"
+
+using namespace vkvol;
+
+namespace {
+
+// Optical depths towards the light at the nodes, as the device finds them.
+std::vector<float> depths_at_nodes(const TestScene& scene, const shared::LatticeParams& lattice, bool texels) {
+    Commands commands(test_device());
+    SceneBuffers buffers(test_device(), commands, *scene.kernel.volume, std::uint64_t{1} << 27,
+                         texels ? std::uint64_t{4} * test_device().limits().maxTexelBufferElements : 1);
+    shared::FrameParams frame = scene.kernel.frame;
+    frame.lattice = lattice;
+    buffers.set_frame(commands, frame);
+    Specialization constants = scene.specialization;
+    constants[SPEC_TEXELS] = buffers.texels() ? 1 : 0;
+    const LightCache cache(test_device(), commands, buffers.bound(), lattice, constants, buffers.window_bits(),
+                           VK_NULL_HANDLE);
+    std::vector<glm::vec4> entries(cache.buffer().bytes() / sizeof(glm::vec4));
+    commands.download(cache.buffer(), std::as_writable_bytes(std::span(entries)));
+    std::vector<float> depths;
+    for (std::size_t i = entries.size() / 2; i < entries.size(); ++i)
+        depths.push_back(entries[i].x);
+    return depths;
+}
+
+} // namespace
+
+TEST_CASE("lattices are cubes where they can be, and no finer than the grid", "[cpu][light_cache]") {
+    const auto same = make_lattice({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0}, {8.0, 4.0, 2.0}, glm::ivec3(0));
+    CHECK(same.dims == glm::ivec3(64, 33, 17));
+    for (int axis = 0; axis < 3; ++axis)
+        CHECK(same.spacing[axis] * float(same.dims[axis] - 1) == Approx(2.0));
+    const auto small = make_lattice({-1.0, -1.0, -1.0}, {10.0, 1.0, 5.0}, {1.1, 0.2, 0.6}, {10, 1, 5});
+    CHECK(small.dims == glm::ivec3(12, 3, 7));
+    const auto flat = make_lattice({0.0, 0.0, 0.0}, {100.0, 1.0, 100.0}, {100.0, 1e-9, 100.0}, glm::ivec3(0));
+    CHECK(flat.dims == glm::ivec3(64, 2, 64));
+}
+
+TEST_CASE("the cache knows the depth of a uniform block to a cell of the lattice", "[gpu][light_cache]") {
+    // Density 1 in a block of 40 x 30 x 20 voxels. The march is exact within; at the border, where a node's mean is
+    // over a cell that is half outside, and where interpolation goes down to 0 over a voxel, it errs by less than the
+    // density of one spacing and one voxel at each end.
+    GridRecipe recipe{{0, 0, 0}, {39, 29, 19}, nullptr, Storage::float32};
+    recipe.value = [](glm::ivec3) { return 1.0f; };
+    const TestGrid grid = make_test_grid(recipe);
+    Volume volume;
+    volume.sigma_a = volume.sigma_s = Rgb(0.05);
+    volume.unit = CoefficientUnit::world;
+    TestScene scene = make_test_scene(grid.volume, volume, Filter::trilinear);
+    const glm::dvec3 light = glm::normalize(glm::dvec3(0.3, 1.0, -0.2));
+    scene.kernel.frame.light.direction = light;
+    const glm::dvec3 low(-1.0), high(40.0, 30.0, 20.0);
+    const auto lattice = make_lattice(low, high, high - low, {12, 9, 6});
+    const double spacing = lattice.spacing.x;
+    const bool texels = GENERATE(false, true);
+    const std::vector<float> depths = depths_at_nodes(scene, lattice, texels);
+    const double per_voxel = double(scene.kernel.frame.volume.sigma_t) *
+                             glm::length(glm::dmat3(grid.field().index_to_world) * glm::dvec3(1.0, 0.0, 0.0));
+    std::size_t i = 0;
+    for (int x = 0; x < lattice.dims.x; ++x)
+        for (int y = 0; y < lattice.dims.y; ++y)
+            for (int z = 0; z < lattice.dims.z; ++z, ++i) {
+                const glm::dvec3 p = low + glm::dvec3(x, y, z) * glm::dvec3(lattice.spacing);
+                double end = 1e300; // to the faces of the voxels, in voxels
+                for (int axis = 0; axis < 3; ++axis) {
+                    const double face = light[axis] > 0.0 ? high[axis] - 0.5 : -0.5;
+                    end = std::min(end, std::max((face - p[axis]) / light[axis], 0.0));
+                }
+                CAPTURE(x, y, z, texels);
+                CHECK(std::abs(depths[i] - per_voxel * end) <= per_voxel * 2.0 * (std::sqrt(3.0) * spacing + 1.0));
+            }
+    REQUIRE(i == depths.size());
+}
+
+TEST_CASE("few collisions look at the light, and the picture is the same whatever reads the cache",
+          "[gpu][light_cache][determinism]") {
+    Scene scene = scene_of(medium(write_grid(cloud_grid()), 4.0, 0.99, 0.3), 11.0, 24);
+    scene.lights = {sunlight()};
+    scene.settings.spp = 8;
+    scene.settings.integrator = "cachedRatioTracking";
+    RenderJob job;
+    const RenderResult result = render_here(scene, 3, job);
+    CHECK(result.counts.shadow_rays > 0);
+    CHECK(result.counts.shadow_rays < result.counts.real_collisions);
+    job.tuning.most_texel_bytes = 1; // storage buffers
+    CHECK(same_bits(result.film, render_here(scene, 3, job).film));
+    job.tuning.budget = 3; // laid aside amid shadow rays
+    CHECK(same_bits(result.film, render_here(scene, 3, job).film));
+}

@@ -1,0 +1,16 @@
+// Direct light from transmittances that are known roughly beforehand; the specification is
+// shaders/include/light_cache.glsl.
+#pragma once
+
+#include "path.h"
+
+namespace reference {
+
+// A rough transmittance towards the light, the same whenever it is asked for; exactness is not its business.
+vkvol::Rgb rough_transmittance(const Medium& medium, const Ray& ray);
+
+// As direct_light, for a path of throughput beta: some of the light by chance, the expectation the same.
+vkvol::Rgb cached_light(const World& world, const glm::dvec3& p, const glm::dvec3& travel, const vkvol::Rgb& beta,
+                        Rng& rng);
+
+} // namespace reference
