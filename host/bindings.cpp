@@ -73,16 +73,21 @@ void Bindings::create() {
     VK_CHECK(vkAllocateDescriptorSets(device_.handle(), &allocate, &set_));
 }
 
-void Bindings::bind(std::uint32_t binding, const Buffer& buffer) {
-    const VkDescriptorBufferInfo info{buffer.handle(), 0, buffer.bytes()};
+void Bindings::write(std::uint32_t binding, const VkDescriptorBufferInfo* buffer, const VkBufferView* texels) {
     VkWriteDescriptorSet write{};
     write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     write.dstSet = set_;
     write.dstBinding = binding;
     write.descriptorCount = 1;
     write.descriptorType = descriptor_type(binding);
-    write.pBufferInfo = &info;
+    write.pBufferInfo = buffer;
+    write.pTexelBufferView = texels;
     vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
+}
+
+void Bindings::bind(std::uint32_t binding, const Buffer& buffer) {
+    const VkDescriptorBufferInfo info{buffer.handle(), 0, buffer.bytes()};
+    write(binding, &info, nullptr);
 }
 
 void Bindings::bind_texels(std::uint32_t binding, const Buffer& buffer) {
@@ -92,14 +97,7 @@ void Bindings::bind_texels(std::uint32_t binding, const Buffer& buffer) {
     create.format = texel_format(binding);
     create.range = VK_WHOLE_SIZE;
     VK_CHECK(vkCreateBufferView(device_.handle(), &create, nullptr, &views_.emplace_back(VK_NULL_HANDLE)));
-    VkWriteDescriptorSet write{};
-    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    write.dstSet = set_;
-    write.dstBinding = binding;
-    write.descriptorCount = 1;
-    write.descriptorType = descriptor_type(binding);
-    write.pTexelBufferView = &views_.back();
-    vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
+    write(binding, nullptr, &views_.back());
 }
 
 Bindings::~Bindings() {

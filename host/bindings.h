@@ -30,6 +30,7 @@ private:
     void create();
     void release();
     void bind_texels(std::uint32_t binding, const Buffer& buffer);
+    void write(std::uint32_t binding, const VkDescriptorBufferInfo* buffer, const VkBufferView* texels);
 
     const Device& device_;
     Buffer unused_; // stands where a scene needs no buffer
