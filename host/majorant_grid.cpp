@@ -1,9 +1,9 @@
 #include "majorant_grid.h"
 
-#include "pilot_paths.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "pilot_paths.h"
 
 namespace vkvol {
 
@@ -46,22 +46,6 @@ void raise_block(MajorantGrid& grid, const DensityField& field, glm::ivec3 block
             for (int z = low.z; z <= high.z; ++z)
                 if (const float value = field.value({x, y, z}); value > 0.0f)
                     raise(grid, glm::ivec3(x, y, z) - grid.origin, glm::ivec3(x, y, z) - grid.origin, value);
-}
-
-MajorantGrid build(const DensityField& field, int cell) {
-    MajorantGrid grid;
-    grid.cell = cell;
-    while (count(cell_dims(field, grid.cell)) > most_cells)
-        grid.cell *= 2;
-    grid.origin = field.voxel_min - 1;
-    grid.dims = cell_dims(field, grid.cell);
-    grid.bounds.assign(static_cast<std::size_t>(count(grid.dims)), 0.0f);
-    glm::ivec3 block;
-    for (block.x = 0; block.x < field.leaf_dims.x; ++block.x)
-        for (block.y = 0; block.y < field.leaf_dims.y; ++block.y)
-            for (block.z = 0; block.z < field.leaf_dims.z; ++block.z)
-                raise_block(grid, field, block);
-    return grid;
 }
 
 // Cells of twice the edge. The corners of a large cell are those of the eight it is made of.
@@ -107,11 +91,23 @@ CellValues cell_values(const DensityField& field, const MajorantGrid& grid, glm:
 } // namespace
 
 MajorantGrid make_majorant_grid(const DensityField& field, int cell) {
-    return build(field, cell);
+    MajorantGrid grid;
+    grid.cell = cell;
+    while (count(cell_dims(field, grid.cell)) > most_cells)
+        grid.cell *= 2;
+    grid.origin = field.voxel_min - 1;
+    grid.dims = cell_dims(field, grid.cell);
+    grid.bounds.assign(static_cast<std::size_t>(count(grid.dims)), 0.0f);
+    glm::ivec3 block;
+    for (block.x = 0; block.x < field.leaf_dims.x; ++block.x)
+        for (block.y = 0; block.y < field.leaf_dims.y; ++block.y)
+            for (block.z = 0; block.z < field.leaf_dims.z; ++block.z)
+                raise_block(grid, field, block);
+    return grid;
 }
 
 MajorantGrid choose_majorant_grid(const DensityField& field, const PilotScene& scene) {
-    MajorantGrid grid = build(field, 4), best = grid;
+    MajorantGrid grid = make_majorant_grid(field, 4), best = grid;
     const std::vector<PilotSegment> segments = pilot_paths(field, grid, scene);
     double fewest = pilot_steps(segments, grid, scene.sigma_t);
     while (grid.cell < 64) {

@@ -9,6 +9,8 @@
 
 namespace vkvol {
 
+struct PilotScene;
+
 // Cells are cubes of `cell` voxels from `origin` on (index space, z fastest); together they cover the region where the
 // interpolated density can differ from 0, one voxel beyond the active ones. Each bound is the largest voxel value
 // among the corners that interpolation inside the cell, faces included, can touch: tight for trilinear lookup unless
@@ -26,7 +28,6 @@ MajorantGrid make_majorant_grid(const DensityField& field, int cell);
 // Of cells of 4, 8 ... 64 voxels those over which paths of this scene take the fewest steps (after Yue et al., "Toward
 // Optimal Space Partitioning for Unbiased, Adaptive Free Path Sampling", 2011; but along paths, not over the grid's
 // box: they stay where the medium is thin, or near its surface where it is dense).
-struct PilotScene;
 MajorantGrid choose_majorant_grid(const DensityField& field, const PilotScene& scene);
 
 // A control density for each cell of `grid` (whose bounds are the densities' own, not scaled), with the bound of what

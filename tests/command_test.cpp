@@ -3,33 +3,16 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "error.h"
 #include "image_io.h"
+#include "support/shell.h"
 
 using namespace vkvol;
 using Catch::Contains;
 
 namespace {
-
-struct Run {
-    int code = -1;
-    std::string text; // standard output and error
-};
-
-Run run(const std::string& command) {
-    Run result;
-    FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-    REQUIRE(pipe);
-    char part[4096];
-    while (const std::size_t size = fread(part, 1, sizeof part, pipe))
-        result.text.append(part, size);
-    const int status = pclose(pipe);
-    result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return result;
-}
 
 // An empty folder to work in, with one scene: a ball of optical depth 4.
 class Folder {

@@ -9,6 +9,7 @@
 #include "info.h"
 #include "majorant_grid.h"
 #include "mutate.h"
+#include "pilot_paths.h"
 #include "target.h"
 #include "use_scene.h"
 
@@ -126,9 +127,23 @@ void damage_tree(GridBytes& bytes, Random& random) {
     }
 }
 
+// An eye around the field or within it, and a medium from nearly empty to opaque.
+PilotScene random_pilot(const DensityField& field, Random& random) {
+    const auto anywhere = [&] { return glm::dvec3(random.uniform(), random.uniform(), random.uniform()); };
+    const glm::dvec3 low(field.voxel_min), size(field.voxel_max - field.voxel_min + 1);
+    PilotScene scene;
+    scene.eye = low + size * (3.0 * anywhere() - 1.0);
+    if (random.one_in(2))
+        scene.light = glm::normalize(anywhere() - 0.5 + 1e-9);
+    scene.sigma_t = std::pow(10.0, 12.0 * random.uniform() - 8.0);
+    scene.albedo = random.uniform();
+    scene.g = random.one_in(2) ? 0.0 : 1.98 * random.uniform() - 0.99;
+    return scene;
+}
+
 void check_majorants(const DensityField& field, Random& random) {
-    const int cell = static_cast<int>(random.one_in(2) ? 0 : 1 + random.below(64));
-    const MajorantGrid grid = make_majorant_grid(field, cell);
+    const MajorantGrid grid = random.one_in(2) ? choose_majorant_grid(field, random_pilot(field, random))
+                                               : make_majorant_grid(field, static_cast<int>(1 + random.below(64)));
     const glm::ivec3 n = grid.dims;
     expect(grid.bounds.size() == std::size_t(n.x) * std::size_t(n.y) * std::size_t(n.z) && !grid.bounds.empty(),
            "majorant cells are not as many as their dimensions say");
