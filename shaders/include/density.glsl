@@ -27,26 +27,42 @@ float leaf_value(int type, uint leaf, uint n) {
     return max(float(code) * quantum + minimum, 0.0);
 }
 
-// Value of voxel `ijk`, >= 0; 0 outside the box of active voxels. `type` is a specialization constant. No branch: lanes
-// disagree at every edge anyway.
-float voxel(GridParams g, int type, ivec3 ijk) {
+// Where a voxel's value is: in two reads, of the leaf table and of the grid. Apart, so that those of several voxels can be
+// under way at once.
+struct VoxelPlace {
+    uint entry;  // of the leaf table
+    uint n;      // in the leaf
+    bool inside; // the box of active voxels
+};
+
+VoxelPlace find_voxel(GridParams g, ivec3 ijk) {
     ivec3 inside = clamp(ijk, g.voxel_min, g.voxel_max);
     ivec3 block = (inside >> 3) - g.leaf_min;
-    uint entry = leaf_entry(g.first_entry + uint((block.x * g.leaf_dims.y + block.y) * g.leaf_dims.z + block.z));
     ivec3 low = inside & 7;
-    uint n = uint(low.x << 6 | low.y << 3 | low.z);
+    return VoxelPlace(g.first_entry + uint((block.x * g.leaf_dims.y + block.y) * g.leaf_dims.z + block.z),
+                      uint(low.x << 6 | low.y << 3 | low.z), inside == ijk);
+}
+
+// `entry`: what the leaf table says. No branch: lanes disagree at every edge anyway.
+float voxel_value(GridParams g, int type, VoxelPlace place, uint entry) {
     bool in_leaf = (entry & 1u) != 0u;
     uint at = g.first_word + (entry >> 1u);
     float value;
     if (type == GRID_FLOAT)
-        value = uintBitsToFloat(grid_word(at + (in_leaf ? LEAF_VALUES + n : 0u)));
+        value = uintBitsToFloat(grid_word(at + (in_leaf ? LEAF_VALUES + place.n : 0u)));
     else
-        value = in_leaf ? leaf_value(type, at, n) : uintBitsToFloat(grid_word(at));
-    return inside == ijk ? value : 0.0;
+        value = in_leaf ? leaf_value(type, at, place.n) : uintBitsToFloat(grid_word(at));
+    return place.inside ? value : 0.0;
 }
 
-float lookup_nearest(GridParams g, int type, vec3 p) {
-    return voxel(g, type, ivec3(floor(p + 0.5)));
+// Value of voxel `ijk`, >= 0; 0 outside the box of active voxels. `type` is a specialization constant.
+float voxel(GridParams g, int type, ivec3 ijk) {
+    VoxelPlace place = find_voxel(g, ijk);
+    return voxel_value(g, type, place, leaf_entry(place.entry));
+}
+
+ivec3 nearest_voxel(vec3 p) {
+    return ivec3(floor(p + 0.5));
 }
 
 float lookup_trilinear(GridParams g, int type, vec3 p) {
@@ -64,9 +80,9 @@ float lookup_trilinear(GridParams g, int type, vec3 p) {
 
 // One corner, chosen with its trilinear weight (Pharr et al., "Filtering After Shading", 2024): the expectation is
 // the trilinear value, so it may stand wherever the value enters linearly.
-float lookup_stochastic(GridParams g, int type, vec3 p, vec3 tap) {
+ivec3 random_corner(vec3 p, vec3 tap) {
     vec3 base = floor(p);
-    return voxel(g, type, ivec3(base) + ivec3(lessThan(tap, p - base)));
+    return ivec3(base) + ivec3(lessThan(tap, p - base));
 }
 
 // At a point of medium space, >= 0. `tap` in [0, 1)^3 is for the stochastic filter.
@@ -77,9 +93,9 @@ float density(VolumeParams v, vec3 p, vec3 tap) {
         return noise_density(v.noise, v.extent * p);
     switch (FILTER) {
     case FILTER_NEAREST:
-        return lookup_nearest(v.density, GRID_TYPE, p);
+        return voxel(v.density, GRID_TYPE, nearest_voxel(p));
     case FILTER_STOCHASTIC:
-        return lookup_stochastic(v.density, GRID_TYPE, p, tap);
+        return voxel(v.density, GRID_TYPE, random_corner(p, tap));
     default:
         return lookup_trilinear(v.density, GRID_TYPE, p);
     }

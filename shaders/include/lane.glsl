@@ -2,6 +2,7 @@
 // what happens where it meets matter.
 #ifndef LANE_GLSL
 #define LANE_GLSL
+#include "ahead.glsl"
 #include "camera.glsl"
 #include "emission.glsl"
 #include "light.glsl"
@@ -15,8 +16,6 @@
 #define TODO_FLY 3u    // go on along the flight
 #define TODO_SEE 4u    // go on along the shadow ray
 #define TODO_END 5u    // the path is over
-
-#define EVENT_OPAQUE 4u // nothing of the light is left, no need to go on
 
 // A path as a lane holds it.
 struct Lane {
@@ -149,6 +148,17 @@ uint step_segment(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum d
     if (SHAPE == SHAPE_MESH && event == EVENT_LEFT)
         event = next_part(v, seeing ? looking_from(lane) : lane.path.position,
                           seeing ? frame.light.direction : lane.path.direction, seeing, lane.walk);
+    return event;
+}
+
+// Steps of the lane's segment, until something happens or it is time for another look.
+uint step_lane(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum deposit, inout Tally tally) {
+    deposit = to_spectrum(vec3(0.0));
+    if (looks_ahead())
+        return step_ahead(v, LOOKS && lane.todo == TODO_SEE, lane.walk, rng, lane.beta, lane.T, tally);
+    uint event = EVENT_MOVING;
+    for (int k = 0; k < STEPS && event == EVENT_MOVING; ++k)
+        event = step_segment(v, lane, rng, deposit, tally);
     return event;
 }
 

@@ -35,6 +35,7 @@
 #define EVENT_COLLIDED 1u
 #define EVENT_LEFT 2u    // the end of the part within the medium, or of the whole segment
 #define EVENT_TOUCHED 3u // an interaction that leaves the flight as it is: a null collision, a step of a march
+#define EVENT_OPAQUE 4u  // nothing of the light is left, no need to go on
 
 // What the walk needs of its cell. With `residual` the bound of |density - control|, else that of the density.
 void load_cell(VolumeParams v, bool residual, inout Walk w) {

@@ -63,8 +63,8 @@ void main() {
         Spectrum deposit = to_spectrum(vec3(0.0));
         uint event = EVENT_MOVING;
         bool stepping = lane.todo == TODO_FLY || lane.todo == TODO_SEE;
-        for (int k = 0; k < STEPS && stepping && event == EVENT_MOVING; ++k)
-            event = step_segment(v, lane, rng, deposit, tally);
+        if (stepping)
+            event = step_lane(v, lane, rng, deposit, tally);
         lane.steps += STEPS;
         bool seeing = LOOKS && lane.todo == TODO_SEE;
         bool cut = event == EVENT_MOVING && stepping && lane.steps >= push.step_limit;

@@ -14,8 +14,8 @@ void main() {
     DensityOutput o;
     o.filtered = density(v, input_.p, input_.tap);
     o.voxel = voxel(v.density, GRID_TYPE, ivec3(floor(input_.p)));
-    o.nearest = lookup_nearest(v.density, GRID_TYPE, input_.p);
+    o.nearest = voxel(v.density, GRID_TYPE, nearest_voxel(input_.p));
     o.trilinear = lookup_trilinear(v.density, GRID_TYPE, input_.p);
-    o.stochastic = lookup_stochastic(v.density, GRID_TYPE, input_.p, input_.tap);
+    o.stochastic = voxel(v.density, GRID_TYPE, random_corner(input_.p, input_.tap));
     outputs[i] = o;
 }
