@@ -52,8 +52,7 @@ Json setup_json(const Measurement& m) {
             {"pipeline", median_of_all(m, [](const RenderResult& r) { return r.pipeline_seconds; })}};
 }
 
-// Over all runs.
-Json per_path_json(const Measurement& measurement) {
+RenderCounts counts_of_all_runs(const Measurement& measurement) {
     RenderCounts sum;
     for (const RenderResult& result : measurement.results) {
         sum.paths += result.counts.paths;
@@ -62,7 +61,13 @@ Json per_path_json(const Measurement& measurement) {
         sum.lookups += result.counts.lookups;
         sum.cells += result.counts.cells;
         sum.shadow_rays += result.counts.shadow_rays;
+        sum.room += result.counts.room;
+        sum.steps += result.counts.steps;
     }
+    return sum;
+}
+
+Json per_path_json(const RenderCounts& sum) {
     const auto each = [&](std::uint64_t count) {
         return static_cast<double>(count) / static_cast<double>(std::max<std::uint64_t>(1, sum.paths));
     };
@@ -83,6 +88,7 @@ Json passes_json(const Measurement& measurement) {
 
 Json estimator_json(const BenchResult& result, const Measurement& measurement, const Json& image) {
     const Figures figures = figures_of(result, measurement);
+    const RenderCounts counts = counts_of_all_runs(measurement);
     return {{"integrator", measurement.estimator.integrator},
             {"isDefault", measurement.estimator.is_default},
             {"biased", measurement.results.back().biased},
@@ -92,8 +98,8 @@ Json estimator_json(const BenchResult& result, const Measurement& measurement, c
             {"biasFloor", interval_json(figures.floor)},
             {"efficiency", interval_json(figures.efficiency)},
             {"secondsToOnePercent", number(figures.seconds_to_one_percent)},
-            {"perPath", per_path_json(measurement)},
-            {"laneUse", Json::object()},
+            {"perPath", per_path_json(counts)},
+            {"laneUse", {{"track", counts.lane_use()}}},
             {"passSeconds", passes_json(measurement)},
             {"samplesPerSecond", figures.samples_per_second},
             {"image", image}};

@@ -37,6 +37,8 @@ void add_counts(RenderCounts& total, const shared::Counters& c) {
     total.lookups += c.lookups;
     total.cells += c.cells;
     total.shadow_rays += c.shadow_rays;
+    total.room += c.room;
+    total.steps += c.steps;
     total.depth_caps += c.depth_caps;
     total.step_caps += c.step_caps;
     total.majorant_violations += c.majorant_violations;
@@ -256,7 +258,7 @@ private:
         begin_band(band);
         for (bool resting = false; !resting;) {
             resting = wavefront_->advance();
-            gather(band);
+            gather();
             if (job_.progress)
                 job_.progress(progress_of(band), std::nullopt);
             if (!resting && stopping()) {
@@ -281,17 +283,16 @@ private:
         return done_ + batch_ * rows / (job_.crop.y1 - job_.crop.y0);
     }
 
-    void gather(const Band& band) {
+    void gather() {
         const shared::Counters& counters = wavefront_->counters();
         add_counts(result_.counts, counters);
         for (std::size_t pass = 0; pass < pass_names.size(); ++pass)
             result_.pass_seconds[pass] += wavefront_->pass_seconds()[pass];
-        for (std::uint32_t i = 0; i < std::min<std::uint32_t>(counters.non_finite, NON_FINITE_RECORDS); ++i) {
-            const std::uint32_t pixel = counters.non_finite_pixel[i];
+        for (std::uint32_t i = 0; i < std::min<std::uint32_t>(counters.non_finite_records, NON_FINITE_RECORDS); ++i) {
+            const std::uint32_t place = counters.non_finite_place[i];
             if (result_.non_finite.size() < 16)
-                result_.non_finite.push_back({job_.crop.x0 + static_cast<int>(pixel % width_),
-                                              job_.crop.y0 + static_cast<int>(band.first_row + pixel / width_),
-                                              counters.non_finite_sample[i]});
+                result_.non_finite.push_back(
+                    {static_cast<int>(place & 0xffffu), static_cast<int>(place >> 16u), counters.non_finite_sample[i]});
         }
     }
 

@@ -135,6 +135,7 @@ std::string make_report(const RenderOptions& options, const Scene& scene, const 
         {"samples", static_cast<double>(result.counts.paths) / seconds},
         {"tentativeCollisions",
          static_cast<double>(result.counts.real_collisions + result.counts.null_collisions) / seconds}};
+    report["laneUse"] = {{"track", result.counts.lane_use()}};
     report["caps"] = caps_json(result);
     report["mean"] = mean_json(result.film);
     const double noise = relative_noise(result.film);

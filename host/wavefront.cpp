@@ -8,7 +8,6 @@
 #include <future>
 #include <utility>
 
-#include "accumulate.spv.h"
 #include "begin.spv.h"
 #include "generate.spv.h"
 #include "prepare.spv.h"
@@ -119,7 +118,6 @@ Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, st
     sky_ = make(sky_spv);
     prepare_ = make(prepare_spv);
     generate_ = make(generate_spv);
-    accumulate_ = make(accumulate_spv);
     track_ = track.get();
 
     commands_.fill(queues_, 0);
@@ -213,8 +211,7 @@ bool Wavefront::advance() {
     return std::all_of(headers.begin(), headers.end(), is_empty);
 }
 
-// generate -> track -> accumulate. What a pass pushes to an earlier queue, or to its own, waits for the
-// next round.
+// generate -> track. What a pass pushes to an earlier queue, or to its own, waits for the next round.
 void Wavefront::record_round(VkCommandBuffer commands, std::uint32_t round) {
     record_timestamp(commands, round, 0);
     record_pass(commands, QUEUE_GENERATE, *generate_, tuning_.slots);
@@ -223,8 +220,6 @@ void Wavefront::record_round(VkCommandBuffer commands, std::uint32_t round) {
     record_prepare(commands, QUEUE_TRACK, QUEUE_RESUME, tuning_.lanes);
     record_consumer(commands, QUEUE_TRACK, *track_);
     record_timestamp(commands, round, 2);
-    record_pass(commands, QUEUE_ACCUMULATE, *accumulate_, tuning_.slots);
-    record_timestamp(commands, round, 3);
 }
 
 void Wavefront::record_pass(VkCommandBuffer commands, std::uint32_t queue, const ComputePass& pass,

@@ -15,7 +15,7 @@ namespace vkvol {
 
 // Sizes of the machine, none of which changes the picture.
 struct Tuning {
-    std::uint32_t slots = 0;            // paths in flight
+    std::uint32_t slots = 0;            // pixels in work
     std::uint32_t lanes = 0;            // invocations that share the track queue
     std::uint32_t budget = 0;           // iterations after which a lane lays its path aside
     std::uint32_t step_limit = 0;       // steps after which a flight is cut, and counted
@@ -32,7 +32,7 @@ Tuning tune(const Device& device, std::size_t mesh_nodes, const Tuning& wish = {
 // Places in each queue.
 std::uint32_t queue_capacity(const Tuning& tuning);
 
-constexpr std::array pass_names = {"sky", "generate", "track", "accumulate"};
+constexpr std::array pass_names = {"sky", "generate", "track"};
 using PassSeconds = std::array<double, pass_names.size()>;
 
 // Which of its compiled forms the track kernel takes.
@@ -87,7 +87,7 @@ private:
     Commands commands_;
     Buffer paths_, betas_, suspended_, queue_items_, queues_, work_, counter_buffer_, readback_;
     Bindings bindings_;
-    std::unique_ptr<ComputePass> begin_, sky_, prepare_, generate_, track_, accumulate_;
+    std::unique_ptr<ComputePass> begin_, sky_, prepare_, generate_, track_;
     VkQueryPool timestamps_ = VK_NULL_HANDLE;
     shared::PassPush push_{};
     shared::Counters counters_{};

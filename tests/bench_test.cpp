@@ -90,7 +90,7 @@ void check_estimator(const nlohmann::json& estimator, const Folder& folder) {
                 "secondsToOnePercent", "perPath", "laneUse", "passSeconds", "samplesPerSecond", "image"});
     check_keys(estimator["setupSeconds"], {"load", "upload", "pipeline"});
     check_keys(estimator["perPath"], {"realCollisions", "nullCollisions", "lookups", "majorantCells", "shadowRays"});
-    check_keys(estimator["passSeconds"], {"sky", "generate", "track", "accumulate"});
+    check_keys(estimator["passSeconds"], {"sky", "generate", "track"});
     for (const char* figure : {"slope", "biasFloor", "efficiency"}) {
         check_keys(estimator[figure], {"value", "low", "high"});
         CHECK(estimator[figure]["low"] <= estimator[figure]["value"]);

@@ -36,7 +36,8 @@ RenderResult render_part(const Scene& scene, const RenderJob& job) {
 }
 
 RenderCounts with_no_place(RenderCounts counts) {
-    counts.cells = 0; // steps amid which a path is laid aside are counted in both halves
+    counts.cells = counts.steps = 0; // steps amid which a path is laid aside are counted in both halves
+    counts.room = 0;                 // lanes' own
     return counts;
 }
 

@@ -16,7 +16,7 @@ using namespace vkvol;
 namespace {
 
 constexpr std::uint32_t guard = 0xabcdef01u;
-constexpr std::uint32_t queue = QUEUE_TRACK; // has another queue on either side
+constexpr std::uint32_t queue = QUEUE_RESUME; // has another queue on either side
 
 class Ring {
 public:

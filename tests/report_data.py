@@ -46,8 +46,7 @@ def estimator(name, cost=0.05, variance=0.2, floor=0.0, biased="", default=False
             "secondsToOnePercent": None if floor else 1e4 / efficiency,
             "perPath": {"realCollisions": 8.4, "nullCollisions": 40.1, "lookups": 48.5, "majorantCells": 15.9, "shadowRays": 8.4},
             "laneUse": {"track": 0.81},
-            "passSeconds": {"sky": 0.02 * cost * largest, "generate": 0.03 * cost * largest, "track": 0.88 * cost * largest,
-                            "accumulate": 0.04 * cost * largest},
+            "passSeconds": {"sky": 0.02 * cost * largest, "generate": 0.03 * cost * largest, "track": 0.92 * cost * largest},
             "samplesPerSecond": 32400 / cost, "image": None, **others}
 
 

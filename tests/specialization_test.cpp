@@ -109,8 +109,8 @@ Specialization with(std::initializer_list<std::pair<int, int>> changes) {
 } // namespace
 
 TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "[gpu][specialization]") {
-    const std::set<int> always = {BINDING_FRAME,       BINDING_PATHS,  BINDING_BETAS,   BINDING_SUSPENDED,
-                                  BINDING_QUEUE_ITEMS, BINDING_QUEUES, BINDING_COUNTERS};
+    const std::set<int> always = {BINDING_FRAME, BINDING_PATHS,       BINDING_BETAS,  BINDING_SUSPENDED,
+                                  BINDING_FILM,  BINDING_QUEUE_ITEMS, BINDING_QUEUES, BINDING_COUNTERS};
     const auto touches = [&](std::initializer_list<std::pair<int, int>> changes, std::set<int> more) {
         more.insert(always.begin(), always.end());
         CHECK(specialise(track_spv, with(changes)).bindings == more);

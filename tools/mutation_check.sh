@@ -52,6 +52,7 @@ pixels lost at a checkpoint ~ host/wavefront.cpp ~ first * sizeof(std::uint32_t)
 fingerprint without grids ~ host/checkpoint.cpp ~ fingerprint.add(field->bytes.span()); ~ ; ~ [checkpoint]
 huge samples kept ~ shaders/include/film.glsl ~ 281474976710656.0 ~ 3.0e38 ~ [command]
 cache corrected without its chance ~ shaders/passes/track.comp ~ (T - lane.cached) / lane.chance ~ (T - lane.cached) ~ [agreement]
+foreseen light off its mean ~ shaders/include/light_cache.glsl ~ hg_eval(v.g * v.g, ~ hg_eval(v.g, ~ [agreement]
 lattice a node off ~ shaders/include/lattice.glsl ~ uint i = lattice_index(which, node); ~ uint i = lattice_index(which, node) + 1u; ~ [light_cache]
 crop forgotten in random numbers ~ shaders/include/camera.glsl ~ frame.crop_x + pixel ~ pixel ~ [determinism]
 END

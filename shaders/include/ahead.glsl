@@ -66,6 +66,7 @@ uint step_ahead(VolumeParams v, bool seeing, inout Walk walk, inout Rng rng, ino
     [[unroll]] for (int k = 0; k < STEPS; ++k) {
         if (event == EVENT_MOVING) {
             event = step[k];
+            tally.steps += 1u;
             tally.cells += event == EVENT_COLLIDED ? 0u : 1u;
             if (event == EVENT_COLLIDED) {
                 Collision c = Collision(sigma_t[k], sigma_maj[k], u[k], 0.0, 0.0);

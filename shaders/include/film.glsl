@@ -1,8 +1,8 @@
-// Adding samples to a film entry. A slot owns its pixel while it has paths in flight, so no atomics; a pixel's samples
-// arrive in order, so its sums have the same bits however the work was scheduled.
+// Adding samples to a film entry. A lane owns its pixel while it has samples to come, so no atomics; they are added in
+// order, so its sums have the same bits however the work was scheduled.
 #ifndef FILM_GLSL
 #define FILM_GLSL
-#include "buffers.glsl"
+#include "tally.glsl"
 
 // high + low += x. The rounding error of high + x (Knuth's TwoSum) goes into low, and what of low has grown into the
 // digits of high goes back there (Dekker's FastTwoSum): else low in its turn would stall. `precise` forbids the compiler
@@ -20,14 +20,15 @@ void add_compensated(inout vec3 high, inout vec3 low, vec3 x) {
 // Radiance beyond this is as good as infinite: 2^32 squares of it are still a float.
 const float MOST_RADIANCE = 281474976710656.0; // 2^48
 
-// A sample that is not finite is dropped, counted, and its pixel and number recorded.
-void film_add(inout FilmPixel pixel, vec3 radiance, uint index, uint sample_index) {
+// A sample that is not finite is dropped and counted, the first of them with its place in the picture and number.
+void film_add(inout FilmPixel pixel, vec3 radiance, uint place, uint sample_index, inout Tally tally) {
+    tally.paths += 1u;
     if (any(isnan(radiance)) || any(greaterThan(abs(radiance), vec3(MOST_RADIANCE)))) {
-        uint record = atomicAdd(counters.non_finite, 1u);
-        if (record < NON_FINITE_RECORDS) {
-            counters.non_finite_pixel[record] = index;
-            counters.non_finite_sample[record] = sample_index;
+        if (tally.non_finite == 0u) {
+            tally.dropped_place = place;
+            tally.dropped_sample = sample_index;
         }
+        tally.non_finite += 1u;
         return;
     }
     add_compensated(pixel.sum, pixel.sum_low, radiance);

@@ -10,12 +10,14 @@
 #include "segment.glsl"
 
 // What a lane does next.
-#define TODO_TAKE 0u   // take a path from the queue
+#define TODO_TAKE 0u   // take a pixel from the queue
 #define TODO_DEPART 1u // from a vertex: scatter, unless it is the camera, and fly
 #define TODO_LOOK 2u   // toward the light
 #define TODO_FLY 3u    // go on along the flight
 #define TODO_SEE 4u    // go on along the shadow ray
 #define TODO_END 5u    // the path is over
+#define TODO_DONE 6u   // the pixel has its samples
+#define TODO_BEGIN 7u  // a path, at the camera
 
 // A path as a lane holds it.
 struct Lane {
@@ -90,10 +92,8 @@ void resume(uint slot, inout Lane lane) {
     }
 }
 
-// At the camera. Its ray is found anew: that is quicker than to read it.
-void begin_path(uint slot, inout Lane lane) {
-    lane.path.place = paths[slot].place;
-    lane.path.sample_index = paths[slot].sample_index;
+// At the camera.
+void begin_path(inout Lane lane) {
     CameraRay ray = camera_ray(lane.path.place, lane.path.sample_index);
     lane.path.position = ray.origin;
     lane.path.direction = ray.direction;
@@ -157,8 +157,10 @@ uint step_lane(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum depo
     if (looks_ahead())
         return step_ahead(v, LOOKS && lane.todo == TODO_SEE, lane.walk, rng, lane.beta, lane.T, tally);
     uint event = EVENT_MOVING;
-    for (int k = 0; k < STEPS && event == EVENT_MOVING; ++k)
+    for (int k = 0; k < STEPS && event == EVENT_MOVING; ++k) {
         event = step_segment(v, lane, rng, deposit, tally);
+        tally.steps += 1u;
+    }
     return event;
 }
 

@@ -7,7 +7,6 @@ void main() {
     uint slot = gl_GlobalInvocationID.x;
     if (slot >= frame.slots)
         return;
-    paths[slot].pixel = NO_PIXEL;
     queue_items[QUEUE_GENERATE * frame.queue_capacity + slot] = slot;
     if (slot == 0u) {
         for (uint queue = 0u; queue < QUEUE_COUNT; ++queue)

@@ -13,18 +13,19 @@ void main() {
     if (pixel >= push.pixel_end)
         return;
     FilmPixel entry = film[pixel];
+    Tally tally = NOTHING_SEEN;
     uint place = place_of(pixel);
     bool hit = false;
     for (uint i = push.sample_begin; i < push.sample_end && !hit; ++i) {
         vec2 t;
         CameraRay ray = camera_ray(place, i);
         hit = next_interval(frame.volume, to_medium(frame.volume, ray.origin, ray.direction), 0.0, t);
-        film_add(entry, frame.background, pixel, i);
+        film_add(entry, frame.background, place, i, tally);
     }
     if (hit) {
         work[atomicAdd(counters.work_count, 1u)] = pixel;
     } else {
         film[pixel] = entry;
-        atomicAdd(counters.paths, push.sample_end - push.sample_begin);
+        add_film_tally(tally);
     }
 }

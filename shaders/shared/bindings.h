@@ -108,11 +108,10 @@
 #define TRANSMITTANCE_COUNT 8
 
 // A slot is in exactly one queue, or held by a lane.
-#define QUEUE_GENERATE 0
-#define QUEUE_RESUME 1 // paths laid aside, which the lanes of the track pass take first
-#define QUEUE_TRACK 2  // at the camera
-#define QUEUE_ACCUMULATE 3
-#define QUEUE_COUNT 4
+#define QUEUE_GENERATE 0 // free
+#define QUEUE_RESUME 1   // paths laid aside, which the lanes of the track pass take first
+#define QUEUE_TRACK 2    // pixels of which no sample has begun
+#define QUEUE_COUNT 3
 
 #define BLACKBODY_ENTRIES 4096
 

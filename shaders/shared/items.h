@@ -5,19 +5,19 @@
 
 SHARED_BEGIN
 
-// A path in flight at its last vertex: the camera, or a real collision. One slot per path. One that has not left the
-// camera has a pixel, place and number, and the rest says nothing yet. Its throughput beta is in a buffer of its own, since
-// its type depends on the scene; at a collision it includes that collision's albedo.
+// A pixel in work, one slot each, and the path in flight in it, at its last vertex: the camera, or a real collision. Of
+// a pixel not begun there are its index and place, and the rest says nothing yet. The path's throughput beta is in a
+// buffer of its own, since its type depends on the scene; at a collision it includes that collision's albedo.
 struct PathState {
     vec3 position;  // render space
     vec3 direction; // unit, of travel: the camera ray's, or that which led to this collision
     vec3 radiance;  // gathered so far
-    uint pixel;     // index into the film, or NO_PIXEL
+    uint pixel;     // index into the film
     uint place;     // of the pixel in the picture, x | y << 16
     uint sample_index;
     uint draw;      // random draws consumed; 0 at the camera, whose draw also holds the first free flight
     uint depth;     // scattering events, this one included; 0 at the camera
-    uint suspended; // 1: it has left the vertex, see Suspended
+    uint suspended; // 1: there is more to know of it, see Suspended; 0: it is about to depart from the vertex
 };
 
 // A segment, free flight or shadow ray, as far as it has gone. Which fields mean something depends on the estimator.
@@ -45,13 +45,13 @@ struct Walk {
 // A path laid aside amid a segment, when its lane's budget was spent.
 struct Suspended {
     Walk walk;
-    Walk flight;  // to come back to from a shadow ray that was sent amid a flight
-    vec3 T;       // of the shadow ray so far
-    vec3 lit;     // throughput of what it lights
+    Walk flight;   // to come back to from a shadow ray that was sent amid a flight
+    vec3 T;        // of the shadow ray so far
+    vec3 lit;      // throughput of what it lights
     vec3 position; // where it began, render space
     uint todo;
     uint resume;
-    uint steps; // of the segment
+    uint steps;   // of the segment
     vec3 cached;  // transmittance that the shadow ray corrects
     float chance; // with which it was sent
 };
@@ -89,12 +89,15 @@ struct Counters {
     uint lookups; // of the density
     uint cells;   // steps of a walk or march that were no collision
     uint shadow_rays;
+    uint room;                // for steps that the lanes of the track pass had, those without a path included
+    uint steps;               // that took a path further
     uint depth_caps;          // paths ended by maxDepth
     uint step_caps;           // flights ended by the step limit
     uint majorant_violations; // density above its majorant
     uint non_finite;          // samples dropped
     uint queue_overflows;     // items dropped; always 0 unless the program is wrong
-    uint non_finite_pixel[NON_FINITE_RECORDS];
+    uint non_finite_records;  // some of them, and where they were in the picture: x | y << 16
+    uint non_finite_place[NON_FINITE_RECORDS];
     uint non_finite_sample[NON_FINITE_RECORDS];
 };
 
@@ -106,8 +109,8 @@ struct TraceRecord {
     vec3 position;  // render space
     vec3 direction; // of travel
     vec3 beta;
-    vec3 T;         // of the shadow ray, where one has ended
-    vec3 radiance;  // gathered so far
+    vec3 T;        // of the shadow ray, where one has ended
+    vec3 radiance; // gathered so far
 };
 
 SHARED_END

@@ -121,7 +121,7 @@ struct FrameParams {
     uint crop_x; // the crop's first pixel within the picture
     uint crop_y;
     uint crop_width;
-    uint slots;          // paths in flight
+    uint slots;          // pixels in work
     uint queue_capacity; // a power of two, at least 2 * slots; see queue.glsl
     uvec2 grid_windows[GRID_WINDOWS]; // device addresses, low and high word; see grid.glsl
 };

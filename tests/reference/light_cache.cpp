@@ -42,4 +42,18 @@ Rgb cached_light(const World& world, const glm::dvec3& p, const glm::dvec3& trav
     return Ld;
 }
 
+Rgb foreseen_light(const World& world, const glm::dvec3& p, const glm::dvec3& before, const glm::dvec3& after) {
+    const Medium& medium = *world.medium;
+    Rgb foreseen(0.0);
+    for (const vkvol::DirectionalLight& light : world.scene.lights) {
+        const Rgb T = rough_transmittance(medium, {p, light.direction});
+        const double drawn = hg_eval(medium.g, glm::dot(light.direction, after));
+        const double average = hg_eval(medium.g * medium.g, glm::dot(light.direction, before));
+        for (int c = 0; c < 3; ++c)
+            if (T[c] > 0.0)
+                foreseen[c] -= T[c] * std::log(T[c]) * (drawn - average) * medium.albedo[c] * light.irradiance[c];
+    }
+    return foreseen;
+}
+
 } // namespace reference

@@ -112,7 +112,10 @@ Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng
                 return L;
             beta *= settings.roulette_threshold / m;
         }
-        ray.direction = hg_sample(medium.g, ray.direction, draw.y(), draw.z());
+        const glm::dvec3 before = ray.direction;
+        ray.direction = hg_sample(medium.g, before, draw.y(), draw.z());
+        if (method.nee == NEE_CACHED)
+            L -= beta * foreseen_light(world, ray.origin, before, ray.direction);
         exponential = draw.exponential(0);
         select = draw.select();
     }
