@@ -22,7 +22,7 @@ namespace {
 using Json = nlohmann::json;
 
 // magic, bytes of the header, header (JSON), film, pixels, CRC-32 of all before.
-constexpr char magic[] = {'v', 'k', 'v', 'o', 'l', 'c', 'h', '1'};
+constexpr char magic[] = {'v', 'k', 'v', 'o', 'l', 'c', 'h', '2'};
 
 // Two 32-bit checksums of different polynomials: equal by accident once in 10^19.
 class Fingerprint {

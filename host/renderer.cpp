@@ -92,7 +92,11 @@ public:
         result_.integrator = method.integrator;
         result_.biased = method.biased;
         result_.specialization = describe(specialization, volume, chromatic);
-        const Tuning tuning = tune(device, volume.bvh ? volume.bvh->nodes.size() : 0, job.tuning);
+        LoopSizes loops;
+        loops.mesh_nodes = volume.bvh ? volume.bvh->nodes.size() : 0;
+        if (density_kind(scene_) == FIELD_NOISE)
+            loops.octaves = static_cast<std::uint32_t>(scene_.volumes.front().noise->octaves);
+        const Tuning tuning = tune(device, loops, job.tuning);
         buffers_.emplace(device, commands_, volume, tuning.most_grid_bytes, tuning.most_texel_bytes);
         specialization[SPEC_TEXELS] = buffers_->texels() ? 1 : 0;
         result_.specialization += buffers_->window_bits() ? ", grids in windows" : "";

@@ -47,11 +47,11 @@ bool is_empty(const shared::QueueHeader& header) {
 // llvmpipe leaves every loop of an invocation after 65535 iterations in all, without a word: what the iterations of a
 // budget loop over must stay below that. A ray meets some 4 sqrt(n) of the n nodes over a surface where it grazes it,
 // the lanes of a group together more, with a few triangles each; and an iteration may ask for several crossings. Should
-// it not be enough after all, the kernel counts a cap.
-std::uint32_t longest_budget(std::size_t mesh_nodes) {
-    if (mesh_nodes == 0)
-        return 1024;
-    const double per_iteration = 16.0 * (16.0 + 4.0 * std::sqrt(double(mesh_nodes)));
+// it not be enough after all, the kernel counts a cap. Noise is a loop over octaves, once or twice a step.
+std::uint32_t longest_budget(const LoopSizes& loops, std::uint32_t steps) {
+    double per_iteration = 2.0 + steps * (1.0 + 2.0 * loops.octaves);
+    if (loops.mesh_nodes > 0)
+        per_iteration += 16.0 * (16.0 + 4.0 * std::sqrt(double(loops.mesh_nodes)));
     return static_cast<std::uint32_t>(std::clamp(65535.0 / per_iteration, 4.0, 1024.0));
 }
 
@@ -63,15 +63,15 @@ std::span<const std::uint32_t> track_kernel(const TrackVariant& variant) {
 
 } // namespace
 
-Tuning tune(const Device& device, std::size_t mesh_nodes, const Tuning& wish) {
+Tuning tune(const Device& device, const LoopSizes& loops, const Tuning& wish) {
     const auto pick = [](auto wanted, auto usual) { return wanted != 0 ? wanted : usual; };
     Tuning tuning = wish;
     // A software driver wants its state in cache and few lanes that each do much; a GPU wants to be full.
     tuning.slots = pick(wish.slots, device.is_cpu() ? 8192u : 1u << 18);
     tuning.lanes = pick(wish.lanes, device.is_cpu() ? 512u : 1u << 17);
-    tuning.budget = pick(wish.budget, longest_budget(mesh_nodes));
-    tuning.step_limit = pick(wish.step_limit, 1u << 26);
     tuning.steps_per_look = pick(wish.steps_per_look, 4u);
+    tuning.budget = pick(wish.budget, longest_budget(loops, tuning.steps_per_look));
+    tuning.step_limit = pick(wish.step_limit, 1u << 26);
     tuning.most_film_bytes =
         pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
     tuning.most_grid_bytes = pick(wish.most_grid_bytes, std::uint64_t{device.limits().maxStorageBufferRange});
@@ -175,6 +175,7 @@ void Wavefront::free_slots(std::uint32_t begin, std::uint32_t end) {
     push_.stop = 0;
     push_.budget = tuning_.budget;
     push_.step_limit = tuning_.step_limit;
+    rounds_ = 1; // many came to little at the end of the last batch
     commands_.run([&](VkCommandBuffer commands) {
         begin_->record(commands, push_, tuning_.slots);
         record_barrier(commands);

@@ -26,8 +26,14 @@ struct Tuning {
     std::uint64_t most_texel_bytes = 0; // what has more is read as storage
 };
 
-// What suits the device and a mesh with that many nodes, 0 without one; fields of `wish` that are not 0 win.
-Tuning tune(const Device& device, std::size_t mesh_nodes, const Tuning& wish = {});
+// Of what a step loops over; 0 without it.
+struct LoopSizes {
+    std::size_t mesh_nodes = 0;
+    std::uint32_t octaves = 0; // of noise
+};
+
+// What suits the device and the scene; fields of `wish` that are not 0 win.
+Tuning tune(const Device& device, const LoopSizes& loops, const Tuning& wish = {});
 
 // Places in each queue.
 std::uint32_t queue_capacity(const Tuning& tuning);

@@ -99,6 +99,13 @@ TEST_CASE("samples that are not finite are dropped, counted and recorded", "[gpu
     CHECK(counters.non_finite_place[0] + counters.non_finite_place[1] == 201u);
     CHECK((counters.non_finite_place[0] == 100u || counters.non_finite_place[0] == 101u));
     CHECK((counters.non_finite_sample[0] == 0u && counters.non_finite_sample[1] == 0u));
+    std::vector<FilmInput> many(NON_FINITE_RECORDS + 2, pixels[0]);
+    KernelRunner crowded(film_sum_spv);
+    add_samples(crowded, many, 1, 1);
+    CHECK(crowded.counters().non_finite == many.size());
+    CHECK(crowded.counters().non_finite_records == many.size());
+    for (const std::uint32_t place : crowded.counters().non_finite_place)
+        CHECK((place >= 100u && place < 100u + many.size()));
     CHECK(pixels[0].pixel.count == 0u);
     CHECK(pixels[1].pixel.count == 0u);
     CHECK((pixels[1].pixel.sum == glm::vec3(0.0f)));

@@ -154,12 +154,14 @@ uint step_segment(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum d
 // Steps of the lane's segment, until something happens or it is time for another look.
 uint step_lane(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum deposit, inout Tally tally) {
     deposit = to_spectrum(vec3(0.0));
-    if (looks_ahead())
-        return step_ahead(v, LOOKS && lane.todo == TODO_SEE, lane.walk, rng, lane.beta, lane.T, tally);
     uint event = EVENT_MOVING;
-    for (int k = 0; k < STEPS && event == EVENT_MOVING; ++k) {
-        event = step_segment(v, lane, rng, deposit, tally);
-        tally.steps += 1u;
+    if (looks_ahead()) {
+        event = step_ahead(v, LOOKS && lane.todo == TODO_SEE, lane.walk, rng, lane.beta, lane.T, tally);
+    } else {
+        for (int k = 0; k < STEPS && event == EVENT_MOVING; ++k) {
+            event = step_segment(v, lane, rng, deposit, tally);
+            tally.steps += 1u;
+        }
     }
     return event;
 }

@@ -54,11 +54,13 @@ void begin_part(VolumeParams v, Ray ray, vec2 t, bool seeing, inout Walk w) {
         begin_flight_part(v, w);
 }
 
-// A vertex on the boundary, heading out, has no such part: then an empty one, which the first step leaves.
+// A vertex on the boundary, heading out, has no such part, nor a camera ray that misses: then an empty one, which the
+// first step leaves.
 void begin_segment(VolumeParams v, vec3 position, vec3 direction, bool seeing, inout Walk w) {
     Ray ray = to_medium(v, position, direction);
     vec2 t;
-    next_interval(v, ray, 0.0, t);
+    if (!next_interval(v, ray, 0.0, t))
+        t = vec2(0.0);
     begin_part(v, ray, t, seeing, w);
 }
 

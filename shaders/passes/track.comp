@@ -34,8 +34,7 @@ void main() {
         rng = pixel_rng(lane.path.place, lane.path.sample_index, lane.path.draw);
         sums = film[lane.path.pixel];
     }
-    uint burst = min(BURST, push.budget);
-    for (uint i = 0u; i < push.budget; i += burst) {
+    for (uint i = 0u; i < push.budget; i += BURST) {
         if (lane.todo == TODO_TAKE) {
             if (!pop_item(QUEUE_TRACK, slot))
                 break;
@@ -44,8 +43,9 @@ void main() {
             sums = film[paths[slot].pixel];
             lane.todo = TODO_BEGIN;
         }
-        tally.room += burst * uint(STEPS);
-        for (uint turn = 0u; turn < burst; ++turn) {
+        uint turns = min(BURST, push.budget - i);
+        tally.room += turns * uint(STEPS);
+        for (uint turn = 0u; turn < turns; ++turn) {
             if (lane.todo == TODO_BEGIN) {
                 begin_path(lane);
                 rng = pixel_rng(lane.path.place, lane.path.sample_index, 0u);
@@ -60,7 +60,7 @@ void main() {
                     vec3 before = lane.path.direction;
                     lane.path.direction = hg_sample(v.g, before, u.yz);
                     lane.todo = survives(lane.beta, u.w) ? TODO_FLY : TODO_END;
-                    if (LOOKS && NEE == NEE_CACHED)
+                    if (LOOKS && NEE == NEE_CACHED && lane.path.depth < frame.max_depth)
                         lane.path.radiance -= lane.beta * frame.light.irradiance *
                                               foreseen_light(v, lane.cached, before, lane.path.direction);
                 }

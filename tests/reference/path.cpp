@@ -114,7 +114,8 @@ Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng
         }
         const glm::dvec3 before = ray.direction;
         ray.direction = hg_sample(medium.g, before, draw.y(), draw.z());
-        if (method.nee == NEE_CACHED)
+        const bool next_is_lit = !settings.max_depth || depth + 1 < *settings.max_depth;
+        if (method.nee == NEE_CACHED && next_is_lit)
             L -= beta * foreseen_light(world, ray.origin, before, ray.direction);
         exponential = draw.exponential(0);
         select = draw.select();
