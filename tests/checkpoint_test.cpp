@@ -36,8 +36,7 @@ RenderResult render_part(const Scene& scene, const RenderJob& job) {
 }
 
 RenderCounts with_no_place(RenderCounts counts) {
-    counts.cells = counts.steps = 0; // steps amid which a path is laid aside are counted in both halves
-    counts.room = 0;                 // lanes' own
+    counts.room = 0; // what lanes could have done depends on when they came to rest
     return counts;
 }
 

@@ -29,8 +29,8 @@ float looking_chance(float share, Spectrum T) {
 // A control variate for the direction in which a path departs: what a collision at its end would scatter towards the path, less
 // what that is on average over directions, per unit of throughput and irradiance. The average is known: phase functions
 // of Henyey and Greenstein are closed under convolution, asymmetries multiply, so p_g(after, light) is p_g^2(before,
-// light) on average. Hence this may be subtracted with any factor that was known before. Its best is the transmittance
-// expected there. For a flight towards the light, through an optical depth tau, that is the integral of
+// light) on average. Hence this may be subtracted with any factor that was known before. A good one is the
+// transmittance expected there, which for a flight towards the light, through an optical depth tau, is the integral of
 // exp(-t) exp(-(tau - t)): tau exp(-tau). `T`: of the cache, where the path departs.
 Spectrum foreseen_light(VolumeParams v, Spectrum T, vec3 before, vec3 after) {
     Spectrum factor = -T * log(max(T, to_spectrum(vec3(1.0e-30)))) * to_spectrum(v.albedo);
