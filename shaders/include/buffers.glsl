@@ -37,7 +37,10 @@ bool goes_through() {
            (SCATTERING == SCATTERING_NONE && FREE_FLIGHT == FREE_FLIGHT_ANALYTIC);
 }
 
-layout(scalar, binding = BINDING_FRAME) uniform FrameBlock { FrameParams frame; };
+layout(scalar, binding = BINDING_FRAME) uniform FrameBlock { FrameParams frame_block; };
+// A copy, read once before any branch or loop: within one, llvmpipe gathers even constants lane by lane, and a quarter of
+// all time went by at it.
+FrameParams frame = frame_block;
 layout(scalar, binding = BINDING_GRID) readonly buffer GridBlock { uint grid_words[]; };
 layout(scalar, binding = BINDING_LEAF_TABLE) readonly buffer LeafTableBlock { uint leaf_table[]; };
 layout(scalar, binding = BINDING_MAJORANTS) readonly buffer MajorantBlock { float majorants[]; };

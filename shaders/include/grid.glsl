@@ -12,7 +12,7 @@ layout(constant_id = SPEC_WINDOW_BITS) const uint WINDOW_BITS = 26u;
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer GridWindow { uint words[]; };
 
 uint grid_word(uint i) {
-    return GridWindow(frame.grid_windows[i >> WINDOW_BITS]).words[i & ((1u << WINDOW_BITS) - 1u)];
+    return GridWindow(frame_block.grid_windows[i >> WINDOW_BITS]).words[i & ((1u << WINDOW_BITS) - 1u)];
 }
 #else
 uint grid_word(uint i) {

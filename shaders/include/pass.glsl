@@ -4,6 +4,7 @@
 #include "buffers.glsl"
 
 layout(local_size_x = WORKGROUP_SIZE) in;
-layout(scalar, push_constant) uniform PushBlock { PassPush push; };
+layout(scalar, push_constant) uniform PushBlock { PassPush push_block; };
+PassPush push = push_block; // read once, like the frame
 
 #endif
