@@ -94,9 +94,8 @@ void load_grid(const Scene& scene, const Volume& volume, const Method& method, c
         return;
     const double scale = scene.settings.majorant_scale;
     const double voxel_sigma_t = largest(world_sigma_t(volume, &field)) * field.voxel_size();
-    const int cell = scene.settings.majorant_cell;
-    loaded.majorants = cell > 0 ? make_majorant_grid(field, cell)
-                                : choose_majorant_grid(field, pilot_scene(scene, method, field, voxel_sigma_t * scale));
+    loaded.majorants = choose_majorant_grid(field, pilot_scene(scene, method, field, voxel_sigma_t * scale),
+                                            scene.settings.majorant_cell);
     const bool decomposes = method.free_flight == FREE_FLIGHT_DECOMPOSITION;
     if (decomposes || (method.nee != NEE_NONE && method.transmittance == TRANSMITTANCE_RESIDUAL))
         loaded.controls = make_controls(field, *loaded.majorants, decomposes ? 0.0 : voxel_sigma_t);

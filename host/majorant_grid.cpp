@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "pilot_paths.h"
 
@@ -106,16 +108,26 @@ MajorantGrid make_majorant_grid(const DensityField& field, int cell) {
     return grid;
 }
 
-MajorantGrid choose_majorant_grid(const DensityField& field, const PilotScene& scene) {
-    MajorantGrid grid = make_majorant_grid(field, 4), best = grid;
+MajorantGrid choose_majorant_grid(const DensityField& field, const PilotScene& scene, int cell) {
+    MajorantGrid grid = make_majorant_grid(field, cell > 0 ? cell : 4), best;
     const std::vector<PilotSegment> segments = pilot_paths(field, grid, scene);
-    double fewest = pilot_steps(segments, grid, scene.sigma_t);
-    while (grid.cell < 64) {
+    double least = std::numeric_limits<double>::infinity();
+    const auto consider = [&](bool leaps) {
+        grid.leaps = leaps;
+        const std::vector<double> steps = pilot_steps(segments, grid, scene.sigma_t);
+        const double cost = std::accumulate(steps.begin(), steps.end(), 0.0) * (leaps ? leap_cost : 1.0);
+        if (cost >= least)
+            return;
+        least = cost;
+        best = grid;
+        best.segment_steps = steps;
+    };
+    consider(false);
+    consider(true);
+    while (cell == 0 && grid.cell < 64) {
         grid = merge_cells(grid);
-        if (const double steps = pilot_steps(segments, grid, scene.sigma_t); steps < fewest) {
-            fewest = steps;
-            best = grid;
-        }
+        consider(false);
+        consider(true);
     }
     return best;
 }

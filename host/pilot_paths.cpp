@@ -5,6 +5,8 @@
 #include <limits>
 #include <random>
 
+#include "empty_space.h"
+
 namespace vkvol {
 
 namespace {
@@ -13,28 +15,36 @@ constexpr int paths = 256;
 constexpr int most_collisions = 64;   // of a path
 constexpr int most_lookups = 1 << 20; // of all: where majorants are far too high, fewer paths will do
 
-// Calls visit(bound, t0, t1) for every cell that the ray passes within [0, length], until it returns false.
+// Calls visit(bound, t0, t1) for every cell that the ray passes within [0, length], until it returns false. With
+// reaches (else there are none) empty cells are passed together, as kernels do.
 template <class Visit>
-void walk(const MajorantGrid& cells, glm::dvec3 origin, glm::dvec3 direction, double length, const Visit& visit) {
+void walk(const MajorantGrid& cells, const std::vector<std::uint8_t>& reaches, glm::dvec3 origin, glm::dvec3 direction,
+          double length, const Visit& visit) {
     const glm::dvec3 from = (origin - glm::dvec3(cells.origin)) / double(cells.cell);
     const glm::dvec3 speed = direction / double(cells.cell);
+    const glm::ivec3 side(glm::sign(direction));
     glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(from)), glm::ivec3(0), cells.dims - 1);
     for (double t = 0.0; t < length;) {
+        const std::size_t i = (std::size_t(cell.x) * cells.dims.y + cell.y) * cells.dims.z + cell.z;
+        const glm::ivec3 last = cell + (reaches.empty() ? 0 : int(reaches[i])) * side;
         int axis = 0;
         double exit = std::numeric_limits<double>::infinity();
-        for (int i = 0; i < 3; ++i) {
-            const double face = speed[i] > 0.0 ? cell[i] + 1.0 : cell[i];
-            const double at = speed[i] != 0.0 ? (face - from[i]) / speed[i] : exit;
+        for (int a = 0; a < 3; ++a) {
+            const double face = side[a] > 0 ? last[a] + 1.0 : last[a];
+            const double at = side[a] != 0 ? (face - from[a]) / speed[a] : exit;
             if (at < exit) {
                 exit = at;
-                axis = i;
+                axis = a;
             }
         }
         exit = std::clamp(exit, t, length);
-        if (!visit(cells.bounds[(std::size_t(cell.x) * cells.dims.y + cell.y) * cells.dims.z + cell.z], t, exit))
+        if (!visit(cells.bounds[i], t, exit))
             return;
-        cell[axis] += speed[axis] > 0.0 ? 1 : -1;
-        if (cell[axis] < 0 || cell[axis] >= cells.dims[axis])
+        const glm::ivec3 there(glm::floor(from + exit * speed));
+        const glm::ivec3 most = glm::clamp(last, glm::ivec3(0), cells.dims - 1);
+        cell = glm::clamp(there, glm::min(cell, most), glm::max(cell, most));
+        cell[axis] = last[axis] + side[axis];
+        if (cell != glm::clamp(cell, glm::ivec3(0), cells.dims - 1))
             return;
         t = exit;
     }
@@ -70,7 +80,7 @@ private:
     double fly(glm::dvec3 origin, glm::dvec3 direction, double length, bool& collides) {
         double tau = -std::log1p(-uniform()), gone = length;
         collides = false;
-        walk(cells_, origin, direction, length, [&](double bound, double t0, double t1) {
+        walk(cells_, {}, origin, direction, length, [&](double bound, double t0, double t1) {
             const double sigma_maj = scene_.sigma_t * bound;
             while (tau < sigma_maj * (t1 - t0)) {
                 t0 += tau / sigma_maj;
@@ -111,7 +121,7 @@ private:
             bool collides;
             const double length = std::max(crossing(origin, direction).y, 0.0);
             const double gone = fly(origin, direction, length, collides);
-            segments_.push_back({origin, direction, gone});
+            segments_.push_back({origin, direction, gone, collides});
             if (!collides || uniform() >= scene_.albedo)
                 return;
             origin += gone * direction;
@@ -136,14 +146,34 @@ std::vector<PilotSegment> pilot_paths(const DensityField& field, const MajorantG
     return Pilot(field, cells, scene).follow_all();
 }
 
-double pilot_steps(const std::vector<PilotSegment>& segments, const MajorantGrid& cells, double sigma_t) {
-    double steps = 0.0;
-    for (const PilotSegment& s : segments)
-        walk(cells, s.origin, s.direction, s.length, [&](double bound, double t0, double t1) {
+std::vector<double> pilot_steps(const std::vector<PilotSegment>& segments, const MajorantGrid& cells, double sigma_t) {
+    const std::vector<std::uint8_t> reaches = cells.leaps ? empty_reaches(cells) : std::vector<std::uint8_t>();
+    std::vector<double> all_steps;
+    for (const PilotSegment& s : segments) {
+        double steps = s.collides ? -1.0 : 0.0; // the last cell is not crossed
+        walk(cells, reaches, s.origin, s.direction, s.length, [&](double bound, double t0, double t1) {
             steps += sigma_t * bound * (t1 - t0) + 1.0;
             return true;
         });
-    return steps;
+        all_steps.push_back(std::max(steps, 1.0));
+    }
+    return all_steps;
+}
+
+std::uint32_t best_steps_per_look(const std::vector<double>& segment_steps) {
+    constexpr double look = 2.0; // steps; with it the best counts are those measured
+    std::uint32_t best = 4;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::uint32_t steps = 4; steps >= 2; --steps) {
+        double cost = 0.0;
+        for (const double n : segment_steps)
+            cost += std::ceil(n / steps) * (look + steps);
+        if (cost < least) {
+            least = cost;
+            best = steps;
+        }
+    }
+    return best;
 }
 
 } // namespace vkvol

@@ -1,6 +1,7 @@
 // A few paths followed on the host before a render, to learn where its time will go.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -21,13 +22,19 @@ struct PilotScene {
 struct PilotSegment {
     glm::dvec3 origin, direction; // unit
     double length;                // voxels, within the grid's box
+    bool collides = false;        // at its end; else it leaves the box
 };
 
 // Paths by delta tracking over `cells`, from the eye towards random points of the grid's box. The same ones every time.
 std::vector<PilotSegment> pilot_paths(const DensityField& field, const MajorantGrid& cells, const PilotScene& scene);
 
-// Steps that null-collision tracking is expected to take along them: the majorant's optical depth, which is the number
-// of look-ups, plus the cells it crosses. A look-up and a cell take about the same time.
-double pilot_steps(const std::vector<PilotSegment>& segments, const MajorantGrid& cells, double sigma_t);
+// Steps that null-collision tracking is expected to take along one: the majorant's optical depth, which is the number
+// of look-ups, plus the cells it crosses, empty ones together if
+// the walk leaps. A look-up and a cell take about the same time.
+std::vector<double> pilot_steps(const std::vector<PilotSegment>& segments, const MajorantGrid& cells, double sigma_t);
+
+// How many steps between two looks at what they led to take segments of these steps the least time, 2 to 4: a look
+// costs as much as two steps, and a lane whose segment ends waits for the next look.
+std::uint32_t best_steps_per_look(const std::vector<double>& segment_steps);
 
 } // namespace vkvol

@@ -10,6 +10,7 @@
 #include "film_bands.h"
 #include "integrators.h"
 #include "light_cache.h"
+#include "pilot_paths.h"
 #include "scene_buffers.h"
 #include "scene_upload.h"
 #include "trace.h"
@@ -57,8 +58,8 @@ std::string describe(const Specialization& s, const LoadedVolume& volume, bool c
         return shapes[SHAPE_NONE];
     std::string text = shapes[s[SPEC_SHAPE]];
     if (s[SPEC_FIELD] == FIELD_GRID)
-        text = fmt::format("grid {}, {} filter, majorant cells of {} voxels", types[s[SPEC_GRID_TYPE]],
-                           filters[s[SPEC_FILTER]], volume.majorants->cell);
+        text = fmt::format("grid {}, {} filter, majorant cells of {} voxels{}", types[s[SPEC_GRID_TYPE]],
+                           filters[s[SPEC_FILTER]], volume.majorants->cell, s[SPEC_LEAPS] ? ", empty ones leapt" : "");
     else
         text = (s[SPEC_FIELD] == FIELD_NOISE ? "noise in a " : "homogeneous ") + text;
     text += fmt::format("{}, {} flight", chromatic ? ", chromatic" : "", choice(1, s[SPEC_FREE_FLIGHT]));
@@ -71,6 +72,14 @@ std::string describe(const Specialization& s, const LoadedVolume& volume, bool c
                             choice(2, s[SPEC_TRANSMITTANCE]));
     text += emissions[s[SPEC_EMISSION]];
     return text + (s[SPEC_EMISSION_AT] == EMISSION_AT_STEPS ? " along flights" : "");
+}
+
+// Tracking steps between two looks at what they led to, as suits the scene; 0: not known.
+std::uint32_t steps_per_look(const Specialization& s, const LoadedVolume& volume) {
+    const bool at_once = s[SPEC_FREE_FLIGHT] == FREE_FLIGHT_ANALYTIC && s[SPEC_TRANSMITTANCE] == TRANSMITTANCE_ANALYTIC;
+    if (at_once && s[SPEC_SHAPE] != SHAPE_MESH)
+        return 1;
+    return volume.majorants ? best_steps_per_look(volume.majorants->segment_steps) : 0;
 }
 
 // Runs batches of samples over all bands until the samples, the time or the user's patience is used up.
@@ -96,7 +105,10 @@ public:
         loops.mesh_nodes = volume.bvh ? volume.bvh->nodes.size() : 0;
         if (density_kind(scene_) == FIELD_NOISE)
             loops.octaves = static_cast<std::uint32_t>(scene_.volumes.front().noise->octaves);
-        const Tuning tuning = tune(device, loops, job.tuning);
+        Tuning wish = job.tuning;
+        if (wish.steps_per_look == 0)
+            wish.steps_per_look = steps_per_look(specialization, volume);
+        const Tuning tuning = tune(device, loops, wish);
         buffers_.emplace(device, commands_, volume, tuning.most_grid_bytes, tuning.most_texel_bytes);
         specialization[SPEC_TEXELS] = buffers_->texels() ? 1 : 0;
         result_.specialization += buffers_->window_bits() ? ", grids in windows" : "";

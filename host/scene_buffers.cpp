@@ -4,6 +4,7 @@
 #include <bit>
 #include <fmt/format.h>
 
+#include "empty_space.h"
 #include "error.h"
 
 namespace vkvol {
@@ -55,7 +56,7 @@ SceneBuffers::SceneBuffers(const Device& device, Commands& commands, const Loade
     const DensityField& temperature = volume.temperature ? *volume.temperature : nothing;
     make_grids(device, commands, {volume.field->bytes.span(), temperature.bytes.span()}, most_grid_bytes);
     make(leaf_table_, "leaf table", bytes_of(volume.field->leaf_table), bytes_of(temperature.leaf_table));
-    make(majorants_, "majorant grid", bytes_of(volume.majorants->bounds));
+    make(majorants_, "majorant grid", bytes_of(walked_cells(*volume.majorants)));
     make(controls_, "control grid", bytes_of(volume.controls));
     make(blackbody_, "black-body table", bytes_of(volume.blackbody));
     texels_ = grids_ && std::max({grids_->bytes(), leaf_table_->bytes(), majorants_->bytes()}) <= most_texel_bytes;

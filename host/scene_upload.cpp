@@ -249,6 +249,7 @@ Specialization specialize(const Scene& scene, const LoadedVolume& loaded, const 
     // Without shadow rays the choice is to leave no trace in the kernel.
     constants[SPEC_TRANSMITTANCE] = method.nee != NEE_NONE ? method.transmittance : TRANSMITTANCE_ANALYTIC;
     constants[SPEC_STEPS] = 1;
+    constants[SPEC_LEAPS] = loaded.majorants && loaded.majorants->leaps ? 1 : 0;
     return constants;
 }
 

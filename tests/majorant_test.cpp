@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include "empty_space.h"
 #include "kernels/test_items.h"
 #include "pilot_paths.h"
 #include "support/test_grids.h"
@@ -20,6 +21,11 @@ namespace {
 
 float bound_of(const MajorantGrid& m, glm::ivec3 cell) {
     return m.bounds[(std::size_t(cell.x) * m.dims.y + cell.y) * m.dims.z + cell.z];
+}
+
+int chessboard(glm::ivec3 a, glm::ivec3 b) {
+    const glm::ivec3 apart = glm::abs(a - b);
+    return std::max({apart.x, apart.y, apart.z});
 }
 
 // The largest voxel among those that interpolation inside the closed cell touches, looked up one by one.
@@ -42,9 +48,19 @@ GridRecipe larger_recipe(Storage storage) {
     return recipe;
 }
 
+// Three specks far apart: cells of every reach.
+GridRecipe sparse_recipe() {
+    GridRecipe recipe{{-21, -8, -1}, {43, 50, 60}, nullptr, Storage::float32};
+    recipe.value = [](glm::ivec3 i) {
+        const bool speck = i == glm::ivec3(-21, -8, -1) || i == glm::ivec3(43, 50, 60) || i == glm::ivec3(12, 20, 7);
+        return speck ? 0.75f : 0.0f;
+    };
+    return recipe;
+}
+
 // A walk gives out more majorant optical depth than any grid here holds, so that nothing collides.
 constexpr double walk_tau = 1.0e4;
-constexpr int walk_steps = 64;
+constexpr int walk_steps = 128;
 
 std::vector<std::vector<WalkStep>> walk(const TestGrid& grid, const std::vector<RayInput>& rays) {
     const TestScene scene = make_test_scene(grid.volume, {});
@@ -85,8 +101,8 @@ reference::Interval inside_box(const TestGrid& grid, const RayInput& ray) {
     return reference::clip(line, {0.0, std::numeric_limits<double>::infinity()});
 }
 
-// What must hold for any ray: the steps join from entry to exit, each lies in its cell, and each cell's majorant is
-// that of the grid. A ray in a face may count as in either
+// What must hold for any ray: the steps join from entry to exit, each lies in its cell or, if that is empty and the
+// walk leaps, within its reach, and each cell's majorant is that of the grid. A ray in a face may count as in either
 // neighbour.
 void check_walk(const TestGrid& grid, const RayInput& ray, const std::vector<WalkStep>& steps) {
     const MajorantGrid& m = grid.majorants();
@@ -94,6 +110,7 @@ void check_walk(const TestGrid& grid, const RayInput& ray, const std::vector<Wal
                    << ' ' << ray.direction.y << ' ' << ray.direction.z);
     const reference::Interval inside = inside_box(grid, ray);
     const double eps = distance_tolerance(ray, m);
+    const std::vector<float> walked = walked_cells(m);
     if (steps.empty()) {
         CHECK(inside.length() <= eps);
         return;
@@ -104,16 +121,18 @@ void check_walk(const TestGrid& grid, const RayInput& ray, const std::vector<Wal
     double t = inside.t0, tau = 0.0;
     for (const WalkStep& step : steps) {
         REQUIRE(step.cell == glm::clamp(step.cell, glm::ivec3(0), m.dims - 1));
-        REQUIRE(step.sigma_maj == bound_of(m, step.cell)); // sigma_t is 1
+        const float expected = walked[(std::size_t(step.cell.x) * m.dims.y + step.cell.y) * m.dims.z + step.cell.z];
+        REQUIRE(step.sigma_maj == expected); // sigma_t is 1
+        const int reach = std::max(-int(expected), 0);
         REQUIRE(step.t >= t - eps);
         // The middle of the step lies within the closed cell.
         const glm::dvec3 middle = glm::dvec3(ray.origin) + 0.5 * (t + step.t) * glm::dvec3(ray.direction);
         const glm::dvec3 low = glm::dvec3(m.origin + step.cell * m.cell);
         for (int axis = 0; axis < 3; ++axis) {
-            REQUIRE(middle[axis] >= low[axis] - eps);
-            REQUIRE(middle[axis] <= low[axis] + m.cell + eps);
+            REQUIRE(middle[axis] >= low[axis] - reach * m.cell - eps);
+            REQUIRE(middle[axis] <= low[axis] + (reach + 1) * m.cell + eps);
         }
-        tau += step.sigma_maj * (step.t - t);
+        tau += std::max(step.sigma_maj, 0.0f) * (step.t - t);
         t = step.t;
     }
     CHECK(std::abs(t - inside.t1) <= eps);
@@ -148,7 +167,7 @@ double brute_force_tau(const TestGrid& grid, const RayInput& ray) {
 double device_tau(const std::vector<WalkStep>& steps, double start) {
     double tau = 0.0, t = start;
     for (const WalkStep& step : steps) {
-        tau += step.sigma_maj * (step.t - t);
+        tau += std::max(step.sigma_maj, 0.0f) * (step.t - t);
         t = step.t;
     }
     return tau;
@@ -226,12 +245,19 @@ TEST_CASE("left to itself the cell has the size over which paths take the fewest
     scene.g = GENERATE(0.0, 0.7);
     const std::vector<PilotSegment> segments = pilot_paths(grid.field(), make_majorant_grid(grid.field(), 4), scene);
     REQUIRE(segments.size() >= 256);
+    const auto cost = [&](const MajorantGrid& m) {
+        const std::vector<double> steps = pilot_steps(segments, m, scene.sigma_t);
+        return std::accumulate(steps.begin(), steps.end(), 0.0) * (m.leaps ? leap_cost : 1.0);
+    };
     const MajorantGrid chosen = choose_majorant_grid(grid.field(), scene);
-    const double fewest = pilot_steps(segments, chosen, scene.sigma_t);
+    CHECK(chosen.segment_steps == pilot_steps(segments, chosen, scene.sigma_t));
+    CHECK(choose_majorant_grid(grid.field(), scene, 5).cell == 5);
     for (const int cell : {4, 8, 16, 32, 64}) {
         CAPTURE(cell, scene.sigma_t);
-        const MajorantGrid m = make_majorant_grid(grid.field(), cell);
-        CHECK(fewest <= pilot_steps(segments, m, scene.sigma_t));
+        MajorantGrid m = make_majorant_grid(grid.field(), cell);
+        CHECK(cost(chosen) <= cost(m));
+        m.leaps = true;
+        CHECK(cost(chosen) <= cost(m));
         if (chosen.cell == cell) {
             CHECK(chosen.origin == m.origin);
             CHECK(chosen.dims == m.dims);
@@ -240,13 +266,60 @@ TEST_CASE("left to itself the cell has the size over which paths take the fewest
     }
 }
 
-TEST_CASE("steps along a segment are the majorant's optical depth and the cells", "[cpu][majorant]") {
+TEST_CASE("steps along a segment are the majorant's optical depth and the cells crossed", "[cpu][majorant]") {
+    const auto steps_of = [](const PilotSegment& segment, const MajorantGrid& cells) {
+        return pilot_steps({segment}, cells, 0.5).at(0);
+    };
     MajorantGrid cells{8, {-3, 2, 5}, {3, 1, 1}, {1.0f, 0.0f, 4.0f}};
-    const std::vector<PilotSegment> across = {{{-3.0, 4.0, 7.0}, {1.0, 0.0, 0.0}, 20.0}};
-    CHECK(pilot_steps(across, cells, 0.5) == Approx(0.5 * (8.0 * 1.0 + 4.0 * 4.0) + 3.0));
+    const double whole = 0.5 * (8.0 * 1.0 + 4.0 * 4.0);
+    const PilotSegment across{{-3.0, 4.0, 7.0}, {1.0, 0.0, 0.0}, 20.0};
+    PilotSegment collides = across;
+    collides.collides = true; // in the last cell, which is not crossed
+    CHECK(steps_of(across, cells) == Approx(whole + 3.0));
+    CHECK(steps_of(collides, cells) == Approx(whole + 2.0));
     // Backwards from a face: the cell it begins in counts, though it is left at once.
-    const std::vector<PilotSegment> back = {{{13.0, 4.0, 7.0}, {-1.0, 0.0, 0.0}, 10.0}};
-    CHECK(pilot_steps(back, cells, 0.5) == Approx(0.5 * 2.0 * 1.0 + 3.0));
+    const PilotSegment back{{13.0, 4.0, 7.0}, {-1.0, 0.0, 0.0}, 10.0};
+    CHECK(steps_of(back, cells) == Approx(0.5 * 2.0 * 1.0 + 3.0));
+    // Empty cells are passed together, or one by one.
+    MajorantGrid row{8, {0, 0, 0}, {9, 1, 1}, std::vector<float>(9, 0.0f)};
+    row.bounds[8] = 1.0f;
+    const PilotSegment along{{0.0, 4.0, 4.0}, {1.0, 0.0, 0.0}, 70.0};
+    CHECK(steps_of(along, row) == Approx(0.5 * 6.0 + 9.0));
+    row.leaps = true; // cell 0 reaches to 7, 8 is not empty
+    CHECK(steps_of(along, row) == Approx(0.5 * 6.0 + 2.0));
+}
+
+TEST_CASE("between two looks there are as many steps as lanes seldom wait for", "[cpu][majorant]") {
+    CHECK(best_steps_per_look({}) == 4);
+    CHECK(best_steps_per_look({1.0, 1.2, 1.9}) == 2);
+    CHECK(best_steps_per_look({2.5, 3.0, 3.0}) == 3);
+    CHECK(best_steps_per_look({40.0, 2.0, 25.0}) == 4);
+}
+
+TEST_CASE("the reach of an empty cell is how far all cells around it are empty", "[cpu][majorant]") {
+    std::mt19937 engine(5);
+    MajorantGrid m{8, {0, 0, 0}, {17, 13, 11}, {}};
+    const int every = GENERATE(3, 50, 1000); // cells, one of which is not empty
+    for (int i = 0; i < m.dims.x * m.dims.y * m.dims.z; ++i)
+        m.bounds.push_back(engine() % every == 0 ? 0.5f : 0.0f);
+    const std::vector<std::uint8_t> reaches = empty_reaches(m);
+    m.leaps = true;
+    const std::vector<float> walked = walked_cells(m);
+    std::size_t i = 0;
+    for (glm::ivec3 a(0); a.x < m.dims.x; ++a.x)
+        for (a.y = 0; a.y < m.dims.y; ++a.y)
+            for (a.z = 0; a.z < m.dims.z; ++a.z, ++i) {
+                int nearest = 255; // beyond the grid all is empty
+                for (glm::ivec3 b(0); b.x < m.dims.x; ++b.x)
+                    for (b.y = 0; b.y < m.dims.y; ++b.y)
+                        for (b.z = 0; b.z < m.dims.z; ++b.z)
+                            if (bound_of(m, b) > 0.0f)
+                                nearest = std::min(nearest, chessboard(a, b));
+                REQUIRE(int(reaches[i]) == std::max(nearest - 1, 0));
+                REQUIRE(walked[i] == (nearest == 0 ? 0.5f : -float(std::max(nearest - 1, 0))));
+            }
+    m.leaps = false;
+    CHECK(walked_cells(m) == m.bounds);
 }
 
 TEST_CASE("a pilot ends where majorants are far too high", "[cpu][majorant]") {
@@ -268,10 +341,11 @@ TEST_CASE("majorant grids have no more than 2^24 cells", "[cpu][majorant]") {
 }
 
 TEST_CASE("the device walks the cells that a ray passes", "[gpu][majorant]") {
-    GridRecipe recipe = larger_recipe(Storage::float32);
+    GridRecipe recipe = GENERATE(false, true) ? sparse_recipe() : larger_recipe(Storage::float32);
     recipe.cell = GENERATE(4, 8, 16, 5);
     CAPTURE(recipe.cell);
-    const TestGrid grid = make_test_grid(recipe);
+    TestGrid grid = make_test_grid(recipe);
+    grid.volume.majorants->leaps = GENERATE(false, true);
     const Bounds box = bounds_of(grid);
     std::mt19937 engine(13);
     std::uniform_real_distribution<double> uniform;
@@ -295,11 +369,12 @@ TEST_CASE("the device walks the cells that a ray passes", "[gpu][majorant]") {
 }
 
 TEST_CASE("axis-parallel rays, on faces, edges and borders, pass every cell once", "[gpu][majorant][hard]") {
-    GridRecipe recipe = larger_recipe(Storage::float32);
+    GridRecipe recipe = GENERATE(false, true) ? sparse_recipe() : larger_recipe(Storage::float32);
     recipe.cell = GENERATE(4, 8, 16, 5);
     const bool mirror_zero = GENERATE(false, true); // direction components -0.0
     CAPTURE(recipe.cell, mirror_zero);
-    const TestGrid grid = make_test_grid(recipe);
+    TestGrid grid = make_test_grid(recipe);
+    grid.volume.majorants->leaps = GENERATE(false, true);
     const MajorantGrid& m = grid.majorants();
     const Bounds box = bounds_of(grid);
     // Places across the ray: least face, a face between cells, inside, a voxel plane, greatest face.
@@ -338,8 +413,8 @@ TEST_CASE("axis-parallel rays, on faces, edges and borders, pass every cell once
 }
 
 TEST_CASE("rays through edges and corners of cells lose nothing", "[gpu][majorant][hard]") {
-    GridRecipe recipe = larger_recipe(Storage::float32);
-    const TestGrid grid = make_test_grid(recipe);
+    TestGrid grid = make_test_grid(GENERATE(false, true) ? sparse_recipe() : larger_recipe(Storage::float32));
+    grid.volume.majorants->leaps = GENERATE(false, true);
     const MajorantGrid& m = grid.majorants();
     std::vector<RayInput> rays;
     for (int i = 0; i < 26; ++i) { // diagonals of faces and of the cube, from and through corners of cells

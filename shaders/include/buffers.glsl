@@ -23,6 +23,7 @@ layout(constant_id = SPEC_TEMPERATURE_TYPE) const int TEMPERATURE_TYPE = GRID_FL
 layout(constant_id = SPEC_STEPS) const int STEPS = 1;
 layout(constant_id = SPEC_TRACE) const int TRACE = 0;
 layout(constant_id = SPEC_TEXELS) const int TEXELS = 0;
+layout(constant_id = SPEC_LEAPS) const int LEAPS = 0;
 
 // Estimators that walk from one tentative collision to the next.
 const bool NULL_FLIGHT = FREE_FLIGHT >= FREE_FLIGHT_DELTA;

@@ -16,9 +16,11 @@
 //   majorants. After n cells: n u tau_0 + sum of 2 u sigma dt + sum of |sigma - next sigma| 6 u t, where tau_0, the
 //   depth drawn, is 16.7 at most and about 1 usually; 1e-5 after a hundred cells, as if extinction were off by that.
 // * A collision is at t + tau / sigma_maj: 4 u of the second, and u of the sum.
+// * Beyond empty cells crossed together the next cell is that of the point at t, which is off by as much as any point:
+//   a cell may be entered that much too early or late.
 //
-// Why it ends: every step that is no collision changes a coordinate of the cell by one, always to the same side, and
-// leaves after dims.x + dims.y + dims.z faces at most, also where t stands still because faces coincide. Collisions
+// Why it ends: every step that is no collision changes a coordinate of the cell by one at least, always to the same side,
+// and leaves after dims.x + dims.y + dims.z faces at most, also where t stands still because faces coincide. Collisions
 // stand still only if the mean free path 1 / sigma_maj is below an ulp of t, that is if some 2^24 of them fit in the
 // part: media of optical depth 1e7, whose real collisions end the flight; and beyond any doubt the step limit, which is
 // counted.
@@ -37,7 +39,13 @@
 #define EVENT_TOUCHED 3u // an interaction that leaves the flight as it is: a null collision, a step of a march
 #define EVENT_OPAQUE 4u  // nothing of the light is left, no need to go on
 
-// What the walk needs of its cell. With `residual` the bound of |density - control|, else that of the density.
+// How many cells around the walk's are empty like it, in every direction.
+int empty_reach(Walk w) {
+    return LEAPS != 0 ? int(max(-w.sigma_maj, 0.0)) : 0;
+}
+
+// What the walk needs of its cell. With `residual` the bound of |density - control|, else that of the density; where that
+// is 0, minus the reach of a walk that leaps.
 void load_cell(VolumeParams v, bool residual, inout Walk w) {
     bool cells = FIELD == FIELD_GRID;
     uint i = uint((w.cell.x * v.cell_dims.y + w.cell.y) * v.cell_dims.z + w.cell.z);
@@ -45,8 +53,10 @@ void load_cell(VolumeParams v, bool residual, inout Walk w) {
         w.control = cells ? controls[i].control : v.control;
     if (residual)
         w.sigma_maj = v.sigma_t * (cells ? controls[i].residual : v.residual);
-    else
-        w.sigma_maj = v.sigma_t * (cells ? cell_majorant(i) : v.majorant);
+    else {
+        float majorant = cells ? cell_majorant(i) : v.majorant;
+        w.sigma_maj = (LEAPS == 0 || majorant > 0.0 ? v.sigma_t : 1.0) * majorant;
+    }
 }
 
 void begin_cells(VolumeParams v, bool residual, inout Walk w) {
@@ -69,20 +79,31 @@ ivec3 first_axis(vec3 t_face) {
     return ivec3(equal(ivec3(0, 1, 2), ivec3(axis)));
 }
 
-// Where the walk leaves its cell, at most t_end.
+// Where the walk leaves its cell and the empty ones around it, at most t_end.
 float cell_exit(VolumeParams v, Walk w, out vec3 t_face) {
     t_face = vec3(FAR);
-    if (FIELD == FIELD_GRID)
-        t_face = far_faces(w, v.bounds_min + v.cell_size * vec3(w.cell), v.cell_size);
+    if (FIELD == FIELD_GRID) {
+        int reach = empty_reach(w);
+        t_face = far_faces(w, v.bounds_min + v.cell_size * vec3(w.cell - reach), v.cell_size * float(2 * reach + 1));
+    }
     return max(w.t, min(min(t_face.x, t_face.y), min(t_face.z, w.t_end)));
 }
 
-// Into the cell beyond. EVENT_LEFT: there is none.
+// Into the cell beyond: one step along the axis of the face, and never back along the others. EVENT_LEFT: there is none.
 uint next_cell(VolumeParams v, bool residual, float t_exit, vec3 t_face, inout Walk w) {
     w.t = t_exit;
     if (FIELD != FIELD_GRID)
         return EVENT_LEFT;
-    ivec3 next = w.cell + first_axis(t_face) * ivec3(sign(w.direction));
+    ivec3 side = ivec3(sign(w.direction));
+    ivec3 axis = first_axis(t_face);
+    ivec3 next = w.cell + axis * side;
+    if (LEAPS != 0) {
+        ivec3 last = w.cell + empty_reach(w) * side;
+        ivec3 there = ivec3(floor((w.origin - v.bounds_min + t_exit * w.direction) * (1.0 / v.cell_size)));
+        ivec3 most = clamp(last, ivec3(0), v.cell_dims - 1);
+        next = clamp(there, min(w.cell, most), max(w.cell, most));
+        next += axis * (last + side - next);
+    }
     ivec3 inside = clamp(next, ivec3(0), v.cell_dims - 1);
     bool left = t_exit >= w.t_end || inside != next;
     w.cell = inside;
@@ -94,7 +115,7 @@ uint next_cell(VolumeParams v, bool residual, float t_exit, vec3 t_face, inout W
 uint advance(VolumeParams v, bool residual, inout Walk w) {
     vec3 t_face;
     float t_exit = cell_exit(v, w, t_face);
-    float tau_cell = w.sigma_maj * (t_exit - w.t);
+    float tau_cell = (LEAPS != 0 ? max(w.sigma_maj, 0.0) : w.sigma_maj) * (t_exit - w.t);
     if (w.tau < tau_cell) {
         w.t = min(w.t + w.tau / w.sigma_maj, t_exit);
         return EVENT_COLLIDED;

@@ -65,7 +65,7 @@ Block block_of(VolumeParams v, Walk w) {
     ivec3 origin = v.density.voxel_min - 1;
     int size = int(v.cell_size);
     ivec3 cell = clamp((w.cell - origin) / size, ivec3(0), v.cell_dims - 1);
-    bool empty = FILTER != FILTER_NEAREST && cell_majorant(uint((cell.x * v.cell_dims.y + cell.y) * v.cell_dims.z + cell.z)) == 0.0;
+    bool empty = FILTER != FILTER_NEAREST && cell_majorant(uint((cell.x * v.cell_dims.y + cell.y) * v.cell_dims.z + cell.z)) <= 0.0;
     return empty ? Block(origin + cell * size, size, true) : Block(w.cell, 1, false);
 }
 

@@ -6,7 +6,7 @@
 #define BINDING_FRAME 0       // uniform FrameParams
 #define BINDING_GRID 1        // NanoVDB grids one after another, 32-bit words, unless they lie in windows
 #define BINDING_LEAF_TABLE 2  // one word per 8^3 block of the grid, see density.glsl
-#define BINDING_MAJORANTS 3   // float per majorant cell
+#define BINDING_MAJORANTS 3   // float per majorant cell, see empty_space.h
 #define BINDING_PATHS 4       // PathState per slot
 #define BINDING_QUEUE_ITEMS 5 // slot numbers, QUEUE_COUNT arrays of the queue capacity
 #define BINDING_QUEUES 6      // QueueHeader per queue
@@ -49,7 +49,8 @@
 #define SPEC_WINDOW_BITS 12      // log2 of the words in a window, where grids lie in windows
 #define SPEC_TRACE 13            // 1: vertices are recorded, of the one path there is
 #define SPEC_TEXELS 14           // 1: grids, their tables and lattices are read as texels
-#define SPEC_COUNT 15
+#define SPEC_LEAPS 15            // 1: walks pass empty majorant cells together
+#define SPEC_COUNT 16
 
 #define SHAPE_NONE 0 // background only
 #define SHAPE_SPHERE 1

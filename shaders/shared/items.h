@@ -30,7 +30,7 @@ struct Walk {
     float at;        // where in it the last interaction was
     float tau;       // optical depth left: of the majorant, or, where no collision is null, of the medium
     float depth;     // density integrated so far, over all parts
-    float sigma_maj; // of the present cell [1 / world unit]
+    float sigma_maj; // of the present cell [1 / world unit]; if it is empty, minus its reach, see majorant.glsl
     float control;   // control density of the present cell
     ivec3 cell;      // majorant cell; the voxel in regular tracking
     float dt;        // marches: length of a step

@@ -7,7 +7,7 @@ uint adaptive_flight(VolumeParams v, inout Walk w, inout Rng rng, inout Spectrum
         return EVENT_LEFT;
     vec3 t_face;
     float t_exit = cell_exit(v, w, t_face);
-    if (w.sigma_maj == 0.0) {
+    if (w.sigma_maj <= 0.0) {
         tally.cells += 1u;
         return next_cell(v, false, t_exit, t_face, w);
     }
