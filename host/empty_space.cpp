@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 
 namespace vkvol {
 
@@ -16,6 +15,9 @@ constexpr std::uint8_t far_away = 255;
 // in this metric (Rosenfeld and Pfaltz, "Sequential Operations in Digital Picture Processing", 1966). A border of empty
 // cells stands for what is beyond the grid.
 std::vector<std::uint8_t> empty_reaches(const MajorantGrid& cells) {
+    std::vector<std::uint8_t> reaches(cells.bounds.size());
+    if (std::find(cells.bounds.begin(), cells.bounds.end(), 0.0f) == cells.bounds.end())
+        return reaches;
     const glm::ivec3 dims = cells.dims;
     const std::ptrdiff_t row = dims.z + 2, plane = row * (dims.y + 2);
     std::vector<std::uint8_t> distance(static_cast<std::size_t>(plane * (dims.x + 2)), far_away);
@@ -23,7 +25,6 @@ std::vector<std::uint8_t> empty_reaches(const MajorantGrid& cells) {
     std::array<std::ptrdiff_t, 13> before;
     for (std::ptrdiff_t i = 0; i < 13; ++i)
         before[std::size_t(i)] = (i / 9 - 1) * plane + (i / 3 % 3 - 1) * row + i % 3 - 1;
-    std::vector<std::uint8_t> reaches(cells.bounds.size());
     std::size_t i = 0;
     for (int x = 0; x < dims.x; ++x)
         for (int y = 0; y < dims.y; ++y)

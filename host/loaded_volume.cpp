@@ -73,6 +73,15 @@ void load_temperature(const Volume& volume, const GridFile& file, LoadedVolume& 
     loaded.temperature = std::move(field);
 }
 
+// Walks over cells, of flights and of shadow rays, pass empty ones together; but not those voxel by voxel, nor over
+// residuals.
+bool leaps(const Method& method) {
+    const bool flights = method.free_flight >= FREE_FLIGHT_ADAPTIVE;
+    const bool shadows = method.nee == NEE_NONE || (method.transmittance != TRANSMITTANCE_REGULAR &&
+                                                    method.transmittance != TRANSMITTANCE_RESIDUAL);
+    return flights && shadows;
+}
+
 PilotScene pilot_scene(const Scene& scene, const Method& method, const DensityField& field, double sigma_t) {
     const Volume& volume = scene.volumes.front();
     const glm::dmat4 to_index = glm::inverse(field.index_to_world);
@@ -83,6 +92,7 @@ PilotScene pilot_scene(const Scene& scene, const Method& method, const DensityFi
     pilot.sigma_t = sigma_t;
     pilot.albedo = largest(volume.sigma_s) / std::max(largest(volume.sigma_a + volume.sigma_s), 1e-300);
     pilot.g = volume.g;
+    pilot.leaps = leaps(method);
     return pilot;
 }
 

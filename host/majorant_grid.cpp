@@ -109,7 +109,7 @@ MajorantGrid make_majorant_grid(const DensityField& field, int cell) {
 }
 
 MajorantGrid choose_majorant_grid(const DensityField& field, const PilotScene& scene, int cell) {
-    MajorantGrid grid = make_majorant_grid(field, cell > 0 ? cell : 4), best;
+    MajorantGrid grid = make_majorant_grid(field, cell > 0 ? cell : 4), best = grid;
     const std::vector<PilotSegment> segments = pilot_paths(field, grid, scene);
     double least = std::numeric_limits<double>::infinity();
     const auto consider = [&](bool leaps) {
@@ -122,12 +122,15 @@ MajorantGrid choose_majorant_grid(const DensityField& field, const PilotScene& s
         best = grid;
         best.segment_steps = steps;
     };
-    consider(false);
-    consider(true);
+    const auto consider_both = [&] {
+        consider(false);
+        if (scene.leaps)
+            consider(true);
+    };
+    consider_both();
     while (cell == 0 && grid.cell < 64) {
         grid = merge_cells(grid);
-        consider(false);
-        consider(true);
+        consider_both();
     }
     return best;
 }

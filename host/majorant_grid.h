@@ -21,14 +21,14 @@ struct MajorantGrid {
     glm::ivec3 dims{0};
     std::vector<float> bounds;
     bool leaps = false;                  // walks pass empty cells together, see empty_space.h
-    std::vector<double> segment_steps{}; // that flights and shadow rays are expected to take, a few of them
+    std::vector<double> segment_steps{}; // those expected of each of the pilot's flights and shadow rays
 };
 
 // `cell` voxels along an edge, > 0. More than 2^24 cells are never made.
 MajorantGrid make_majorant_grid(const DensityField& field, int cell);
 
 // What a step costs that minds the room around empty cells, to one that does not.
-constexpr double leap_cost = 1.08; // measured
+constexpr double leap_cost = 1.08; // measured on llvmpipe: a thin medium without empty cells
 
 // Of cells of 4, 8 ... 64 voxels, or of `cell` if that is not 0, with leaps or without, those over which paths of this
 // scene take the least time: the fewest steps (after Yue et al., "Toward Optimal Space Partitioning for Unbiased,

@@ -12,8 +12,8 @@ namespace vkvol {
 namespace {
 
 constexpr int paths = 256;
-constexpr int most_collisions = 64;   // of a path
-constexpr int most_lookups = 1 << 20; // of all: where majorants are far too high, fewer paths will do
+constexpr int most_collisions = 64; // of a path
+constexpr int most_steps = 1 << 21; // of all: where majorants are far too high, or cells very many, fewer paths will do
 
 // Calls visit(bound, t0, t1) for every cell that the ray passes within [0, length], until it returns false. With
 // reaches (else there are none) empty cells are passed together, as kernels do.
@@ -56,7 +56,7 @@ public:
         : field_(field), cells_(cells), scene_(scene), low_(field.voxel_min - 1), high_(field.voxel_max + 1) {}
 
     std::vector<PilotSegment> follow_all() {
-        for (int i = 0; i < paths && lookups_left_ > 0; ++i)
+        for (int i = 0; i < paths && steps_left_ > 0; ++i)
             follow();
         return std::move(segments_);
     }
@@ -82,10 +82,12 @@ private:
         collides = false;
         walk(cells_, {}, origin, direction, length, [&](double bound, double t0, double t1) {
             const double sigma_maj = scene_.sigma_t * bound;
+            if (--steps_left_ < 0)
+                return false;
             while (tau < sigma_maj * (t1 - t0)) {
                 t0 += tau / sigma_maj;
                 tau = -std::log1p(-uniform());
-                if (--lookups_left_ < 0)
+                if (--steps_left_ < 0)
                     return false;
                 const glm::ivec3 voxel(glm::floor(origin + t0 * direction + 0.5));
                 if (uniform() * bound < field_.value(voxel)) {
@@ -125,8 +127,10 @@ private:
             if (!collides || uniform() >= scene_.albedo)
                 return;
             origin += gone * direction;
-            if (scene_.light)
+            if (scene_.light) {
                 segments_.push_back({origin, *scene_.light, std::max(crossing(origin, *scene_.light).y, 0.0)});
+                steps_left_ -= segments_.back().length / cells_.cell;
+            }
             direction = scatter(direction);
         }
     }
@@ -136,7 +140,7 @@ private:
     const PilotScene& scene_;
     const glm::dvec3 low_, high_;
     std::mt19937 engine_{1};
-    int lookups_left_ = most_lookups;
+    double steps_left_ = most_steps;
     std::vector<PilotSegment> segments_;
 };
 

@@ -16,6 +16,7 @@ struct PilotScene {
     double sigma_t = 0.0;            // extinction at density 1 per voxel
     double albedo = 0.0;
     double g = 0.0;
+    bool leaps = true; // its walks can pass empty cells together
 };
 
 // A flight or a shadow ray.

@@ -79,7 +79,9 @@ std::uint32_t steps_per_look(const Specialization& s, const LoadedVolume& volume
     const bool at_once = s[SPEC_FREE_FLIGHT] == FREE_FLIGHT_ANALYTIC && s[SPEC_TRANSMITTANCE] == TRANSMITTANCE_ANALYTIC;
     if (at_once && s[SPEC_SHAPE] != SHAPE_MESH)
         return 1;
-    return volume.majorants ? best_steps_per_look(volume.majorants->segment_steps) : 0;
+    const bool walks = s[SPEC_FREE_FLIGHT] >= FREE_FLIGHT_DELTA && s[SPEC_TRANSMITTANCE] != TRANSMITTANCE_REGULAR &&
+                       s[SPEC_TRANSMITTANCE] < TRANSMITTANCE_MARCH;
+    return walks && volume.majorants ? best_steps_per_look(volume.majorants->segment_steps) : 0;
 }
 
 // Runs batches of samples over all bands until the samples, the time or the user's patience is used up.

@@ -227,3 +227,36 @@ TEST_CASE("marches with tiny steps are as good as unbiased", "[gpu][free_flight]
     check_flights(medium, medium.ray(), medium.fly(medium.flights_along(medium.ray(), 10000, 7)),
                   significance_of(2 * 4 * 2));
 }
+
+TEST_CASE("leaps over empty cells change no flight and no shadow", "[gpu][free_flight]") {
+    const int flight = GENERATE(FREE_FLIGHT_ADAPTIVE, FREE_FLIGHT_DELTA, FREE_FLIGHT_WEIGHTED,
+                                FREE_FLIGHT_DECOMPOSITION, FREE_FLIGHT_SPECTRAL);
+    CAPTURE(flight);
+    MediumRecipe recipe = recipe_of(MediumKind::grid, flight, Filter::trilinear, 1.0);
+    const auto [linear, translation] = std::pair(recipe.grid.linear, recipe.grid.translation);
+    recipe.grid = sparse_recipe();
+    recipe.grid.linear = linear;
+    recipe.grid.translation = translation;
+    recipe.estimators.transmittance = flight == FREE_FLIGHT_DELTA ? TRANSMITTANCE_DELTA : TRANSMITTANCE_RATIO;
+    recipe.leaps = false;
+    const TestMedium steps(recipe);
+    recipe.leaps = true;
+    const TestMedium leaps(recipe);
+    const std::vector<reference::Ray> rays = steps.random_rays(2000, 3, 0.05, 20.0);
+    std::vector<RayInput> inputs;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        inputs.push_back(steps.flights_along(rays[i], 1, static_cast<std::uint32_t>(i)).front());
+    const std::vector<FlightOutput> a = steps.fly(inputs), b = leaps.fly(inputs);
+    const std::vector<FlightOutput> T = steps.see(rays, 1, 4), shadow = leaps.see(rays, 1, 4);
+    double steps_taken = 0.0, leaps_taken = 0.0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        REQUIRE(a[i].event == b[i].event);
+        REQUIRE(a[i].lookups == b[i].lookups);
+        REQUIRE(std::abs(a[i].t - b[i].t) < 1e-3f); // world units, of a hundred; rounding at edges
+        REQUIRE(glm::length(a[i].weight - b[i].weight) < 1e-3f);
+        REQUIRE(glm::length(T[i].weight - shadow[i].weight) < 1e-3f);
+        steps_taken += a[i].steps + T[i].steps;
+        leaps_taken += b[i].steps + shadow[i].steps;
+    }
+    CHECK(leaps_taken < 0.7 * steps_taken);
+}

@@ -48,16 +48,6 @@ GridRecipe larger_recipe(Storage storage) {
     return recipe;
 }
 
-// Three specks far apart: cells of every reach.
-GridRecipe sparse_recipe() {
-    GridRecipe recipe{{-21, -8, -1}, {43, 50, 60}, nullptr, Storage::float32};
-    recipe.value = [](glm::ivec3 i) {
-        const bool speck = i == glm::ivec3(-21, -8, -1) || i == glm::ivec3(43, 50, 60) || i == glm::ivec3(12, 20, 7);
-        return speck ? 0.75f : 0.0f;
-    };
-    return recipe;
-}
-
 // A walk gives out more majorant optical depth than any grid here holds, so that nothing collides.
 constexpr double walk_tau = 1.0e4;
 constexpr int walk_steps = 128;
@@ -128,10 +118,16 @@ void check_walk(const TestGrid& grid, const RayInput& ray, const std::vector<Wal
         // The middle of the step lies within the closed cell.
         const glm::dvec3 middle = glm::dvec3(ray.origin) + 0.5 * (t + step.t) * glm::dvec3(ray.direction);
         const glm::dvec3 low = glm::dvec3(m.origin + step.cell * m.cell);
+        double exit = inside.t1;
         for (int axis = 0; axis < 3; ++axis) {
             REQUIRE(middle[axis] >= low[axis] - reach * m.cell - eps);
             REQUIRE(middle[axis] <= low[axis] + (reach + 1) * m.cell + eps);
+            if (ray.direction[axis] != 0.0f) {
+                const double face = low[axis] + (ray.direction[axis] > 0.0f ? reach + 1 : -reach) * m.cell;
+                exit = std::min(exit, (face - double(ray.origin[axis])) / double(ray.direction[axis]));
+            }
         }
+        REQUIRE(std::abs(step.t - std::max(exit, t)) <= 2.0 * eps); // as far as it can go
         tau += std::max(step.sigma_maj, 0.0f) * (step.t - t);
         t = step.t;
     }
@@ -322,6 +318,26 @@ TEST_CASE("the reach of an empty cell is how far all cells around it are empty",
     CHECK(walked_cells(m) == m.bounds);
 }
 
+TEST_CASE("reaches end at what a byte holds", "[cpu][majorant]") {
+    MajorantGrid row{8, {0, 0, 0}, {1, 600, 1}, std::vector<float>(600, 0.0f)};
+    row.bounds[0] = 1.0f;
+    const std::vector<std::uint8_t> reaches = empty_reaches(row);
+    for (int i = 0; i < 600; ++i)
+        REQUIRE(int(reaches[std::size_t(i)]) == std::clamp(i - 1, 0, 254));
+}
+
+TEST_CASE("walks leap where that takes fewer steps, and the scene's can", "[cpu][majorant]") {
+    PilotScene scene;
+    scene.eye = {-100.0, 20.0, 10.0};
+    scene.sigma_t = 0.5;
+    scene.albedo = 0.9;
+    const TestGrid sparse = make_test_grid(sparse_recipe()), full = make_test_grid(larger_recipe(Storage::float32));
+    CHECK(choose_majorant_grid(sparse.field(), scene).leaps);
+    CHECK_FALSE(choose_majorant_grid(full.field(), scene).leaps);
+    scene.leaps = false;
+    CHECK_FALSE(choose_majorant_grid(sparse.field(), scene).leaps);
+}
+
 TEST_CASE("a pilot ends where majorants are far too high", "[cpu][majorant]") {
     // One voxel of density 1e9 makes every cell's bound a billion: the path's own end is out of reach.
     GridRecipe spike{{0, 0, 0}, {40, 40, 40}, nullptr, Storage::float32};
@@ -428,6 +444,13 @@ TEST_CASE("rays through edges and corners of cells lose nothing", "[gpu][majoran
         }
     }
     const auto walks = walk(grid, rays);
-    for (std::size_t i = 0; i < rays.size(); ++i)
+    for (std::size_t i = 0; i < rays.size(); ++i) {
         check_walk(grid, rays[i], walks[i]);
+        // As a ray beside it, which meets each cell's corner within so much of it.
+        constexpr double aside = 1e-4;
+        RayInput moved = rays[i];
+        moved.origin += glm::vec3(aside, 0.7 * aside, 0.4 * aside);
+        const double actual = device_tau(walks[i], inside_box(grid, rays[i]).t0);
+        CHECK(std::abs(actual - brute_force_tau(grid, moved)) <= 4.0 * aside * (walks[i].size() + 2.0) * grid.highest);
+    }
 }

@@ -158,6 +158,7 @@ TEST_CASE("every feature costs instructions only where a scene has it", "[gpu][s
     CHECK(constant < count({{SPEC_EMISSION, EMISSION_CONSTANT}, {SPEC_EMISSION_AT, EMISSION_AT_STEPS}}));
     CHECK(none < specialise(track_chromatic_spv, plain()).instructions);
     CHECK(none < count({{SPEC_FILTER, FILTER_TRILINEAR}}));
+    CHECK(none < count({{SPEC_LEAPS, 1}}));
     // What is switched off leaves nothing behind, whatever the constants that describe it say.
     CHECK(none == count({ratio}));
     CHECK(none == count({{SPEC_TRANSMITTANCE, TRANSMITTANCE_TELESCOPING}}));

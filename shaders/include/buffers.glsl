@@ -40,7 +40,7 @@ bool goes_through() {
 
 layout(scalar, binding = BINDING_FRAME) uniform FrameBlock { FrameParams frame_block; };
 // A copy, read once before any branch or loop: within one, llvmpipe gathers even constants lane by lane, and a quarter of
-// all time went by at it.
+// all time went by at it. Tables within, looked up by index, are read from the block all the same.
 FrameParams frame = frame_block;
 layout(scalar, binding = BINDING_GRID) readonly buffer GridBlock { uint grid_words[]; };
 layout(scalar, binding = BINDING_LEAF_TABLE) readonly buffer LeafTableBlock { uint leaf_table[]; };

@@ -9,7 +9,7 @@
 struct Collision {
     float sigma_t;   // filtered as the scene asks; with one stochastic tap only its expectation is the field's. Of the
                      // channel in which it is largest
-    float sigma_maj; // > 0
+    float sigma_maj; // > 0 at a collision
     float u;         // [0, 1), for the estimator
     float sigma_c;   // of the control density
     float flown;     // in the cell, since the last step

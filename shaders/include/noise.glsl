@@ -3,9 +3,9 @@
 #define NOISE_GLSL
 #include "buffers.glsl"
 
-// Entry i modulo 256. From the uniform block itself, so that no copy of the table is made.
+// Entry i modulo 256. From the uniform block itself: a table in a copy would lie in memory of every lane's own.
 uint permuted(uint i) {
-    uint word = frame.volume.noise.permutation[(i >> 4) & 15u][(i >> 2) & 3u];
+    uint word = frame_block.volume.noise.permutation[(i >> 4) & 15u][(i >> 2) & 3u];
     return (word >> (8u * (i & 3u))) & 255u;
 }
 
@@ -37,12 +37,12 @@ float perlin(vec3 p) {
     return mix(in_x.x, in_x.y, fade.y);
 }
 
-// max(0, (1 + fbm) / 2) at a point of render space. `n` must be frame.volume.noise.
+// max(0, (1 + fbm) / 2) at a point of render space. `n`: the frame's noise.
 float noise_density(NoiseParams n, vec3 position) {
     float sum = 0.0;
     float amplitude = 1.0;
     for (uint k = 0u; k < n.octaves; ++k) {
-        vec4 to_noise = frame.volume.noise.to_noise[k];
+        vec4 to_noise = frame_block.volume.noise.to_noise[k];
         sum += amplitude * perlin(to_noise.w * position + to_noise.xyz);
         amplitude *= n.gain;
     }

@@ -1,6 +1,6 @@
 // Walking a grid voxel by voxel, exactly. Between voxel centres the trilinear density along a ray is a cubic in t, so
 // four values per voxel cell tell its integral; with nearest lookup it is constant. Majorant cells without density are
-// crossed in one step.
+// crossed in one step each.
 #ifndef VOXELS_GLSL
 #define VOXELS_GLSL
 #include "density.glsl"

@@ -6,6 +6,7 @@
 
 #include "corpus.h"
 #include "density_field.h"
+#include "empty_space.h"
 #include "info.h"
 #include "majorant_grid.h"
 #include "mutate.h"
@@ -142,8 +143,10 @@ PilotScene random_pilot(const DensityField& field, Random& random) {
 }
 
 void check_majorants(const DensityField& field, Random& random) {
-    const MajorantGrid grid = random.one_in(2) ? choose_majorant_grid(field, random_pilot(field, random))
-                                               : make_majorant_grid(field, static_cast<int>(1 + random.below(64)));
+    const MajorantGrid grid = random.one_in(2)
+                                  ? choose_majorant_grid(field, random_pilot(field, random),
+                                                         random.one_in(4) ? static_cast<int>(1 + random.below(64)) : 0)
+                                  : make_majorant_grid(field, static_cast<int>(1 + random.below(64)));
     const glm::ivec3 n = grid.dims;
     expect(grid.bounds.size() == std::size_t(n.x) * std::size_t(n.y) * std::size_t(n.z) && !grid.bounds.empty(),
            "majorant cells are not as many as their dimensions say");
@@ -156,6 +159,18 @@ void check_majorants(const DensityField& field, Random& random) {
         const glm::ivec3 c = (field.voxel_min + step - grid.origin) / grid.cell;
         expect(glm::all(glm::lessThan(c, n)), "a voxel lies in no majorant cell");
         expect(value <= grid.bounds[(std::size_t(c.x) * n.y + c.y) * n.z + c.z], "a density exceeds its majorant");
+    }
+    const std::vector<float> walked = walked_cells(grid);
+    for (int i = 0; i < 100; ++i) {
+        const std::size_t any = random.below(walked.size());
+        const glm::ivec3 cell(any / (std::size_t(n.y) * n.z), any / n.z % n.y, any % n.z);
+        expect(walked[any] >= 0.0f ? walked[any] == grid.bounds[any] : grid.leaps, "a cell is not walked as it is");
+        const int reach = std::max(-static_cast<int>(walked[any]), 0);
+        const glm::ivec3 apart(random.below(2 * reach + 1), random.below(2 * reach + 1), random.below(2 * reach + 1));
+        const glm::ivec3 near = cell + apart - reach;
+        if (walked[any] < 0.0f && near == glm::clamp(near, glm::ivec3(0), n - 1))
+            expect(grid.bounds[(std::size_t(near.x) * n.y + near.y) * n.z + near.z] == 0.0f,
+                   "a walk would leap over matter");
     }
     if (grid.bounds.size() * std::pow(grid.cell + 1.0, 3.0) < 1e7)
         expect(make_controls(field, grid, random.uniform()).size() == grid.bounds.size(),

@@ -163,6 +163,20 @@ double voxel_noise(glm::ivec3 ijk, std::uint32_t seed) {
     return reference::Draw{reference::pcg4d({word(ijk.x), word(ijk.y), word(ijk.z), seed})}.x();
 }
 
+GridRecipe sparse_recipe() {
+    GridRecipe recipe{{-21, -8, -1}, {43, 50, 60}, nullptr, Storage::float32};
+    recipe.value = [](glm::ivec3 i) {
+        for (const glm::ivec3 middle : {glm::ivec3(-19, -6, 1), glm::ivec3(41, 48, 58), glm::ivec3(12, 20, 7)}) {
+            const glm::ivec3 apart = i - middle;
+            if (glm::dot(glm::vec3(apart), glm::vec3(apart)) < 16.0f)
+                return 0.4f + 0.6f * float(voxel_noise(i, 9));
+        }
+        return 0.0f;
+    };
+    recipe.cell = 4;
+    return recipe;
+}
+
 GridRecipe rough_recipe() {
     GridRecipe recipe;
     recipe.first = {-3, 2, 0};

@@ -61,6 +61,9 @@ double voxel_noise(glm::ivec3 ijk, std::uint32_t seed);
 // at negative indices.
 GridRecipe rough_recipe();
 
+// Small balls far apart in nothing: majorant cells of every reach.
+GridRecipe sparse_recipe();
+
 // Rotation, shear, unequal scales and a mirror.
 extern const glm::dmat3 skewed;
 

@@ -83,6 +83,7 @@ TestMedium::TestMedium(const MediumRecipe& recipe) {
     const Filter filter = recipe.filter == Filter::nearest ? Filter::nearest : Filter::trilinear;
     if (recipe.kind == MediumKind::grid) {
         grid_ = make_test_grid(recipe.grid);
+        grid_->volume.majorants->leaps = recipe.leaps;
         add_controls(grid_->volume, volume, estimators);
         const float scale = static_cast<float>(recipe.majorant_scale);
         for (float& bound : grid_->volume.majorants->bounds)

@@ -20,6 +20,7 @@ struct MediumRecipe {
     Filter filter = Filter::trilinear;
     double majorant_scale = 1.0;
     GridRecipe grid = rough_recipe();
+    bool leaps = true; // over its empty majorant cells
     Noise noise{1.3, 3, 0.6, 2.1};
 };
 
