@@ -178,10 +178,16 @@ public:
     }
 
 private:
-    // Long enough that its tail, when few paths are left in flight, matters little; short enough for the user.
+    // Long enough that its tail, when few paths are left in flight, matters little, and that lanes have many samples of
+    // a pixel; short enough for the user.
     static std::uint32_t next_batch(std::uint32_t batch, double seconds) {
-        return seconds < 1.0 ? batch * 2 : seconds > 4.0 ? std::max(batch / 2, 1u) : batch;
+        if (seconds > 4.0)
+            return std::max(batch / 2, 1u);
+        return std::min(batch * (seconds < 0.1 ? 8 : seconds < 1.0 ? 2 : 1), most_batch);
     }
+
+    // llvmpipe leaves every loop after 65535 iterations, without a word; one over a pixel's samples too.
+    static constexpr std::uint32_t most_batch = 1u << 15;
 
     void begin_identity(const Device& device, const Specialization& specialization, const LoadedVolume& volume) {
         std::vector<std::uint32_t> rows;

@@ -205,3 +205,13 @@ TEST_CASE("a render stopped by its time limit keeps true sample counts", "[gpu][
     CHECK(result.samples < scene.settings.spp);
     check_samples_are_true(scene, 38, result.film);
 }
+
+TEST_CASE("all samples are taken, though a driver's loops end after 65535 iterations", "[gpu][determinism]") {
+    Scene scene;
+    scene.picture.width = scene.picture.height = 2;
+    scene.background = {0.3, 0.5, 0.9};
+    scene.settings.spp = 200000;
+    const RenderResult result = render_here(scene, 1);
+    CHECK(result.film.samples == std::vector<std::uint32_t>(4, 200000));
+    CHECK(result.counts.paths == 800000);
+}

@@ -57,6 +57,7 @@ steps ahead of a collision kept ~ shaders/include/ahead.glsl ~ walk.t = t[k]; ~ 
 cache corrected without its chance ~ shaders/passes/track.comp ~ (T - lane.cached) / lane.chance ~ (T - lane.cached) ~ [agreement]
 foreseen light off its mean ~ shaders/include/light_cache.glsl ~ hg_eval(v.g * v.g, ~ hg_eval(v.g, ~ [agreement]
 lattice a node off ~ shaders/include/lattice.glsl ~ uint i = lattice_index(which, node); ~ uint i = lattice_index(which, node) + 1u; ~ [light_cache]
+batches longer than a driver's loops ~ host/renderer.cpp ~ most_batch = 1u << 15; ~ most_batch = 1u << 24; ~ [determinism]
 crop forgotten in random numbers ~ shaders/include/camera.glsl ~ frame.crop_x + pixel ~ pixel ~ [determinism]
 END
 }
