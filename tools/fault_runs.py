@@ -13,18 +13,18 @@ import zlib
 
 LAYER = "VK_LAYER_VKVOL_fault"
 MOST_SECONDS = 120  # for one run; a run that takes longer hangs
+LEAST_RENDER = 0.4  # seconds of rendering, so that moments within it can be met
 
 
 class Lab:
     """What all runs share: the program, a scene, and the picture that an undisturbed run makes of it."""
 
-    def __init__(self, build, root, work, spp):
-        self.spp = spp
+    def __init__(self, build, root, work):
         self.build, self.root, self.work = pathlib.Path(build), pathlib.Path(root), pathlib.Path(work)
         self.vkvol = self.build / "vkvol"
         self.grid = self.work / "cumulus.nvdb"
         subprocess.run([self.build / "make_field", "cumulus", "--output", self.grid], check=True, stdout=subprocess.DEVNULL)
-        self.render = [self.root / "scenes" / "cumulus.xml", "--grid", self.grid, "--width", "160", "--spp", str(spp), "-q"]
+        self.render = [self.root / "scenes" / "cumulus.xml", "--grid", self.grid, "--width", "160", "-q"]
         self.sanitized = b"__asan_init" in self.vkvol.read_bytes()
         self.count = 0
         self.old = {}  # a good picture of long ago, by extension
@@ -34,13 +34,18 @@ class Lab:
             self.old[extension] = pathlib.Path(f"{old}.{extension}").read_bytes()
         self.whole = self.work / "whole.exr"
         self.report = self.work / "whole.json"
-        run = self.must("whole", [*self.render, "-o", self.whole, "-o", self.whole.with_suffix(".png"), "--report", self.report])
+        spp = 16
+        run, report = self.undisturbed(spp)
+        while report["seconds"]["render"] < LEAST_RENDER:
+            spp *= 2
+            run, report = self.undisturbed(spp)
+        self.spp = spp
+        self.render += ["--spp", str(spp)]
         # Two at a time, as most runs are: it is they whose phases are to be hit.
         twins = concurrent.futures.ThreadPoolExecutor(2)
         runs = [twins.submit(self.must, "twin", [*self.render, "-o", self.work / f"twin{i}.exr", "-o", self.work / f"twin{i}.png"])
                 for i in range(2)]
         self.seconds = sum(r.result().seconds for r in runs) / 2
-        report = json.loads(self.report.read_text())
         self.device = f"{report['device']['name']}, {report['device']['driver']}"
         picture = report["picture"]
         self.pixels = picture["width"] * picture["height"]
@@ -49,6 +54,13 @@ class Lab:
         scale = self.seconds / run.seconds
         end = self.seconds - scale * phases["write"]
         self.phase = {"render": (end - scale * phases["render"], end)}
+        self.checkpoints = ["--checkpoint", f"{phases['render'] / 4:.3f}s"]  # a few in each run
+
+    def undisturbed(self, spp):
+        """Makes the picture that all others are compared with. Returns the run and its report."""
+        pictures = ["-o", self.whole, "-o", self.whole.with_suffix(".png")]
+        run = self.must("whole", [*self.render, "--spp", str(spp), *pictures, "--report", self.report])
+        return run, json.loads(self.report.read_text())
 
     def render_with(self, option, value):
         """The usual render with one option changed or added."""
@@ -79,6 +91,12 @@ class Lab:
 
     def readable(self, picture):
         return self.compare(picture, self.whole) in (0, 4)
+
+
+def with_layer(lab, fault=None, **more):
+    """The environment in which the n-th call of a function fails: fault is FUNCTION:N:RESULT."""
+    env = {"VK_LAYER_PATH": str(lab.build / "tests" / "fault_layer"), "VK_INSTANCE_LAYERS": LAYER, **more}
+    return {**env, "VKVOL_FAULT": fault} if fault else env
 
 
 def is_whole_png(data):

@@ -13,15 +13,8 @@ import tempfile
 import threading
 import time
 
-from fault_runs import LAYER, Lab, Place, Run, Table
-
-PAGE = 4096  # what a file system in memory gives out
-
-
-def with_layer(lab, fault=None, **more):
-    env = {"VK_LAYER_PATH": str(lab.build / "tests" / "fault_layer"), "VK_INSTANCE_LAYERS": LAYER, **more}
-    return {**env, "VKVOL_FAULT": fault} if fault else env
-
+from fault_disks import disk_rows
+from fault_runs import Lab, Place, Run, Table, with_layer
 
 def count_calls(lab):
     counts = lab.work / "counts"
@@ -50,7 +43,7 @@ def device_rows(lab, table, quick):
 
     def lose_device(function, n, checkpoint):
         place = Place(lab, "lost", old=n % 2 == 0)
-        more = ["--checkpoint", "0.1s"] if checkpoint else []
+        more = lab.checkpoints if checkpoint else []
         run = Run(lab, "lost", [*lab.render, *place.outputs, *more],
                   with_layer(lab, f"{function}:{n}:VK_ERROR_DEVICE_LOST")).go()
         if run.code == 0:  # a machine with time on its hands needs fewer calls
@@ -97,161 +90,6 @@ def device_rows(lab, table, quick):
                   lambda n, f=function, r=result, c=code: fail(f, n, r, c), numbers)
 
 
-class Disk:
-    """A small file system in memory. Nobody outside sees it."""
-
-    def __init__(self, lab, bytes_):
-        self.path = lab.place("disk")
-        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={bytes_}", "none", self.path], check=True)
-
-    def leave(self, free):
-        """Fills it up to so many bytes."""
-        state = os.statvfs(self.path)
-        filler = self.path / "filler"
-        with open(filler, "wb") as file:
-            file.write(bytes(max(0, state.f_bavail * state.f_frsize - free)))
-
-    def read_only(self):
-        subprocess.run(["mount", "-o", "remount,ro", self.path], check=True)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        subprocess.run(["umount", "-l", self.path], check=False)
-
-
-def free_sizes(need, quick):
-    pages = (need + PAGE - 1) // PAGE
-    if quick:
-        return [0, pages // 2 * PAGE, (pages - 1) * PAGE, (pages + 8) * PAGE]
-    parts = [pages * i // 10 * PAGE for i in range(10)]
-    return sorted({0, PAGE, *parts, *(max(0, pages + i) * PAGE for i in range(-4, 9))})
-
-
-def disk_rows(lab, table, quick):
-    whole_exr, whole_png = lab.whole, lab.whole.with_suffix(".png")
-
-    def rescued(run):
-        kept = run.text.rpartition("kept as ")[2].strip()
-        if "kept as " not in run.text or not lab.same(kept):
-            run.lose(f"no whole picture is rescued: {run.text[-300:]}")
-        return run
-
-    def picture(extension, free, rescue=True):
-        with Disk(lab, 8 << 20) as disk:
-            place = Place(lab, "full", directory=disk.path, pictures=[f"a.{extension}"])
-            place.known.add("filler")
-            disk.leave(free)
-            env = {} if rescue else {"TMPDIR": str(disk.path)}
-            run = Run(lab, "full", [*lab.render, *place.outputs], env).go().expect(0, 1)
-            if run.code == 0:
-                return place.judge(run, "same")
-            place.judge(run.expect_message(place.pictures[0], "No space left"), "unchanged")
-            if not rescue and "kept as" in run.text:
-                run.lose("the rescue is a tale")
-            return rescued(run) if rescue else run
-
-    for extension, whole in (("exr", whole_exr), ("png", whole_png)):
-        sizes = free_sizes(whole.stat().st_size, quick)
-        table.row(f"disk full: the {extension.upper()}, an old one there", lambda f, e=extension: picture(e, f), sizes)
-    table.row("disk full, and the temporary directory too", lambda f: picture("exr", f, rescue=False), [0, 64 << 10])
-
-    def beside(free):
-        """The PNG has room, the EXR does not."""
-        with Disk(lab, 8 << 20) as disk:
-            place = Place(lab, "full", directory=disk.path, pictures=["a.exr"])
-            place.known.add("filler")
-            disk.leave(free)
-            good = Place(lab, "good", pictures=["a.png"])
-            run = Run(lab, "full", [*lab.render, *place.outputs, *good.outputs]).go().expect(1)
-            rescued(run.expect_message(place.pictures[0]))
-            place.judge(run, "unchanged")
-            return good.judge(run, "same")
-
-    table.row("disk full: the EXR, the PNG elsewhere", beside, [0, 64 << 10])
-
-    def report(free):
-        with Disk(lab, 1 << 20) as disk:
-            file = disk.path / "report.json"
-            file.write_text("old")
-            disk.leave(free)
-            place = Place(lab, "report")
-            run = Run(lab, "report", [*lab.render, *place.outputs, "--report", file]).go().expect(1).expect_message(file)
-            if file.read_text() != "old":
-                run.lose("the old report is lost")
-            return place.judge(run, "same")
-
-    table.row("disk full: the report", report, [0])
-
-    def checkpoint(free):
-        """The first picture fits; a checkpoint, which is larger, does not, or not a second one beside the first."""
-        with Disk(lab, 8 << 20) as disk:
-            place = Place(lab, "full", directory=disk.path, pictures=["a.png"])
-            place.known.add("filler")
-            disk.leave(whole_png.stat().st_size + free)
-            good = Place(lab, "good", pictures=["a.exr"])
-            run = Run(lab, "full", [*lab.render, *place.outputs, *good.outputs, "--checkpoint", "0.2s"]).go().expect(0)
-            if "the last checkpoint stays" not in run.text:
-                run.lose("no warning")
-            place.judge(run, "same")
-            return good.judge(run, "same")
-
-    size = 64 * lab.pixels
-    table.row("disk full: the checkpoint", checkpoint, [PAGE, 256 << 10])
-
-    def second_checkpoint(seed):
-        with Disk(lab, 16 << 20) as disk:
-            place = Place(lab, "full", directory=disk.path, pictures=["a.png"])
-            place.known.add("filler")
-            disk.leave(size * 5 // 4)
-            moment = lab.seconds * random.Random(seed).uniform(0.7, 1.0)
-            run = Run(lab, "full", [*lab.render, *place.outputs, "--checkpoint", "0.1s"],
-                      signals=[(moment, signal.SIGKILL)]).go().expect(0, -signal.SIGKILL)
-            (disk.path / "filler").unlink()
-            return place.resume(place.judge(run, "unchanged" if run.code else "same", strays=True))
-
-    table.row("disk full: the second checkpoint, then kill -9", second_checkpoint, range(2 if quick else 8))
-
-    def cache(how):
-        with Disk(lab, 4 << 20) as disk:
-            if how == "read-only":
-                disk.read_only()
-            else:
-                disk.leave(int(how))
-            place = Place(lab, "cache")
-            env = with_layer(lab, XDG_CACHE_HOME=str(disk.path), VKVOL_FAULT_CACHE_BYTES="1000000")
-            run = Run(lab, "cache", [*lab.render, *place.outputs], env).go().expect(0)
-            for file in (disk.path / "vkvol").glob("*"):
-                if file.suffix != ".bin" or file.stat().st_size <= 1000000:
-                    run.lose(f"half a cache: {file.name}, {file.stat().st_size} bytes")
-            return place.judge(run, "same")
-
-    table.row("pipeline cache: disk full or read-only", cache, ["0", str(PAGE), str(64 << 10), str(900 << 10), "2000000", "read-only"])
-
-    def read_only_place(_):
-        with Disk(lab, 1 << 20) as disk:
-            place = Place(lab, "ro", directory=disk.path)
-            disk.read_only()
-            run = Run(lab, "ro", [*lab.render, *place.outputs]).go().expect(2).expect_message(place.pictures[0])
-            return place.judge(run, "unchanged")
-
-    table.row("output directory read-only", read_only_place, [0])
-
-    def vanish(part):
-        place = Place(lab, "vanish")
-        gone = place.directory.with_name(place.directory.name + "-gone")
-        timer = threading.Timer(lab.seconds * part, lambda: place.directory.rename(gone))
-        timer.start()
-        run = Run(lab, "vanish", [*lab.render, *place.outputs, "--checkpoint", "0.3s"]).go().expect(1)
-        timer.join()
-        place.directory = gone
-        place.pictures = [gone / p.name for p in place.pictures]
-        return rescued(place.judge(run, "unchanged"))
-
-    table.row("output directory vanishes during the render", vanish, [0.6] if quick else [0.5, 0.6, 0.7])
-
-
 def signal_rows(lab, table, quick, seed):
     def moment(i, rng):
         """A fifth while loading and compiling, two while rendering, one while writing, one anywhere."""
@@ -264,7 +102,7 @@ def signal_rows(lab, table, quick, seed):
         rng = random.Random(f"{seed} {number} {i}")
         checkpoint = i % 2 == 0
         place = Place(lab, "signal", old=i % 4 < 2)
-        more = ["--checkpoint", "0.2s"] if checkpoint else []
+        more = lab.checkpoints if checkpoint else []
         run = Run(lab, "signal", [*lab.render, *place.outputs, *more], signals=[(moment(i, rng), number)]).go()
         return judge_signalled(run, place, number, checkpoint)
 
@@ -286,7 +124,7 @@ def signal_rows(lab, table, quick, seed):
         first = moment(i, rng)
         second = first + rng.uniform(0.001, 0.05)
         place = Place(lab, "twice", old=i % 4 < 2)
-        run = Run(lab, "twice", [*lab.render, *place.outputs, "--checkpoint", "0.2s"],
+        run = Run(lab, "twice", [*lab.render, *place.outputs, *lab.checkpoints],
                   signals=[(first, signal.SIGINT), (second, signal.SIGINT)]).go()
         if run.seconds > second + 2.0:
             run.lose(f"it took {run.seconds - second:.1f} s to end")
@@ -299,7 +137,7 @@ def signal_rows(lab, table, quick, seed):
     def kill(i):
         rng = random.Random(f"{seed} kill {i}")
         place = Place(lab, "kill", old=i % 2 == 0)
-        arguments = [*lab.render, *place.outputs, "--checkpoint", "0.2s", "--resume"]
+        arguments = [*lab.render, *place.outputs, *lab.checkpoints, "--resume"]
         losses = []
         for _ in range(1 + i % 4):
             run = Run(lab, "kill", arguments, signals=[(moment(3 + i % 2 if i % 3 == 0 else 1, rng), signal.SIGKILL)]).go()
@@ -399,7 +237,7 @@ def stream_rows(lab, table):
 
     def render(way):
         place = Place(lab, "stream")
-        more = ["--checkpoint", "0.3s", "--progress", "json"]
+        more = [*lab.checkpoints, "--progress", "json"]
         pipes = {}
         if ways[way] is None:
             pipes = {name: closed_pipe() for name in (["stderr"] if way.startswith("stderr") else ["stdout", "stderr"])}
@@ -452,7 +290,7 @@ def main():
     root = pathlib.Path(__file__).resolve().parent.parent
     start = time.monotonic()
     with tempfile.TemporaryDirectory(prefix="vkvol-faults-") as work:
-        lab = Lab(options.build.resolve(), root, work, spp=8 if options.quick else 16)
+        lab = Lab(options.build.resolve(), root, work)
         print(f"tools/faults.sh{' --quick' if options.quick else ''} --seed {options.seed}; {lab.device}")
         print(f"Each run is of scenes/cumulus.xml, {lab.size}, {lab.seconds:.1f} s undisturbed.\n")
         table = Table(options.only)
