@@ -30,8 +30,8 @@ struct PilotSegment {
 std::vector<PilotSegment> pilot_paths(const DensityField& field, const MajorantGrid& cells, const PilotScene& scene);
 
 // Steps that null-collision tracking is expected to take along one: the majorant's optical depth, which is the number
-// of look-ups, plus the cells it crosses, empty ones together if
-// the walk leaps. A look-up and a cell take about the same time.
+// of look-ups, plus the cells it crosses, empty ones together if the walk leaps. A look-up and a cell take about the
+// same time.
 std::vector<double> pilot_steps(const std::vector<PilotSegment>& segments, const MajorantGrid& cells, double sigma_t);
 
 // How many steps between two looks at what they led to take segments of these steps the least time, 2 to 4: a look

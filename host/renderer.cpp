@@ -121,6 +121,7 @@ public:
         result_.trace_origin = render_origin(scene_, volume);
         volume = {};
         result_.upload_seconds = watch.lap();
+        most_batch_ = tuning.most_batch;
         frame_.slots = tuning.slots;
         frame_.queue_capacity = queue_capacity(tuning);
         PipelineCache cache(device, job.disk_cache);
@@ -180,14 +181,11 @@ public:
 private:
     // Long enough that its tail, when few paths are left in flight, matters little, and that lanes have many samples of
     // a pixel; short enough for the user.
-    static std::uint32_t next_batch(std::uint32_t batch, double seconds) {
+    std::uint32_t next_batch(std::uint32_t batch, double seconds) const {
         if (seconds > 4.0)
             return std::max(batch / 2, 1u);
-        return std::min(batch * (seconds < 0.1 ? 8 : seconds < 1.0 ? 2 : 1), most_batch);
+        return std::min(batch * (seconds < 0.1 ? 8 : seconds < 1.0 ? 2 : 1), most_batch_);
     }
-
-    // llvmpipe leaves every loop after 65535 iterations, without a word; one over a pixel's samples too.
-    static constexpr std::uint32_t most_batch = 1u << 15;
 
     void begin_identity(const Device& device, const Specialization& specialization, const LoadedVolume& volume) {
         std::vector<std::uint32_t> rows;
@@ -331,7 +329,7 @@ private:
     const Scene scene_; // as its integrator sees it
     const RenderJob& job_;
     Commands commands_;
-    std::uint32_t width_;
+    std::uint32_t width_, most_batch_ = 1;
     std::optional<SceneBuffers> buffers_;
     shared::FrameParams frame_{};
     std::vector<Band> bands_;

@@ -55,6 +55,12 @@ std::uint32_t longest_budget(const LoopSizes& loops, std::uint32_t steps) {
     return static_cast<std::uint32_t>(std::clamp(65535.0 / per_iteration, 4.0, 1024.0));
 }
 
+// Likewise of the sky pass, which loops over a pixel's samples. Rays that meet the mesh leave that loop.
+std::uint32_t longest_batch(const LoopSizes& loops) {
+    const double per_sample = loops.mesh_nodes > 0 ? 16.0 + 4.0 * std::sqrt(double(loops.mesh_nodes)) : 1.0;
+    return static_cast<std::uint32_t>(std::clamp(32768.0 / per_sample, 16.0, 32768.0));
+}
+
 std::span<const std::uint32_t> track_kernel(const TrackVariant& variant) {
     if (variant.window_bits)
         return variant.chromatic ? std::span<const std::uint32_t>(track_chromatic_windows_spv) : track_windows_spv;
@@ -72,6 +78,7 @@ Tuning tune(const Device& device, const LoopSizes& loops, const Tuning& wish) {
     tuning.steps_per_look = pick(wish.steps_per_look, 4u);
     tuning.budget = pick(wish.budget, longest_budget(loops, tuning.steps_per_look));
     tuning.step_limit = pick(wish.step_limit, 1u << 26);
+    tuning.most_batch = pick(wish.most_batch, longest_batch(loops));
     tuning.most_film_bytes =
         pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
     tuning.most_grid_bytes = pick(wish.most_grid_bytes, std::uint64_t{device.limits().maxStorageBufferRange});

@@ -19,6 +19,7 @@ struct Tuning {
     std::uint32_t lanes = 0;            // invocations that share the track queue
     std::uint32_t budget = 0;           // iterations after which a lane lays its path aside
     std::uint32_t step_limit = 0;       // steps after which a flight is cut, and counted
+    std::uint32_t most_batch = 0;       // samples per pixel
     double submit_seconds = 0.08;       // aimed at; no submit should hold a device much longer
     std::uint32_t steps_per_look = 0;   // tracking steps between two looks at what they led to
     std::uint64_t most_film_bytes = 0;  // in one buffer; a larger film lies in several

@@ -208,10 +208,19 @@ TEST_CASE("a render stopped by its time limit keeps true sample counts", "[gpu][
 
 TEST_CASE("all samples are taken, though a driver's loops end after 65535 iterations", "[gpu][determinism]") {
     Scene scene;
-    scene.picture.width = scene.picture.height = 2;
+    RenderJob job;
+    SECTION("of a background") {
+        scene.picture.width = scene.picture.height = 2;
+        job.tuning.most_batch = GENERATE(0u, 1u << 20); // as it is chosen, and longer than any such loop
+    }
+    SECTION("beside a mesh, whose hierarchy each of them looks through") {
+        const MeshFiles ball{{VKVOL_SOURCE_DIR "/scenes/thesis/models/SphereOnly.obj"}};
+        scene = scene_of(medium(ball, 1.0, 0.5), 6.0, 60, 10.0, {0.0, 0.5, 0.0});
+        job.crop = {53, 55, 7, 8}; // within its box
+    }
     scene.background = {0.3, 0.5, 0.9};
     scene.settings.spp = 200000;
-    const RenderResult result = render_here(scene, 1);
-    CHECK(result.film.samples == std::vector<std::uint32_t>(4, 200000));
-    CHECK(result.counts.paths == 800000);
+    const RenderResult result = render_here(scene, 1, job);
+    CHECK(result.film.samples == std::vector<std::uint32_t>(result.film.pixel_count(), 200000));
+    CHECK(result.counts.paths == 200000 * result.film.pixel_count());
 }

@@ -27,7 +27,7 @@ lookup half a voxel off ~ shaders/include/ahead.glsl ~ vec3 p = w.origin + t[k] 
 roulette weight missing ~ shaders/include/lane.glsl ~ frame.roulette_threshold / m : 0.0 ~ 1.0 : 0.0 ~ [image]
 shadow roulette weight missing ~ shaders/include/transmittance.glsl ~ SHADOW_ROULETTE / m : 0.0 ~ 1.0 : 0.0 ~ [image]
 last cell left out ~ shaders/include/majorant.glsl ~ inside != next; ~ inside != next || next + (next - w.cell) != clamp(next + (next - w.cell), ivec3(0), v.cell_dims - 1); ~ [image]
-leap a cell too far ~ host/empty_space.cpp ~ std::max<std::uint8_t>(nearest, 1) - 1; ~ nearest; ~ [image]
+leap a cell too far ~ host/empty_space.cpp ~ std::max<std::uint8_t>(nearest, 1) - 1; ~ nearest; ~ [majorant]
 leap beyond the point at its end ~ shaders/include/majorant.glsl ~ next = clamp(there, ~ next = clamp(there + side, ~ [majorant]
 film variance / n for / (n - 1) ~ host/film_bands.cpp ~ / (n - 1.0) ~ / n ~ [determinism]
 voxel length inverted ~ host/loaded_volume.cpp ~ sigma_t / field->voxel_size() ~ sigma_t * field->voxel_size() ~ [invariance]
@@ -57,7 +57,8 @@ steps ahead of a collision kept ~ shaders/include/ahead.glsl ~ walk.t = t[k]; ~ 
 cache corrected without its chance ~ shaders/passes/track.comp ~ (T - lane.cached) / lane.chance ~ (T - lane.cached) ~ [agreement]
 foreseen light off its mean ~ shaders/include/light_cache.glsl ~ hg_eval(v.g * v.g, ~ hg_eval(v.g, ~ [agreement]
 lattice a node off ~ shaders/include/lattice.glsl ~ uint i = lattice_index(which, node); ~ uint i = lattice_index(which, node) + 1u; ~ [light_cache]
-batches longer than a driver's loops ~ host/renderer.cpp ~ most_batch = 1u << 15; ~ most_batch = 1u << 24; ~ [determinism]
+samples lost to a driver's loops ~ shaders/passes/sky.comp ~ if (hit || tally.paths < push.sample_end - push.sample_begin) { ~ if (hit) { ~ [determinism]
+a long batch beside a mesh ~ host/wavefront.cpp ~ 32768.0 / per_sample ~ 32768.0 ~ [determinism]
 crop forgotten in random numbers ~ shaders/include/camera.glsl ~ frame.crop_x + pixel ~ pixel ~ [determinism]
 END
 }

@@ -22,7 +22,9 @@ void main() {
         hit = next_interval(frame.volume, to_medium(frame.volume, ray.origin, ray.direction), 0.0, t);
         film_add(entry, frame.background, place, i, tally);
     }
-    if (hit) {
+    // llvmpipe leaves loops early, see longest_budget in wavefront.cpp: what it did not look at is for paths to see. So
+    // they are counted, for a condition on `i` would be optimized away.
+    if (hit || tally.paths < push.sample_end - push.sample_begin) {
         work[atomicAdd(counters.work_count, 1u)] = pixel;
     } else {
         film[pixel] = entry;

@@ -163,6 +163,18 @@ double voxel_noise(glm::ivec3 ijk, std::uint32_t seed) {
     return reference::Draw{reference::pcg4d({word(ijk.x), word(ijk.y), word(ijk.z), seed})}.x();
 }
 
+float bound_of(const MajorantGrid& m, glm::ivec3 cell) {
+    return m.bounds[(std::size_t(cell.x) * m.dims.y + cell.y) * m.dims.z + cell.z];
+}
+
+GridRecipe larger_recipe(Storage storage) {
+    GridRecipe recipe = rough_recipe();
+    recipe.storage = storage;
+    recipe.first = {-21, -8, -1};
+    recipe.last = {23, 30, 20};
+    return recipe;
+}
+
 GridRecipe sparse_recipe() {
     GridRecipe recipe{{-21, -8, -1}, {43, 50, 60}, nullptr, Storage::float32};
     recipe.value = [](glm::ivec3 i) {

@@ -54,12 +54,18 @@ GridBytes with_root_tile(GridBytes bytes, glm::ivec3 ijk, float value);
 // For the reference, from NanoVDB's accessor alone.
 reference::Grid make_reference_grid(const TestGrid& grid);
 
+// Of one majorant cell.
+float bound_of(const MajorantGrid& majorants, glm::ivec3 cell);
+
 // A number in [0, 1) for each voxel.
 double voxel_noise(glm::ivec3 ijk, std::uint32_t seed);
 
 // Holes and peaks side by side, the hardest field for majorants: 13 x 11 x 11 voxels across leaf borders, with a corner
 // at negative indices.
 GridRecipe rough_recipe();
+
+// As rough, 45 x 39 x 22 voxels: several majorant cells of each size along each axis.
+GridRecipe larger_recipe(Storage storage);
 
 // Small balls far apart in nothing: majorant cells of every reach.
 GridRecipe sparse_recipe();
