@@ -25,17 +25,16 @@ struct Reference {
 };
 
 struct ReferenceWish {
-    std::uint32_t samples = 0; // suffice
-    double seconds = 0.0;      // at most
+    double seconds = 0.0; // of rendering
     std::uint32_t seed = 0;
 };
 
 // Reads the image given by --reference. Throws InputError if it shows anything else than the estimators do.
 Reference read_reference(const std::filesystem::path& file, const std::vector<Estimator>& measured);
 
-// From the cache, if a file there holds the same picture by one of the candidates with the samples wished for, or
-// rendered for as long as wished for; else rendered, by the candidate with the least expected error per second, and
-// kept. A damaged file in the cache is as good as none.
+// From the cache, if a file there holds the same picture by one of the candidates, rendered for as long as wished for;
+// else rendered, by the candidate with the least expected error per second, and kept. A damaged file in the cache is as
+// good as none.
 Reference find_reference(const BenchOptions& options, const std::vector<Estimator>& measured, const Device& device,
                          const ReferenceWish& wish);
 

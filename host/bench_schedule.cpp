@@ -106,14 +106,6 @@ private:
 
 } // namespace
 
-std::uint32_t predicted_count(double seconds_per_sample, double share) {
-    std::uint32_t samples = 1;
-    // The counts before, as much as this one altogether, and this one as often as is wanted.
-    while (samples < most_samples && (1.0 + margin * runs_wanted) * seconds_per_sample * 2.0 * samples <= share)
-        samples *= 2;
-    return samples;
-}
-
 bool is_worth_measuring(double seconds_per_sample, double share) {
     return margin * runs_wanted * seconds_per_sample <= share;
 }

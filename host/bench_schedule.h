@@ -14,9 +14,6 @@ namespace vkvol {
 using MeasuredRender =
     std::function<std::optional<double>(std::size_t estimator, std::uint32_t samples, double time_limit)>;
 
-// The largest count of samples that an estimator of so many seconds per sample will reach with its share of the budget.
-std::uint32_t predicted_count(double seconds_per_sample, double share);
-
 // Its share suffices for as many renders of one sample as a figure needs.
 bool is_worth_measuring(double seconds_per_sample, double share);
 

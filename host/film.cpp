@@ -1,10 +1,13 @@
 #include "film.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace vkvol {
 
-double relative_noise(const Film& film) {
+std::optional<double> relative_noise(const Film& film) {
+    if (std::all_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n < 2; }))
+        return std::nullopt;
     double sum = 0.0;
     std::size_t counted = 0;
     const glm::dvec3 luminance(0.2126, 0.7152, 0.0722);
@@ -23,14 +26,18 @@ double relative_noise(const Film& film) {
 ImageMean image_mean(const Film& film) {
     glm::dvec3 sum(0.0), variance(0.0);
     double counted = 0.0;
+    bool known = true;
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
         if (film.samples[i] == 0)
             continue;
+        known = known && film.samples[i] > 1;
         sum += glm::dvec3(film.mean[i]);
         variance += glm::dvec3(film.variance[i]);
         counted += 1.0;
     }
-    return counted > 0.0 ? ImageMean{sum / counted, glm::sqrt(variance) / counted} : ImageMean{};
+    if (counted == 0.0)
+        return {};
+    return {sum / counted, known ? std::optional(glm::sqrt(variance) / counted) : std::nullopt};
 }
 
 } // namespace vkvol

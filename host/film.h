@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -26,14 +27,14 @@ struct Film {
 };
 
 // Root of the mean over pixels of variance / mean^2 (of luminance, dark pixels left out): the picture's relative
-// standard error.
-double relative_noise(const Film& film);
+// standard error. Unknown if no pixel has two samples.
+std::optional<double> relative_noise(const Film& film);
 
-// Of the picture, over the pixels that have samples. Pixels are independent, so their variances add; a pixel of one
-// sample counts as exact.
+// Of the picture, over the pixels that have samples. Pixels are independent, so their variances add; of a pixel with a
+// single sample none is known, nor then of the picture.
 struct ImageMean {
     glm::dvec3 value{0.0};
-    glm::dvec3 standard_error{0.0};
+    std::optional<glm::dvec3> standard_error;
 };
 ImageMean image_mean(const Film& film);
 

@@ -1,10 +1,31 @@
 #include "film_bands.h"
 
 #include <algorithm>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "error.h"
 
 namespace vkvol {
 
+namespace {
+
+// What is too much would not fail: the system would end the program later, without a word.
+void check_memory(const Device& device, const Crop& crop) {
+    // As sums, in memory of this machine if that is the device; the same read back; mean, variance and samples.
+    const double bytes = sizeof(shared::FilmPixel) * (device.is_cpu() ? 2.0 : 1.0) + 2.0 * sizeof(glm::vec3) + 4.0;
+    const double width = crop.x1 - crop.x0, height = crop.y1 - crop.y0;
+    const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+    if (width * height * bytes > memory)
+        throw InputError(fmt::format("{:g} x {:g} pixels need {:.3g} GB of memory, and this machine has {:.3g}; lower "
+                                     "--width, or render --crop windows",
+                                     width, height, width * height * bytes * 1e-9, memory * 1e-9));
+}
+
+} // namespace
+
 std::vector<Band> make_bands(const Device& device, Commands& commands, const Crop& crop, std::uint64_t most_bytes) {
+    check_memory(device, crop);
     const std::uint64_t row_bytes = std::uint64_t(crop.x1 - crop.x0) * sizeof(shared::FilmPixel);
     const std::uint64_t most = std::max<std::uint64_t>(most_bytes / row_bytes, 1);
     const auto height = static_cast<std::uint32_t>(crop.y1 - crop.y0);

@@ -163,7 +163,7 @@ void finish_trace(RenderOptions& render, const RenderTexts& texts, std::optional
 
 void finish_render(RenderOptions& render, const RenderTexts& texts) {
     if (render.scene.empty())
-        fail_command_line("no scene given; e.g. vkvol scenes/demo.xml, or see vkvol --help");
+        fail_command_line("no scene given; e.g. vkvol scenes/cumulus.xml, or see vkvol --help");
     render.outputs.assign(texts.outputs.begin(), texts.outputs.end());
     if (render.outputs.empty() && !render.trace)
         render.outputs = {render.scene.stem().string() + ".exr", render.scene.stem().string() + ".png"};

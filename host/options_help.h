@@ -17,7 +17,7 @@ inline constexpr const char* render_footer = R"(Other commands (each has its own
   vkvol bench SCENE.xml       error against time of the integrators that suit a scene
 
 Examples:
-  vkvol scenes/demo.xml                            writes demo.exr and demo.png here
+  vkvol scenes/cumulus.xml                         writes cumulus.exr and cumulus.png here
   vkvol cloud.xml --width 480 --spp 4 -o look.png  a quick look
   vkvol cloud.xml --time 5m -o cloud.exr           the best picture of five minutes
   vkvol cloud.xml --spp 64 --sample-offset 64 -o part2.exr   samples 64 to 127, for merge

@@ -10,11 +10,16 @@ struct RenderCounts {
     std::uint64_t paths = 0, real_collisions = 0, null_collisions = 0, lookups = 0, cells = 0, shadow_rays = 0;
     std::uint64_t depth_caps = 0, step_caps = 0, majorant_violations = 0, non_finite = 0, queue_overflows = 0;
     std::uint64_t room = 0, steps = 0;
+    std::uint64_t abandoned = 0; // paths that would not end when the render was to
     std::uint64_t cleaned_voxels = 0;
 
     // Of the steps for which lanes of the track pass had room, those that took a path further; 0 if there were none.
     double lane_use() const { return room > 0 ? double(steps) / double(room) : 0.0; }
-    bool any_cap() const { return depth_caps + step_caps + majorant_violations + non_finite + queue_overflows > 0; }
+    bool any_cap() const {
+        return depth_caps + step_caps + majorant_violations + non_finite + queue_overflows + abandoned +
+                   cleaned_voxels >
+               0;
+    }
 };
 
 struct NonFiniteSample {

@@ -11,7 +11,9 @@ namespace {
 
 std::string samples_text(const Film& film) {
     const auto [least, most] = std::minmax_element(film.samples.begin(), film.samples.end());
-    return *least == *most ? std::to_string(*most) : fmt::format("{} to {}", *least, *most);
+    if (*least != *most)
+        return fmt::format("{} to {} samples", *least, *most);
+    return *most == 1 ? "1 sample" : fmt::format("{} samples", *most);
 }
 
 std::string quoted(const std::string& text) {
@@ -56,6 +58,7 @@ void print_caps(const RenderOptions& options, const RenderResult& result) {
     line(c.cleaned_voxels, "voxels were NaN, infinite or negative and count as 0");
     line(c.depth_caps, "paths ended at maxDepth: the light of further scatterings is missing (raise or drop maxDepth)");
     line(c.step_caps, "segments were cut, by the step limit or by the driver: their light is missing");
+    line(c.abandoned, "paths would not end when the render was to, and are missing: they are the long ones");
     line(c.majorant_violations,
          "collisions met a density above its majorant: delta estimators lose light there, ratio and weighted ones "
          "stay unbiased with more noise");
@@ -69,8 +72,9 @@ void print_summary(const RenderOptions& options, const Device& device, const Ren
     std::string outputs;
     for (const std::filesystem::path& output : options.outputs)
         outputs += (outputs.empty() ? "" : ", ") + output.string();
-    tell(stdout, "{}: {} samples per pixel, {:.2f} s, noise {:.2g} %, on {}{}\n", outputs, samples_text(result.film),
-         result.render_seconds, 100.0 * relative_noise(result.film), device.info().name,
+    const std::optional<double> noise = relative_noise(result.film);
+    tell(stdout, "{}: {} per pixel, {:.2f} s{}, on {}{}\n", outputs, samples_text(result.film), result.render_seconds,
+         noise ? fmt::format(", noise {:.2g} %", 100.0 * *noise) : "", device.info().name,
          device.is_cpu() ? " (software)" : "");
 }
 

@@ -121,7 +121,9 @@ public:
         result_.trace_origin = render_origin(scene_, volume);
         volume = {};
         result_.upload_seconds = watch.lap();
-        most_batch_ = tuning.most_batch;
+        // Counters of the sky, which are read once a batch, have 32 bits.
+        const std::uint64_t pixels = std::uint64_t{bands_.front().rows} * width_;
+        most_batch_ = std::min<std::uint32_t>(tuning.most_batch, std::max<std::uint64_t>((1ull << 31) / pixels, 1));
         frame_.slots = tuning.slots;
         frame_.queue_capacity = queue_capacity(tuning);
         PipelineCache cache(device, job.disk_cache);
@@ -247,15 +249,14 @@ private:
         return stopped_;
     }
 
-    // Paths begun are finished, as a rule in no time; not if that takes a user's patience.
+    // Paths begun are finished, as a rule in no time; not if that takes a user's patience. What is missing from the
+    // picture then is what is long.
     bool out_of_patience() {
         const double now = watch_.seconds();
         stopped_at_ = stopped_at_.value_or(now);
         if (now - *stopped_at_ < patience)
             return false;
-        result_.warnings.push_back(fmt::format("paths that would not end within {} seconds were left out: what is long "
-                                               "is missing from the picture",
-                                               patience));
+        result_.counts.abandoned += wavefront_->in_flight();
         return true;
     }
 

@@ -48,6 +48,7 @@ Json caps_json(const RenderResult& r) {
             {"steps", c.step_caps},
             {"majorantViolations", c.majorant_violations},
             {"queueOverflows", c.queue_overflows},
+            {"abandonedPaths", c.abandoned},
             {"nonFiniteSamples", c.non_finite},
             {"nonFiniteExamples", samples},
             {"cleanedVoxels", c.cleaned_voxels}};
@@ -55,7 +56,10 @@ Json caps_json(const RenderResult& r) {
 
 Json mean_json(const Film& film) {
     const auto [value, error] = image_mean(film);
-    return {{"value", {value.x, value.y, value.z}}, {"standardError", {error.x, error.y, error.z}}};
+    Json json{{"value", {value.x, value.y, value.z}}, {"standardError", nullptr}};
+    if (error)
+        json["standardError"] = {error->x, error->y, error->z};
+    return json;
 }
 
 } // namespace
@@ -76,6 +80,7 @@ std::string bias_of(const RenderResult& result) {
     };
     add(result.counts.depth_caps, "paths ended at maxDepth");
     add(result.counts.step_caps, "segments were cut");
+    add(result.counts.abandoned, "paths were abandoned");
     add(result.counts.non_finite, "samples were not finite");
     return text;
 }
@@ -103,6 +108,7 @@ Metadata make_metadata(const RenderOptions& options, const Scene& scene, const D
             {"vkvol/majorantViolations", metadata_count(result.counts.majorant_violations)},
             {"vkvol/nullCollisions", std::to_string(result.counts.null_collisions)},
             {"vkvol/queueOverflows", metadata_count(result.counts.queue_overflows)},
+            {"vkvol/abandonedPaths", metadata_count(result.counts.abandoned)},
             {"vkvol/nonFiniteSamples", metadata_count(result.counts.non_finite)}};
 }
 
@@ -138,8 +144,8 @@ std::string make_report(const RenderOptions& options, const Scene& scene, const 
     report["laneUse"] = {{"track", result.counts.lane_use()}};
     report["caps"] = caps_json(result);
     report["mean"] = mean_json(result.film);
-    const double noise = relative_noise(result.film);
-    report["meanRelativeVariance"] = noise * noise;
+    const std::optional<double> noise = relative_noise(result.film);
+    report["meanRelativeVariance"] = noise ? Json(*noise * *noise) : Json();
     report["memory"] = {{"peakHostBytes", peak_host_bytes()}, {"deviceBytes", result.device_bytes}};
     report["warnings"] = scene.warnings;
     for (const std::string& warning : result.warnings)

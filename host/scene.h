@@ -136,7 +136,7 @@ struct RenderSettings {
     AxisChoices choices;    // beyond what the integrator's name says
     March march;
     std::uint32_t spp = 1;                  // samples per pixel, >= 1
-    std::optional<std::uint32_t> max_depth; // scattering events per path; none: unlimited
+    std::optional<std::uint32_t> max_depth; // scattering events per path; none: a million
     double roulette_threshold = 0.1;        // path weight below which Russian roulette is played; 0: never
     std::optional<Filter> filter;           // none: stochastic, or trilinear where that would be biased
     double majorant_scale = 1.0; // >= 1 leaves every unbiased estimator unbiased; < 1 violates the majorant on purpose

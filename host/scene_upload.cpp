@@ -270,15 +270,16 @@ shared::MarchParams make_march(const Scene& scene, const LoadedVolume& loaded, c
     const double unit = march.unit == CoefficientUnit::voxel ? voxel : 1.0;
     const double step = march.step > 0.0 ? march.step * unit : loaded.field ? 0.5 * voxel : 0.2;
     // A series that ends unbiased does best from a coarse beginning.
-    const double shadow_step = method.transmittance == TRANSMITTANCE_TELESCOPING ? 16.0 * step : step;
+    const double usual_shadow_step = method.transmittance == TRANSMITTANCE_TELESCOPING ? 16.0 * step : step;
+    const double shadow_step = march.shadow_step > 0.0 ? march.shadow_step * unit : usual_shadow_step;
     const double diagonal = diagonal_of(scene, loaded);
     if (method.free_flight == FREE_FLIGHT_MARCH)
         check_step("step", step, diagonal, unit);
-    if (method.nee != NEE_NONE && method.transmittance >= TRANSMITTANCE_MARCH && march.shadow_step > 0.0)
-        check_step("shadowStep", march.shadow_step * unit, diagonal, unit);
+    if (method.nee != NEE_NONE && method.transmittance >= TRANSMITTANCE_MARCH)
+        check_step("shadowStep", shadow_step, diagonal, unit);
     shared::MarchParams params{};
     params.step = static_cast<float>(step);
-    params.shadow_step = static_cast<float>(march.shadow_step > 0.0 ? march.shadow_step * unit : shadow_step);
+    params.shadow_step = static_cast<float>(shadow_step);
     params.optical_step = static_cast<float>(march.optical_step);
     params.jitter = method.jitter ? 1.0f : 0.0f;
     return params;

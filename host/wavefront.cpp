@@ -26,6 +26,7 @@ constexpr std::uint32_t most_rounds = 64;          // per submit
 constexpr std::uint32_t marks = pass_names.size(); // timestamps per round: before and after each pass but sky
 constexpr VkDeviceSize queue_bytes = QUEUE_COUNT * sizeof(shared::QueueHeader);
 constexpr std::uint64_t sky_samples = 1u << 22; // per submit: some 70 ms on two cores of a software driver
+constexpr std::uint32_t first_budget = 64;      // on a device of unknown speed
 
 BoundBuffers with_queues(BoundBuffers buffers, const Buffer& paths, const Buffer& betas, const Buffer& suspended,
                          const Buffer& items, const Buffer& queues, const Buffer& work, const Buffer& counters) {
@@ -44,21 +45,31 @@ bool is_empty(const shared::QueueHeader& header) {
     return header.tail == header.limit && static_cast<std::int32_t>(header.limit - header.head) <= 0;
 }
 
-// llvmpipe leaves every loop of an invocation after 65535 iterations in all, without a word: what the iterations of a
-// budget loop over must stay below that. A ray meets some 4 sqrt(n) of the n nodes over a surface where it grazes it,
-// the lanes of a group together more, with a few triangles each; and an iteration may ask for several crossings. Should
-// it not be enough after all, the kernel counts a cap. Noise is a loop over octaves, once or twice a step.
+// llvmpipe leaves every loop of an invocation after so many iterations in all, the one that ends a loop included, and
+// without a word.
+constexpr double most_iterations = 65535.0;
+
+// Of all loops, for one look at the crossings of a mesh. A ray meets some 4 sqrt(n) of the n nodes over a surface where
+// it grazes it, the lanes of a group together more, with a few triangles each.
+double crossing_iterations(std::size_t mesh_nodes) {
+    return mesh_nodes > 0 ? 4.0 * (16.0 + 4.0 * std::sqrt(double(mesh_nodes))) : 0.0;
+}
+
+// What the turns of a budget loop over must stay below the limit. A turn may ask for several crossings; should it not
+// be enough after all, the kernel counts a cap. Of noise there is no such count. It is a loop over octaves, and every
+// step has up to four places for one, which all lanes of a group pass under a mask: a flight's look-up, emission along
+// it, and two of a shadow ray that marches in several sets of samples.
 std::uint32_t longest_budget(const LoopSizes& loops, std::uint32_t steps) {
-    double per_iteration = 2.0 + steps * (1.0 + 2.0 * loops.octaves);
-    if (loops.mesh_nodes > 0)
-        per_iteration += 16.0 * (16.0 + 4.0 * std::sqrt(double(loops.mesh_nodes)));
-    return static_cast<std::uint32_t>(std::clamp(65535.0 / per_iteration, 4.0, 1024.0));
+    double per_turn = 2.0 + (steps + 1.0) + 4.0 * crossing_iterations(loops.mesh_nodes);
+    if (loops.octaves > 0)
+        per_turn += 4.0 * steps * (loops.octaves + 1.0);
+    return static_cast<std::uint32_t>(std::clamp(most_iterations / per_turn, 4.0, 1024.0));
 }
 
 // Likewise of the sky pass, which loops over a pixel's samples. Rays that meet the mesh leave that loop.
 std::uint32_t longest_batch(const LoopSizes& loops) {
-    const double per_sample = loops.mesh_nodes > 0 ? 16.0 + 4.0 * std::sqrt(double(loops.mesh_nodes)) : 1.0;
-    return static_cast<std::uint32_t>(std::clamp(32768.0 / per_sample, 16.0, 32768.0));
+    const double per_sample = 2.0 + crossing_iterations(loops.mesh_nodes);
+    return static_cast<std::uint32_t>(std::clamp(most_iterations / per_sample, 16.0, 32767.0));
 }
 
 std::span<const std::uint32_t> track_kernel(const TrackVariant& variant) {
@@ -115,6 +126,7 @@ Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, st
                 with_queues(scene_buffers, paths_, betas_, suspended_, queue_items_, queues_, work_, counter_buffer_)) {
     Specialization constants = specialization;
     constants[SPEC_STEPS] = static_cast<std::int32_t>(tuning.steps_per_look);
+    push_.budget = std::min(tuning.budget, first_budget);
     constants[SPEC_WINDOW_BITS] = static_cast<std::int32_t>(variant.window_bits.value_or(0));
     const auto make = [&](std::span<const std::uint32_t> spirv) {
         return std::make_unique<ComputePass>(device, bindings_, spirv, constants, cache);
@@ -180,7 +192,6 @@ void Wavefront::free_slots(std::uint32_t begin, std::uint32_t end) {
     push_.sample_begin = begin;
     push_.sample_end = end;
     push_.stop = 0;
-    push_.budget = tuning_.budget;
     push_.step_limit = tuning_.step_limit;
     rounds_ = 1; // many came to little at the end of the last batch
     commands_.run([&](VkCommandBuffer commands) {
@@ -191,7 +202,9 @@ void Wavefront::free_slots(std::uint32_t begin, std::uint32_t end) {
 
 void Wavefront::sort_pixels(std::uint32_t pixels) {
     const std::uint32_t samples = push_.sample_end - push_.sample_begin;
-    const auto chunk = static_cast<std::uint32_t>(std::max<std::uint64_t>(sky_samples / samples, WORKGROUP_SIZE));
+    const std::uint64_t most = std::uint64_t{device_.limits().maxComputeWorkGroupCount[0]} * WORKGROUP_SIZE;
+    const auto chunk = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
+        sky_samples / samples, WORKGROUP_SIZE, std::max<std::uint64_t>(most, WORKGROUP_SIZE)));
     for (std::uint32_t first = 0; first < pixels; first += chunk) {
         push_.pixel_begin = first;
         push_.pixel_end = std::min(pixels, first + chunk);
@@ -213,10 +226,17 @@ bool Wavefront::advance() {
     });
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     read_timestamps();
-    adapt_rounds(seconds);
+    adapt(seconds);
     std::memcpy(&counters_, readback_.view<std::byte>().data() + queue_bytes, sizeof counters_);
     const auto headers = std::span(static_cast<const shared::QueueHeader*>(readback_.mapped()), QUEUE_COUNT);
     return std::all_of(headers.begin(), headers.end(), is_empty);
+}
+
+std::uint32_t Wavefront::in_flight() const {
+    const auto headers = std::span(static_cast<const shared::QueueHeader*>(readback_.mapped()), QUEUE_COUNT);
+    const shared::QueueHeader& header = headers[QUEUE_RESUME];
+    const bool all_taken = static_cast<std::int32_t>(header.head - header.limit) > 0;
+    return header.tail - (all_taken ? header.limit : header.head);
 }
 
 // generate -> track. What a pass pushes to an earlier queue, or to its own, waits for the next round.
@@ -281,9 +301,17 @@ void Wavefront::read_timestamps() {
                                    device_.limits().timestampPeriod * 1e-9;
 }
 
-void Wavefront::adapt_rounds(double seconds) {
+// First lanes work for longer at a time, for they are laid aside less often then; after that there are more rounds.
+// Only where a round alone takes far too long, as a slow device's driver would not suffer, lanes work for less long
+// again.
+void Wavefront::adapt(double seconds) {
     const double factor = std::clamp(tuning_.submit_seconds / std::max(seconds, 1e-6), 0.5, 2.0);
-    rounds_ = std::clamp(static_cast<std::uint32_t>(rounds_ * factor + 0.5), 1u, most_rounds);
+    if (factor > 1.0 && push_.budget < tuning_.budget)
+        push_.budget = std::min(2 * push_.budget, tuning_.budget);
+    else if (rounds_ == 1 && seconds > 4.0 * tuning_.submit_seconds)
+        push_.budget = std::min(std::max(push_.budget / 2, 16u), tuning_.budget);
+    else
+        rounds_ = std::clamp(static_cast<std::uint32_t>(rounds_ * factor + 0.5), 1u, most_rounds);
 }
 
 } // namespace vkvol

@@ -70,6 +70,8 @@ public:
     std::vector<std::uint32_t> pixels_left();
     // One submit of as many rounds as fit its time. True when no path is in flight any more.
     bool advance();
+    // Paths that the last submit left amid their way.
+    std::uint32_t in_flight() const;
 
     std::uint64_t bytes() const; // of its buffers
 
@@ -87,7 +89,7 @@ private:
     void record_timestamp(VkCommandBuffer commands, std::uint32_t round, std::uint32_t mark);
     void record_readback(VkCommandBuffer commands);
     void read_timestamps();
-    void adapt_rounds(double seconds);
+    void adapt(double seconds);
 
     const Device& device_;
     Tuning tuning_;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "error.h"
@@ -57,6 +58,52 @@ TEST_CASE("caps are in the summary, the report and the EXR, and --strict fails",
     CHECK_THAT(json, Contains(fmt::format("\"depth\": {}", std::get<int>(metadata.at("vkvol/depthCaps")))));
     CHECK(folder.vkvol("ball.xml --strict -q").code == exit_caps_hit);
     CHECK(folder.vkvol("ball.xml --strict -q --integrator deltaTracking -D unused=1").code != exit_done);
+}
+
+TEST_CASE("voxels that are no density are counted, and --strict fails", "[gpu][command][hard]") {
+    const Folder folder("");
+    const std::string scene =
+        fmt::format("{}/scenes/hard/17-unclean-grid.xml --grid {}/unclean.nvdb --width 4 --spp 2 -q", VKVOL_SOURCE_DIR,
+                    VKVOL_TEST_FIELDS);
+    CHECK(folder.vkvol(scene + " -o unclean.exr").code == exit_done);
+    Metadata metadata;
+    read_exr(folder.file("unclean.exr"), &metadata);
+    CHECK(std::get<int>(metadata.at("vkvol/capsHit")) == 1);
+    CHECK(folder.vkvol(scene + " -o unclean.exr --strict").code == exit_caps_hit);
+}
+
+TEST_CASE("paths that would not end are counted as missing", "[gpu][command][hard]") {
+    const Folder folder("");
+    std::ofstream(folder.file("slow.xml"))
+        << "<options><sphere radius=\"1\"/><noise/><sigma_a>0</sigma_a><sigma_s>1000000</sigma_s><width>16</width>"
+           "<height>16</height><camera fov=\"20\"/><backgroundColor r=\"1\" g=\"1\" b=\"1\"/></options>";
+    const Run run = folder.vkvol("slow.xml --spp 2 --time 0.5s --strict -o slow.exr");
+    CHECK(run.code == exit_caps_hit);
+    CHECK_THAT(run.text, Contains("paths would not end"));
+    Metadata metadata;
+    read_exr(folder.file("slow.exr"), &metadata);
+    CHECK(std::get<int>(metadata.at("vkvol/abandonedPaths")) > 0);
+    CHECK_THAT(std::get<std::string>(metadata.at("vkvol/biased")), Contains("paths were abandoned"));
+}
+
+TEST_CASE("a picture beyond this machine's memory is refused", "[gpu][command][hard]") {
+    const Folder folder("");
+    const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+    if (memory > 3e11)
+        return; // it would be rendered
+    const Run run = folder.vkvol("ball.xml --width 65536 --height 65536 --spp 1");
+    CHECK(run.code == exit_bad_input);
+    CHECK_THAT(run.text, Contains("GB of memory") && Contains("--crop"));
+}
+
+TEST_CASE("a single sample tells no noise", "[gpu][command]") {
+    const Folder folder("");
+    const Run run = folder.vkvol("ball.xml --spp 1 --report ball.json");
+    CHECK_THAT(run.text, Contains(": 1 sample per pixel") && !Contains("noise"));
+    std::ifstream report(folder.file("ball.json"));
+    const auto json = nlohmann::json::parse(report);
+    CHECK(json["mean"]["standardError"].is_null());
+    CHECK(json["meanRelativeVariance"].is_null());
 }
 
 TEST_CASE("a picture without caps is exact, and --strict is content", "[gpu][command]") {

@@ -99,6 +99,31 @@ TEST_CASE("a homogeneous picture does not depend on the sizes of the machine", "
     CHECK(same_bits(render_here(scene, 32, with_tuning(4096, 512, 64, 8)).film, usual));
 }
 
+TEST_CASE("noise of many octaves has them all, however long a lane works", "[gpu][determinism]") {
+    Scene scene = scene_of(medium(Sphere{}, 20.0, 0.97), 1.6, 48, 3.0);
+    scene.volumes.front().noise = Noise{};
+    scene.volumes.front().noise->octaves = GENERATE(5, 16);
+    scene.volumes.front().noise->gain = 0.7;
+    scene.volumes.front().Le = {0.3, 0.2, 0.1};
+    scene.lights = {sunlight()};
+    scene.background = Rgb(0.5);
+    scene.settings.spp = 8;
+    if (GENERATE(false, true)) {
+        scene.settings.integrator = "unbiasedRayMarching";
+    } else { // as many sums a step as there can be
+        scene.settings.integrator = "ratioTracking";
+        scene.settings.choices.transmittance = TRANSMITTANCE_JACKKNIFE;
+        scene.settings.choices.emission = EMISSION_AT_STEPS;
+    }
+    CAPTURE(scene.volumes.front().noise->octaves, scene.settings.integrator);
+    const Film whole = render_here(scene, 38).film;
+    RenderJob job;
+    job.crop = {17, 31, 9, 40}; // other lanes go other ways together
+    CHECK(same_bits(render_here(scene, 38, job).film, cut(whole, job.crop)));
+    job.tuning.budget = 16;
+    CHECK(same_bits(render_here(scene, 38, job).film, cut(whole, job.crop)));
+}
+
 TEST_CASE("tiles are parts of the whole picture, bit for bit", "[gpu][determinism]") {
     const Scene scene = cloud();
     const Film whole = render_here(scene, 33).film;

@@ -123,4 +123,11 @@ TEST_CASE("the mean of a picture and its error, by hand", "[cpu][film]") {
     CHECK(mean.value == glm::dvec3(2.0));
     CHECK(mean.standard_error == glm::dvec3(2.5, 0.0, 1.0)); // sqrt(9 + 16) / 2
     CHECK(image_mean(Film{}).value == glm::dvec3(0.0));
+    // Of a single sample no error is known.
+    film.samples = {4, 1, 0};
+    CHECK_FALSE(image_mean(film).standard_error);
+    const double luminance = 0.2126 * 1 + 0.7152 * 2 + 0.0722 * 3, deviation = 0.2126 * 3 + 0.0722 * 1;
+    CHECK(relative_noise(film).value() == Approx(deviation / luminance));
+    film.samples = {1, 1, 0};
+    CHECK_FALSE(relative_noise(film));
 }

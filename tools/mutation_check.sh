@@ -59,6 +59,7 @@ foreseen light off its mean ~ shaders/include/light_cache.glsl ~ hg_eval(v.g * v
 lattice a node off ~ shaders/include/lattice.glsl ~ uint i = lattice_index(which, node); ~ uint i = lattice_index(which, node) + 1u; ~ [light_cache]
 samples lost to a driver's loops ~ shaders/passes/sky.comp ~ if (hit || tally.paths < push.sample_end - push.sample_begin) { ~ if (hit) { ~ [determinism]
 a long batch beside a mesh ~ host/wavefront.cpp ~ 16.0 + 4.0 * std::sqrt(double(loops.mesh_nodes)) : 1.0 ~ 1.0 : 1.0 ~ [determinism]
+octaves lost to a driver's loops ~ host/wavefront.cpp ~ per_turn += 4.0 * steps * (loops.octaves + 1.0); ~ per_turn += 2.0 * steps * loops.octaves; ~ [determinism]
 crop forgotten in random numbers ~ shaders/include/camera.glsl ~ frame.crop_x + pixel ~ pixel ~ [determinism]
 END
 }

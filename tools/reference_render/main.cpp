@@ -77,12 +77,13 @@ vkvol::Crop window(const Arguments& arguments, const vkvol::Picture& picture) {
 }
 
 void report(const std::filesystem::path& path, const vkvol::ImageMean& mean) {
+    nlohmann::ordered_json json{{"mean", {{"value", {mean.value.x, mean.value.y, mean.value.z}}}}};
+    if (const auto& error = mean.standard_error)
+        json["mean"]["standardError"] = {error->x, error->y, error->z};
+    else
+        json["mean"]["standardError"] = nullptr;
     std::ofstream file(path);
-    file << nlohmann::ordered_json{{"mean",
-                                    {{"value", {mean.value.x, mean.value.y, mean.value.z}},
-                                     {"standardError",
-                                      {mean.standard_error.x, mean.standard_error.y, mean.standard_error.z}}}}}
-         << '\n';
+    file << json << '\n';
     if (!file.flush())
         throw vkvol::InputError(path.string() +
                                 ": cannot be written; does the folder exist, with room and permission?");
@@ -109,8 +110,10 @@ void run(const Arguments& arguments) {
     const double paths = static_cast<double>(film.pixel_count()) * spp;
     std::printf("%s: %u spp, %.2f s on %u threads, %.0f paths/s\n", arguments.output.c_str(), spp, seconds,
                 arguments.threads, paths / seconds);
-    std::printf("mean %.7g %.7g %.7g, standard error %.3g %.3g %.3g\n", mean.value.x, mean.value.y, mean.value.z,
-                mean.standard_error.x, mean.standard_error.y, mean.standard_error.z);
+    std::printf("mean %.7g %.7g %.7g", mean.value.x, mean.value.y, mean.value.z);
+    if (const auto& error = mean.standard_error)
+        std::printf(", standard error %.3g %.3g %.3g", error->x, error->y, error->z);
+    std::printf("\n");
 }
 
 } // namespace
