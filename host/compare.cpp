@@ -7,8 +7,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "compare_notes.h"
 #include "error.h"
 #include "image_io.h"
+#include "messages.h"
 
 namespace vkvol {
 
@@ -252,7 +254,13 @@ void print_json(const Comparison& result) {
 } // namespace
 
 int run_compare(const CompareOptions& options) {
-    const Comparison result = compare_films(read_exr(options.a), read_exr(options.b), options);
+    Metadata metadata_a, metadata_b;
+    const Film a = read_exr(options.a, &metadata_a);
+    const Film b = read_exr(options.b, &metadata_b);
+    const Comparison result = compare_films(a, b, options);
+    if (result.identical_pixels < result.pixels) // a copy, or a render repeated: nothing is judged by statistics
+        for (const std::string& note : comparison_notes(options, metadata_a, metadata_b))
+            tell(stderr, "vkvol: note: {}\n", note);
     if (options.json)
         print_json(result);
     else

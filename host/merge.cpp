@@ -7,7 +7,11 @@
 
 #include "error.h"
 #include "image_io.h"
+#include "merge_metadata.h"
+#include "messages.h"
+#include "metadata.h"
 #include "one_line.h"
+#include "sample_ranges.h"
 
 namespace vkvol {
 
@@ -21,32 +25,8 @@ bool disjoint(const Crop& a, const Crop& b) {
     return a.x1 <= b.x0 || b.x1 <= a.x0 || a.y1 <= b.y0 || b.y1 <= a.y0;
 }
 
-std::string text_of(const Metadata& metadata, const std::string& key) {
-    const auto found = metadata.find(key);
-    if (found == metadata.end())
-        return "";
-    return std::visit([](const auto& value) { return fmt::format("{}", value); }, found->second);
-}
-
-int int_of(const Metadata& metadata, const std::string& key) {
-    const auto found = metadata.find(key);
-    const int* value = found == metadata.end() ? nullptr : std::get_if<int>(&found->second);
-    return value ? *value : 0;
-}
-
 [[noreturn]] void refuse(const MergeInput& a, const MergeInput& b, const std::string& why) {
     throw InputError(one_line(fmt::format("{} and {} do not belong together: {}", a.name, b.name, why)));
-}
-
-// The same seed and overlapping sample ranges: the same random numbers, counted twice.
-bool shares_samples(const Metadata& a, const Metadata& b) {
-    if (!a.count("vkvol/seed") || text_of(a, "vkvol/seed") != text_of(b, "vkvol/seed"))
-        return false;
-    const std::int64_t begin_a = int_of(a, "vkvol/sampleOffset");
-    const std::int64_t begin_b = int_of(b, "vkvol/sampleOffset");
-    const std::int64_t end_a = begin_a + int_of(a, "samplesPerPixel");
-    const std::int64_t end_b = begin_b + int_of(b, "samplesPerPixel");
-    return begin_a < end_b && begin_b < end_a;
 }
 
 void check_pair(const MergeInput& a, const MergeInput& b) {
@@ -58,10 +38,12 @@ void check_pair(const MergeInput& a, const MergeInput& b) {
         if (text_of(a.metadata, key) != text_of(b.metadata, key))
             refuse(a, b, fmt::format("{} is '{}' and '{}'", key, text_of(a.metadata, key), text_of(b.metadata, key)));
     if (same_window(a.film.crop, b.film.crop)) {
-        if (shares_samples(a.metadata, b.metadata))
+        const std::string shared =
+            shared_samples(sample_ranges_of(a.metadata, a.name), sample_ranges_of(b.metadata, b.name));
+        if (!shared.empty())
             refuse(a, b,
-                   "they hold the same samples (seed and sample range); give each run its own --sample-offset or "
-                   "--seed");
+                   fmt::format("they hold the same samples; give each run its own --sample-offset or --seed ({})",
+                               shared));
     } else if (!disjoint(a.film.crop, b.film.crop)) {
         refuse(a, b, "their windows overlap without being equal; render equal or disjoint --crop windows");
     }
@@ -141,55 +123,25 @@ Film film_of(const std::vector<Moments>& moments, const Film& like, const Crop& 
     return film;
 }
 
-// The union of the sample ranges where it is one range, so that a merged image can be merged again and an overlap
-// still be found. Different seeds have no common range: the merged image then has no seed, and is trusted.
-void merge_ranges(const std::vector<MergeInput>& inputs, Metadata& metadata) {
-    bool same_seed = true;
-    std::vector<std::pair<std::int64_t, std::int64_t>> ranges;
+// Whether an image without ranges holds samples of another of its window, nobody knows.
+void warn_of_unknown_ranges(const std::vector<MergeInput>& inputs, std::vector<std::string>& warnings) {
     for (const MergeInput& input : inputs) {
-        same_seed = same_seed && input.metadata.count("vkvol/seed") &&
-                    text_of(input.metadata, "vkvol/seed") == text_of(metadata, "vkvol/seed");
-        const std::int64_t begin = int_of(input.metadata, "vkvol/sampleOffset");
-        ranges.emplace_back(begin, begin + int_of(input.metadata, "samplesPerPixel"));
-    }
-    std::sort(ranges.begin(), ranges.end());
-    std::int64_t end = ranges.front().second;
-    for (const auto& [next_begin, next_end] : ranges) {
-        same_seed = same_seed && next_begin <= end;
-        end = std::max(end, next_end);
-    }
-    if (same_seed && end - ranges.front().first == int_of(metadata, "samplesPerPixel")) {
-        metadata["vkvol/sampleOffset"] = static_cast<int>(ranges.front().first);
-    } else {
-        metadata.erase("vkvol/seed");
-        metadata.erase("vkvol/sampleOffset");
+        const bool is_alone = std::none_of(inputs.begin(), inputs.end(), [&input](const MergeInput& other) {
+            return &other != &input && same_window(other.film.crop, input.film.crop);
+        });
+        if (!is_alone && !sample_ranges_of(input.metadata, input.name).complete)
+            warnings.push_back(fmt::format("{}: does not say which samples it holds: whether other images hold the "
+                                           "same ones cannot be checked",
+                                           input.name));
     }
 }
 
-Metadata merged_metadata(const std::vector<MergeInput>& inputs, const Film& film) {
-    Metadata metadata;
-    // What all images agree on stays.
-    for (const auto& [key, value] : inputs.front().metadata)
-        if (std::all_of(inputs.begin(), inputs.end(), [&key = key, &value = value](const MergeInput& input) {
-                const auto found = input.metadata.find(key);
-                return found != input.metadata.end() && found->second == value;
-            }))
-            metadata[key] = value;
-    const auto largest = std::max_element(film.samples.begin(), film.samples.end());
-    metadata["samplesPerPixel"] = static_cast<int>(std::min<std::uint32_t>(*largest, 2147483647u));
-    merge_ranges(inputs, metadata);
-    float seconds = 0.0f;
-    bool timed = true;
-    for (const MergeInput& input : inputs) {
-        const auto found = input.metadata.find("renderTimeSeconds");
-        const float* value = found == input.metadata.end() ? nullptr : std::get_if<float>(&found->second);
-        timed = timed && value;
-        seconds += value ? *value : 0.0f;
-    }
-    if (timed)
-        metadata["renderTimeSeconds"] = seconds;
-    metadata["vkvol/mergedFrom"] = static_cast<int>(inputs.size());
-    return metadata;
+void warn_of_holes(const Film& film, std::vector<std::string>& warnings) {
+    const auto holes = std::count(film.samples.begin(), film.samples.end(), 0u);
+    if (holes > 0)
+        warnings.push_back(fmt::format("{} of {} pixels have no samples in any image, and are black; render the rest "
+                                       "of the window",
+                                       holes, film.pixel_count()));
 }
 
 } // namespace
@@ -210,8 +162,27 @@ MergeResult merge_films(const std::vector<MergeInput>& inputs) {
     MergeResult result;
     result.film = film_of(moments, inputs.front().film, window);
     result.metadata = merged_metadata(inputs, result.film);
+    warn_of_unknown_ranges(inputs, result.warnings);
+    warn_of_holes(result.film, result.warnings);
     return result;
 }
+
+namespace {
+
+void print_warnings(const MergeResult& result) {
+    for (const std::string& warning : result.warnings)
+        tell(stderr, "vkvol: warning: {}\n", warning);
+}
+
+void print_summary(const MergeOptions& options, const MergeResult& result) {
+    std::string outputs;
+    for (const std::filesystem::path& output : options.outputs)
+        outputs += (outputs.empty() ? "" : ", ") + output.string();
+    fmt::print("{}: {} images, up to {} samples per pixel\n", outputs, options.inputs.size(),
+               *std::max_element(result.film.samples.begin(), result.film.samples.end()));
+}
+
+} // namespace
 
 int run_merge(const MergeOptions& options) {
     for (const std::filesystem::path& output : options.outputs)
@@ -224,11 +195,12 @@ int run_merge(const MergeOptions& options) {
         inputs.push_back(std::move(input));
     }
     const MergeResult result = merge_films(inputs);
+    if (!options.quiet)
+        print_warnings(result);
     for (const std::filesystem::path& output : options.outputs)
         write_image(output, result.film, result.metadata, options.tone_mapping);
     if (!options.quiet)
-        fmt::print("{}: {} images, up to {} samples per pixel\n", options.outputs.front().string(), inputs.size(),
-                   *std::max_element(result.film.samples.begin(), result.film.samples.end()));
+        print_summary(options, result);
     return exit_done;
 }
 

@@ -18,6 +18,7 @@ struct MergeInput {
 struct MergeResult {
     Film film;
     Metadata metadata;
+    std::vector<std::string> warnings; // what could not be checked, and what is missing
 };
 
 // Equal windows: every pixel is weighted by its samples, and the variance is that of the pooled samples. Disjoint

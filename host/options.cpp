@@ -258,6 +258,7 @@ void parse_merge(const std::vector<std::string>& arguments, Options& options) {
         ->group("Picture");
     tone.add(app, merge.tone_mapping);
     app.add_flag("-q,--quiet", merge.quiet, "Print errors only");
+    app.footer(merge_footer);
     if (!run_parser(app, arguments, options))
         return;
     if (inputs.empty() || outputs.empty())

@@ -38,11 +38,18 @@ inline constexpr const char* compare_description =
 inline constexpr const char* compare_footer =
     R"(Images with variance are judged by statistics: no pixel may differ by more standard errors than the
 most extreme of that many equal pixels would, nor may the picture means. Images without variance must
-be equal. Exit codes: 0 the same; 4 different; 2 the images cannot be compared.)";
+be equal. The statistics take the images for independent: give each its own --seed. A note on standard
+error says where images share samples, or are of different scenes; identical ones need none.
+Exit codes: 0 the same; 4 different; 2 the images cannot be compared.)";
 
 inline constexpr const char* merge_description =
     "Merges renders of one picture: disjoint sample ranges or seeds of the same window, weighted by samples per "
     "pixel, or disjoint windows side by side.";
+
+inline constexpr const char* merge_footer =
+    R"(Images of different scenes or integrators are refused, and images that share samples: each run needs its
+own --seed or --sample-offset. Pixels that no image holds are black, and a warning says how many. The
+merged image adds up what its parts count, is biased if one of them is, and can be merged again.)";
 
 inline constexpr const char* bench_description = "Measures integrators on a scene, error against time: relMSE at 1, 2, "
                                                  "4, ... samples per pixel against a reference.";

@@ -100,8 +100,8 @@ TEST_CASE("merging unequal sample counts equals pooling the samples", "[cpu][mer
         merge_films({input("a", film_of(a), 0, 3), input("b", film_of(b), 3, 17), input("c", film_of(c), 20, 1)});
     check_same_statistics(merged.film, film_of(all));
     CHECK((merged.metadata.at("samplesPerPixel") == Metadata::mapped_type(21)));
-    CHECK((merged.metadata.at("vkvol/sampleOffset") == Metadata::mapped_type(0)));
-    CHECK((merged.metadata.at("vkvol/seed") == Metadata::mapped_type(0)));
+    CHECK((merged.metadata.at("vkvol/ranges") == Metadata::mapped_type("0:0-21")));
+    CHECK(merged.metadata.count("vkvol/seed") == 0);
     CHECK((merged.metadata.at("renderTimeSeconds") == Metadata::mapped_type(4.5f)));
 }
 
