@@ -55,7 +55,7 @@ std::optional<std::uint64_t> sum_of(const std::vector<MergeInput>& inputs, const
 
 void merge_counts(const std::vector<MergeInput>& inputs, Metadata& metadata) {
     for (const char* key : {"vkvol/depthCaps", "vkvol/stepCaps", "vkvol/majorantViolations", "vkvol/queueOverflows",
-                            "vkvol/nonFiniteSamples"})
+                            "vkvol/abandonedPaths", "vkvol/nonFiniteSamples"})
         if (const std::optional<std::uint64_t> sum = sum_of(inputs, key))
             metadata[key] = metadata_int(*sum);
     if (const std::optional<std::uint64_t> sum = sum_of(inputs, "vkvol/nullCollisions"))

@@ -56,7 +56,8 @@ void print_caps(const RenderOptions& options, const RenderResult& result) {
             tell(stderr, "vkvol: note: {} {}\n", count, what);
     };
     line(c.cleaned_voxels, "voxels were NaN, infinite or negative and count as 0");
-    line(c.depth_caps, "paths ended at maxDepth: the light of further scatterings is missing (raise or drop maxDepth)");
+    line(c.depth_caps, "paths ended at maxDepth: the light of further scatterings is missing (raise maxDepth; without "
+                       "one it is a million)");
     line(c.step_caps, "segments were cut, by the step limit or by the driver: their light is missing");
     line(c.abandoned, "paths would not end when the render was to, and are missing: they are the long ones");
     line(c.majorant_violations,
