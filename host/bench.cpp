@@ -100,8 +100,10 @@ void Bench::leave_out_slow() {
 }
 
 bool Bench::get_reference(const std::vector<Estimator>& estimators) {
-    // Each estimator's largest renders take a seventh of its share of the time, and less.
-    const ReferenceWish wish{0.5 * options_.seconds, seed_of_run(options_.render.seed, 0)};
+    // An estimator's largest renders take up to a seventh of its share of the time. Twenty times as long makes the
+    // reference's error a tenth of theirs, even if it is made half as efficiently.
+    const double part = std::max(0.5, 3.0 / double(seconds_per_sample_.size()));
+    const ReferenceWish wish{part * options_.seconds, seed_of_run(options_.render.seed, 0)};
     if (!options_.reference)
         result_.reference = find_reference(options_, estimators, device_, wish);
     const Reference& reference = result_.reference;
@@ -183,8 +185,8 @@ void print_notes(const BenchOptions& options, const BenchResult& result) {
     else if (*own > 0.1 * best)
         tell(stderr,
              "vkvol: warning: the reference's own relMSE, {:.3g}, is more than a tenth of the least measured, {:.3g}; "
-             "more --time, or a better --reference, makes the figures surer\n",
-             *own, best);
+             "more --time, or a better --reference, makes the figures surer{}\n",
+             *own, best, result.reference.cached && !options.reference ? "; --no-cache renders it anew" : "");
 }
 
 } // namespace

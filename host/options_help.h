@@ -57,7 +57,7 @@ inline constexpr const char* bench_description = "Measures integrators on a scen
 inline constexpr const char* bench_footer =
     R"(Writes NAME.bench.json, NAME.bench.csv and each integrator's last picture, NAME.INTEGRATOR.exr. All
 integrators must estimate the same picture; biased ones are measured when named. A reference is rendered
-first, for at most half of the time again, and kept in the user's cache directory.
+first, for half of the time again or more, and kept in the user's cache directory.
 
 Example:
   vkvol bench cloud.xml --width 120 --integrators ratioTracking,ratioTracking:flight=weighted --time 2m)";

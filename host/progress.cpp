@@ -46,10 +46,9 @@ void Progress::update(std::uint32_t samples, std::optional<double> noise) {
         return;
     const Clock::time_point now = Clock::now();
     const double seconds = std::chrono::duration<double>(now - start_).count();
-    double fraction = total_ > 0 ? double(samples) / total_ : 0.0;
-    if (time_limit_ && *time_limit_ > 0.0)
-        fraction = std::max(fraction, seconds / *time_limit_);
-    fraction = std::min(fraction, 1.0);
+    const double of_samples = total_ > 0 ? double(samples) / total_ : 0.0;
+    const double of_time = time_limit_ && *time_limit_ > 0.0 ? seconds / *time_limit_ : 0.0;
+    const double fraction = std::min(std::max(of_samples, of_time), 1.0);
     const double remaining = fraction > 0.0 ? seconds * (1.0 - fraction) / fraction : 0.0;
     const bool know_noise = noise && std::isfinite(*noise);
 
@@ -60,8 +59,9 @@ void Progress::update(std::uint32_t samples, std::optional<double> noise) {
         std::fflush(out_);
         return;
     }
+    const std::string of_total = of_time > of_samples ? "" : fmt::format("/{}", total_);
     const std::string status =
-        fmt::format("{}/{} samples, {} left{}", samples, total_, fraction > 0.0 ? duration_text(remaining) : "?",
+        fmt::format("{}{} samples, {} left{}", samples, of_total, fraction > 0.0 ? duration_text(remaining) : "?",
                     know_noise ? fmt::format(", noise {:.2g} %", 100.0 * *noise) : "");
     if (mode_ == Mode::lines) {
         if (const int tenth = static_cast<int>(fraction * 10.0); tenth > last_tenth_) {

@@ -23,6 +23,10 @@ std::optional<Shape> SceneReader::shape(const std::string& integrator, std::stri
         place = element.place();
     if (overrides_.grid) {
         const GridFile* authored = shape ? std::get_if<GridFile>(&*shape) : nullptr;
+        if (shape && !authored)
+            element.warn(fmt::format("<{}> is left out: the medium is that of --grid, whose coefficients are per voxel "
+                                     "unless they name another unit",
+                                     element.name()));
         shape = GridFile{*overrides_.grid, authored ? authored->grid : GridFile{}.grid};
     }
     return shape;

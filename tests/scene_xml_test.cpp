@@ -243,6 +243,8 @@ TEST_CASE("the command line's grid and integrator replace the scene's", "[cpu][x
     CHECK(grid_of(grid).grid == "d");
     CHECK(grid.volumes[0].sigma_s == Rgb(3.0));
     CHECK(grid_of(parse("<sphere/>", {}, overrides)).grid == "density");
+    CHECK(warns(parse("<sphere/>", {}, overrides), "<sphere> is left out"));
+    CHECK(grid.warnings.empty());
     CHECK(grid_of(parse("", {}, overrides)).path == "other.vdb");
     CHECK(warns(parse("<sphere/><noise/>", {}, overrides), "<noise> is left out"));
     CHECK_FALSE(parse("<sphere/><noise/>", {}, overrides).volumes.at(0).noise);

@@ -15,7 +15,10 @@ import sys
 import tempfile
 import time
 
-import numpy as np
+try:
+    import numpy as np
+except ModuleNotFoundError:
+    raise SystemExit("mitsuba: numpy is missing: pip install numpy, best in an environment of its own")
 
 import contest
 import grid as grids

@@ -15,7 +15,10 @@ import pathlib
 import statistics
 import sys
 
-import numpy as np
+try:
+    import numpy as np
+except ModuleNotFoundError:
+    raise SystemExit("pbrt_scene: numpy is missing: pip install numpy, best in an environment of its own")
 
 import contest
 import exr
