@@ -10,6 +10,7 @@
 #include "image_io.h"
 #include "interrupt.h"
 #include "messages.h"
+#include "metadata.h"
 #include "options_help.h"
 #include "report.h"
 #include "scene_hash.h"
@@ -22,10 +23,6 @@ template <typename T> T value_of(const Metadata& metadata, const char* key, T ot
     const auto found = metadata.find(key);
     const T* value = found == metadata.end() ? nullptr : std::get_if<T>(&found->second);
     return value ? *value : otherwise;
-}
-
-std::string text_of(const Metadata& metadata, const char* key) {
-    return value_of<std::string>(metadata, key, "");
 }
 
 std::uint32_t least_samples(const Film& film) {
