@@ -14,6 +14,7 @@
 #include "error.h"
 #include "image_io.h"
 #include "support/shell.h"
+#include "test_paths.h"
 
 using namespace vkvol;
 using Catch::Contains;

@@ -7,6 +7,7 @@
 #include "merge.h"
 #include "support/images.h"
 #include "support/scenes.h"
+#include "test_paths.h"
 
 using namespace vkvol;
 

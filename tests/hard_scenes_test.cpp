@@ -12,6 +12,7 @@
 #include "support/images.h"
 #include "support/statistics.h"
 #include "support/test_device.h"
+#include "test_paths.h"
 
 using namespace vkvol;
 

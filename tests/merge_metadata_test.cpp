@@ -9,6 +9,7 @@
 #include "image_io.h"
 #include "merge.h"
 #include "support/shell.h"
+#include "test_paths.h"
 
 using namespace vkvol;
 using Catch::Contains;

@@ -4,6 +4,7 @@
 
 #include "error.h"
 #include "support/scene_text.h"
+#include "test_paths.h"
 
 using namespace vkvol;
 

@@ -10,6 +10,7 @@
 #include "scene_hash.h"
 #include "shared/bindings.h"
 #include "support/scene_text.h"
+#include "test_paths.h"
 
 using namespace vkvol;
 

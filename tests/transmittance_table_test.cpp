@@ -11,6 +11,7 @@
 
 #include "support/statistics.h"
 #include "support/test_scene.h"
+#include "test_paths.h"
 #include "tests/kernels/test_items.h"
 #include "tests/reference/quadrature.h"
 #include "transmittance.spv.h"
