@@ -59,7 +59,7 @@ void check_mean(const std::string& name, const Film& film, const Expected& expec
 
 TEST_CASE("hard scenes have the means that they derive", "[gpu][hard][hard_scenes]") {
     const auto files = scene_files();
-    REQUIRE(files.size() >= 50);
+    REQUIRE(files.size() >= 58);
     for (const std::filesystem::path& file : files) {
         INFO(file.filename().string());
         Scene scene = load_hard_scene(file);

@@ -26,16 +26,13 @@ float march_density(VolumeParams v, float t, vec3 tap, inout Walk w, inout Tally
     return density(v, w.origin + t * w.direction, tap);
 }
 
-// A step of length `dt` from w.t, in which the density is taken to be `rho`. `u` in [0, 1): roulette.
-uint march_step(VolumeParams v, float rho, float dt, float u, inout Walk w, inout Spectrum beta, out Spectrum deposit) {
+// A step of length `dt` from w.t, in which the density is taken to be `rho`.
+uint march_step(VolumeParams v, float rho, float dt, inout Walk w, inout Spectrum beta, out Spectrum deposit) {
     deposit = to_spectrum(vec3(0.0));
     if (goes_through()) {
         Spectrum tau = v.sigma_t * rho * dt * to_spectrum(v.sigma_ratio);
         deposit = beta * one_minus_exp(tau);
         beta *= exp(-tau);
-        float m = largest(beta);
-        if (m < MARCH_ROULETTE)
-            beta *= u * MARCH_ROULETTE < m ? MARCH_ROULETTE / m : 0.0;
         return rho > 0.0 ? EVENT_TOUCHED : EVENT_MOVING;
     }
     float tau = v.sigma_t * rho * dt;
@@ -48,6 +45,14 @@ uint march_step(VolumeParams v, float rho, float dt, float u, inout Walk w, inou
     w.tau -= tau;
     w.depth += rho * dt;
     return EVENT_MOVING;
+}
+
+// Whether what is left of a march through the medium is worth its steps. `u` in [0, 1), drawn for this.
+Spectrum march_roulette(float u, Spectrum beta) {
+    float m = largest(beta);
+    if (!goes_through() || m >= MARCH_ROULETTE)
+        return beta;
+    return beta * (u * MARCH_ROULETTE < m ? MARCH_ROULETTE / m : 0.0);
 }
 
 #endif

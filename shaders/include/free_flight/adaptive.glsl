@@ -18,7 +18,8 @@ uint adaptive_flight(VolumeParams v, inout Walk w, inout Rng rng, inout Spectrum
     vec4 u = to_uniform(words);
     float offset = frame.march.jitter != 0.0 ? u.x : 0.5;
     float rho = march_density(v, w.t + offset * dt, to_tap(words), w, tally);
-    uint event = march_step(v, rho, dt, u.y, w, beta, deposit);
+    uint event = march_step(v, rho, dt, w, beta, deposit);
+    beta = march_roulette(u.y, beta);
     if (event == EVENT_COLLIDED)
         return event;
     w.t += dt;

@@ -4,7 +4,7 @@ uint analytic_flight(VolumeParams v, inout Walk w, inout Spectrum beta, out Spec
     if (w.t >= w.t_end)
         return EVENT_LEFT;
     float rest = w.t_end - w.t;
-    uint event = march_step(v, 1.0, rest, 0.0, w, beta, deposit); // exact, since the density is constant
+    uint event = march_step(v, 1.0, rest, w, beta, deposit); // exact, since the density is constant
     w.t = event == EVENT_COLLIDED ? w.t : w.t_end;
     return event == EVENT_MOVING ? EVENT_LEFT : event;
 }

@@ -9,7 +9,8 @@ uint march_flight(VolumeParams v, inout Walk w, inout Rng rng, inout Spectrum be
     float begin = float(w.index) * w.dt;
     float offset = frame.march.jitter != 0.0 ? u.x : 0.5;
     float rho = march_density(v, begin + offset * w.dt, to_tap(words), w, tally);
-    uint event = march_step(v, rho, w.dt, u.y, w, beta, deposit);
+    uint event = march_step(v, rho, w.dt, w, beta, deposit);
+    beta = march_roulette(u.y, beta);
     if (event == EVENT_COLLIDED)
         return event;
     w.index += 1u;
