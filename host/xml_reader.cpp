@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>
+#include <set>
 #include <sstream>
 
 #include "error.h"
@@ -37,10 +38,6 @@ std::string quoted(std::string text) {
 
 bool is_text(pugi::xml_node node) {
     return node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata;
-}
-
-bool is_key_character(char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
 }
 
 bool inside(double value, const Limits& limits) {
@@ -98,7 +95,7 @@ void XmlDocument::warn(const std::string& place, const std::string& message) {
 
 XmlDocument::XmlDocument(const std::string& text, std::filesystem::path file,
                          const std::map<std::string, std::string>& defines, const std::string& root)
-    : text_(text), buffer_(text.begin(), text.end()), file_(std::move(file)), defines_(defines) {
+    : text_(text), buffer_(text.begin(), text.end()), file_(std::move(file)), keys_(defines) {
     parse();
     find_root(root);
     // Depth first without recursion, so that nesting is no danger. Positions come first: filling in moves strings.
@@ -113,7 +110,11 @@ XmlDocument::XmlDocument(const std::string& text, std::filesystem::path file,
     } visitor;
     visitor.self = this;
     document_.traverse(visitor);
-    check_defines_used();
+    try {
+        keys_.check_all_used();
+    } catch (const InputError& error) {
+        fail_at(file_.string(), error.what());
+    }
 }
 
 void XmlDocument::parse() {
@@ -167,47 +168,10 @@ void XmlDocument::fill_in(pugi::xml_node node) {
 
 // `place` is called for messages alone: it counts lines from the beginning.
 template <class Place> std::string XmlDocument::substitute(const std::string& raw, const Place& place) {
-    constexpr std::size_t longest = 16 << 20; // of all values filled in, like the file itself
-    std::string result;
-    for (std::size_t i = 0; i < raw.size();) {
-        if (raw[i] != '$') {
-            result += raw[i++];
-            continue;
-        }
-        if (i + 1 < raw.size() && raw[i + 1] == '$') { // $$ is a dollar sign
-            result += '$';
-            i += 2;
-            continue;
-        }
-        const bool braced = i + 1 < raw.size() && raw[i + 1] == '{';
-        const std::size_t first = i + (braced ? 2 : 1);
-        std::size_t last = first;
-        while (last < raw.size() && is_key_character(raw[last]))
-            ++last;
-        const std::string key = raw.substr(first, last - first);
-        if (key.empty() || (braced && (last == raw.size() || raw[last] != '}')))
-            fail_at(place(), "a $ that names no key; write $key, ${key}, or $$ for a dollar sign");
-        keys_.insert(key);
-        const auto value = defines_.find(key);
-        if (value == defines_.end())
-            fail_at(place(), fmt::format("${} has no value; give it with -D {}=VALUE", key, key));
-        result += value->second;
-        filled_in_ += value->second.size();
-        if (filled_in_ > longest)
-            fail_at(place(),
-                    fmt::format("the values of $keys amount to more than 16 MiB by ${}; give shorter ones", key));
-        i = last + (braced ? 1 : 0);
-    }
-    return result;
-}
-
-void XmlDocument::check_defines_used() const {
-    for (const auto& [key, value] : defines_) {
-        if (keys_.count(key))
-            continue;
-        const std::vector<std::string> known(keys_.begin(), keys_.end());
-        const std::string hint = known.empty() ? "; the scene has no $keys" : name_hint(key, known);
-        fail_at(file_.string(), fmt::format("-D {}={} is used nowhere in the scene{}", key, value, hint));
+    try {
+        return keys_.fill_in(raw);
+    } catch (const InputError& error) {
+        fail_at(place(), error.what());
     }
 }
 

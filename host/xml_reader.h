@@ -5,13 +5,13 @@
 #include <filesystem>
 #include <map>
 #include <pugixml.hpp>
-#include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "one_line.h"
+#include "scene_keys.h"
 
 namespace vkvol {
 
@@ -19,7 +19,7 @@ namespace vkvol {
 class XmlDocument {
 public:
     // Throws InputError for malformed XML, a root element other than `root`, an attribute given twice, a $key
-    // without a value, and a define that no $key uses.
+    // without a value, and a define that no $key uses; see scene_keys.h.
     XmlDocument(const std::string& text, std::filesystem::path file, const std::map<std::string, std::string>& defines,
                 const std::string& root);
 
@@ -46,18 +46,15 @@ private:
     void fill_in(pugi::xml_node node);
     template <class Place> std::string substitute(const std::string& raw, const Place& place);
     std::string place_of_offset(std::ptrdiff_t offset) const;
-    void check_defines_used() const;
 
     std::string text_;         // as read, for places
     std::vector<char> buffer_; // what pugixml parsed in place: names still point into it
     std::filesystem::path file_;
-    std::map<std::string, std::string> defines_;
-    std::set<std::string> keys_; // every $key the document names
+    SceneKeys keys_;
     std::unordered_map<pugi::xml_node_struct*, Position> positions_;
     pugi::xml_document document_;
     pugi::xml_node root_;
     std::vector<std::string> warnings_;
-    std::size_t filled_in_ = 0; // bytes, of the values of all $keys
 };
 
 struct Limits {

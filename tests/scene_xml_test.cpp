@@ -215,9 +215,11 @@ TEST_CASE("$keys are filled in", "[cpu][xml]") {
     CHECK(scene.volumes[0].sigma_s == Rgb(0.5));
     CHECK(scene.camera.position.x == 125.0);
     CHECK(grid_of(parse("<densityField>a$$b.nvdb</densityField>")).path == "a$b.nvdb");
-    CHECK(error_of("<sigma_s> $s</sigma_s>") == "s.xml:2:11: $s has no value; give it with -D s=VALUE");
-    CHECK(error_of(R"(<camera x="$x"/>)") == "s.xml:2:9: $x has no value; give it with -D x=VALUE");
-    CHECK_THAT(error_of(R"(<camera x="${x"/>)", {{"x", "1"}}), Catch::Contains("names no key"));
+    CHECK(error_of("<sigma_s> $s</sigma_s>") ==
+          "s.xml:2:11: $s has no value; give it with -D s=VALUE, or here with a default: ${s:-VALUE}");
+    CHECK(error_of(R"(<camera x="$x"/>)") ==
+          "s.xml:2:9: $x has no value; give it with -D x=VALUE, or here with a default: ${x:-VALUE}");
+    CHECK_THAT(error_of(R"(<camera x="${x"/>)", {{"x", "1"}}), Catch::Contains("${x: expected }"));
     CHECK_THAT(error_of(R"(<camera x="$"/>)"), Catch::Contains("names no key"));
     CHECK(error_of(R"(<camera x="$size"/>)", {{"size", "1"}, {"sise", "2"}}) ==
           "s.xml: -D sise=2 is used nowhere in the scene; did you mean size?");
