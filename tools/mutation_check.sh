@@ -4,7 +4,10 @@
 # in the sources, or if the tests fail without any error.
 #
 #   tools/mutation_check.sh [WORD]     WORD: only the errors whose name contains it
-#   MUTATION_DIR=DIR                   where the copy and its build are kept, so that the next run builds little
+#   MUTATION_DIR=DIR                   where the copy, its build and the rows done are kept
+#
+# Ended at any time and started again, it goes on after the last row that was done, as long as the sources are the same;
+# the table that it prints at its end is always of one state of them. All takes about half an hour on two cores.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -53,7 +56,11 @@ window a word off ~ shaders/include/grid.glsl ~ frame_block.grid_windows[i >> WI
 pixels lost at a checkpoint ~ host/wavefront.cpp ~ first * sizeof(std::uint32_t)); ~ 0 * first); ~ [checkpoint]
 fingerprint without grids ~ host/checkpoint.cpp ~ fingerprint.add(field->bytes.span()); ~ ; ~ [checkpoint]
 huge samples kept ~ shaders/include/film.glsl ~ 281474976710656.0 ~ 3.0e38 ~ [command]
-steps ahead of a collision kept ~ shaders/include/ahead.glsl ~ walk.t = t[k]; ~ walk.t = w.t; ~ [image]
+steps ahead of a collision kept ~ shaders/include/ahead.glsl ~ walk.t = t[k]; ~ walk.t = w.t; ~ steps found ahead*
+numbers for steps ahead not put back ~ shaders/include/ahead.glsl ~ rng.draw += 1u; ~ rng.draw = ahead.draw; ~ steps found ahead*
+a step ahead judged by the next density ~ shaders/include/ahead.glsl ~ Collision(sigma_t[k], ~ Collision(sigma_t[(k + 1) % STEPS], ~ steps found ahead*
+roulette in closed form ~ shaders/include/free_flight/analytic.glsl ~ w.t = event == ~ beta = march_roulette(0.0, beta);\n    w.t = event == ~ [closed_form]
+march roulette weight missing ~ shaders/include/march.glsl ~ MARCH_ROULETTE / m : 0.0 ~ 1.0 : 0.0 ~ [closed_form]
 cache corrected without its chance ~ shaders/passes/track.comp ~ (T - lane.cached) / lane.chance ~ (T - lane.cached) ~ [agreement]
 foreseen light off its mean ~ shaders/include/light_cache.glsl ~ hg_eval(v.g * v.g, ~ hg_eval(v.g, ~ [agreement]
 lattice a node off ~ shaders/include/lattice.glsl ~ uint i = lattice_index(which, node); ~ uint i = lattice_index(which, node) + 1u; ~ [light_cache]
@@ -88,7 +95,7 @@ content = open(path).read()
 for text, replacement in zip(texts.split(" ^ "), replacements.split(" ^ "), strict=True):
     if text not in content:
         sys.exit(f"{path}: no longer contains \"{text}\"; bring the table up to date")
-    content = content.replace(text, replacement)
+    content = content.replace(text, replacement.replace("\\n", "\n"))
 open(path, "w").write(content)
 END
 }
@@ -112,42 +119,74 @@ first_failure() {
         "$work/tests.log"
 }
 
-row() { printf '%-36s %s\n' "$1" "$2"; }
+row() { printf '%-40s %s\n' "$1" "$2"; }
+
+# One row's verdict: the test that caught it, or, in capitals, why none did.
+try_error() { # NAME FILE TEXT REPLACEMENT TESTS
+    local verdict
+    cp "$copy/$2" "$work/original"
+    if ! replace "$copy/$2" "$3" "$4"; then
+        verdict="NOT MADE"
+    elif ! build_tests; then
+        verdict="NOT BUILT"
+    elif run_tests "$5"; then
+        verdict="NOTHING: $5 passed"
+    else
+        verdict=$(first_failure) || verdict="NO TEST: the program failed, $work/tests.log"
+    fi
+    cp "$work/original" "$copy/$2"
+    echo "$verdict"
+}
+
+# What was done is known by the sources and the row.
+key() { printf '%s\n%s\n' "$sources" "$1" | sha256sum | cut -c1-32; }
+known() { awk -F '\t' -v key="$(key "$1")" '$1 == key { found = $2 } END { if (found == "") exit 1; print found }' "$done_rows"; }
+note() { printf '%s\t%s\n' "$(key "$1")" "$2" >>"$done_rows"; }
 
 mkdir -p "$work"
+done_rows=$work/rows.tsv
+touch "$done_rows"
 git -C "$root" rev-parse >/dev/null
 refresh_copy
+sources=$(cd "$copy" && find CMakeLists.txt host scenes shaders tests tools/make_field -type f -print0 | sort -z | xargs -0 sha256sum | sha256sum)
 # An error may leave something unused, which is no error of its own.
 cmake -S "$copy" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
     -DCMAKE_CXX_FLAGS="-Wno-unused-parameter -Wno-unused-variable -Wno-unused-function" >"$work/build.log"
-build_tests
-if ! run_tests "$(mutations | sed 's/.* ~ //' | sort -u | paste -sd,)"; then
-    tail -30 "$work/tests.log" >&2
-    echo "the tests fail without any error made: $work/tests.log" >&2
-    exit 1
-fi
+selected=()
+while IFS= read -r line; do
+    [[ "${line%% ~ *}" == *"$only"* ]] && selected+=("$line")
+done < <(mutations)
+[ ${#selected[@]} -gt 0 ] || { echo "no error's name contains '$only'" >&2; exit 1; }
 
+# Test specifications that must pass by themselves.
+while IFS= read -r tests; do
+    known "no error: $tests" >/dev/null && continue
+    echo "without any error: $tests" >&2
+    build_tests
+    if ! run_tests "$tests"; then
+        tail -30 "$work/tests.log" >&2
+        echo "$tests fails without any error made: $work/tests.log" >&2
+        exit 1
+    fi
+    note "no error: $tests" passed
+done < <(printf '%s\n' "${selected[@]}" | sed 's/.* ~ //' | sort -u)
+
+for line in "${selected[@]}"; do
+    known "$line" >/dev/null && continue
+    IFS=$'\t' read -r name file text replacement tests <<<"${line// ~ /$'\t'}"
+    verdict=$(try_error "$name" "$file" "$text" "$replacement" "$tests")
+    note "$line" "$verdict"
+    row "$name" "$verdict" >&2
+done
+
+changed=$(git -C "$root" status --porcelain -- CMakeLists.txt host scenes shaders tests tools/make_field | wc -l)
+printf 'Commit %s%s: each error alone, %d of them.\n\n' "$(git -C "$root" rev-parse --short HEAD)" \
+    "$([ "$changed" = 0 ] || echo ", with $changed files changed")" ${#selected[@]}
 bad=0
 row "error" "caught by"
-while IFS= read -r line; do
-    IFS=$'\t' read -r name file text replacement tests <<<"${line// ~ /$'\t'}"
-    [[ "$name" == *"$only"* ]] || continue
-    cp "$copy/$file" "$work/original"
-    if ! replace "$copy/$file" "$text" "$replacement"; then
-        row "$name" "NOT MADE"
-        bad=1
-    elif ! build_tests; then
-        row "$name" "NOT BUILT"
-        bad=1
-    elif run_tests "$tests"; then
-        row "$name" "NOTHING: $tests passed"
-        bad=1
-    elif caught_by=$(first_failure); then
-        row "$name" "$caught_by"
-    else
-        row "$name" "NO TEST: the program failed, $work/tests.log"
-        bad=1
-    fi
-    cp "$work/original" "$copy/$file"
-done < <(mutations)
+for line in "${selected[@]}"; do
+    verdict=$(known "$line")
+    row "${line%% ~ *}" "$verdict"
+    [[ "$verdict" != NO[TN\ ]* ]] || bad=1
+done
 exit $bad

@@ -50,6 +50,19 @@ struct FlightOutput {
     uint steps;
 };
 
+struct AheadOutput {
+    uint event;
+    float t;   // world units from where the ray meets the medium
+    vec3 beta; // after a flight
+    vec3 T;    // of a shadow ray
+    uint draw; // of random numbers, the next
+    uint lookups;
+    uint cells;
+    uint steps;
+    uint nulls;
+    uint violations;
+};
+
 struct PhaseInput {
     float g;
     vec3 direction;
