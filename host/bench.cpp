@@ -10,6 +10,7 @@
 #include "bench_report.h"
 #include "bench_schedule.h"
 #include "error.h"
+#include "file_uses.h"
 #include "image_io.h"
 #include "interrupt.h"
 #include "messages.h"
@@ -155,9 +156,20 @@ BenchResult Bench::run(const std::vector<Estimator>& estimators) {
     return std::move(result_);
 }
 
-void check_outputs(const BenchOptions& options) {
-    for (const char* extension : {".bench.json", ".bench.csv"})
+// Before any work is done.
+void check_files(const BenchOptions& options, const std::vector<Estimator>& estimators) {
+    FileUses uses;
+    uses.reads("the scene", options.render.scene);
+    uses.reads_files_of(estimators.front().scene);
+    if (options.reference)
+        uses.reads("the reference", *options.reference);
+    for (const char* extension : {".bench.json", ".bench.csv"}) {
         check_directory_writable(options.name.string() + extension);
+        uses.writes("a table of the bench", options.name.string() + extension, "-o");
+    }
+    for (const Estimator& estimator : estimators)
+        uses.writes("a picture of the bench", bench_picture(options, estimator.integrator), "-o");
+    uses.check();
 }
 
 void print_notes(const BenchOptions& options, const BenchResult& result) {
@@ -201,7 +213,7 @@ int run_bench(const BenchOptions& options) {
     for (const Estimator& estimator : estimators)
         if (estimator.is_default || !options.integrators.empty())
             print_warnings(options.render, estimator.scene.warnings);
-    check_outputs(options);
+    check_files(options, estimators);
     Bench bench(options);
     const BenchResult result = bench.run(estimators);
     if (result.measurements.empty()) {

@@ -126,7 +126,7 @@ void keep(Reference& reference, const std::filesystem::path& file, const Metadat
         return;
     try {
         std::filesystem::create_directories(file.parent_path());
-        write_exr(file, reference.film, metadata);
+        write_exr(file, reference.film, metadata, "XDG_CACHE_HOME");
         reference.file = file.string();
     } catch (const std::exception& error) {
         tell(stderr, "vkvol: warning: {}: the reference is not kept\n", error.what());

@@ -148,20 +148,13 @@ Json ranking_json(const BenchResult& result) {
     return ranking;
 }
 
-std::filesystem::path image_path(const BenchOptions& options, const Measurement& measurement) {
-    std::string name = measurement.estimator.integrator;
-    std::replace_if(
-        name.begin(), name.end(), [](char c) { return c == ':' || c == '='; }, '-');
-    return options.name.string() + "." + name + ".exr";
-}
-
 // Its name in the JSON's folder, or null.
 Json write_last(const BenchOptions& options, const Device& device, const Measurement& measurement) {
     RenderOptions as = options.render;
     as.seed = measurement.runs.back().seed;
     RenderResult result = measurement.results.back();
     result.film = measurement.last;
-    const std::filesystem::path path = image_path(options, measurement);
+    const std::filesystem::path path = bench_picture(options, measurement.estimator.integrator);
     try {
         write_exr(path, result.film, make_metadata(as, measurement.estimator.scene, device, result));
     } catch (const RenderError& error) {
@@ -211,9 +204,28 @@ std::string make_csv(const BenchResult& result) {
 
 } // namespace
 
+std::filesystem::path bench_picture(const BenchOptions& options, const std::string& integrator) {
+    std::string name = integrator;
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == ':' || c == '='; }, '-');
+    return options.name.string() + "." + name + ".exr";
+}
+
 void write_bench(const BenchOptions& options, const Device& device, const BenchResult& result) {
-    write_text(options.name.string() + ".bench.csv", make_csv(result));
-    write_text(options.name.string() + ".bench.json", make_json(options, device, result));
+    std::string failures, written;
+    const auto write = [&](const char* extension, const std::string& text) {
+        const std::string name = options.name.string() + extension;
+        try {
+            write_text(name, text);
+            written += (written.empty() ? "; written: " : ", ") + name;
+        } catch (const RenderError& error) {
+            failures += (failures.empty() ? "" : "; ") + std::string(error.what());
+        }
+    };
+    write(".bench.csv", make_csv(result));
+    write(".bench.json", make_json(options, device, result));
+    if (!failures.empty())
+        throw RenderError(failures + written);
 }
 
 } // namespace vkvol

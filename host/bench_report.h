@@ -5,6 +5,9 @@
 
 namespace vkvol {
 
+// NAME.INTEGRATOR.exr.
+std::filesystem::path bench_picture(const BenchOptions& options, const std::string& integrator);
+
 // Writes NAME.bench.json, NAME.bench.csv and NAME.INTEGRATOR.exr; the keys are documented in the README. A picture that
 // cannot be written is missing in the JSON, with a warning; for the other two RenderError is thrown.
 void write_bench(const BenchOptions& options, const Device& device, const BenchResult& result);

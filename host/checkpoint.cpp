@@ -163,7 +163,19 @@ void save_checkpoint(const std::filesystem::path& file, const Checkpoint& checkp
     write_text(file, bytes);
 }
 
+bool is_checkpoint(const std::filesystem::path& file) {
+    constexpr std::streamsize common = sizeof magic - 1; // the last character is the version
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error))
+        return false;
+    char begin[common];
+    return std::ifstream(file, std::ios::binary).read(begin, common) && std::memcmp(begin, magic, common) == 0;
+}
+
 Checkpoint load_checkpoint(const std::filesystem::path& file) {
+    if (std::error_code error; std::filesystem::exists(file, error) && !is_checkpoint(file))
+        throw InputError(
+            fmt::format("{}: not a checkpoint of vkvol; rename it, or name another picture with -o", file.string()));
     try {
         return parse(read_file(file));
     } catch (const InputError&) {

@@ -45,6 +45,9 @@ RenderIdentity identify(const shared::FrameParams& frame, const Specialization& 
 // Atomically: the file is the last checkpoint or this one. Throws RenderError.
 void save_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);
 
+// Whether it is a file that begins like a checkpoint of any version.
+bool is_checkpoint(const std::filesystem::path& file);
+
 // Throws InputError if the file is no whole checkpoint.
 Checkpoint load_checkpoint(const std::filesystem::path& file);
 

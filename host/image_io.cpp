@@ -27,9 +27,33 @@ using std::filesystem::path;
 constexpr int channel_count = 7;
 const std::vector<std::string> channel_names = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "samples"};
 
+const char* remedy_of(int error) {
+    switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+    case EFBIG:
+        return "free some space";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+        return "check permissions";
+    case ENOENT:
+    case ENOTDIR:
+        return "make its directory";
+    case EISDIR:
+        return "rename the directory of that name";
+    case EPIPE:
+        return "see why its reader ended";
+    case EINTR:
+        return "start its reader first";
+    default:
+        return "check the disk";
+    }
+}
+
 // Fills a new file, which then takes the place of the old one.
-void write_atomically(const path& target, const std::function<void(AtomicFile&)>& write) {
-    std::string reason;
+void write_atomically(const path& target, const char* option, const std::function<void(AtomicFile&)>& write) {
+    std::string reason, remedy = "check free space and permissions";
     try {
         AtomicFile file(target);
         write(file);
@@ -37,12 +61,12 @@ void write_atomically(const path& target, const std::function<void(AtomicFile&)>
         return;
     } catch (const std::system_error& error) {
         reason = error.code().message();
+        remedy = remedy_of(error.code().value());
     } catch (const std::exception& error) {
         reason = error.what();
     }
-    throw RenderError(fmt::format("{}: cannot be written: {}; check free space and permissions, or name another place "
-                                  "with -o",
-                                  target.string(), reason));
+    throw RenderError(fmt::format("{}: cannot be written: {}; {}, or name another place with {}", target.string(),
+                                  reason, remedy, option));
 }
 
 // Lets OpenImageIO write into a file of ours: it would not see every failure itself.
@@ -203,7 +227,7 @@ void check_writable(const path& target) {
     check_directory_writable(target);
 }
 
-void check_directory_writable(const path& target) {
+void check_directory_writable(const path& target, const char* option) {
     const path directory = target.has_parent_path() ? target.parent_path() : path(".");
     std::error_code error;
     if (!std::filesystem::exists(directory, error))
@@ -217,8 +241,8 @@ void check_directory_writable(const path& target) {
     const path probe = temporary_name(target);
     const int descriptor = open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     if (descriptor < 0)
-        throw InputError(fmt::format("{}: no file can be made in {}: {}; name another place", target.string(),
-                                     directory.string(), std::strerror(errno)));
+        throw InputError(fmt::format("{}: no file can be made in {}: {}; name another place with {}", target.string(),
+                                     directory.string(), std::strerror(errno), option));
     close(descriptor);
     unlink(probe.c_str());
 }
@@ -230,8 +254,8 @@ void write_image(const path& target, const Film& film, const Metadata& metadata,
         write_exr(target, film, metadata);
 }
 
-void write_exr(const path& target, const Film& film, const Metadata& metadata) {
-    write_atomically(target, [&](AtomicFile& file) {
+void write_exr(const path& target, const Film& film, const Metadata& metadata, const char* option) {
+    write_atomically(target, option, [&](AtomicFile& file) {
         check_consistent(film);
         OIIO::ImageSpec spec(film.width(), film.height(), channel_count, OIIO::TypeDesc::FLOAT);
         spec.channelnames = channel_names;
@@ -249,7 +273,7 @@ void write_exr(const path& target, const Film& film, const Metadata& metadata) {
 }
 
 void write_png(const path& target, const Film& film, const ToneMapping& mapping) {
-    write_atomically(target, [&](AtomicFile& file) {
+    write_atomically(target, "-o", [&](AtomicFile& file) {
         check_consistent(film);
         OIIO::ImageSpec spec(film.width(), film.height(), 3, OIIO::TypeDesc::UINT8);
         spec.attribute("oiio:ColorSpace", "sRGB");
@@ -279,8 +303,8 @@ Film read_exr(const path& file, Metadata* metadata) {
     return film_of(spec, pixels, file);
 }
 
-void write_text(const path& target, const std::string& text) {
-    write_atomically(target, [&](AtomicFile& file) { file.write(text.data(), text.size(), 0); });
+void write_text(const path& target, const std::string& text, const char* option) {
+    write_atomically(target, option, [&](AtomicFile& file) { file.write(text.data(), text.size(), 0); });
 }
 
 } // namespace vkvol

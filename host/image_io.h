@@ -9,20 +9,21 @@
 namespace vkvol {
 
 // Every writer fills a new file that then takes the place of the old one: a file of this name is never half written.
-// Failures throw RenderError with path, reason and remedy.
+// Failures throw RenderError with path, reason and remedy: `option` is the one that names another place.
 
 // Throws InputError unless `path` ends in .exr or .png and a file can be made there. Leaves nothing behind.
 void check_writable(const std::filesystem::path& path);
 
 // The same for any file (a report): only that it can be made.
-void check_directory_writable(const std::filesystem::path& path);
+void check_directory_writable(const std::filesystem::path& path, const char* option = "-o");
 
 // By extension: .exr or .png.
 void write_image(const std::filesystem::path& path, const Film& film, const Metadata& metadata,
                  const ToneMapping& mapping);
 
 // Float, ZIP; channels R, G, B, variance.R, variance.G, variance.B, samples. Data window = crop, display = picture.
-void write_exr(const std::filesystem::path& path, const Film& film, const Metadata& metadata);
+void write_exr(const std::filesystem::path& path, const Film& film, const Metadata& metadata,
+               const char* option = "-o");
 
 // 8 bit sRGB; the crop alone.
 void write_png(const std::filesystem::path& path, const Film& film, const ToneMapping& mapping);
@@ -31,6 +32,6 @@ void write_png(const std::filesystem::path& path, const Film& film, const ToneMa
 Film read_exr(const std::filesystem::path& path, Metadata* metadata = nullptr);
 
 // Writes text the same atomic way.
-void write_text(const std::filesystem::path& path, const std::string& text);
+void write_text(const std::filesystem::path& path, const std::string& text, const char* option = "-o");
 
 } // namespace vkvol

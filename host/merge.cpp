@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "error.h"
+#include "file_uses.h"
 #include "image_io.h"
 #include "merge_metadata.h"
 #include "messages.h"
@@ -174,6 +175,32 @@ void print_warnings(const MergeResult& result) {
         tell(stderr, "vkvol: warning: {}\n", warning);
 }
 
+// Before any work is done.
+void check_files(const MergeOptions& options) {
+    FileUses uses;
+    for (const std::filesystem::path& input : options.inputs)
+        uses.reads("an image to be merged", input);
+    for (const std::filesystem::path& output : options.outputs) {
+        check_writable(output);
+        uses.writes("the merged picture", output, "-o");
+    }
+    uses.check();
+}
+
+// All are tried before the first failure is reported.
+void write_outputs(const MergeOptions& options, const MergeResult& result) {
+    std::string failures, written;
+    for (const std::filesystem::path& output : options.outputs)
+        try {
+            write_image(output, result.film, result.metadata, options.tone_mapping);
+            written += (written.empty() ? "; written: " : ", ") + output.string();
+        } catch (const RenderError& error) {
+            failures += (failures.empty() ? "" : "; ") + std::string(error.what());
+        }
+    if (!failures.empty())
+        throw RenderError(failures + written);
+}
+
 void print_summary(const MergeOptions& options, const MergeResult& result) {
     std::string outputs;
     for (const std::filesystem::path& output : options.outputs)
@@ -185,8 +212,7 @@ void print_summary(const MergeOptions& options, const MergeResult& result) {
 } // namespace
 
 int run_merge(const MergeOptions& options) {
-    for (const std::filesystem::path& output : options.outputs)
-        check_writable(output);
+    check_files(options);
     std::vector<MergeInput> inputs;
     for (const std::filesystem::path& path : options.inputs) {
         MergeInput input;
@@ -197,8 +223,7 @@ int run_merge(const MergeOptions& options) {
     const MergeResult result = merge_films(inputs);
     if (!options.quiet)
         print_warnings(result);
-    for (const std::filesystem::path& output : options.outputs)
-        write_image(output, result.film, result.metadata, options.tone_mapping);
+    write_outputs(options, result);
     if (!options.quiet)
         print_summary(options, result);
     return exit_done;

@@ -195,4 +195,22 @@ ObjFile read_obj(const std::filesystem::path& path) {
     return obj;
 }
 
+// As tinyobjloader reads it: names between spaces.
+std::vector<std::filesystem::path> material_libraries(const std::filesystem::path& path) {
+    std::vector<std::filesystem::path> files;
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error))
+        return files;
+    std::ifstream stream(path, std::ios::binary);
+    for (std::string line; std::getline(stream, line);) {
+        std::istringstream words(line);
+        std::string name;
+        if (!(words >> name) || name != "mtllib")
+            continue;
+        while (words >> name)
+            files.push_back(path.parent_path() / name);
+    }
+    return files;
+}
+
 } // namespace vkvol

@@ -21,4 +21,7 @@ struct ObjFile {
 // InputError for a file that cannot be read, has no faces, a number that is none, or a vertex that does not exist.
 ObjFile read_obj(const std::filesystem::path& path);
 
+// The material libraries that it names, whether or not they are there. None if it cannot be read.
+std::vector<std::filesystem::path> material_libraries(const std::filesystem::path& path);
+
 } // namespace vkvol

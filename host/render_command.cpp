@@ -1,22 +1,21 @@
 #include "render_command.h"
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <fmt/format.h>
 #include <limits>
-#include <unistd.h>
+#include <new>
 
+#include "checkpoint_file.h"
 #include "error.h"
+#include "file_uses.h"
 #include "image_io.h"
 #include "interrupt.h"
 #include "messages.h"
 #include "progress.h"
 #include "render_notes.h"
+#include "render_outputs.h"
 #include "renderer.h"
-#include "report.h"
 #include "scene_xml.h"
 #include "trace.h"
 
@@ -34,98 +33,34 @@ Scene load(const RenderOptions& options) {
     return scene;
 }
 
-// Before any work is done: a render that cannot be written is not worth its time.
-void check_outputs(const RenderOptions& options) {
+// Before any work is done: a render that cannot be written, or would be written over its own files, is not worth its
+// time.
+void check_files(const RenderOptions& options, const Scene& scene, const CheckpointFile& checkpoint) {
+    FileUses uses;
+    uses.reads("the scene", options.scene);
+    uses.reads_files_of(scene);
+    for (const std::filesystem::path& output : options.outputs)
+        uses.writes("a picture", output, "-o");
+    if (!checkpoint.path().empty())
+        uses.writes("the checkpoint", checkpoint.path(), "-o");
+    if (options.report)
+        uses.writes("the report", *options.report, "--report");
+    uses.check();
     for (const std::filesystem::path& output : options.outputs)
         check_writable(output);
     if (options.report)
-        check_directory_writable(*options.report);
+        check_directory_writable(*options.report, "--report");
+    checkpoint.check();
 }
 
-std::filesystem::path checkpoint_file(const RenderOptions& options) {
-    std::filesystem::path file = options.outputs.front();
-    return file.replace_extension(".checkpoint");
-}
-
-// Where the picture can be kept when its own place takes no file: a render is not lost to a full disk.
-std::string rescue(const Film& film, const Metadata& metadata) {
-    std::error_code error;
-    const std::filesystem::path directory = std::filesystem::temp_directory_path(error);
-    if (error)
-        return "";
-    std::filesystem::path file = directory / fmt::format("vkvol-rescued-{}.exr", getpid());
-    for (int i = 2; std::filesystem::exists(file, error); ++i) // numbers of processes come again
-        file = directory / fmt::format("vkvol-rescued-{}-{}.exr", getpid(), i);
-    try {
-        write_exr(file, film, metadata);
-    } catch (const RenderError&) {
-        return "";
-    }
-    return fmt::format("; the picture is kept as {}", file.string());
-}
-
-// All outputs are tried before the first failure is reported.
-double write_outputs(const RenderOptions& options, const Film& film, const Metadata& metadata) {
-    const auto start = std::chrono::steady_clock::now();
-    std::string failures;
-    bool exr_written = false;
-    for (const std::filesystem::path& output : options.outputs)
-        try {
-            write_image(output, film, metadata, options.tone_mapping);
-            exr_written = exr_written || output.extension() == ".exr";
-        } catch (const RenderError& error) {
-            failures += (failures.empty() ? "" : "; ") + std::string(error.what());
-        }
-    if (!failures.empty())
-        throw RenderError(failures + (exr_written ? "" : rescue(film, metadata)));
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-// What a failure in the midst of a render leaves.
-std::string resume_advice(const RenderOptions& options, std::uint32_t saved_samples) {
-    return fmt::format("; {} holds {} samples per pixel: the same command with --resume goes on from there",
-                       checkpoint_file(options).string(), saved_samples);
-}
-
-// Keeps checkpoints on disk. One that cannot be written is no reason to end the render.
-class Keeper {
-public:
-    explicit Keeper(const RenderOptions& options) : options_(options) {}
-
-    void keep(const Checkpoint& checkpoint) {
-        try {
-            save_checkpoint(checkpoint_file(options_), checkpoint);
-            saved_ = checkpoint.done;
-        } catch (const std::exception& error) {
-            tell(stderr, "vkvol: warning: {}: the last checkpoint stays\n", error.what());
-        }
-    }
-    std::optional<std::uint32_t> saved() const { return saved_; } // samples per pixel
-
-private:
-    const RenderOptions& options_;
-    std::optional<std::uint32_t> saved_;
-};
-
-std::optional<Checkpoint> find_checkpoint(const RenderOptions& options) {
-    std::error_code ignored;
-    if (!options.resume)
-        return std::nullopt;
-    if (std::filesystem::exists(checkpoint_file(options), ignored))
-        return load_checkpoint(checkpoint_file(options));
-    if (!options.quiet)
-        tell(stderr, "vkvol: note: there is no {}: the render begins anew\n", checkpoint_file(options).string());
-    return std::nullopt;
-}
-
-RenderResult render_with_progress(const RenderOptions& options, const Scene& scene, const Device& device) {
+RenderResult render_with_progress(const RenderOptions& options, const Scene& scene, const Device& device,
+                                  CheckpointFile& file) {
     RenderJob job;
-    const std::optional<Checkpoint> from = find_checkpoint(options);
+    const std::optional<Checkpoint>& from = file.find();
     job.resume = from ? &*from : nullptr;
-    Keeper keeper(options);
     if (options.checkpoint) {
         job.checkpoint_seconds = *options.checkpoint;
-        job.checkpoint = [&](const Checkpoint& checkpoint) { keeper.keep(checkpoint); };
+        job.checkpoint = [&](const Checkpoint& checkpoint) { file.keep(checkpoint); };
     }
     job.trace = options.trace;
     job.crop = resolve_crop(options.crop, scene.picture);
@@ -141,17 +76,8 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
     try {
         return render(device, scene, job);
     } catch (const RenderError& error) {
-        if (!keeper.saved() && !from)
-            throw;
-        throw RenderError(error.what() + resume_advice(options, keeper.saved().value_or(from ? from->done : 0)));
+        throw RenderError(error.what() + file.advice());
     }
-}
-
-// The checkpoint of a render that is done is of no more use.
-void remove_checkpoint(const RenderOptions& options, const Scene& scene, const RenderResult& result) {
-    std::error_code ignored;
-    if ((options.checkpoint || options.resume) && result.samples == scene.settings.spp)
-        std::filesystem::remove(checkpoint_file(options), ignored);
 }
 
 bool has_samples(const Film& film) {
@@ -168,35 +94,51 @@ void check_result(const Device& device, const RenderResult& result) {
                                       result.counts.queue_overflows));
 }
 
+int render_scene(const RenderOptions& options, const Scene& scene, CheckpointFile& checkpoint, RenderOutputs& outputs) {
+    const Device device({options.device, options.validate, options.robust});
+    outputs.set_device(device.info());
+    const RenderResult result = render_with_progress(options, scene, device, checkpoint);
+    print_warnings(options, result.warnings);
+    check_result(device, result);
+    if (!options.trace && !has_samples(result.film)) {
+        print_caps(options, result);
+        const std::string why = no_samples_text(result);
+        outputs.write_report(device, result, why);
+        tell(stderr, "vkvol: {}: no picture is written\n", why); // which might spoil a good one
+        return result.interrupted ? exit_interrupted : exit_render_failed;
+    }
+    outputs.write(device, result);
+    if (result.samples == scene.settings.spp) // it is of no more use
+        checkpoint.remove();
+    if (!options.quiet)
+        print_caps(options, result);
+    if (options.trace)
+        tell(stdout, "{}", trace_table(result.trace, result.trace_origin, scene.background));
+    else if (!options.quiet)
+        print_summary(options, device, result);
+    if (result.interrupted)
+        return exit_interrupted;
+    return options.strict && result.counts.any_cap() ? exit_caps_hit : exit_done;
+}
+
 } // namespace
 
 int run_render(const RenderOptions& options) {
     install_interrupt_handler();
     const Scene scene = load(options);
     print_warnings(options, scene.warnings);
-    check_outputs(options);
-    const Device device({options.device, options.validate, options.robust});
-    const RenderResult result = render_with_progress(options, scene, device);
-    print_warnings(options, result.warnings);
-    check_result(device, result);
-    if (!options.trace && !has_samples(result.film)) {
-        print_caps(options, result);
-        print_no_samples(result); // and nothing is written, which might spoil a good picture
-        return result.interrupted ? exit_interrupted : exit_render_failed;
+    CheckpointFile checkpoint(options);
+    check_files(options, scene, checkpoint);
+    RenderOutputs outputs(options, scene);
+    try {
+        return render_scene(options, scene, checkpoint, outputs);
+    } catch (const std::bad_alloc&) {
+        outputs.fail("out of memory");
+        throw;
+    } catch (const std::exception& error) {
+        outputs.fail(error.what());
+        throw;
     }
-    const double write_seconds = write_outputs(options, result.film, make_metadata(options, scene, device, result));
-    if (options.report)
-        write_text(*options.report, make_report(options, scene, device, result, write_seconds));
-    remove_checkpoint(options, scene, result);
-    if (!options.quiet)
-        print_caps(options, result);
-    if (options.trace)
-        fmt::print("{}", trace_table(result.trace, result.trace_origin, scene.background));
-    else if (!options.quiet)
-        print_summary(options, device, result);
-    if (result.interrupted)
-        return exit_interrupted;
-    return options.strict && result.counts.any_cap() ? exit_caps_hit : exit_done;
 }
 
 } // namespace vkvol

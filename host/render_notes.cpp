@@ -79,11 +79,10 @@ void print_summary(const RenderOptions& options, const Device& device, const Ren
          device.is_cpu() ? " (software)" : "");
 }
 
-void print_no_samples(const RenderResult& result) {
-    tell(stderr, "vkvol: {}: nothing is written\n",
-         result.interrupted             ? "interrupted before the first sample"
-         : result.counts.non_finite > 0 ? "no sample was finite"
-                                        : "out of time before the first sample");
+std::string no_samples_text(const RenderResult& result) {
+    return result.interrupted             ? "interrupted before the first sample"
+           : result.counts.non_finite > 0 ? "no sample was finite"
+                                          : "out of time before the first sample";
 }
 
 } // namespace vkvol

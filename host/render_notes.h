@@ -16,6 +16,6 @@ void print_caps(const RenderOptions& options, const RenderResult& result);
 void print_summary(const RenderOptions& options, const Device& device, const RenderResult& result);
 
 // Why there is no sample, and so no picture.
-void print_no_samples(const RenderResult& result);
+std::string no_samples_text(const RenderResult& result);
 
 } // namespace vkvol

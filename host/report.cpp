@@ -54,6 +54,15 @@ Json caps_json(const RenderResult& r) {
             {"cleanedVoxels", c.cleaned_voxels}};
 }
 
+Json device_json(const DeviceInfo& device) {
+    return {{"name", device.name}, {"type", device.type}, {"driver", device.driver}, {"vulkan", device.api}};
+}
+
+// Names of files need not be UTF-8, as JSON must be.
+std::string text_of(const Json& report) {
+    return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 Json mean_json(const Film& film) {
     const auto [value, error] = image_mean(film);
     Json json{{"value", {value.x, value.y, value.z}}, {"standardError", nullptr}};
@@ -113,20 +122,18 @@ Metadata make_metadata(const RenderOptions& options, const Scene& scene, const D
 }
 
 std::string make_report(const RenderOptions& options, const Scene& scene, const Device& device,
-                        const RenderResult& result, double write_seconds) {
+                        const RenderResult& result, double write_seconds, const std::string& error) {
     const auto [least, most] = std::minmax_element(result.film.samples.begin(), result.film.samples.end());
     const double seconds = std::max(result.render_seconds, 1e-9);
     Json report;
     report["version"] = version;
+    report["error"] = error.empty() ? Json() : Json(error);
     report["scene"] = options.scene.string();
     report["sceneHash"] = scene_hash(scene);
     report["integrator"] = result.integrator;
     report["biased"] = bias_of(result);
     report["specialization"] = result.specialization;
-    report["device"] = {{"name", device.info().name},
-                        {"type", device.info().type},
-                        {"driver", device.info().driver},
-                        {"vulkan", device.info().api}};
+    report["device"] = device_json(device.info());
     report["picture"] = {
         {"width", scene.picture.width},
         {"height", scene.picture.height},
@@ -150,7 +157,22 @@ std::string make_report(const RenderOptions& options, const Scene& scene, const 
     report["warnings"] = scene.warnings;
     for (const std::string& warning : result.warnings)
         report["warnings"].push_back(warning);
-    return report.dump(2) + "\n";
+    return text_of(report);
+}
+
+std::string make_failure_report(const RenderOptions& options, const Scene& scene, const DeviceInfo* device,
+                                const std::string& error) {
+    Json report;
+    report["version"] = version;
+    report["error"] = error;
+    report["scene"] = options.scene.string();
+    report["sceneHash"] = scene_hash(scene);
+    report["device"] = device ? device_json(*device) : Json();
+    report["seed"] = options.seed;
+    report["sampleOffset"] = options.sample_offset;
+    report["memory"] = {{"peakHostBytes", peak_host_bytes()}};
+    report["warnings"] = scene.warnings;
+    return text_of(report);
 }
 
 } // namespace vkvol

@@ -13,8 +13,13 @@ namespace vkvol {
 Metadata make_metadata(const RenderOptions& options, const Scene& scene, const Device& device,
                        const RenderResult& result);
 
-// JSON text; the fields are documented in the README. `write_seconds`: spent on image files.
+// JSON text; the fields are documented in the README. `write_seconds`: spent on image files. `error`: why the render
+// failed; empty: it did not.
 std::string make_report(const RenderOptions& options, const Scene& scene, const Device& device,
-                        const RenderResult& result, double write_seconds);
+                        const RenderResult& result, double write_seconds, const std::string& error = "");
+
+// Of a render without a result: what is known all the same. `device` may be null.
+std::string make_failure_report(const RenderOptions& options, const Scene& scene, const DeviceInfo* device,
+                                const std::string& error);
 
 } // namespace vkvol

@@ -8,41 +8,11 @@
 
 #include "error.h"
 #include "image_io.h"
-#include "support/shell.h"
+#include "support/command_folder.h"
 #include "test_paths.h"
 
 using namespace vkvol;
 using Catch::Contains;
-
-namespace {
-
-// An empty folder to work in, with one scene: a ball of optical depth 4.
-class Folder {
-public:
-    explicit Folder(const std::string& elements) {
-        std::filesystem::create_directories(path_);
-        std::ofstream(path_ / "ball.xml")
-            << "<options><sphere radius=\"1\"/><sigma_a>1</sigma_a><sigma_s>1</sigma_s>"
-               "<width>16</width><height>16</height><rayPerPixelCount>8</rayPerPixelCount>"
-               "<camera z=\"5\" fov=\"30\"/><backgroundColor r=\"1\" g=\"1\" b=\"1\"/>"
-            << elements << "</options>";
-    }
-    ~Folder() { std::filesystem::remove_all(path_); }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-
-    Run vkvol(const std::string& arguments) const {
-        const char* device = std::getenv("VKVOL_TEST_DEVICE");
-        return run(fmt::format("cd '{}' && '{}' {}{}", path_.string(), VKVOL_BINARY, arguments,
-                               device ? fmt::format(" --device '{}'", device) : ""));
-    }
-    std::filesystem::path file(const char* name) const { return path_ / name; }
-
-private:
-    std::filesystem::path path_ = std::filesystem::temp_directory_path() / fmt::format("vkvol-command-{}", getpid());
-};
-
-} // namespace
 
 TEST_CASE("caps are in the summary, the report and the EXR, and --strict fails", "[gpu][command][hard]") {
     const Folder folder("<maxDepth>1</maxDepth>");
@@ -162,5 +132,5 @@ TEST_CASE("--resume without a checkpoint begins, with a damaged one refuses, and
     std::ofstream(folder.file("ball.checkpoint")) << "rubbish";
     const Run damaged = folder.vkvol("ball.xml -o ball.exr --resume");
     CHECK(damaged.code == exit_bad_input);
-    CHECK_THAT(damaged.text, Contains("ball.checkpoint: not a checkpoint"));
+    CHECK_THAT(damaged.text, Contains("ball.checkpoint: is no checkpoint"));
 }

@@ -1,0 +1,37 @@
+// Which files a run reads and which it writes: what is read may not be written over, and no file be written twice.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene.h"
+
+namespace vkvol {
+
+class FileUses {
+public:
+    // `what` stands in messages: "the scene".
+    void reads(const std::string& what, const std::filesystem::path& file);
+    // All that the scene names: its density field, its models and their materials.
+    void reads_files_of(const Scene& scene);
+    // `option` is the one that gives the file its name: "-o".
+    void writes(const std::string& what, const std::filesystem::path& file, const std::string& option);
+
+    // Throws InputError that names both uses and the remedy. Other spellings and links are the same file; devices and
+    // pipes may be used more than once.
+    void check() const;
+
+private:
+    struct Use {
+        std::string what;
+        std::filesystem::path file;
+        std::string option; // of outputs
+    };
+    std::vector<Use> inputs_, outputs_;
+};
+
+// Whether to write one would change the other, now or once they are there.
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
+
+} // namespace vkvol

@@ -1,0 +1,88 @@
+#include "render_outputs.h"
+
+#include <chrono>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "error.h"
+#include "image_io.h"
+#include "messages.h"
+
+namespace vkvol {
+
+namespace {
+
+// Where the picture can be kept when its own place takes no file: a render is not lost to a full disk.
+std::string rescue(const Film& film, const Metadata& metadata) {
+    std::error_code error;
+    const std::filesystem::path directory = std::filesystem::temp_directory_path(error);
+    if (error)
+        return "";
+    std::filesystem::path file = directory / fmt::format("vkvol-rescued-{}.exr", getpid());
+    for (int i = 2; std::filesystem::exists(file, error); ++i) // numbers of processes come again
+        file = directory / fmt::format("vkvol-rescued-{}-{}.exr", getpid(), i);
+    try {
+        write_exr(file, film, metadata);
+    } catch (const RenderError&) {
+        return "";
+    }
+    return fmt::format("; the picture is kept as {}", file.string());
+}
+
+void append(std::string& list, const char* separator, const std::string& text) {
+    list += (list.empty() ? "" : separator) + text;
+}
+
+} // namespace
+
+void RenderOutputs::write(const Device& device, const RenderResult& result) {
+    const auto start = std::chrono::steady_clock::now();
+    const Metadata metadata = make_metadata(options_, scene_, device, result);
+    std::string failures, written;
+    bool exr_written = false;
+    for (const std::filesystem::path& output : options_.outputs)
+        try {
+            write_image(output, result.film, metadata, options_.tone_mapping);
+            append(written, ", ", output.string());
+            exr_written = exr_written || output.extension() == ".exr";
+        } catch (const RenderError& error) {
+            append(failures, "; ", error.what());
+        }
+    const std::string kept = failures.empty() || exr_written ? "" : rescue(result.film, metadata);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (std::string failure;
+        !try_report(make_report(options_, scene_, device, result, seconds, failures + kept), failure))
+        append(failures, "; ", failure);
+    else if (options_.report)
+        append(written, ", ", options_.report->string());
+    if (!failures.empty())
+        throw RenderError(failures + (written.empty() ? "" : "; written: " + written) + kept);
+}
+
+void RenderOutputs::write_report(const Device& device, const RenderResult& result, const std::string& error) {
+    if (std::string failure; !try_report(make_report(options_, scene_, device, result, 0.0, error), failure))
+        tell(stderr, "vkvol: warning: {}\n", failure);
+}
+
+void RenderOutputs::fail(const std::string& error) {
+    if (reported_)
+        return;
+    if (std::string failure;
+        !try_report(make_failure_report(options_, scene_, device_ ? &*device_ : nullptr, error), failure))
+        tell(stderr, "vkvol: warning: {}\n", failure);
+}
+
+bool RenderOutputs::try_report(const std::string& json, std::string& failure) {
+    if (!options_.report)
+        return true;
+    reported_ = true;
+    try {
+        write_text(*options_.report, json, "--report");
+        return true;
+    } catch (const RenderError& error) {
+        failure = error.what();
+        return false;
+    }
+}
+
+} // namespace vkvol
