@@ -167,7 +167,8 @@ IntegratorRequest parse_integrator(const std::string& text) {
         if (equals == std::string::npos)
             throw InputError(
                 fmt::format("'{}' is not of the form axis=choice; e.g. ratioTracking:flight=weighted", part));
-        const Axis& axis = find_axis(part.substr(0, equals));
+        const std::string name = part.substr(0, equals);
+        const Axis& axis = find_axis(name);
         std::optional<int>& choice = request.choices.*axis.choice;
         if (choice)
             throw InputError(fmt::format("{} given twice", axis.name));

@@ -11,7 +11,7 @@
 #include "support/test_meshes.h"
 
 using namespace vkvol;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

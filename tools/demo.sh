@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a bare Debian 12 to a picture of a cloud: installs what is missing, builds, makes the density field, renders.
+# From a bare Debian 12 or 13 to a picture of a cloud: installs what is missing, builds, makes the density field, renders.
 # Run it again and only the render is left to do. Arguments go to vkvol: tools/demo.sh --spp 16
 set -eu
 source "$(dirname "$0")/setup.sh"

@@ -1,4 +1,4 @@
-# Sourced by the other scripts: brings a Debian 12 machine to where vkvol can be built, and builds it.
+# Sourced by the other scripts: brings a machine with Debian 12 or 13 to where vkvol can be built, and builds it.
 # Every function is quick when there is nothing left to do.
 
 vkvol_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -8,7 +8,7 @@ packages=(
     libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers glslang-tools spirv-tools
     libglm-dev libtinyobjloader-dev libnanovdb-dev libopenvdb-dev libboost-iostreams-dev libtbb-dev libblosc-dev zlib1g-dev libimath-dev
     libopenimageio-dev libpugixml-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev catch2 libxml2-utils
-    python3-matplotlib
+    python3-numpy python3-pil python3-matplotlib
 )
 
 say() { printf '\n== %s\n' "$*"; }
@@ -18,9 +18,26 @@ die() {
     exit 1
 }
 
+# As /etc/os-release has it: "system ID" is "debian 12".
+system() {
+    (. /etc/os-release 2>/dev/null && case $1 in
+    ID) echo "$ID ${VERSION_ID:-}" ;;
+    NAME) echo "$PRETTY_NAME" ;;
+    esac) || echo "this system"
+}
+
+# Names all packages, as those of other systems have other names.
+die_unsupported() {
+    die "$1
+vkvol is tested on Debian 12 and 13, where it needs these packages:
+$(fmt -w 110 <<<"${packages[*]}" | sed 's/^/    /')
+Elsewhere install what corresponds to them (C++20, CMake 3.25, OpenVDB and NanoVDB 10), and run
+    cmake --preset release && cmake --build --preset release"
+}
+
 # Installs what is missing of `packages`. Needs root or sudo, and the network, only if something is.
 install_packages() {
-    command -v dpkg-query >/dev/null || die "this script knows Debian 12 only; elsewhere, install the packages listed in tools/setup.sh and run: cmake --preset release && cmake --build --preset release"
+    command -v dpkg-query >/dev/null || die_unsupported "$(system NAME) is not Debian: packages cannot be installed"
     local missing=() package
     for package in "${packages[@]}"; do
         [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
@@ -28,6 +45,10 @@ install_packages() {
     if [ ${#missing[@]} -eq 0 ]; then
         return
     fi
+    case $(system ID) in
+    "debian 12" | "debian 13") ;;
+    *) say "$(system NAME) is not tested: packages may be missing, or too old or new" ;;
+    esac
     say "Installing ${#missing[@]} packages: ${missing[*]}"
     local as_root=()
     if [ "$(id -u)" -ne 0 ]; then
@@ -36,16 +57,20 @@ install_packages() {
     fi
     "${as_root[@]}" apt-get update -qq || die "apt-get update failed: is there a network? Missing: ${missing[*]}"
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" \
-        >/dev/null || die "apt-get could not install: ${missing[*]}"
+        >/dev/null || die_unsupported "apt-get could not install: ${missing[*]}"
 }
 
-# build PRESET [TARGET...]: configures once, then builds what has changed.
+# build PRESET [-DNAME=VALUE] [TARGET...]: configures, then builds what has changed.
 build() {
-    local preset=$1
+    local preset=$1 setting=
     shift
+    if [[ "${1:-}" == -D* ]]; then
+        setting=$1
+        shift
+    fi
     say "Building ($preset)"
     cd "$vkvol_root" || exit 1
-    cmake --preset "$preset" >/dev/null || die "cmake --preset $preset failed"
+    cmake --preset "$preset" ${setting:+"$setting"} >/dev/null || die "cmake --preset $preset failed"
     cmake --build --preset "$preset" ${1:+--target "$@"} || die "the build failed"
 }
 
@@ -61,7 +86,7 @@ make_fields() {
 use_driver() {
     local manifest
     case $1 in
-    lavapipe) manifest=$(compgen -G "/usr/share/vulkan/icd.d/lvp_icd.*.json" | head -n 1) ||
+    lavapipe) manifest=$(compgen -G "/usr/share/vulkan/icd.d/lvp_icd*.json" | head -n 1) ||
         die "lavapipe is not installed; apt-get install mesa-vulkan-drivers brings it" ;;
     swiftshader)
         manifest=$vkvol_root/build/swiftshader/vk_swiftshader_icd.json

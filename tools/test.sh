@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, and runs every test on the devices there are (Mesa's software driver where there
-# is no GPU).
+# Installs what is missing, builds, with warnings as errors, and runs every test on the devices there are (Mesa's software
+# driver where there is no GPU).
 #   tools/test.sh              the release build
 #   tools/test.sh --sanitize   host code under AddressSanitizer and UndefinedBehaviorSanitizer
 #   tools/test.sh --driver D   on a software driver: lavapipe or swiftshader (fetched; several times slower)
@@ -24,7 +24,7 @@ done
 start=$SECONDS
 install_packages
 [ -z "$driver" ] || use_driver "$driver"
-build "$preset"
+build "$preset" -DVKVOL_WERROR=ON
 
 say "Scene files against their schema"
 find "$vkvol_root/scenes" -name '*.xml' -print0 |

@@ -245,7 +245,8 @@ PFN_vkVoidFunction get_instance_function(VkInstance instance, const char* name) 
 
 } // namespace
 
-extern "C" VK_LAYER_EXPORT VkResult vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* layer) {
+extern "C" __attribute__((visibility("default"))) VkResult
+vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* layer) {
     layer->loaderLayerInterfaceVersion = CURRENT_LOADER_LAYER_INTERFACE_VERSION;
     layer->pfnGetInstanceProcAddr = get_instance_function;
     layer->pfnGetDeviceProcAddr = get_device_function;

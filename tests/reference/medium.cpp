@@ -1,5 +1,6 @@
 #include "medium.h"
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
