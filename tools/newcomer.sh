@@ -74,6 +74,7 @@ new_system() {
     mkdir "$system"
     tar -C "$system" -xf "$cache/$1.tar"
     cp --remove-destination -L /etc/resolv.conf "$system/etc/resolv.conf"
+    echo "127.0.0.1 localhost $(uname -n)" >"$system/etc/hosts"
     mkdir -p "$system/home/vkvol"
     git -C "$vkvol_root" archive HEAD | tar -C "$system/home/vkvol" -x
     if [ "$2" = user ]; then
