@@ -4,8 +4,11 @@
 #include <cstdio>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <system_error>
 #include <unistd.h>
+
+#include "interrupt.h"
 
 namespace vkvol {
 
@@ -21,6 +24,24 @@ path behind_links(const path& name) {
     std::error_code error;
     const path real = std::filesystem::is_symlink(name, error) ? std::filesystem::canonical(name, error) : name;
     return error ? name : real;
+}
+
+// To open a pipe waits for its reader, and no signal would end that.
+int open_special(const path& target) {
+    constexpr int flags = O_WRONLY | O_CLOEXEC, milliseconds = 50;
+    std::error_code error;
+    if (!std::filesystem::is_fifo(target, error))
+        return open(target.c_str(), flags);
+    while (true) {
+        const int descriptor = open(target.c_str(), flags | O_NONBLOCK);
+        if (descriptor >= 0 || errno != ENXIO)
+            return descriptor;
+        if (interrupted()) {
+            errno = EINTR;
+            return -1;
+        }
+        poll(nullptr, 0, milliseconds);
+    }
 }
 
 path name_of(int descriptor) {
@@ -43,9 +64,10 @@ bool is_special(const path& target) {
 }
 
 AtomicFile::AtomicFile(const path& name)
-    : target_(behind_links(name)), temporary_(temporary_name(target_)), special_(is_special(target_)) {
+    : target_(behind_links(name)), temporary_(temporary_name(target_)), special_(is_special(target_)),
+      interrupted_before_(interrupted()) {
     if (special_)
-        descriptor_ = open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+        descriptor_ = open_special(target_);
     else
         open_new();
     if (descriptor_ < 0)
@@ -70,13 +92,23 @@ AtomicFile::~AtomicFile() {
         unlink(temporary_.c_str());
 }
 
+// What was interrupted before is written all the same, as long as it is read.
+void AtomicFile::wait_for_reader() noexcept {
+    constexpr int milliseconds = 100;
+    pollfd wanted{descriptor_, POLLOUT, 0};
+    if (poll(&wanted, 1, milliseconds) <= 0 && interrupted() && !interrupted_before_)
+        error_ = EINTR;
+}
+
 bool AtomicFile::write(const void* data, std::size_t size, std::int64_t at) noexcept {
     const char* bytes = static_cast<const char*>(data);
     if (special_ && at != position_)
         error_ = ESPIPE; // a pipe cannot go back
     while (size > 0 && !error_) {
         const ssize_t written = special_ ? ::write(descriptor_, bytes, size) : pwrite(descriptor_, bytes, size, at);
-        if (written < 0 && errno != EINTR)
+        if (written < 0 && errno == EAGAIN)
+            wait_for_reader();
+        else if (written < 0 && errno != EINTR)
             error_ = errno;
         else if (written > 0) {
             bytes += written;

@@ -10,7 +10,7 @@ namespace vkvol {
 class AtomicFile {
 public:
     // Throws std::system_error if no file can be made in that place. A link stays a link: the file behind it is
-    // replaced. A device or pipe is written to.
+    // replaced. A device or pipe is written to; of a pipe a reader is waited for, until a signal comes.
     explicit AtomicFile(const std::filesystem::path& name);
     // Without put_in_place nothing of the new file is left.
     ~AtomicFile();
@@ -26,11 +26,13 @@ public:
 
 private:
     void open_new();
+    void wait_for_reader() noexcept;
     void give_name();
 
     std::filesystem::path target_, temporary_;
     bool special_ = false; // a device or pipe
-    bool named_ = false;   // temporary_ is there
+    bool interrupted_before_ = false;
+    bool named_ = false; // temporary_ is there
     int descriptor_ = -1;
     int error_ = 0; // errno of the first write that failed
     std::int64_t position_ = 0;

@@ -75,6 +75,7 @@ void add_options(CLI::App& app, BenchOptions& bench, BenchTexts& texts) {
         ->option_text("FILE.exr")
         ->group(group);
     app.add_option("--seed", bench.render.seed, "Every render has a seed of its own, made from this one")
+        ->transform(whole_number(0, max_seed))
         ->option_text("S [0]")
         ->group(group);
     add_scene_options(app, bench.render, texts.defines, group);

@@ -14,7 +14,8 @@ std::filesystem::path environment_path(const char* name) {
 } // namespace
 
 std::filesystem::path cache_home() {
-    if (const std::filesystem::path xdg = environment_path("XDG_CACHE_HOME"); !xdg.empty())
+    // "If an implementation encounters a relative path [...] it should consider the path invalid and ignore it."
+    if (const std::filesystem::path xdg = environment_path("XDG_CACHE_HOME"); xdg.is_absolute())
         return xdg;
     const std::filesystem::path home = environment_path("HOME");
     return home.empty() ? home : home / ".cache";

@@ -211,18 +211,18 @@ Comparison compare_films(const Film& a, const Film& b, const CompareOptions& opt
 namespace {
 
 void print_text(const Comparison& result) {
-    fmt::print("pixels          {} compared, {} identical\n", result.pixels, result.identical_pixels);
-    fmt::print("MSE             {:.6g}\nrelMSE          {:.6g}\nPSNR            {:.2f} dB\n", result.mse, result.relmse,
-               result.psnr);
-    fmt::print("mean ratio      {:.6f} {:.6f} {:.6f}\n", result.mean_ratio[0], result.mean_ratio[1],
-               result.mean_ratio[2]);
-    fmt::print("max difference  {:.6g}\n", result.max_abs_difference);
+    tell(stdout, "pixels          {} compared, {} identical\n", result.pixels, result.identical_pixels);
+    tell(stdout, "MSE             {:.6g}\nrelMSE          {:.6g}\nPSNR            {:.2f} dB\n", result.mse,
+         result.relmse, result.psnr);
+    tell(stdout, "mean ratio      {:.6f} {:.6f} {:.6f}\n", result.mean_ratio[0], result.mean_ratio[1],
+         result.mean_ratio[2]);
+    tell(stdout, "max difference  {:.6g}\n", result.max_abs_difference);
     if (result.has_variance) {
-        fmt::print("mean z          {:.2f} {:.2f} {:.2f}\n", result.mean_z[0], result.mean_z[1], result.mean_z[2]);
-        fmt::print("|z| histogram   {} in steps of 1, the last is 6 and more\n", fmt::join(result.z_histogram, " "));
-        fmt::print("beyond {:5.2f}    {} of {} values\n", result.z_bound, result.beyond_bound, result.tested);
+        tell(stdout, "mean z          {:.2f} {:.2f} {:.2f}\n", result.mean_z[0], result.mean_z[1], result.mean_z[2]);
+        tell(stdout, "|z| histogram   {} in steps of 1, the last is 6 and more\n", fmt::join(result.z_histogram, " "));
+        tell(stdout, "beyond {:5.2f}    {} of {} values\n", result.z_bound, result.beyond_bound, result.tested);
     }
-    fmt::print("{}: {}\n", result.different ? "DIFFERENT" : "same", result.reason);
+    tell(stdout, "{}: {}\n", result.different ? "DIFFERENT" : "same", result.reason);
 }
 
 // JSON has no infinity; null stands for it.
@@ -248,7 +248,7 @@ void print_json(const Comparison& result) {
         json["beyondBound"] = result.beyond_bound;
         json["tested"] = result.tested;
     }
-    fmt::print("{}\n", json.dump(2));
+    put(stdout, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 } // namespace

@@ -9,6 +9,8 @@
 
 #include "error.h"
 #include "grid_tree.h"
+#include "input_file.h"
+#include "missing_field.h"
 #include "nearest_name.h"
 #include "one_line.h"
 #include "shared/bindings.h"
@@ -44,6 +46,7 @@ std::string list_names(const std::vector<std::string>& names) {
 }
 
 std::vector<std::string> grid_names(const std::filesystem::path& file) {
+    check_input_file(file, missing_field_hint(file));
     std::vector<std::string> names;
     if (file.extension() == ".vdb")
         for (const VdbEntry& entry : read_vdb_entries(file))

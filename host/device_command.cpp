@@ -6,6 +6,7 @@
 
 #include "device.h"
 #include "error.h"
+#include "messages.h"
 
 namespace vkvol {
 
@@ -15,11 +16,11 @@ constexpr double mib = 1048576.0;
 
 void print_table(const std::vector<DeviceInfo>& devices) {
     for (const DeviceInfo& d : devices) {
-        fmt::print("{}  {} ({}), Vulkan {}\n", d.index, d.name, d.type, d.api);
-        fmt::print("   driver {}; uuid {}\n", d.driver, d.uuid);
-        fmt::print("   {:.0f} MiB of memory, {:.0f} MiB per storage buffer; grids {}\n", d.memory / mib,
-                   d.storage_range / mib, d.addresses ? "may be larger" : "may be no larger");
-        fmt::print("   {}\n", d.rejection.empty() ? "usable" : "not usable: " + d.rejection);
+        tell(stdout, "{}  {} ({}), Vulkan {}\n", d.index, d.name, d.type, d.api);
+        tell(stdout, "   driver {}; uuid {}\n", d.driver, d.uuid);
+        tell(stdout, "   {:.0f} MiB of memory, {:.0f} MiB per storage buffer; grids {}\n", d.memory / mib,
+             d.storage_range / mib, d.addresses ? "may be larger" : "may be no larger");
+        tell(stdout, "   {}\n", d.rejection.empty() ? "usable" : "not usable: " + d.rejection);
     }
 }
 
@@ -37,7 +38,7 @@ void print_json(const std::vector<DeviceInfo>& devices) {
                         {"bufferDeviceAddress", d.addresses},
                         {"usable", d.rejection.empty()},
                         {"rejection", d.rejection}});
-    fmt::print("{}\n", list.dump(2));
+    put(stdout, list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 } // namespace

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "error.h"
+#include "input_file.h"
 
 namespace vkvol {
 
@@ -31,11 +32,13 @@ const std::map<std::string, std::int32_t> type_sizes = {{"box2i", 16},      {"bo
 // an empty name, and the parts up to an empty part if there are several. Then a table of 8 bytes per chunk.
 class Header {
 public:
-    explicit Header(const std::filesystem::path& file) : file_(file), stream_(file, std::ios::binary) {
+    explicit Header(const std::filesystem::path& file) : file_(file) {
+        check_input_file(file, "");
+        stream_.open(file, std::ios::binary);
         std::error_code error;
         size_ = std::filesystem::file_size(file, error);
         if (!stream_ || error)
-            throw InputError(fmt::format("{}: cannot be opened; check the path", file.string()));
+            throw InputError(fmt::format("{}: cannot be opened", file.string()));
     }
 
     void check() {

@@ -3,6 +3,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <cerrno>
 #include <cstring>
@@ -16,6 +17,7 @@
 #include "atomic_file.h"
 #include "error.h"
 #include "exr_check.h"
+#include "input_file.h"
 #include "one_line.h"
 
 namespace vkvol {
@@ -143,24 +145,27 @@ void check_consistent(const Film& film) {
                                              film.samples.size()));
 }
 
-std::vector<float> interleaved(const Film& film) {
-    std::vector<float> pixels;
+// As the file has them: six floats and a whole number for each pixel.
+std::vector<std::uint32_t> interleaved(const Film& film) {
+    std::vector<std::uint32_t> pixels;
     pixels.reserve(film.pixel_count() * channel_count);
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
         for (int c = 0; c < 3; ++c)
-            pixels.push_back(film.mean[i][c]);
+            pixels.push_back(std::bit_cast<std::uint32_t>(film.mean[i][c]));
         for (int c = 0; c < 3; ++c)
-            pixels.push_back(film.variance[i][c]);
-        pixels.push_back(static_cast<float>(film.samples[i]));
+            pixels.push_back(std::bit_cast<std::uint32_t>(film.variance[i][c]));
+        pixels.push_back(film.samples[i]);
     }
     return pixels;
 }
 
+int channel_of(const OIIO::ImageSpec& spec, const char* name) {
+    const auto found = std::find(spec.channelnames.begin(), spec.channelnames.end(), name);
+    return found == spec.channelnames.end() ? -1 : int(found - spec.channelnames.begin());
+}
+
 Film film_of(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, const path& file) {
-    const auto channel = [&](const char* name) {
-        const auto found = std::find(spec.channelnames.begin(), spec.channelnames.end(), name);
-        return found == spec.channelnames.end() ? -1 : int(found - spec.channelnames.begin());
-    };
+    const auto channel = [&spec](const char* name) { return channel_of(spec, name); };
     const int color[3] = {channel("R"), channel("G"), channel("B")};
     const int variance[3] = {channel("variance.R"), channel("variance.G"), channel("variance.B")};
     const int samples = channel("samples");
@@ -259,6 +264,8 @@ void write_exr(const path& target, const Film& film, const Metadata& metadata, c
         check_consistent(film);
         OIIO::ImageSpec spec(film.width(), film.height(), channel_count, OIIO::TypeDesc::FLOAT);
         spec.channelnames = channel_names;
+        spec.channelformats.assign(channel_count, OIIO::TypeDesc::FLOAT);
+        spec.channelformats.back() = OIIO::TypeDesc::UINT32;
         spec.x = film.crop.x0;
         spec.y = film.crop.y0;
         spec.full_width = film.picture_width;
@@ -268,7 +275,7 @@ void write_exr(const path& target, const Film& film, const Metadata& metadata, c
         const float chromaticities[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
         spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
         set_attributes(spec, metadata);
-        write_pixels(file, "a.exr", spec, OIIO::TypeDesc::FLOAT, interleaved(film).data());
+        write_pixels(file, "a.exr", spec, OIIO::TypeDesc::UNKNOWN, interleaved(film).data()); // unknown: its own types
     });
 }
 
@@ -282,10 +289,15 @@ void write_png(const path& target, const Film& film, const ToneMapping& mapping)
     });
 }
 
+namespace {
+[[noreturn]] void fail_to_read(const path& file, const OIIO::ImageInput& input) {
+    throw InputError(
+        fmt::format("{}: cannot be read: {}; is it complete?", file.string(), reason_of(input.geterror())));
+}
+} // namespace
+
 Film read_exr(const path& file, Metadata* metadata) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error))
-        throw InputError(fmt::format("{}: no such file", file.string()));
+    check_input_file(file, "");
     if (file.extension() != ".exr")
         throw InputError(fmt::format("{}: expected an .exr file", file.string()));
     check_exr_header(file);
@@ -296,11 +308,16 @@ Film read_exr(const path& file, Metadata* metadata) {
     check_size(spec, file);
     std::vector<float> pixels(std::size_t(spec.width) * spec.height * spec.nchannels);
     if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()))
-        throw InputError(
-            fmt::format("{}: cannot be read: {}; is it complete?", file.string(), reason_of(input->geterror())));
+        fail_to_read(file, *input);
     if (metadata)
         get_attributes(spec, *metadata);
-    return film_of(spec, pixels, file);
+    Film film = film_of(spec, pixels, file);
+    // Read as floats, whole numbers would be parts of the largest there is.
+    if (const int samples = channel_of(spec, "samples");
+        samples >= 0 && spec.channelformat(samples) == OIIO::TypeUInt32 &&
+        !input->read_image(0, 0, samples, samples + 1, OIIO::TypeDesc::UINT32, film.samples.data()))
+        fail_to_read(file, *input);
+    return film;
 }
 
 void write_text(const path& target, const std::string& text, const char* option) {

@@ -21,14 +21,16 @@ void check_directory_writable(const std::filesystem::path& path, const char* opt
 void write_image(const std::filesystem::path& path, const Film& film, const Metadata& metadata,
                  const ToneMapping& mapping);
 
-// Float, ZIP; channels R, G, B, variance.R, variance.G, variance.B, samples. Data window = crop, display = picture.
+// ZIP; channels R, G, B, variance.R, variance.G, variance.B of floats, samples of whole numbers. Data window = crop,
+// display = picture.
 void write_exr(const std::filesystem::path& path, const Film& film, const Metadata& metadata,
                const char* option = "-o");
 
 // 8 bit sRGB; the crop alone.
 void write_png(const std::filesystem::path& path, const Film& film, const ToneMapping& mapping);
 
-// R, G and B are required; a file without variance or samples gives zeros there. Throws InputError.
+// R, G and B are required; a file without variance or samples gives zeros there. Samples may be
+// floats, as they were once. Throws InputError.
 Film read_exr(const std::filesystem::path& path, Metadata* metadata = nullptr);
 
 // Writes text the same atomic way.

@@ -6,6 +6,8 @@
 
 #include "density_field.h"
 #include "error.h"
+#include "input_file.h"
+#include "messages.h"
 #include "shared/bindings.h"
 #include "vdb_import.h"
 
@@ -113,34 +115,35 @@ std::pair<glm::dvec3, glm::dvec3> world_box(const DensityField& field) {
 }
 
 void print_field(const DensityField& field) {
-    fmt::print("  active voxels  {}\n", field.active_voxels);
+    tell(stdout, "  active voxels  {}\n", field.active_voxels);
     if (field.active_voxels == 0) {
-        fmt::print("  the grid is empty: it renders as if it were not there\n");
+        tell(stdout, "  the grid is empty: it renders as if it were not there\n");
         return;
     }
     const glm::ivec3 low = field.voxel_min, high = field.voxel_max, size = high - low + 1;
     const auto [world_low, world_high] = world_box(field);
     const glm::dmat3 linear(field.index_to_world);
     const glm::dvec3 edges(glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2]));
-    fmt::print("  index box      [{},{},{}]..[{},{},{}] ({} x {} x {})\n", low.x, low.y, low.z, high.x, high.y, high.z,
-               size.x, size.y, size.z);
-    fmt::print("  voxel size     {:.6g} x {:.6g} x {:.6g}\n", edges.x, edges.y, edges.z);
-    fmt::print("  world box      [{:.6g},{:.6g},{:.6g}]..[{:.6g},{:.6g},{:.6g}]\n", world_low.x, world_low.y,
-               world_low.z, world_high.x, world_high.y, world_high.z);
+    tell(stdout, "  index box      [{},{},{}]..[{},{},{}] ({} x {} x {})\n", low.x, low.y, low.z, high.x, high.y,
+         high.z, size.x, size.y, size.z);
+    tell(stdout, "  voxel size     {:.6g} x {:.6g} x {:.6g}\n", edges.x, edges.y, edges.z);
+    tell(stdout, "  world box      [{:.6g},{:.6g},{:.6g}]..[{:.6g},{:.6g},{:.6g}]\n", world_low.x, world_low.y,
+         world_low.z, world_high.x, world_high.y, world_high.z);
     const Statistics s = gather(field);
-    fmt::print("  values > 0     {:.6g}..{:.6g}, mean {:.6g}, in {} voxels\n", s.low, s.high,
-               s.positive > 0 ? s.sum / static_cast<double>(s.positive) : 0.0, s.positive);
+    tell(stdout, "  values > 0     {:.6g}..{:.6g}, mean {:.6g}, in {} voxels\n", s.low, s.high,
+         s.positive > 0 ? s.sum / static_cast<double>(s.positive) : 0.0, s.positive);
     if (field.cleaned > 0)
-        fmt::print("  unusable       {} values were NaN, infinite or negative and count as 0\n", field.cleaned);
+        tell(stdout, "  unusable       {} values were NaN, infinite or negative and count as 0\n", field.cleaned);
     const glm::dvec3 most = s.largest_column * edges, mean = s.mean_column * edges;
-    fmt::print("  optical depth  along x, y, z per unit of sigma_t (unit=\"world\"): at most {:.4g}, {:.4g}, {:.4g}; "
-               "mean {:.4g}, {:.4g}, {:.4g}\n",
-               most.x, most.y, most.z, mean.x, mean.y, mean.z);
-    fmt::print("                 the same for unit=\"voxel\": at most {:.4g}, {:.4g}, {:.4g}\n",
-               most.x / field.voxel_size(), most.y / field.voxel_size(), most.z / field.voxel_size());
+    tell(stdout,
+         "  optical depth  along x, y, z per unit of sigma_t (unit=\"world\"): at most {:.4g}, {:.4g}, {:.4g}; "
+         "mean {:.4g}, {:.4g}, {:.4g}\n",
+         most.x, most.y, most.z, mean.x, mean.y, mean.z);
+    tell(stdout, "                 the same for unit=\"voxel\": at most {:.4g}, {:.4g}, {:.4g}\n",
+         most.x / field.voxel_size(), most.y / field.voxel_size(), most.z / field.voxel_size());
     const double tables = static_cast<double>(field.leaf_table.size()) * sizeof(std::uint32_t);
-    fmt::print("  memory         {:.2f} MiB, and {:.2f} MiB for the table of leaves\n",
-               static_cast<double>(field.bytes.size()) / 1048576.0, tables / 1048576.0);
+    tell(stdout, "  memory         {:.2f} MiB, and {:.2f} MiB for the table of leaves\n",
+         static_cast<double>(field.bytes.size()) / 1048576.0, tables / 1048576.0);
 }
 
 // A grid that cannot serve as density (vectors, integers, a level set) is listed, with the reason, not an error.
@@ -148,24 +151,29 @@ void print_grid(const GridFile& file) {
     try {
         print_field(load_density_field(file));
     } catch (const InputError& e) {
-        fmt::print("  not usable as density: {}\n", e.what());
+        tell(stdout, "  not usable as density: {}\n", e.what());
     }
 }
 
 } // namespace
 
 int run_info(const std::filesystem::path& file) {
+    check_input_file(file, "");
     if (file.extension() == ".vdb") {
         for (const VdbEntry& entry : read_vdb_entries(file)) {
-            fmt::print("{}: {} (OpenVDB)\n", entry.name, entry.type);
+            if (std::ferror(stdout)) // nobody reads any more
+                break;
+            tell(stdout, "{}: {} (OpenVDB)\n", entry.name, entry.type);
             print_grid({file, entry.name});
         }
         return exit_done;
     }
     for (const GridEntry& entry : read_nvdb_entries(file)) {
-        fmt::print("{}: {}, {} (NanoVDB {}, codec {}, {:.2f} MiB on disk)\n", entry.name, grid_type_name(entry.type),
-                   grid_class_name(entry.grid_class), entry.version, codec_name(entry.codec),
-                   static_cast<double>(entry.file_bytes) / 1048576.0);
+        if (std::ferror(stdout))
+            break;
+        tell(stdout, "{}: {}, {} (NanoVDB {}, codec {}, {:.2f} MiB on disk)\n", entry.name, grid_type_name(entry.type),
+             grid_class_name(entry.grid_class), entry.version, codec_name(entry.codec),
+             static_cast<double>(entry.file_bytes) / 1048576.0);
         print_grid({file, entry.name});
     }
     return exit_done;

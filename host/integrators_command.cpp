@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "integrators.h"
+#include "messages.h"
 
 namespace vkvol {
 
@@ -22,7 +23,7 @@ std::string choice_name(const Integrator& integrator, const std::string& axis) {
 
 void print_table() {
     const auto row = [](const auto&... cells) {
-        fmt::print("{:<30} {:<11} {:<14} {:<14} {:<11} {:<9} {}\n", cells...);
+        tell(stdout, "{:<30} {:<11} {:<14} {:<14} {:<11} {:<9} {}\n", cells...);
     };
     row("integrator", "scattering", "flight", "transmittance", "nee", "estimate", "from");
     for (const Integrator& integrator : integrators()) {
@@ -30,17 +31,18 @@ void print_table() {
         row(integrator.name, choice_name(integrator, "scattering"), choice_name(integrator, "flight"),
             choice_name(integrator, "transmittance"), choice_name(integrator, "nee"), biased ? "biased" : "unbiased",
             integrator.source);
-        fmt::print("    {}\n", integrator.summary);
+        tell(stdout, "    {}\n", integrator.summary);
         if (biased)
-            fmt::print("    biased: {}\n", integrator.biased);
-        fmt::print("    parameters: {}\n", integrator.parameters);
+            tell(stdout, "    biased: {}\n", integrator.biased);
+        tell(stdout, "    parameters: {}\n", integrator.parameters);
     }
-    fmt::print("\nEach choice can be changed, here as in the scene: --integrator ratioTracking:flight=weighted, or\n"
-               "<integrator flight=\"weighted\">ratioTracking</integrator>. The choices are:\n");
+    tell(stdout, "\nEach choice can be changed, here as in the scene: --integrator ratioTracking:flight=weighted, or\n"
+                 "<integrator flight=\"weighted\">ratioTracking</integrator>. The choices are:\n");
     for (const Axis& axis : axes())
-        fmt::print("    {:<14} {}\n", axis.name, fmt::join(axis.names, ", "));
-    fmt::print("At constant density, and where the extinction differs between the channels, what fits replaces these;\n"
-               "scenes/README.md has the rules.\n");
+        tell(stdout, "    {:<14} {}\n", axis.name, fmt::join(axis.names, ", "));
+    tell(stdout,
+         "At constant density, and where the extinction differs between the channels, what fits replaces these;\n"
+         "scenes/README.md has the rules.\n");
 }
 
 void print_json() {
@@ -55,7 +57,7 @@ void print_json() {
         entry["source"] = integrator.source;
         list.push_back(entry);
     }
-    fmt::print("{}\n", list.dump(2));
+    put(stdout, list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 } // namespace

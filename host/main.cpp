@@ -6,6 +6,7 @@
 #include <exception>
 #include <fcntl.h>
 #include <new>
+#include <poll.h>
 #include <unistd.h>
 
 #include "bench.h"
@@ -14,14 +15,16 @@
 #include "error.h"
 #include "info.h"
 #include "integrators_command.h"
+#include "interrupt.h"
 #include "merge.h"
 #include "options.h"
+#include "printable.h"
 #include "render_command.h"
 
 namespace {
 
 // A file opened while one of the three standard streams is closed would take its number, and what is told its bytes. A
-// file that grows beyond `ulimit -f` is an error to report, not a death.
+// file that grows beyond `ulimit -f` is an error to report, not a death, and a reader who has seen enough is neither.
 void prepare_process() {
     while (true) {
         const int descriptor = open("/dev/null", O_RDWR);
@@ -31,6 +34,13 @@ void prepare_process() {
             break;
     }
     std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);
+}
+
+// As in `vkvol info cloud.nvdb | head -1`.
+bool is_reader_gone() {
+    pollfd out{STDOUT_FILENO, POLLOUT, 0};
+    return poll(&out, 1, 0) > 0 && (out.revents & POLLERR);
 }
 
 int run(const vkvol::Options& options) {
@@ -57,7 +67,7 @@ int run(const vkvol::Options& options) {
 }
 
 int complain(const char* message, vkvol::ExitCode code) {
-    std::fprintf(stderr, "vkvol: error: %s\n", message);
+    std::fprintf(stderr, "vkvol: error: %s\n", vkvol::printable(message).c_str());
     return code;
 }
 
@@ -68,7 +78,7 @@ int run_and_complain(int argc, char** argv) {
         // What a render prints is a word about its pictures; what the others print is their result.
         const bool is_result = options.command != vkvol::Command::render || options.render.trace;
         const bool taken = std::fflush(stdout) == 0 && std::ferror(stdout) == 0; // long texts were written before
-        if (!taken && is_result)
+        if (!taken && is_result && !is_reader_gone())
             return complain("standard output takes no more: the result is incomplete; check free space",
                             vkvol::exit_render_failed);
         return code;
@@ -76,8 +86,11 @@ int run_and_complain(int argc, char** argv) {
         return complain(e.what(), vkvol::exit_bad_input);
     } catch (const vkvol::DeviceError& e) {
         return complain(e.what(), vkvol::exit_no_device);
+    } catch (const vkvol::Interrupted& e) {
+        return complain(e.what(), vkvol::exit_interrupted);
     } catch (const std::bad_alloc&) {
-        return complain("out of memory; use a smaller picture or a quantised grid", vkvol::exit_render_failed);
+        return complain("out of memory; use a smaller picture, fewer at a time, or a quantised grid",
+                        vkvol::exit_render_failed);
     } catch (const std::exception& e) {
         return complain(e.what(), vkvol::exit_render_failed);
     }

@@ -205,8 +205,8 @@ void print_summary(const MergeOptions& options, const MergeResult& result) {
     std::string outputs;
     for (const std::filesystem::path& output : options.outputs)
         outputs += (outputs.empty() ? "" : ", ") + output.string();
-    fmt::print("{}: {} images, up to {} samples per pixel\n", outputs, options.inputs.size(),
-               *std::max_element(result.film.samples.begin(), result.film.samples.end()));
+    tell(stdout, "{}: {} images, up to {} samples per pixel\n", outputs, options.inputs.size(),
+         *std::max_element(result.film.samples.begin(), result.film.samples.end()));
 }
 
 } // namespace

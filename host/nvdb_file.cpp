@@ -8,6 +8,7 @@
 #include <zlib.h>
 
 #include "error.h"
+#include "input_file.h"
 #include "one_line.h"
 
 namespace vkvol {
@@ -24,11 +25,11 @@ constexpr std::uint64_t best_compression = 1040;
 
 class Reader {
 public:
-    explicit Reader(const std::filesystem::path& file) : file_(file), stream_(file, std::ios::binary) {
+    explicit Reader(const std::filesystem::path& file) : file_(file) {
+        check_input_file(file, "");
+        stream_.open(file, std::ios::binary);
         if (!stream_)
-            throw InputError(fmt::format("{}: cannot be opened: {}; check the path in the scene (it starts from the "
-                                         "scene file's directory), or name another file with --grid",
-                                         file.string(), std::strerror(errno)));
+            throw InputError(fmt::format("{}: cannot be opened: {}", file.string(), std::strerror(errno)));
         std::error_code error;
         size_ = std::filesystem::file_size(file, error);
         if (error)

@@ -1,9 +1,7 @@
 #include "obj_file.h"
 
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
@@ -12,6 +10,7 @@
 #include <tiny_obj_loader.h>
 
 #include "error.h"
+#include "input_file.h"
 #include "one_line.h"
 #include "xml_reader.h"
 
@@ -22,20 +21,8 @@ namespace {
 constexpr double largest_coordinate = largest_length;
 
 std::string read_text(const std::filesystem::path& path) {
-    // Devices and pipes may have no end.
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(path, error);
-    const bool is_other = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
-    std::ifstream stream;
-    if (!is_other)
-        stream.open(path, std::ios::binary);
-    if (is_other || !stream)
-        throw InputError(fmt::format("{}: cannot be opened: {}; check the path in the scene (it starts from the scene "
-                                     "file's directory)",
-                                     path.string(),
-                                     std::filesystem::is_directory(status) ? "it is a directory"
-                                     : is_other                            ? "it is no regular file"
-                                                                           : std::strerror(errno)));
+    check_input_file(path, "check the path in the scene (it starts from the scene file's directory)");
+    std::ifstream stream(path, std::ios::binary);
     std::string text{std::istreambuf_iterator<char>(stream), {}};
     if (stream.bad())
         throw InputError(fmt::format("{}: cannot be read; check the disk, or copy the file again", path.string()));

@@ -5,7 +5,7 @@
 
 namespace vkvol {
 
-// One line of sane length, whatever the file holds.
+// One line of sane length, whatever the file holds: white space becomes a space, other control characters \\xNN.
 std::string one_line(std::string message);
 
 } // namespace vkvol

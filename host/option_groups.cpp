@@ -22,11 +22,33 @@ std::vector<std::string> option_names(const CLI::App& app) {
     return names;
 }
 
+// What is empty came from a variable that was not set; CLI11 would take the next word for the value of `--name=`.
+void check_no_empty_word(const CLI::App& app, const std::vector<std::string>& arguments) {
+    const auto fail_empty = [&app](const std::string& name) {
+        const CLI::Option* option = app.get_option_no_throw(name);
+        std::string expected = option ? option->get_option_text() : "";
+        expected = expected.substr(0, expected.find(" ["));
+        fail_command_line(fmt::format("{}: is empty{}; see {} --help", name,
+                                      expected.empty() ? "" : "; expected " + expected, app.get_name()));
+    };
+    for (std::size_t i = 0; i < arguments.size() && arguments[i] != "--"; ++i) {
+        const std::string& word = arguments[i];
+        if (word.size() > 3 && word.starts_with("--") && word.find('=') == word.size() - 1)
+            fail_empty(word.substr(0, word.size() - 1));
+        const CLI::Option* before = i > 0 ? app.get_option_no_throw(arguments[i - 1]) : nullptr;
+        if (word.empty() && before && before->get_items_expected_min() > 0)
+            fail_empty(arguments[i - 1]);
+        if (word.empty())
+            fail_command_line(fmt::format("word {} is empty; see {} --help", i + 1, app.get_name()));
+    }
+}
+
 } // namespace
 
 bool run_parser(CLI::App& app, const std::vector<std::string>& arguments, Options& options) {
     app.allow_extras(); // so that the hint can be ours
     app.get_formatter()->column_width(34);
+    check_no_empty_word(app, arguments);
     try {
         app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::CallForHelp&) {
@@ -38,7 +60,8 @@ bool run_parser(CLI::App& app, const std::vector<std::string>& arguments, Option
         std::replace(message.begin(), message.end(), '\n', ' ');
         fail_command_line(fmt::format("{}; see {} --help", message, app.get_name()));
     }
-    const std::vector<std::string> rest = app.remaining();
+    std::vector<std::string> rest = app.remaining();
+    std::erase(rest, "--"); // it has done its work
     for (const std::string& argument : rest)
         if (argument.size() > 1 && argument[0] == '-') {
             const std::string name = argument.substr(0, argument.find('='));
@@ -62,13 +85,28 @@ CLI::Validator in_range(double low, double high) {
         "");
 }
 
+CLI::Validator whole_number(long long low, long long high) {
+    return CLI::Validator(
+        [low, high](std::string& text) -> std::string {
+            long long value = 0;
+            const char* const begin = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
+            const char* const end = text.data() + text.size();
+            const auto [last, error] = std::from_chars(begin, end, value);
+            if (error != std::errc() || last != end || value < low || value > high)
+                return fmt::format("'{}' is not a whole number from {} to {}", text, low, high);
+            text = std::to_string(value); // CLI11 takes a leading 0 for a sign of octal numbers
+            return "";
+        },
+        "");
+}
+
 void add_size_options(CLI::App& app, RenderOptions& render) {
     app.add_option("--width", render.width, "Pixels across; the view stays, and the shape too if given alone")
-        ->check(CLI::Range(1, 65536))
+        ->transform(whole_number(1, 65536))
         ->option_text("W [scene]")
         ->group("Picture");
     app.add_option("--height", render.height, "Pixels down; likewise")
-        ->check(CLI::Range(1, 65536))
+        ->transform(whole_number(1, 65536))
         ->option_text("H [scene]")
         ->group("Picture");
 }

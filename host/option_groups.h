@@ -15,6 +15,11 @@ bool run_parser(CLI::App& app, const std::vector<std::string>& arguments, Option
 // CLI::Range lets NaN pass.
 CLI::Validator in_range(double low, double high);
 
+inline constexpr long long max_seed = 4294967295;
+
+// For `transform`: 1e2, 010 and 1.0 are none, and the range is said.
+CLI::Validator whole_number(long long low, long long high);
+
 // An option that may be given several times.
 template <typename T> CLI::Option* add_list(CLI::App& app, const char* name, std::vector<T>& list, const char* help) {
     return app.add_option(name, list, help)

@@ -77,7 +77,7 @@ void add_picture_options(CLI::App& app, RenderOptions& render, RenderTexts& text
 void add_sampling_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
     const char* group = "Sampling";
     app.add_option("--spp", render.spp, "Samples per pixel, in place of rayPerPixelCount")
-        ->check(CLI::Range(1u, max_samples))
+        ->transform(whole_number(1, max_samples))
         ->option_text("N [scene]")
         ->group(group);
     app.add_option("--time", texts.time,
@@ -85,11 +85,12 @@ void add_sampling_options(CLI::App& app, RenderOptions& render, RenderTexts& tex
         ->option_text("T")
         ->group(group);
     app.add_option("--seed", render.seed, "Another seed gives another, independent noise pattern")
+        ->transform(whole_number(0, max_seed))
         ->option_text("S [0]")
         ->group(group);
     app.add_option("--sample-offset", render.sample_offset,
                    "Number of the first sample; runs with the same seed and disjoint ranges can be merged")
-        ->check(CLI::Range(0u, max_samples))
+        ->transform(whole_number(0, max_samples))
         ->option_text("K [0]")
         ->group(group);
     app.add_option(
@@ -127,7 +128,7 @@ void add_trace_options(CLI::App& app, RenderOptions& render, RenderTexts& texts)
     const char* group = "One path";
     app.add_option("--pixel", texts.pixel, "This pixel of the picture alone")->option_text("X,Y")->group(group);
     app.add_option("--sample", texts.sample, "This sample of it alone")
-        ->check(CLI::Range(0u, max_samples))
+        ->transform(whole_number(0, max_samples))
         ->option_text("K")
         ->group(group);
     app.add_flag("--trace", render.trace, "Print that path's vertices; pictures only where -o says so")->group(group);
@@ -145,19 +146,37 @@ std::array<int, 2> parse_pixel(const std::string& text) {
     return pixel;
 }
 
-// One pixel is a crop, and one sample a range of one.
-void finish_trace(RenderOptions& render, const RenderTexts& texts, std::optional<std::uint32_t> sample) {
-    if (!render.trace && texts.pixel.empty() && !sample)
+void check_trace_complete(const RenderOptions& render, const RenderTexts& texts) {
+    std::vector<std::string> missing;
+    if (texts.pixel.empty())
+        missing.push_back("--pixel X,Y");
+    if (!texts.sample)
+        missing.push_back("--sample K");
+    if (!render.trace)
+        missing.push_back("--trace");
+    if (missing.empty())
         return;
-    if (!render.trace || texts.pixel.empty() || !sample)
-        fail_command_line("--pixel X,Y, --sample K and --trace belong together: they follow one path");
+    std::string instead;
+    if (missing.size() == 2 && !texts.pixel.empty()) {
+        const auto [x, y] = parse_pixel(texts.pixel);
+        instead = fmt::format("; for a picture of that pixel alone, give --crop {},{},{},{}", x, x + 1LL, y, y + 1LL);
+    }
+    fail_command_line(fmt::format("--pixel X,Y, --sample K and --trace follow one path together: add {}{}",
+                                  fmt::join(missing, " and "), instead));
+}
+
+// One pixel is a crop, and one sample a range of one.
+void finish_trace(RenderOptions& render, const RenderTexts& texts) {
+    if (!render.trace && texts.pixel.empty() && !texts.sample)
+        return;
+    check_trace_complete(render, texts);
     if (render.crop || render.spp || render.time_limit || render.sample_offset != 0 || render.checkpoint ||
         render.resume)
         fail_command_line("--trace follows one path; --crop, --spp, --time, --sample-offset, --checkpoint and --resume "
                           "are of no use with it");
     const auto [x, y] = parse_pixel(texts.pixel);
     render.crop = CropRequest{{double(x), x + 1.0, double(y), y + 1.0}, false};
-    render.sample_offset = *sample;
+    render.sample_offset = *texts.sample;
     render.spp = 1;
 }
 
@@ -176,7 +195,7 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
         render.checkpoint = parse_duration(texts.checkpoint, "--checkpoint");
     if (!texts.crop.empty())
         render.crop = parse_crop(texts.crop);
-    finish_trace(render, texts, texts.sample);
+    finish_trace(render, texts);
     for (const std::string& define : texts.defines)
         add_define(render.defines, define);
     render.progress = choose<ProgressStyle>(

@@ -87,14 +87,14 @@ void Progress::draw_bar(double fraction, const std::string& status) {
         line += fmt::format("[{:#<{}}{:.<{}}] ", "", full, "", cells - full);
     }
     line += status.substr(0, std::size_t(std::max(0, terminal_width(out_) - 8)));
-    tell(out_, "{}", line);
+    put(out_, line);
     std::fflush(out_);
     drawn_ = true;
 }
 
 void Progress::finish() {
     if (drawn_) {
-        tell(out_, "\r\033[K");
+        put(out_, "\r\033[K");
         std::fflush(out_);
     }
     drawn_ = false;

@@ -86,7 +86,7 @@ bool has_samples(const Film& film) {
 
 void check_result(const Device& device, const RenderResult& result) {
     for (const std::string& message : device.validation_messages())
-        tell(stderr, "vkvol: validation: {}\n", message);
+        tell(stderr, "vkvol: validation: {}", message + "\n"); // of several lines
     if (!device.validation_messages().empty())
         throw RenderError(fmt::format("the validation layer has {} objections", device.validation_messages().size()));
     if (result.counts.queue_overflows > 0)
@@ -113,7 +113,7 @@ int render_scene(const RenderOptions& options, const Scene& scene, CheckpointFil
     if (!options.quiet)
         print_caps(options, result);
     if (options.trace)
-        tell(stdout, "{}", trace_table(result.trace, result.trace_origin, scene.background));
+        put(stdout, trace_table(result.trace, result.trace_origin, scene.background));
     else if (!options.quiet)
         print_summary(options, device, result);
     if (result.interrupted)
@@ -126,6 +126,7 @@ int render_scene(const RenderOptions& options, const Scene& scene, CheckpointFil
 int run_render(const RenderOptions& options) {
     install_interrupt_handler();
     const Scene scene = load(options);
+    print_reading(options);
     print_warnings(options, scene.warnings);
     CheckpointFile checkpoint(options);
     check_files(options, scene, checkpoint);

@@ -1,6 +1,7 @@
 #include "render_notes.h"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 
 #include "messages.h"
@@ -16,7 +17,10 @@ std::string samples_text(const Film& film) {
     return *most == 1 ? "1 sample" : fmt::format("{} samples", *most);
 }
 
+// As a shell reads it, also where printable() had to write a control character otherwise.
 std::string quoted(const std::string& text) {
+    if (const std::string shown = printable(text); shown != text && text.find_first_of("'\\") == std::string::npos)
+        return "$'" + shown + "'";
     std::string result = "'";
     for (const char c : text)
         result += c == '\'' ? "'\\''" : std::string(1, c);
@@ -47,6 +51,13 @@ void print_warnings(const RenderOptions& options, const std::vector<std::string>
     if (!options.quiet)
         for (const std::string& warning : warnings)
             tell(stderr, "vkvol: warning: {}\n", warning);
+}
+
+void print_reading(const RenderOptions& options) {
+    const std::array<double, 4> corner = {0.0, 1.0, 0.0, 1.0};
+    if (!options.quiet && !options.trace && options.crop && !options.crop->fractions && options.crop->window == corner)
+        tell(stderr, "vkvol: note: --crop 0,1,0,1 is the first pixel alone: without a dot, these are pixels; the whole "
+                     "picture is 0.0,1.0,0.0,1.0\n");
 }
 
 void print_caps(const RenderOptions& options, const RenderResult& result) {

@@ -8,6 +8,9 @@ namespace vkvol {
 
 void print_warnings(const RenderOptions& options, const std::vector<std::string>& warnings);
 
+// Where the command line can be read in two ways: which was taken.
+void print_reading(const RenderOptions& options);
+
 // One line for each kind of thing that makes the picture less than it claims to be; for samples that were not finite
 // also the command that follows their path.
 void print_caps(const RenderOptions& options, const RenderResult& result);

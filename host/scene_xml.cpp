@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <fstream>
 
 #include "error.h"
+#include "input_file.h"
 #include "scene_reader.h"
 
 namespace vkvol {
@@ -13,19 +13,11 @@ namespace vkvol {
 namespace {
 
 std::string read_file(const std::filesystem::path& file) {
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status))
-        throw InputError(fmt::format("{}: no such scene file", file.string()));
-    if (std::filesystem::is_directory(status))
-        throw InputError(fmt::format("{}: is a directory; expected a scene file (.xml)", file.string()));
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream)
-        throw InputError(fmt::format("{}: cannot be opened for reading; check its permissions", file.string()));
     constexpr std::size_t limit = 16 << 20;
-    std::string text(limit + 1, '\0');
-    stream.read(text.data(), std::streamsize(text.size()));
-    text.resize(std::size_t(stream.gcount()));
+    std::error_code error;
+    if (std::filesystem::is_directory(file, error))
+        throw InputError(fmt::format("{}: is a directory; expected a scene file (.xml)", file.string()));
+    std::string text = read_input_text(file, limit, "name a scene file (.xml)");
     if (text.size() > limit)
         throw InputError(fmt::format("{}: larger than 16 MiB; expected a scene file (.xml)", file.string()));
     return text;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "error.h"
+#include "input_file.h"
 #include "one_line.h"
 
 namespace vkvol {
@@ -48,12 +49,14 @@ struct Descriptor {
 
 class Walk {
 public:
-    explicit Walk(const std::filesystem::path& file) : file_(file), stream_(file, std::ios::binary) {
+    explicit Walk(const std::filesystem::path& file) : file_(file) {
+        check_input_file(file, "");
+        stream_.open(file, std::ios::binary);
         std::error_code error;
         size_ = std::filesystem::file_size(file, error);
         if (!stream_ || error)
-            throw InputError(fmt::format("{}: cannot be opened: {}; check the path", file.string(),
-                                         error ? error.message() : std::strerror(errno)));
+            throw InputError(
+                fmt::format("{}: cannot be opened: {}", file.string(), error ? error.message() : std::strerror(errno)));
     }
 
     void walk(const char* grid) {

@@ -15,11 +15,6 @@ namespace {
 
 // Runs `use` on the opened file; OpenVDB's exceptions become InputErrors.
 template <class Use> auto with_file(const std::filesystem::path& path, const char* grid, Use&& use) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored))
-        throw InputError(fmt::format("{}: no such file; check the path (it is taken relative to the scene file, or to "
-                                     "the current directory on the command line)",
-                                     path.string()));
     check_vdb(path, grid);
     try {
         openvdb::initialize();

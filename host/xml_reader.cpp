@@ -87,6 +87,18 @@ std::string element_hint(const std::string& name, const std::string& parent, std
     return name_hint("<" + name + ">", known);
 }
 
+// By the mark at the beginning, or by the zeros beside its letters; null: none that is not read.
+const char* foreign_encoding(const std::string& text) {
+    using namespace std::string_literals;
+    for (const std::string& mark : {"\xff\xfe\0\0"s, "\0\0\xfe\xff"s, "<\0\0\0"s, "\0\0\0<"s})
+        if (text.starts_with(mark))
+            return "UTF-32";
+    for (const std::string& mark : {"\xff\xfe"s, "\xfe\xff"s, "<\0"s, "\0<"s})
+        if (text.starts_with(mark))
+            return "UTF-16";
+    return nullptr;
+}
+
 } // namespace
 
 void XmlDocument::warn(const std::string& place, const std::string& message) {
@@ -118,6 +130,8 @@ XmlDocument::XmlDocument(const std::string& text, std::filesystem::path file,
 }
 
 void XmlDocument::parse() {
+    if (const char* encoding = foreign_encoding(text_))
+        fail_at(file_.string(), fmt::format("is {}; save it as UTF-8", encoding));
     const pugi::xml_parse_result result =
         document_.load_buffer_inplace(buffer_.data(), buffer_.size(), pugi::parse_default, pugi::encoding_utf8);
     if (!result) {

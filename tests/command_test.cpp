@@ -122,6 +122,12 @@ TEST_CASE("--trace writes no picture that was not asked for", "[gpu][command]") 
     }
 }
 
+TEST_CASE("a crop that can be read in two ways says which was taken", "[gpu][command]") {
+    const Folder folder("");
+    CHECK_THAT(folder.vkvol("ball.xml --crop 0,1,0,1").text, Contains("is the first pixel alone"));
+    CHECK_THAT(folder.vkvol("ball.xml --crop 0.0,1,0,1").text, !Contains("first pixel"));
+}
+
 TEST_CASE("--resume without a checkpoint begins, with a damaged one refuses, and when done leaves none",
           "[gpu][command][checkpoint]") {
     const Folder folder("");

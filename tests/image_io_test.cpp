@@ -81,7 +81,25 @@ TEST_CASE("an EXR file holds every channel, the crop and the metadata", "[cpu][i
     CHECK(input->spec().channelnames ==
           std::vector<std::string>{"R", "G", "B", "samples", "variance.R", "variance.G", "variance.B"});
     CHECK(input->spec().get_string_attribute("compression") == "zip");
-    CHECK(input->spec().format == OIIO::TypeDesc::FLOAT);
+    for (int channel = 0; channel < 7; ++channel)
+        CHECK(input->spec().channelformat(channel) == (channel == 3 ? OIIO::TypeUInt32 : OIIO::TypeFloat));
+}
+
+TEST_CASE("samples are whole numbers, and may be floats as they once were", "[cpu][image_io]") {
+    const Scratch scratch;
+    Film film = constant(1, 2, 3);
+    film.samples = {0, 16777217, 4294967295, 1}; // the second is no float
+    write_exr(scratch.path / "a.exr", film, {});
+    CHECK(read_exr(scratch.path / "a.exr").samples == film.samples);
+
+    OIIO::ImageSpec spec(2, 2, 4, OIIO::TypeDesc::FLOAT);
+    spec.channelnames = {"R", "G", "B", "samples"};
+    const std::vector<float> pixels = {1, 2, 3, 8, 1, 2, 3, 8, 1, 2, 3, 8, 1, 2, 3, 1024};
+    const auto output = OIIO::ImageOutput::create("old.exr");
+    REQUIRE(output->open((scratch.path / "old.exr").string(), spec));
+    output->write_image(OIIO::TypeDesc::FLOAT, pixels.data());
+    output->close();
+    CHECK(read_exr(scratch.path / "old.exr").samples == std::vector<std::uint32_t>{8, 8, 8, 1024});
 }
 
 TEST_CASE("values that are not finite survive an EXR file", "[cpu][image_io]") {

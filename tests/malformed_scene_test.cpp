@@ -98,7 +98,7 @@ TEST_CASE("media that a ray would never get through are refused, with the scene'
 
 TEST_CASE("errors of a scene's files name the line that names the file", "[cpu][xml]") {
     CHECK_THAT(render_error_of("<sigma_a>1</sigma_a>\n<densityField>missing.nvdb</densityField>"),
-               StartsWith("s.xml:3:1: missing.nvdb: cannot be opened"));
+               StartsWith("s.xml:3:1: missing.nvdb: no such file"));
     CHECK_THAT(render_error_of("<models><model>missing.obj</model></models>"), StartsWith("s.xml:2:1: missing.obj: "));
     // One from the command line has no line.
     CHECK(parse("<sphere/>", {}, {"other.nvdb", {}}).volumes.at(0).place.empty());

@@ -189,3 +189,42 @@ TEST_CASE("crops are pixels or fractions", "[cpu][options]") {
     const Crop whole = resolve_crop(std::nullopt, Picture{});
     CHECK((whole.x0 == 0 && whole.x1 == 400 && whole.y1 == 400));
 }
+
+TEST_CASE("numbers out of range say the range", "[cpu][options]") {
+    for (const char* width : {"0", "65537", "1e2", "-1", "1.5", "0x10", "12px"})
+        CHECK_THAT(error_of({"s.xml", "--width", width}), Catch::Contains("--width") && Catch::Contains(width) &&
+                                                              Catch::Contains("a whole number from 1 to 65536"));
+    CHECK_THAT(error_of({"s.xml", "--seed", "4294967296"}), Catch::Contains("a whole number from 0 to 4294967295"));
+    CHECK_THAT(error_of({"bench", "s.xml", "--seed", "-1"}), Catch::Contains("a whole number from 0 to 4294967295"));
+    CHECK_THAT(error_of({"s.xml", "--spp", "1e3"}), Catch::Contains("a whole number from 1 to 2147483647"));
+    CHECK(parse({"s.xml", "--width", "010"}).render.width.value() == 10); // not eight
+    CHECK(parse({"s.xml", "--seed", "4294967295"}).render.seed == 4294967295u);
+}
+
+TEST_CASE("what is empty is an error, and takes no other word's place", "[cpu][options]") {
+    for (const char* option : {"--device", "--report", "-o", "--output", "--grid", "-D", "--define", "--integrator",
+                               "--time", "--width", "--crop", "--checkpoint"}) {
+        CAPTURE(option);
+        CHECK_THAT(error_of({"s.xml", option, ""}), Catch::Contains(std::string(option) + ": is empty"));
+    }
+    CHECK_THAT(error_of({"s.xml", "--report", ""}), Catch::Contains("expected FILE.json"));
+    CHECK_THAT(error_of({"--report=", "s.xml"}), Catch::Contains("--report: is empty"));
+    CHECK_THAT(error_of({"bench", "s.xml", "--reference", ""}), Catch::Contains("--reference: is empty"));
+    CHECK_THAT(error_of({""}), Catch::Contains("word 1 is empty"));
+    CHECK_THAT(error_of({"s.xml", "-q", ""}), Catch::Contains("word 3 is empty"));
+    CHECK(parse({"s.xml", "-D", "key="}).render.defines.at("key").empty());
+}
+
+TEST_CASE("after -- nothing is an option", "[cpu][options]") {
+    CHECK(parse({"--", "s.xml"}).render.scene == "s.xml");
+    CHECK(parse({"--spp", "4", "--", "-s.xml"}).render.scene == "-s.xml");
+    CHECK(parse({"info", "--", "-a.nvdb"}).info_file == "-a.nvdb");
+    CHECK_THAT(error_of({"--", "s.xml", "t.xml"}), Catch::Contains("unexpected argument 't.xml'"));
+}
+
+TEST_CASE("half of a path to follow names the other half", "[cpu][options]") {
+    CHECK_THAT(error_of({"s.xml", "--pixel", "8,9"}),
+               Catch::Contains("add --sample K and --trace") && Catch::Contains("--crop 8,9,9,10"));
+    CHECK_THAT(error_of({"s.xml", "--trace"}), Catch::Contains("add --pixel X,Y and --sample K"));
+    CHECK_THAT(error_of({"s.xml", "--trace", "--pixel", "8,9"}), Catch::EndsWith("add --sample K"));
+}

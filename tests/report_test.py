@@ -205,6 +205,17 @@ class BadInput(Folder):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertNotIn("Traceback", done.stderr)
 
+    def test_no_input_is_written_over(self):
+        bench = Path(made.write(self.folder.name, "cumulus.bench.json", made.cloud()))
+        link = bench.with_name("link.html")
+        link.symlink_to(bench)
+        for output in (bench, link):
+            before = bench.read_bytes()
+            done = subprocess.run([sys.executable, ROOT / "tools" / "report", bench, "-o", output], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("would be lost", done.stderr)
+            self.assertEqual(bench.read_bytes(), before)
+
 
 class Numbers(unittest.TestCase):
     def test_they_are_written_as_people_do(self):

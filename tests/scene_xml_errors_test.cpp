@@ -159,7 +159,7 @@ TEST_CASE("garbage never gets further than an InputError", "[cpu][xml]") {
 }
 
 TEST_CASE("scene files that cannot be read", "[cpu][xml]") {
-    CHECK_THROWS_WITH(load_scene("no/such.xml"), "no/such.xml: no such scene file");
+    CHECK_THROWS_WITH(load_scene("no/such.xml"), "no/such.xml: no such file; name a scene file (.xml)");
     CHECK_THROWS_WITH(load_scene(std::string(VKVOL_SOURCE_DIR) + "/scenes"), Catch::Contains("is a directory"));
     CHECK_THROWS_AS(load_scene("/dev/zero"), InputError);
 }

@@ -174,6 +174,8 @@ def options():
     chosen = parser.parse_args()
     if min(chosen.runs, chosen.width, chosen.spp) < 1:
         parser.error("--runs, --width and --spp must be at least 1")
+    if os.path.exists(chosen.scene) and os.path.exists(chosen.output) and os.path.samefile(chosen.scene, chosen.output):
+        parser.error(f"{chosen.output} is the scene, and would be lost to the results; give another name with -o")
     if not (Path(chosen.build) / "vkvol").exists():
         parser.error(f"there is no vkvol in {chosen.build}; build it, or say where it is with --build")
     return chosen

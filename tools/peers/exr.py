@@ -43,7 +43,7 @@ def write(path, mean, variance, samples):
 
     def attribute(name, kind, value):
         return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<I", len(value)) + value
-    channels = b"".join(name.encode() + b"\0" + struct.pack("<IIII", 2, 0, 1, 1) for name in names) + b"\0"
+    channels = b"".join(name.encode() + b"\0" + struct.pack("<IIII", 0 if name == "samples" else 2, 0, 1, 1) for name in names) + b"\0"
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
     header = b"v/1\x01" + struct.pack("<I", 2) + b"".join((
         attribute("channels", "chlist", channels), attribute("compression", "compression", b"\0"),
@@ -57,4 +57,4 @@ def write(path, mean, variance, samples):
         file.write(header + struct.pack(f"<{height}Q", *(first + y * (8 + row_bytes) for y in range(height))))
         for y in range(height):
             file.write(struct.pack("<iI", y, row_bytes))
-            file.write(b"".join(images[name][y].astype("<f4").tobytes() for name in names))
+            file.write(b"".join(images[name][y].astype("<u4" if name == "samples" else "<f4").tobytes() for name in names))

@@ -1,0 +1,174 @@
+// What users do besides what they are told: names with anything in them, pipes, signals, readers who leave, files that
+// may not be read.
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "error.h"
+#include "input_file.h"
+#include "missing_field.h"
+#include "printable.h"
+#include "scene_xml.h"
+#include "support/command_folder.h"
+#include "test_paths.h"
+
+using namespace vkvol;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string wicked = "b\xe9\x1b[31m.xml"; // Latin-1, and red
+
+// A shell's script in that folder, with the program as $vkvol.
+Run shell(const Folder& folder, const std::string& script) {
+    return run(fmt::format("cd '{}' && vkvol='{}' && {{ {}\n}}", folder.file("").string(), VKVOL_BINARY, script));
+}
+
+// Root may read everything; nobody may not.
+class AsNobody {
+public:
+    AsNobody() : was_root_(geteuid() == 0) {
+        if (was_root_)
+            REQUIRE(seteuid(65534) == 0);
+    }
+    ~AsNobody() {
+        if (was_root_ && seteuid(0) != 0)
+            std::abort();
+    }
+
+private:
+    bool was_root_;
+};
+
+} // namespace
+
+TEST_CASE("what is printed gives the terminal no orders", "[cpu][command]") {
+    for (const char* plain : {"", "scene.xml", "caf\xc3\xa9", "\xe6\x97\xa5\xe6\x9c\xac", "\xf0\x9f\x8c\xa9", "a\\b"})
+        CHECK(printable(plain) == plain);
+    CHECK(printable("a\x1b[31mb") == "a\\x1b[31mb");
+    CHECK(printable("a\nb\x7f") == "a\\x0ab\\x7f");
+    CHECK(printable("caf\xe9!") == "caf\\xe9!");
+    CHECK(printable("\xc2\x9b") == "\\xc2\\x9b"); // control sequences begin so, too
+    for (const char* bad : {"\xc0\xaf", "\xe0\x80\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe6\x97", "\xff", "\x80"})
+        CHECK(printable(bad).find_first_not_of("\\x0123456789abcdef") == std::string::npos);
+}
+
+TEST_CASE("a scene of any name renders, and its report is JSON", "[gpu][command]") {
+    const Folder folder("");
+    fs::copy_file(folder.file("ball.xml"), folder.file(wicked));
+    const Run run = folder.vkvol(fmt::format("'{}' --report r.json", wicked));
+    CHECK(run.code == exit_done);
+    CHECK(run.text.find('\x1b') == std::string::npos);
+    CHECK_THAT(run.text, Contains("b\\xe9\\x1b[31m.exr"));
+    CHECK(nlohmann::json::parse(folder.text("r.json"))["samplesPerPixel"]["least"] == 8);
+    for (const std::string& name : {std::string("none-") + wicked, std::string("a\nvkvol: error: b.xml")}) {
+        const Run missing = folder.vkvol(fmt::format("'{}'", name));
+        CHECK(missing.code == exit_bad_input);
+        CHECK(missing.text.find('\x1b') == std::string::npos);
+        CHECK(std::count(missing.text.begin(), missing.text.end(), '\n') == 1);
+    }
+}
+
+TEST_CASE("the first signal ends the wait for a pipe", "[gpu][command]") {
+    const Folder folder("");
+    const std::string interrupted = "timeout --preserve-status -s INT 3 ";
+    for (const char* name : {"p.xml", "p.nvdb", "p.exr", "p.png"})
+        REQUIRE(mkfifo(folder.file(name).c_str(), 0600) == 0);
+    const Run scene = folder.vkvol("p.xml", interrupted);
+    CHECK(scene.code == exit_interrupted);
+    CHECK_THAT(scene.text, Contains("p.xml: interrupted while waiting"));
+    const Run slow = shell(folder, "{ echo '<options>'; sleep 9; } >p.xml & " + interrupted + "\"$vkvol\" p.xml");
+    CHECK(slow.code == exit_interrupted);
+    CHECK_THAT(slow.text, Contains("p.xml: interrupted while waiting"));
+    const Run grid = folder.vkvol("ball.xml --grid p.nvdb", interrupted);
+    CHECK(grid.code == exit_bad_input);
+    CHECK_THAT(grid.text, Contains("p.nvdb: is a pipe or device"));
+    const Run output = folder.vkvol("ball.xml -q -o p.png -o a.exr", interrupted);
+    CHECK(output.code == exit_render_failed);
+    CHECK_THAT(output.text, Contains("p.png: cannot be written: Interrupted") && Contains("start its reader first") &&
+                                Contains("; written: a.exr"));
+}
+
+TEST_CASE("pipes are read and written", "[gpu][command]") {
+    const Folder folder("");
+    REQUIRE(mkfifo(folder.file("p.png").c_str(), 0600) == 0);
+    const Run read = folder.vkvol("/dev/stdin -q -o a.png", "cat ball.xml |");
+    CHECK(read.code == exit_done);
+    const Run written =
+        shell(folder, "cat p.png >copy.png & \"$vkvol\" ball.xml -q -o p.png; code=$?; wait; exit $code");
+    CHECK(written.code == exit_done);
+    CHECK_FALSE(folder.text("a.png").empty());
+    CHECK(folder.text("copy.png") == folder.text("a.png"));
+}
+
+TEST_CASE("a reader who has seen enough is no error", "[gpu][command]") {
+    const Folder folder("");
+    REQUIRE(folder.vkvol("ball.xml -q -o a.exr").code == exit_done);
+    for (const char* trap : {"", "trap '' PIPE; "})
+        for (const std::string& arguments :
+             {std::string("info " VKVOL_TEST_FIELDS "/constant.nvdb"), std::string("integrators"),
+              std::string("integrators --json"), std::string("compare a.exr a.exr"), std::string("--help")}) {
+            CAPTURE(arguments);
+            const Run run = shell(folder, std::string(trap) + "{ sleep 0.2; \"$vkvol\" " + arguments +
+                                              "; echo code $? >&2; } | true");
+            CHECK(run.text == "code 0\n");
+        }
+    const Run full = shell(folder, "\"$vkvol\" integrators >/dev/full");
+    CHECK(full.code == exit_render_failed);
+    CHECK_THAT(full.text, Contains("check free space"));
+    const Run render = shell(folder, "{ sleep 0.2; \"$vkvol\" ball.xml -o b.exr; } | true; sleep 3");
+    CHECK(fs::exists(folder.file("b.exr")));
+}
+
+TEST_CASE("a relative XDG_CACHE_HOME is ignored", "[gpu][command]") {
+    const Folder folder("");
+    const std::string home = folder.file("").string();
+    CHECK(folder.vkvol("ball.xml -q", fmt::format("XDG_CACHE_HOME=here HOME='{}'", home)).code == exit_done);
+    CHECK_FALSE(fs::exists(folder.file("here/vkvol"))); // Mesa takes it
+    CHECK(fs::exists(folder.file(".cache/vkvol")));
+}
+
+TEST_CASE("a file that cannot be read says why", "[cpu][command]") {
+    const Folder folder("");
+    folder.write("closed.nvdb", "x");
+    fs::permissions(folder.file("closed.nvdb"), fs::perms::none);
+    {
+        const AsNobody nobody;
+        CHECK_THROWS_WITH(check_input_file(folder.file("closed.nvdb"), "hint"),
+                          Contains("Permission denied; check the permissions") && !Contains("hint"));
+    }
+    CHECK_THROWS_WITH(check_input_file(folder.file("none"), "hint"), Contains("none: no such file; hint"));
+    CHECK_THROWS_WITH(check_input_file(folder.file("ball.xml/none"), "hint"), Contains("no such file; hint"));
+    CHECK_THROWS_WITH(check_input_file(folder.file(""), "hint"), Contains("is a directory"));
+    CHECK_THROWS_WITH(check_input_file("/dev/null", "hint"), Contains("is a pipe or device"));
+    CHECK(read_input_text(folder.file("ball.xml"), 1 << 20, "") == folder.text("ball.xml"));
+}
+
+TEST_CASE("a scene in UTF-16 is called that", "[cpu][xml]") {
+    using namespace std::string_literals;
+    for (const std::string& text : {"\xff\xfe<\0o\0"s, "\xfe\xff\0<\0o"s, "<\0o\0"s, "\0<\0o"s})
+        CHECK_THROWS_WITH(parse_scene(text, "s.xml"), "s.xml: is UTF-16; save it as UTF-8");
+    CHECK_THROWS_WITH(parse_scene("\xff\xfe\0\0<\0\0\0"s, "s.xml"), "s.xml: is UTF-32; save it as UTF-8");
+    CHECK_NOTHROW(parse_scene("\xef\xbb\xbf<options/>", "s.xml")); // UTF-8 may have a mark
+}
+
+TEST_CASE("a missing field names the command that makes it", "[cpu][command]") {
+    CHECK_THAT(missing_field_hint("fields/cumulus.nvdb"), Contains("make_field cumulus -o fields/cumulus.nvdb`"));
+    CHECK_THAT(missing_field_hint("ramp-440-fp8.nvdb"),
+               Contains("make_field ramp --size 440 --type fp8 -o ramp-440-fp8.nvdb`"));
+    for (const char* other : {"mine.nvdb", "cumulus-mine.nvdb", "440.nvdb", ""})
+        CHECK_THAT(missing_field_hint(other), Contains("check the path"));
+    std::ifstream stream(VKVOL_SOURCE_DIR "/tools/make_field/recipes.cpp");
+    const std::string recipes((std::istreambuf_iterator<char>(stream)), {});
+    const std::regex name("\\{\"([a-z_0-9]+)\", \"");
+    std::set<std::string> there, known(recipe_names.begin(), recipe_names.end());
+    for (std::sregex_iterator at(recipes.begin(), recipes.end(), name), end; at != end; ++at)
+        there.insert((*at)[1]);
+    CHECK(there == known);
+}
