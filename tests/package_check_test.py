@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """Tests of tools/check_packages.py: what it reads from scripts and from dpkg, and that it names what is not listed."""
 import os
+import shutil
 import subprocess
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -70,6 +72,19 @@ class DebianPackages(unittest.TestCase):
     def test_of_alternatives_the_first_counts(self):
         all_ = self.packages(a="gone | b | chance", b="a", chance="")
         self.assertEqual(all_.closure(["a"]), {"a", "b"})
+
+
+class OtherSystems(unittest.TestCase):
+    def test_without_dpkg_the_whole_list_is_named_and_what_to_run(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for program in ("bash", "basename", "dirname", "fmt", "sed"):
+                os.symlink(shutil.which(program), os.path.join(folder, program))
+            done = subprocess.run([ROOT / "tools" / "demo.sh"], env={"PATH": folder}, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertIn("packages cannot be installed", done.stderr)
+        self.assertIn("tested on Debian 12 and 13", done.stderr)
+        for needed in ("libtinyobjloader-dev", "catch2", "cmake --preset release && cmake --build --preset release"):
+            self.assertIn(needed, done.stderr)
 
 
 # On the build that the tests belong to.

@@ -101,7 +101,7 @@ attempt() {
     local as=
     [ "$2" = root ] || as="runuser -u newcomer --"
     inside "cd /home/vkvol && $as tools/$3.sh" >"$log" 2>&1 || result=FAILED
-    row=$(printf '%-9s %-5s %-14s %-7s %5s  %s' "$1" "$2" "tools/$3.sh" $result $((SECONDS - start)) "$(circumstances "$log" | paste -sd , | sed 's/,/, /g')")
+    row=$(printf '%-9s %-5s %-14s %-7s %5s  %s' "$1" "$2" "tools/$3.sh" $result $((SECONDS - start)) "$(circumstances "$log" | paste -sd ';' | sed 's/;/, /g')")
     echo "$row"
     [ $result = ok ] || {
         failed=1
