@@ -62,7 +62,7 @@ void CheckpointFile::keep(const Checkpoint& checkpoint) {
         saved_ = checkpoint.done;
     } catch (const std::exception& error) {
         tell(stderr, "vkvol: warning: {}: {}\n", error.what(),
-             saved_ || from_ ? "the last checkpoint stays" : "there is no checkpoint yet");
+             is_checkpoint(path_) ? "the last checkpoint stays" : "there is no checkpoint yet");
     }
 }
 

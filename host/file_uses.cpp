@@ -69,12 +69,14 @@ void FileUses::check() const {
                                               both_names(output.file, input.file), input.what, output.what,
                                               output.option));
         for (std::size_t j = 0; j < i; ++j)
-            if (is_same_file(output.file, outputs_[j].file))
+            if (const Use& other = outputs_[j]; is_same_file(output.file, other.file)) {
+                const std::string names = both_names(output.file, other.file);
+                if (output.what == other.what)
+                    fail_command_line(fmt::format("{} named twice, as {}; once is enough", names, output.what));
                 fail_command_line(fmt::format("{} to be both {} and {}, and one would be lost; give {} another name "
                                               "with {}",
-                                              both_names(output.file, outputs_[j].file), outputs_[j].what, output.what,
-                                              output.what == outputs_[j].what ? "one of them" : output.what,
-                                              output.option));
+                                              names, other.what, output.what, output.what, output.option));
+            }
     }
 }
 
