@@ -43,8 +43,12 @@ glm::dvec3 box_center(const Mesh& mesh) {
 
 namespace {
 
+DensityField load_field(const GridFile& file, FieldCache* kept) {
+    return kept ? kept->take(file) : load_density_field(file);
+}
+
 // A file without that grid, or one that holds no heat, does not glow: a warning, no error.
-void load_temperature(const Volume& volume, const GridFile& file, LoadedVolume& loaded) {
+void load_temperature(const Volume& volume, const GridFile& file, FieldCache* kept, LoadedVolume& loaded) {
     const TemperatureEmission& emission = volume.temperature;
     if (emission.color * volume.sigma_a == Rgb(0.0))
         return;
@@ -53,7 +57,7 @@ void load_temperature(const Volume& volume, const GridFile& file, LoadedVolume& 
             fmt::format("{}: has no grid \"{}\": <emission> is without effect", file.path.string(), emission.grid));
         return;
     }
-    DensityField field = load_density_field({file.path, emission.grid});
+    DensityField field = load_field({file.path, emission.grid}, kept);
     if (field.active_voxels == 0)
         return;
     if (emission.model == TemperatureEmission::Model::blackbody) {
@@ -97,9 +101,9 @@ PilotScene pilot_scene(const Scene& scene, const Method& method, const DensityFi
 }
 
 // The cells' bounds are scaled after the controls are made: these bound the density itself.
-void load_grid(const Scene& scene, const Volume& volume, const Method& method, const GridFile& file,
+void load_grid(const Scene& scene, const Volume& volume, const Method& method, const GridFile& file, FieldCache* kept,
                LoadedVolume& loaded) {
-    DensityField field = load_density_field(file);
+    DensityField field = load_field(file, kept);
     if (field.active_voxels == 0)
         return;
     const double scale = scene.settings.majorant_scale;
@@ -114,12 +118,13 @@ void load_grid(const Scene& scene, const Volume& volume, const Method& method, c
     for (shared::ControlCell& cell : loaded.controls)
         cell.residual *= static_cast<float>(scale);
     loaded.field = std::move(field);
-    load_temperature(volume, file, loaded);
+    load_temperature(volume, file, kept, loaded);
 }
 
-void load_files(const Scene& scene, const Volume& volume, const Method& method, LoadedVolume& loaded) {
+void load_files(const Scene& scene, const Volume& volume, const Method& method, FieldCache* kept,
+                LoadedVolume& loaded) {
     if (const auto* file = std::get_if<GridFile>(&volume.shape))
-        load_grid(scene, volume, method, *file, loaded);
+        load_grid(scene, volume, method, *file, kept, loaded);
     if (const auto* files = std::get_if<MeshFiles>(&volume.shape)) {
         loaded.mesh = load_mesh(*files);
         loaded.bvh = build_bvh(*loaded.mesh, box_center(*loaded.mesh));
@@ -133,13 +138,13 @@ void load_files(const Scene& scene, const Volume& volume, const Method& method, 
 
 } // namespace
 
-LoadedVolume load_volume(const Scene& scene, const Method& method) {
+LoadedVolume load_volume(const Scene& scene, const Method& method, FieldCache* kept) {
     LoadedVolume loaded;
     const Volume* volume = find_volume(scene);
     if (!volume)
         return loaded;
     try {
-        load_files(scene, *volume, method, loaded);
+        load_files(scene, *volume, method, kept, loaded);
         check_limits(scene, loaded, method);
     } catch (const InputError& error) { // of the file, say; the scene says who asked for it
         if (volume->place.empty())
@@ -147,6 +152,16 @@ LoadedVolume load_volume(const Scene& scene, const Method& method) {
         throw InputError(fmt::format("{}: {}", volume->place, error.what()));
     }
     return loaded;
+}
+
+void keep_fields(FieldCache& kept, const Scene& scene, LoadedVolume volume) {
+    if (scene.volumes.empty() || !std::holds_alternative<GridFile>(scene.volumes.front().shape))
+        return;
+    const GridFile& file = std::get<GridFile>(scene.volumes.front().shape);
+    if (volume.field)
+        kept.keep(file, std::move(*volume.field));
+    if (volume.temperature)
+        kept.keep({file.path, scene.volumes.front().temperature.grid}, std::move(*volume.temperature));
 }
 
 } // namespace vkvol

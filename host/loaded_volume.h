@@ -7,6 +7,7 @@
 
 #include "bvh.h"
 #include "density_field.h"
+#include "field_cache.h"
 #include "majorant_grid.h"
 #include "method.h"
 
@@ -26,8 +27,11 @@ struct LoadedVolume {
     std::vector<std::string> warnings; // what the scene asks for and its files do not hold
 };
 
-// Opens the files, if the scene has any. Throws InputError.
-LoadedVolume load_volume(const Scene& scene, const Method& method);
+// Opens the files, if the scene has any. Throws InputError. `kept`: grids that need not be read again.
+LoadedVolume load_volume(const Scene& scene, const Method& method, FieldCache* kept = nullptr);
+
+// For the next load_volume, of what is on the device now.
+void keep_fields(FieldCache& kept, const Scene& scene, LoadedVolume volume);
 
 // The scene's one volume, or null. Throws InputError for several.
 const Volume* find_volume(const Scene& scene);

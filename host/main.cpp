@@ -76,7 +76,8 @@ int run_and_complain(int argc, char** argv) {
         const vkvol::Options options = vkvol::parse_options(argc, argv);
         const int code = run(options);
         // What a render prints is a word about its pictures; what the others print is their result.
-        const bool is_result = options.command != vkvol::Command::render || options.render.trace;
+        const bool is_result =
+            options.command != vkvol::Command::render || options.render.trace || options.render.dry_run;
         const bool taken = std::fflush(stdout) == 0 && std::ferror(stdout) == 0; // long texts were written before
         if (!taken && is_result && !is_reader_gone())
             return complain("standard output takes no more: the result is incomplete; check free space",

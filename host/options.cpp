@@ -5,6 +5,7 @@
 
 #include "bench_options.h"
 #include "error.h"
+#include "frames.h"
 #include "integrators.h"
 #include "nearest_name.h"
 #include "option_groups.h"
@@ -57,6 +58,7 @@ struct RenderTexts {
     std::vector<std::string> outputs;
     ToneTexts tone;
     std::optional<std::uint32_t> sample;
+    std::optional<std::string> frames;
     bool version = false;
 };
 
@@ -99,6 +101,11 @@ void add_sampling_options(CLI::App& app, RenderOptions& render, RenderTexts& tex
         ->option_text("NAME[:AXIS=CHOICE...] [scene]")
         ->group(group);
     add_scene_options(app, render, texts.defines, group);
+    app.add_option("-f,--frames", texts.frames,
+                   "Render these frames, each with its number as $F in the scene: 1..8, 1..48x4 or 1,5,9. Names of "
+                   "outputs may hold it as ####, %04d or $F4; else it comes before the extension")
+        ->option_text("FRAMES")
+        ->group(group);
 }
 
 void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
@@ -117,6 +124,9 @@ void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
         ->option_text("T")
         ->group("Output");
     app.add_flag("--resume", render.resume, "Go on from the checkpoint, to the same bits; without one, begin")
+        ->group("Output");
+    app.add_flag("--dry-run", render.dry_run,
+                 "Check scene, files, device and outputs, say what would be rendered, and render nothing")
         ->group("Output");
     app.add_flag("-q,--quiet", render.quiet, "Print errors only")->group("Output");
     app.add_flag("--strict", render.strict, "End with code 5 if a cap was hit or a sample was not finite")
@@ -198,6 +208,8 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
     finish_trace(render, texts);
     for (const std::string& define : texts.defines)
         add_define(render.defines, define);
+    if (texts.frames)
+        set_frames(render, *texts.frames);
     render.progress = choose<ProgressStyle>(
         "--progress", texts.progress,
         {{"auto", ProgressStyle::automatic}, {"json", ProgressStyle::json}, {"none", ProgressStyle::none}});

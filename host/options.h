@@ -39,6 +39,8 @@ struct RenderOptions {
     std::optional<std::filesystem::path> report;
     std::optional<double> checkpoint; // seconds between two
     bool resume = false;              // from the checkpoint, if there is one
+    std::vector<int> frames;          // of a sequence, by -f; empty: one picture
+    bool dry_run = false;             // check everything, render and write nothing
     bool trace = false;               // print the path's vertices; crop and sample range hold just one
     ProgressStyle progress = ProgressStyle::automatic;
     ToneMapping tone_mapping;

@@ -22,6 +22,8 @@ Examples:
   vkvol cloud.xml --time 5m -o cloud.exr           the best picture of five minutes
   vkvol cloud.xml --spp 64 --sample-offset 64 -o part2.exr   samples 64 to 127, for merge
   vkvol sweep.xml -D g=0.8 -o g0.8.exr             fills $g in the scene
+  vkvol turntable.xml -f 1..8 -o turn.####.png     eight frames: $F in the scene is 1, 2, ... 8
+  vkvol cloud.xml --dry-run                        is all well? what would be rendered?
   vkvol cloud.xml --spp 4096 --checkpoint 60s --resume   may be killed at any time, and started again
   vkvol cloud.xml --pixel 12,34 --sample 7 --trace       where that path went
 

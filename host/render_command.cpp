@@ -7,6 +7,7 @@
 #include <new>
 
 #include "checkpoint_file.h"
+#include "dry_run.h"
 #include "error.h"
 #include "file_uses.h"
 #include "image_io.h"
@@ -15,8 +16,10 @@
 #include "progress.h"
 #include "render_notes.h"
 #include "render_outputs.h"
+#include "render_session.h"
 #include "renderer.h"
 #include "scene_xml.h"
+#include "sequence.h"
 #include "trace.h"
 
 namespace vkvol {
@@ -53,9 +56,11 @@ void check_files(const RenderOptions& options, const Scene& scene, const Checkpo
     checkpoint.check();
 }
 
-RenderResult render_with_progress(const RenderOptions& options, const Scene& scene, const Device& device,
+RenderResult render_with_progress(const RenderOptions& options, const Scene& scene, RenderSession& session,
                                   CheckpointFile& file) {
     RenderJob job;
+    job.session = &session;
+    job.dry_run = options.dry_run;
     const std::optional<Checkpoint>& from = file.find();
     job.resume = from ? &*from : nullptr;
     if (options.checkpoint) {
@@ -67,14 +72,15 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
     job.seed = options.seed;
     job.sample_offset = options.sample_offset;
     job.time_limit = options.time_limit;
-    job.disk_cache = !options.no_cache;
+    job.disk_cache = !options.no_cache && !options.dry_run;
     job.interrupted = interrupted;
-    Progress progress(options.progress, options.quiet || options.trace, scene.settings.spp, options.time_limit);
+    Progress progress(options.progress, options.quiet || options.trace || options.dry_run, scene.settings.spp,
+                      options.time_limit);
     job.progress = [&](double samples, std::optional<double> noise) {
         progress.update(static_cast<std::uint32_t>(samples), noise);
     };
     try {
-        return render(device, scene, job);
+        return render(session.device(options), scene, job);
     } catch (const RenderError& error) {
         throw RenderError(error.what() + file.advice());
     }
@@ -94,12 +100,18 @@ void check_result(const Device& device, const RenderResult& result) {
                                       result.counts.queue_overflows));
 }
 
-int render_scene(const RenderOptions& options, const Scene& scene, CheckpointFile& checkpoint, RenderOutputs& outputs) {
-    const Device device({options.device, options.validate, options.robust});
+int render_scene(const RenderOptions& options, const Scene& scene, RenderSession& session, CheckpointFile& checkpoint,
+                 RenderOutputs& outputs) {
+    const Device& device = session.device(options);
     outputs.set_device(device.info());
-    const RenderResult result = render_with_progress(options, scene, device, checkpoint);
-    print_warnings(options, result.warnings);
+    const RenderResult result = render_with_progress(options, scene, session, checkpoint);
+    print_warnings(options, session.new_warnings(result.warnings));
     check_result(device, result);
+    if (options.dry_run) {
+        if (!options.quiet)
+            print_dry_run(options, scene, device, result);
+        return exit_done;
+    }
     if (!options.trace && !has_samples(result.film)) {
         print_caps(options, result);
         const std::string why = no_samples_text(result);
@@ -123,16 +135,21 @@ int render_scene(const RenderOptions& options, const Scene& scene, CheckpointFil
 
 } // namespace
 
-int run_render(const RenderOptions& options) {
-    install_interrupt_handler();
+void check_picture(const RenderOptions& options) {
+    const Scene scene = load(options);
+    resolve_crop(options.crop, scene.picture);
+    check_files(options, scene, CheckpointFile(options));
+}
+
+int render_picture(const RenderOptions& options, RenderSession& session) {
     const Scene scene = load(options);
     print_reading(options);
-    print_warnings(options, scene.warnings);
+    print_warnings(options, session.new_warnings(scene.warnings));
     CheckpointFile checkpoint(options);
     check_files(options, scene, checkpoint);
     RenderOutputs outputs(options, scene);
     try {
-        return render_scene(options, scene, checkpoint, outputs);
+        return render_scene(options, scene, session, checkpoint, outputs);
     } catch (const std::bad_alloc&) {
         outputs.fail("out of memory");
         throw;
@@ -140,6 +157,17 @@ int run_render(const RenderOptions& options) {
         outputs.fail(error.what());
         throw;
     }
+}
+
+int run_render(const RenderOptions& options) {
+    install_interrupt_handler();
+    if (!options.frames.empty())
+        return run_sequence(options);
+    RenderSession session;
+    const int code = render_picture(options, session);
+    if (options.dry_run && !options.quiet)
+        tell(stdout, "all is well: nothing is rendered, nothing written\n");
+    return code;
 }
 
 } // namespace vkvol

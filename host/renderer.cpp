@@ -11,6 +11,7 @@
 #include "integrators.h"
 #include "light_cache.h"
 #include "pilot_paths.h"
+#include "render_session.h"
 #include "scene_buffers.h"
 #include "scene_upload.h"
 #include "trace.h"
@@ -92,7 +93,7 @@ public:
           width_(static_cast<std::uint32_t>(job.crop.x1 - job.crop.x0)) {
         const Method method = choose_method(scene_);
         Stopwatch watch;
-        LoadedVolume volume = load_volume(scene_, method);
+        LoadedVolume volume = load_volume(scene_, method, job.session ? &job.session->fields() : nullptr);
         result_.load_seconds = watch.lap();
         result_.counts.cleaned_voxels = volume.field ? volume.field->cleaned : 0;
         result_.warnings.assign(scene_.warnings.begin() + std::ptrdiff_t(scene.warnings.size()), scene_.warnings.end());
@@ -119,6 +120,8 @@ public:
         if (job.checkpoint || job.resume)
             begin_identity(device, specialization, volume);
         result_.trace_origin = render_origin(scene_, volume);
+        if (job.session)
+            keep_fields(job.session->fields(), scene_, std::move(volume));
         volume = {};
         result_.upload_seconds = watch.lap();
         // Counters of the sky, which are read once a batch, have 32 bits.
@@ -126,7 +129,9 @@ public:
         most_batch_ = std::min<std::uint32_t>(tuning.most_batch, std::max<std::uint64_t>((1ull << 31) / pixels, 1));
         frame_.slots = tuning.slots;
         frame_.queue_capacity = queue_capacity(tuning);
-        PipelineCache cache(device, job.disk_cache);
+        std::optional<PipelineCache> own_cache;
+        const PipelineCache& cache =
+            job.session ? job.session->pipelines(job.disk_cache) : own_cache.emplace(device, job.disk_cache);
         BoundBuffers bound = buffers_->bound();
         if (job.trace) {
             trace_.emplace(device, commands_);
@@ -152,6 +157,8 @@ public:
     }
 
     RenderResult run() {
+        if (job_.dry_run)
+            return std::move(result_);
         watch_.lap();
         if (job_.resume)
             resume(*job_.resume);

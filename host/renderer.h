@@ -12,6 +12,8 @@
 
 namespace vkvol {
 
+class RenderSession;
+
 struct RenderJob {
     Crop crop; // the part of the picture to render
     std::uint32_t seed = 0;
@@ -28,6 +30,8 @@ struct RenderJob {
     std::function<void(const Checkpoint&)> checkpoint;
     const Checkpoint* resume = nullptr; // goes on from there
     bool trace = false;                 // record the vertices of the path; crop and samples leave just one
+    RenderSession* session = nullptr;   // of a sequence: its grids and pipelines are used and kept
+    bool dry_run = false;               // set up everything, and render nothing
 };
 
 struct RenderResult {

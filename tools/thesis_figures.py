@@ -19,7 +19,7 @@ SCENES = os.path.join(ROOT, "scenes", "thesis")
 def options():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--volumes", default=os.environ.get("VKVOL_VOLUMES"), metavar="DIR",
-                        help="folder of real volumes, searched before density_fields (default: $VKVOL_VOLUMES)")
+                        help="folder of real volumes, in place of those that make_field makes (default: $VKVOL_VOLUMES)")
     parser.add_argument("--spp-scale", type=float, default=1, metavar="X", help="multiplies each figure's samples per pixel")
     parser.add_argument("--size", type=int, default=180, metavar="N", help="pixels along the longer edge of a picture")
     parser.add_argument("--out", default=os.path.join(ROOT, "out", "thesis"), metavar="DIR")
@@ -33,36 +33,18 @@ def options():
 
 
 def find_field(name, chosen):
-    """(path, the Source it is of) of the first there is: the original, a stand-in, or a field that make_field makes."""
-    own = os.path.join(ROOT, "density_fields")
-    folders = [folder for folder in (chosen.volumes, own) if folder]
-    for source in FIELDS[name]:
-        for folder in folders:
-            path = os.path.join(folder, source.file)
-            if os.path.isfile(path):
-                return path, source
-    source = FIELDS[name][-1]
-    path = os.path.join(own, source.file)
-    print(f"making {path}", flush=True)
-    recipe = os.path.splitext(source.file)[0]
-    subprocess.run([os.path.join(chosen.build, "make_field"), recipe, "-o", path], check=True, stdout=subprocess.DEVNULL)
-    return path, source
-
-
-def moved_scene(path, source, folder):
-    """The scene for a field of another size and place: a similarity x -> scale x + offset of the camera, extinction
-    (per world unit, as in all these scenes) over scale, so that optical depths and thus the picture stay."""
-    tree = xml.parse(path)
-    camera = tree.find("camera")
-    for axis, offset in zip("xyz", source.offset):
-        camera.set(axis, "%.6g" % (source.scale * float(camera.get(axis, "0")) + offset))
-    for sigma in (tree.find("sigma_a"), tree.find("sigma_s")):
-        if sigma.get("unit") != "world":
-            raise ValueError(f"{path}: {sigma.tag} must be per world unit")
-        sigma.text = "%.6g" % (float(sigma.text) / source.scale)
-    result = os.path.join(folder, os.path.basename(path))
-    tree.write(result)
-    return result
+    """(path, the Source it is of) of the first there is: the original or a stand-in among the real volumes, or what make_field makes."""
+    *real, made = FIELDS[name]
+    for source in real if chosen.volumes else []:
+        path = os.path.join(chosen.volumes, source.file)
+        if os.path.isfile(path):
+            return path, source
+    path = os.path.join(ROOT, "density_fields", made.file)
+    if not os.path.isfile(path):
+        print(f"making {path}", flush=True)
+        recipe = os.path.splitext(made.file)[0]
+        subprocess.run([os.path.join(chosen.build, "make_field"), recipe, "-o", path], check=True, stdout=subprocess.DEVNULL)
+    return path, made
 
 
 def view_options(figure, path, source, chosen):
@@ -84,16 +66,13 @@ def render(figure, panel, chosen):
     report = os.path.join(chosen.out, name + ".json")
     keys, grid, source = dict(panel.keys), [], None
     try:
-        view_path = path
         if figure.field:
             file, source = find_field(figure.field, chosen)
             grid, result["field"] = ["--grid", file], source.description
-            keys.update({k: v for k, v in source.keys.items() if "$" + k in open(path).read()})
-            if (source.scale, source.offset) != (1, (0, 0, 0)):
-                path = moved_scene(path, source, chosen.out)
+            keys.update({k: v for k, v in source.keys.items() if "${" + k in open(path).read()})
         command = [os.path.join(chosen.build, "vkvol"), path, "-q", "--tonemap", "srgb", "-o", result["png"], "--report",
                    report, "--spp", str(max(1, round(figure.spp * chosen.spp_scale)))]
-        command += grid + view_options(figure, view_path, source, chosen)
+        command += grid + view_options(figure, path, source, chosen)
         for key, value in keys.items():
             command += ["-D", f"{key}={value}"]
         done = subprocess.run(command, capture_output=True, text=True)

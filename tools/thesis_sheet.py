@@ -15,23 +15,21 @@ import matplotlib.pyplot as pyplot  # after the choice of a backend that needs n
 
 @dataclass
 class Source:
-    """A file that can play a field. A point x of the original's world is at scale x + offset in this one's."""
+    """A file that can play a field."""
     file: str
     description: str
     original: bool = False
-    scale: float = 1
-    offset: tuple = (0, 0, 0)
     keys: dict = new(default_factory=dict)
 
 
 KELVIN = {"temperatureScale": "600", "temperatureOffset": "300"}
-FIELDS = {  # best first; the last one make_field can make
+FIELDS = {  # best first; the last one make_field makes, under the name that the scenes have for the original
     "bunny": [Source("bunny_cloud.nvdb", "", True),
               Source("bunny_cloud_standin.nvdb", "stand-in: cumulus shaped as a bunny"),
-              Source("cumulus.nvdb", "generated cumulus in place of the bunny", False, 1.2, (2, -3.8, 2.8))],
+              Source("bunny_cloud.nvdb", "generated cumulus in place of the bunny")],
     "fire": [Source("fire.nvdb", "", True, keys={"temperatureScale": "100", "temperatureOffset": "0"}),
              Source("plume_fire.nvdb", "stand-in: simulated fireball", keys=KELVIN),
-             Source("explosion.nvdb", "generated fireball in place of the fire", False, 0.45, (0.15, 4.5, 0), KELVIN)],
+             Source("fire.nvdb", "generated fireball in place of the fire", keys=KELVIN)],
 }
 
 

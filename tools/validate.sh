@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Heavier validation than tools/test.sh, in parts; names choose among them, and without any all are run.
 #   hard        scenes/hard on the device and by the reference, against the means that their files derive (2 minutes)
+#   scenes      every file under scenes/ by its name alone, small (2 minutes): tools/all_scenes.sh
 #   large       a grid of 342 MiB, larger than a storage buffer of Mesa's software driver, against its Fp8 form (1 minute)
 #   estimators  the tables of all unbiased combinations of estimators, of the bias of marches, and of transmittances alone
 #   pictures    whole scenes with large grids, rendered by vkvol and by the scalar reference with different seeds, judged by
 #               `vkvol compare` (per-pixel z-test, Sidak-corrected, and a test of the means; a significance of 0.001 per
 #               scene, so that a table of this length raises a false alarm once in a hundred runs)
 # All takes about an hour on two cores. Each part ends with a table; fails if anything differs.
-#   tools/validate.sh [--driver NAME] [hard|large|estimators|pictures ...] [FILE.nvdb ...]
+#   tools/validate.sh [--driver NAME] [hard|scenes|large|estimators|pictures ...] [FILE.nvdb ...]
 #       a driver as in tools/test.sh; further grids for pictures: in the thesis' bunny scenes
 set -eu
 source "$(dirname "$0")/setup.sh"
@@ -21,12 +22,12 @@ if [ "${1:-}" = --driver ]; then
 fi
 for argument in "$@"; do
     case $argument in
-    hard | large | estimators | pictures) parts+=("$argument") ;;
+    hard | scenes | large | estimators | pictures) parts+=("$argument") ;;
     *.nvdb) grids+=("$argument") ;;
-    *) die "'$argument' is neither a part (hard, large, estimators, pictures) nor a .nvdb file" ;;
+    *) die "'$argument' is neither a part (hard, scenes, large, estimators, pictures) nor a .nvdb file" ;;
     esac
 done
-[ ${#parts[@]} -gt 0 ] || parts=(hard large estimators pictures)
+[ ${#parts[@]} -gt 0 ] || parts=(hard scenes large estimators pictures)
 
 install_packages
 [ -z "$driver" ] || use_driver "$driver"
@@ -39,18 +40,18 @@ trap 'rm -rf "$work"' EXIT
 failed=0
 
 run_hard() {
-    local type
-    for type in fp4 fp8; do
-        make_fields ramp --type $type --if-missing -o "$fields/ramp-$type.nvdb"
-    done
     say "Hard cases"
     python3 "$vkvol_root/tools/hard_cases.py" || failed=1
+}
+
+run_scenes() {
+    say "Every scene by its name alone"
+    "$vkvol_root/tools/all_scenes.sh" || failed=1
 }
 
 # Fp8 keeps a leaf's values to half of 1/255 of their range, here 7/440: 3.1e-5. Over the longest ray, 762 voxels of
 # sigma_t 0.02, that is at most 5e-4 of the radiance, less than the comparison can see.
 run_large() {
-    make_fields ramp --size 440 --if-missing -o "$fields/ramp-440.nvdb"
     make_fields ramp --size 440 --type fp8 --if-missing -o "$fields/ramp-440-fp8.nvdb"
     say "A grid larger than a storage buffer"
     local scene=$vkvol_root/scenes/large_grid.xml

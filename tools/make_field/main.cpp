@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 #include <fmt/format.h>
+#include <optional>
 
 #include "error.h"
 #include "field_file.h"
@@ -18,7 +19,7 @@ struct Options {
     int size = 0;
     std::uint32_t seed = 1;
     Codec codec = Codec::blosc;
-    SampleType type = SampleType::float32;
+    std::optional<SampleType> type; // else the recipe's
 };
 
 std::string describe(const GridSummary& grid) {
@@ -34,7 +35,7 @@ void make(const Recipe& recipe, const std::filesystem::path& path, const Options
         throw InputError(fmt::format("field '{}' has one size only: leave --size out", recipe.name));
     const auto start = std::chrono::steady_clock::now();
     const Field field = recipe.make(options.size ? options.size : recipe.default_size, options.seed);
-    const FileSummary summary = write_field(field, path, options.codec, options.type);
+    const FileSummary summary = write_field(field, path, options.codec, options.type.value_or(recipe.type));
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     fmt::print("{}: {:.2f} MB in {:.1f} s, voxel size {:.4g}, index 0 at ({:g}, {:g}, {:g})\n", path.string(),
                double(summary.bytes) * 1e-6, elapsed.count(), field.voxel_size, field.origin.x, field.origin.y,
@@ -59,7 +60,7 @@ void make_all(const Options& options) {
 
 void list() {
     for (const Recipe& recipe : recipes())
-        fmt::print("{:<10} {}{}\n", recipe.name, recipe.what,
+        fmt::print("{:<11} {}{}\n", recipe.name, recipe.what,
                    recipe.default_size ? fmt::format(" (default {})", recipe.default_size) : "");
 }
 
@@ -73,7 +74,9 @@ void add_options(CLI::App& app, Options& options) {
     app.add_option("--size", options.size, "samples along an edge")->check(CLI::Range(12, 1024));
     app.add_option("--seed", options.seed, "another cloud of the same kind (default 1)");
     app.add_option("--codec", options.codec, "none, zip or blosc (default)")->transform(CLI::Transformer(codecs));
-    app.add_option("--type", options.type, "float (default), fp4, fp8, fp16, fpn; half for .vdb only")
+    app.add_option_function<SampleType>(
+           "--type", [&](const SampleType& type) { options.type = type; },
+           "float, fp4, fp8, fp16, fpn; half for .vdb only (default: the field's own, float for most)")
         ->transform(CLI::Transformer(types));
     app.add_flag("--list", options.list, "list the fields");
     app.add_flag("--if-missing", options.if_missing, "keep the output if it is there already");

@@ -20,8 +20,15 @@ const std::vector<Recipe>& recipes() {
         {"unclean", "the cube of density 1 with layers that are no density: NaN, infinite and negative", 16,
          make_unclean},
         {"glow", "a cube of density 1 within a larger cube of temperature 1", 16, make_glow},
+        {"ramp-fp4", "the ramp in 4 bits a sample", 16, make_ramp, SampleType::fp4},
+        {"ramp-fp8", "the ramp in 8 bits a sample", 16, make_ramp, SampleType::fp8},
+        {"ramp-440", "the ramp, larger than a storage buffer of Mesa's software driver", 440, make_ramp},
         {"cumulus", "a cumulus cloud, about 60 units wide, in a box SIZE samples wide", 464, make_cumulus},
         {"explosion", "a rising fireball: density and temperature, SIZE samples wide", 160, make_explosion},
+        {"bunny_cloud", "a cumulus where the thesis' scenes look for a bunny, SIZE samples wide", 256,
+         make_bunny_cloud},
+        {"fire", "a fireball where the thesis' scenes look for one: density and temperature, SIZE samples wide", 160,
+         make_fire},
     };
     return all;
 }

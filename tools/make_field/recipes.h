@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "field.h"
+#include "field_file.h"
 
 namespace vkvol {
 
@@ -15,6 +16,7 @@ struct Recipe {
     std::string_view what; // one line
     int default_size;      // samples along an edge, see `what`; 0: the field has one size only
     Field (*make)(int size, std::uint32_t seed);
+    SampleType type = SampleType::float32; // of its file, unless another is asked for
 };
 
 const std::vector<Recipe>& recipes();
@@ -39,5 +41,9 @@ Field make_glow(int size, std::uint32_t seed);
 // Fields to look at.
 Field make_cumulus(int size, std::uint32_t seed);
 Field make_explosion(int size, std::uint32_t seed);
+
+// Stand-ins for the two grids of the thesis' scenes, which are not ours to pass on.
+Field make_bunny_cloud(int size, std::uint32_t seed);
+Field make_fire(int size, std::uint32_t seed);
 
 } // namespace vkvol

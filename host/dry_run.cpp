@@ -1,0 +1,45 @@
+#include "dry_run.h"
+
+#include <fmt/format.h>
+
+#include "messages.h"
+
+namespace vkvol {
+
+namespace {
+
+std::string picture_text(const RenderOptions& options, const Picture& picture) {
+    const Crop crop = resolve_crop(options.crop, picture);
+    std::string text = fmt::format("{}x{} pixels", picture.width, picture.height);
+    if (options.crop)
+        text += fmt::format(" (of these {},{},{},{})", crop.x0, crop.x1, crop.y0, crop.y1);
+    return text;
+}
+
+std::string samples_text(const RenderOptions& options, std::uint32_t spp) {
+    if (options.time_limit && !options.spp)
+        return fmt::format("as many samples as {:g} s allow", *options.time_limit);
+    return fmt::format("{} {} per pixel{}", spp, spp == 1 ? "sample" : "samples",
+                       options.time_limit ? fmt::format(", {:g} s at most", *options.time_limit) : "");
+}
+
+} // namespace
+
+void print_dry_run(const RenderOptions& options, const Scene& scene, const Device& device, const RenderResult& result) {
+    const auto frame = options.defines.find("F");
+    tell(stdout, "{}{}: {}, {}, {} ({})\n", options.scene.string(),
+         frame == options.defines.end() ? "" : fmt::format(", frame {}", frame->second),
+         picture_text(options, scene.picture), samples_text(options, scene.settings.spp), result.integrator,
+         result.biased.empty() ? "unbiased" : "biased: " + result.biased);
+    tell(stdout, "  {}\n", result.specialization);
+    tell(stdout, "  on {}{}, {:.1f} MiB of its memory\n", device.info().name, device.is_cpu() ? " (software)" : "",
+         double(result.device_bytes) / 1048576.0);
+    std::string files;
+    for (const std::filesystem::path& output : options.outputs)
+        files += (files.empty() ? "" : ", ") + output.string();
+    if (options.report)
+        files += (files.empty() ? "" : ", ") + options.report->string();
+    tell(stdout, "  would write {}\n", files.empty() ? "nothing" : files);
+}
+
+} // namespace vkvol

@@ -1,0 +1,33 @@
+#include "field_cache.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace vkvol {
+
+FieldCache::Stamp FieldCache::stamp_of(const std::filesystem::path& path) {
+    std::error_code ignored;
+    return {std::filesystem::file_size(path, ignored), std::filesystem::last_write_time(path, ignored)};
+}
+
+DensityField FieldCache::take(const GridFile& file) {
+    const Stamp stamp = stamp_of(file.path);
+    const auto is_this = [&](const Entry& entry) {
+        return entry.file.path == file.path && entry.file.grid == file.grid;
+    };
+    const auto entry = std::find_if(entries_.begin(), entries_.end(), is_this);
+    if (entry != entries_.end() && entry->field && entry->stamp == stamp)
+        return *std::exchange(entry->field, std::nullopt);
+    std::erase_if(entries_, [&](const Entry& other) { return is_this(other) || other.file.path != file.path; });
+    DensityField field = load_density_field(file);
+    entries_.push_back({file, stamp, std::nullopt});
+    return field;
+}
+
+void FieldCache::keep(const GridFile& file, DensityField field) {
+    for (Entry& entry : entries_)
+        if (entry.file.path == file.path && entry.file.grid == file.grid)
+            entry.field = std::move(field);
+}
+
+} // namespace vkvol

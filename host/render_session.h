@@ -1,0 +1,48 @@
+// What the frames of a sequence share: the device, what is compiled for it, the grids, and what was said already.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "device.h"
+#include "field_cache.h"
+#include "options.h"
+#include "pipeline_cache.h"
+
+namespace vkvol {
+
+class RenderSession {
+public:
+    // Opened when it is first asked for.
+    const Device& device(const RenderOptions& options) {
+        if (!device_)
+            device_.emplace(DeviceOptions{options.device, options.validate, options.robust});
+        return *device_;
+    }
+    // Of that device.
+    const PipelineCache& pipelines(bool use_disk) {
+        if (!pipelines_)
+            pipelines_.emplace(*device_, use_disk);
+        return *pipelines_;
+    }
+    FieldCache& fields() { return fields_; }
+
+    // Those of `warnings` that no frame has given yet.
+    std::vector<std::string> new_warnings(const std::vector<std::string>& warnings) {
+        std::vector<std::string> unheard;
+        for (const std::string& warning : warnings)
+            if (warned_.insert(warning).second)
+                unheard.push_back(warning);
+        return unheard;
+    }
+
+private:
+    std::optional<Device> device_;
+    std::optional<PipelineCache> pipelines_; // goes before its device
+    FieldCache fields_;
+    std::set<std::string> warned_;
+};
+
+} // namespace vkvol

@@ -1,0 +1,78 @@
+#include "sequence.h"
+
+#include <chrono>
+#include <fmt/format.h>
+
+#include "error.h"
+#include "frames.h"
+#include "interrupt.h"
+#include "messages.h"
+#include "render_command.h"
+#include "render_session.h"
+
+namespace vkvol {
+
+namespace {
+
+// Errors of one frame say which, and what there is of the others. `done`: frames.
+template <class Work> auto of_frame(int frame, const std::vector<int>& done, const Work& work) {
+    const auto message = [&](const std::exception& error) {
+        return fmt::format("frame {}: {}{}", frame, error.what(),
+                           done.empty() ? "" : fmt::format(" (frames {} are done)", frames_text(done)));
+    };
+    try {
+        return work();
+    } catch (const InputError& error) {
+        throw InputError(message(error));
+    } catch (const RenderError& error) {
+        throw RenderError(message(error));
+    }
+}
+
+// For machines, which see the progress of each frame begin anew.
+void announce(const RenderOptions& options, std::size_t index) {
+    if (options.progress == ProgressStyle::json && !options.quiet)
+        tell(stderr, "{{\"frame\": {}, \"index\": {}, \"frames\": {}}}\n", options.frames[index], index,
+             options.frames.size());
+}
+
+void print_end(const RenderOptions& options, const std::vector<int>& done, int code, double seconds) {
+    const std::size_t total = options.frames.size();
+    if (code == exit_interrupted) {
+        const std::vector<int> rest(options.frames.begin() + std::ptrdiff_t(done.size()), options.frames.end());
+        tell(stderr, "vkvol: interrupted at frame {}: {} of {} frames are done; -f {} goes on{}\n", rest.front(),
+             done.size(), total, frames_text(rest), options.checkpoint ? ", with --resume" : "");
+    } else if (options.quiet) {
+        return;
+    } else if (options.dry_run) {
+        tell(stdout, "{} frames checked: nothing is rendered, nothing written\n", total);
+    } else if (code != exit_render_failed) {
+        tell(stdout, "{} frames ({}) in {:.1f} s\n", total, frames_text(options.frames), seconds);
+    }
+}
+
+} // namespace
+
+int run_sequence(const RenderOptions& options) {
+    const auto start = std::chrono::steady_clock::now();
+    RenderSession session;
+    std::vector<int> done;
+    for (const int frame : options.frames)
+        of_frame(frame, done, [&] { check_picture(frame_options(options, frame)); });
+    int code = exit_done;
+    for (std::size_t i = 0; i < options.frames.size() && code != exit_interrupted && code != exit_render_failed; ++i) {
+        const int frame = options.frames[i];
+        announce(options, i);
+        const int result = interrupted() ? int(exit_interrupted) : of_frame(frame, done, [&] {
+            return render_picture(frame_options(options, frame), session);
+        });
+        code = result == exit_done ? code : result; // caps of any frame
+        if (result == exit_done || result == exit_caps_hit)
+            done.push_back(frame);
+    }
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    print_end(options, done, code, elapsed.count());
+    return code;
+}
+
+} // namespace vkvol

@@ -1,0 +1,74 @@
+// Every file under scenes/ by its name alone: keys have defaults, and fields are what make_field makes.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <set>
+#include <sstream>
+
+#include "scene_xml.h"
+#include "support/images.h"
+#include "support/shell.h"
+#include "test_paths.h"
+
+using namespace vkvol;
+
+namespace {
+
+const std::filesystem::path root = VKVOL_SOURCE_DIR;
+
+std::vector<std::filesystem::path> scene_files() {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "scenes"))
+        if (entry.path().extension() == ".xml")
+            files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+const GridFile* grid_of(const Scene& scene) {
+    return scene.volumes.empty() ? nullptr : std::get_if<GridFile>(&scene.volumes.front().shape);
+}
+
+std::set<std::string> recipes() {
+    std::set<std::string> names;
+    std::istringstream list(run("'" VKVOL_MAKE_FIELD "' --list").text);
+    for (std::string line; std::getline(list, line);)
+        names.insert(line.substr(0, line.find(' ')));
+    return names;
+}
+
+} // namespace
+
+TEST_CASE("every scene is complete without keys, and names fields that make_field makes", "[cpu][xml]") {
+    const std::set<std::string> known = recipes();
+    REQUIRE(known.count("cumulus") == 1);
+    REQUIRE(scene_files().size() > 60);
+    for (const std::filesystem::path& file : scene_files()) {
+        INFO(file.string());
+        const Scene scene = load_scene(file);
+        const GridFile* grid = grid_of(scene);
+        if (!grid)
+            continue;
+        // There `make_field --all density_fields` puts it.
+        CHECK(std::filesystem::weakly_canonical(grid->path.parent_path()) ==
+              std::filesystem::weakly_canonical(root / "density_fields"));
+        CHECK(known.count(grid->path.stem().string()) == 1);
+        CHECK(grid->path.extension() == ".nvdb");
+    }
+}
+
+// Those of hard/ have tests of their own. Grids that take long to make, or much memory, are for tools/all_scenes.sh.
+TEST_CASE("scenes render by their name alone", "[gpu][image]") {
+    for (const std::filesystem::path& file : scene_files()) {
+        if (file.parent_path().filename() == "hard" || file.filename() == "large_grid.xml")
+            continue;
+        Scene scene = load_scene(file);
+        if (const GridFile* grid = grid_of(scene); grid && !std::filesystem::exists(grid->path))
+            continue;
+        INFO(file.string());
+        scene.settings.spp = 1;
+        resize_picture(scene.picture, 16, std::nullopt);
+        const Film film = render_here(scene, 1).film;
+        CHECK(std::all_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n == 1; }));
+    }
+}

@@ -1,0 +1,186 @@
+// Sequences by -f, and --dry-run.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <set>
+#include <unistd.h>
+
+#include "error.h"
+#include "field_cache.h"
+#include "frames.h"
+#include "image_io.h"
+#include "support/shell.h"
+#include "test_paths.h"
+
+using namespace vkvol;
+using Catch::Contains;
+
+namespace {
+
+std::string frames_error(const std::string& text) {
+    try {
+        parse_frames(text);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+std::string options_error(std::vector<const char*> arguments) {
+    arguments.insert(arguments.begin(), "vkvol");
+    try {
+        parse_options(int(arguments.size()), arguments.data());
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+// A ball that glows as brightly as its frame says.
+class Turntable {
+public:
+    explicit Turntable(const std::string& glow) {
+        std::filesystem::create_directories(path_);
+        std::ofstream(path_ / "ball.xml") << "<options><sphere radius=\"1\"/><sigma_a>1</sigma_a><sigma_s>0</sigma_s>"
+                                             "<width>8</width><height>8</height><rayPerPixelCount>2</rayPerPixelCount>"
+                                             "<camera z=\"5\" fov=\"30\"/><medium r=\""
+                                          << glow << "\"/></options>";
+    }
+    ~Turntable() { std::filesystem::remove_all(path_); }
+    Turntable(const Turntable&) = delete;
+    Turntable& operator=(const Turntable&) = delete;
+
+    Run vkvol(const std::string& arguments) const {
+        const char* device = std::getenv("VKVOL_TEST_DEVICE");
+        return run(fmt::format("cd '{}' && '{}' {}{}", path_.string(), VKVOL_BINARY, arguments,
+                               device ? fmt::format(" --device '{}'", device) : ""));
+    }
+    std::set<std::string> files() const {
+        std::set<std::string> names;
+        for (const auto& entry : std::filesystem::directory_iterator(path_))
+            names.insert(entry.path().filename().string());
+        return names;
+    }
+    std::filesystem::path file(const std::string& name) const { return path_ / name; }
+
+private:
+    std::filesystem::path path_ = std::filesystem::temp_directory_path() / fmt::format("vkvol-frames-{}", getpid());
+};
+
+} // namespace
+
+TEST_CASE("frames are read", "[cpu][options]") {
+    CHECK(parse_frames("3") == std::vector<int>{3});
+    CHECK(parse_frames("1..4") == std::vector<int>{1, 2, 3, 4});
+    CHECK(parse_frames("1..8x3") == std::vector<int>{1, 4, 7});
+    CHECK(parse_frames("3..0") == std::vector<int>{3, 2, 1, 0});
+    CHECK(parse_frames("9..1x4") == std::vector<int>{9, 5, 1});
+    CHECK(parse_frames("1,5,9") == std::vector<int>{1, 5, 9});
+    CHECK(parse_frames("1..3,10..20x5,7") == std::vector<int>{1, 2, 3, 10, 15, 20, 7});
+    CHECK(parse_frames("7..7") == std::vector<int>{7});
+    CHECK(parse_frames("1..100000").size() == 100000);
+    for (const char* wrong : {"", "a", "-1", "1..", "..3", "1-3", "1..3x", "1..3x0", "1,", "1..3 ", "1.5", "99999999"})
+        CHECK_THAT(frames_error(wrong), Contains("expected frames such as 3, 1..8, 1..48x4 or 1,5,9"));
+    CHECK_THAT(frames_error("1..3,2"), Contains("has frame 2 twice"));
+    CHECK_THAT(frames_error("0..100000"), Contains("more than 100000"));
+    for (const char* text : {"3", "1..4", "1..7x3", "3..0", "1,5", "1,2", "1..3,10..20x5,7"})
+        CHECK(frames_text(parse_frames(text)) == text);
+}
+
+TEST_CASE("a frame's number has its place in the names of files", "[cpu][options]") {
+    CHECK(frame_file("a/b.exr", 7) == "a/b.0007.exr");
+    CHECK(frame_file("b.####.exr", 7) == "b.0007.exr");
+    CHECK(frame_file("b##-#.exr", 7) == "b07-7.exr");
+    CHECK(frame_file("b%04d.exr", 7) == "b0007.exr");
+    CHECK(frame_file("b%d.exr", 12) == "b12.exr");
+    CHECK(frame_file("b$F.exr", 7) == "b7.exr");
+    CHECK(frame_file("b$F4.exr", 7) == "b0007.exr");
+    CHECK(frame_file("b${F3}c${F}.exr", 7) == "b007c7.exr");
+    CHECK(frame_file("b.##.exr", 12345) == "b.12345.exr");
+    CHECK(frame_file("100%.$X.exr", 7) == "100%.$X.0007.exr");
+    CHECK(frame_file("c#/b.exr", 7) == "c#/b.0007.exr"); // of the file alone
+    CHECK(frame_file("/dev/null", 7) == "/dev/null");
+}
+
+TEST_CASE("what does not go together with frames is refused", "[cpu][options]") {
+    CHECK_THAT(options_error({"s.xml", "-f", "1..3", "-D", "F=2"}), Contains("-D F=2: with -f, F is the number"));
+    CHECK_THAT(options_error({"s.xml", "-f", "1..3", "-D", "F4=2"}), Contains("with -f, F is the number"));
+    CHECK_THAT(options_error({"s.xml", "-f", "1..3", "--trace", "--pixel", "1,1", "--sample", "0"}),
+               Contains("choose the frame with -D F=3"));
+    CHECK_THAT(options_error({"s.xml", "-f", ""}), Contains("expected frames"));
+    CHECK(options_error({"s.xml", "-f", "1..3", "-D", "speed=2"}) == "no error");
+}
+
+TEST_CASE("a kept grid is the file's, and read again once that changes", "[cpu][density]") {
+    const std::filesystem::path copy =
+        std::filesystem::temp_directory_path() / fmt::format("vkvol-kept-{}.nvdb", getpid());
+    const auto replace = [&](const char* field) {
+        std::filesystem::copy_file(std::filesystem::path(VKVOL_TEST_FIELDS) / field, copy,
+                                   std::filesystem::copy_options::overwrite_existing);
+    };
+    replace("ramp.nvdb");
+    FieldCache cache;
+    const GridFile file{copy, "density"};
+    DensityField field = cache.take(file);
+    CHECK(field.max_value() == 1.0f);
+    const std::byte* bytes = field.bytes.data();
+    cache.keep(file, std::move(field));
+    field = cache.take(file);
+    CHECK(field.bytes.data() == bytes); // the same memory
+    cache.keep(file, std::move(field));
+    replace("sphere.nvdb");
+    CHECK(cache.take(file).active_voxels == 14328);
+    std::filesystem::remove(copy);
+    CHECK_THROWS_AS(cache.take(file), InputError);
+}
+
+TEST_CASE("a sequence is the pictures of its frames", "[gpu][command]") {
+    const Turntable scene("${= 0.5*$F}");
+    const Run run = scene.vkvol("ball.xml -f 1..5x2 --report r.json");
+    INFO(run.text);
+    CHECK(run.code == exit_done);
+    CHECK_THAT(run.text, Contains("3 frames (1..5x2)"));
+    CHECK(scene.files() == std::set<std::string>{"ball.xml", "ball.0001.exr", "ball.0001.png", "ball.0003.exr",
+                                                 "ball.0003.png", "ball.0005.exr", "ball.0005.png", "r.0001.json",
+                                                 "r.0003.json", "r.0005.json"});
+    CHECK(scene.vkvol("ball.xml -D F=3 -o alone.exr -q").code == exit_done);
+    const Film alone = read_exr(scene.file("alone.exr")), frame = read_exr(scene.file("ball.0003.exr"));
+    CHECK(alone.mean == frame.mean);
+    CHECK(frame.mean != read_exr(scene.file("ball.0005.exr")).mean);
+    CHECK(scene.vkvol("ball.xml -f 12,3 -o 'a.##.png' -q").text.empty());
+    CHECK(scene.files().count("a.03.png") == 1);
+    CHECK(scene.files().count("a.12.png") == 1);
+}
+
+TEST_CASE("errors of a sequence say in which frame, before any is rendered", "[gpu][command]") {
+    const Turntable scene("${= 1/(3-F)}");
+    const Run run = scene.vkvol("ball.xml -f 1..5");
+    CHECK(run.code == exit_bad_input);
+    CHECK_THAT(run.text, Contains("frame 3: ball.xml:1:") && Contains("division by zero"));
+    CHECK(scene.files() == std::set<std::string>{"ball.xml"});
+    const Turntable still("1");
+    CHECK_THAT(still.vkvol("ball.xml -f 1..5").text, Contains("all frames would be the same; write $F"));
+}
+
+TEST_CASE("--dry-run checks everything and leaves nothing", "[gpu][command]") {
+    const Turntable scene("${F:-1}");
+    const Run one = scene.vkvol("ball.xml --dry-run --report r.json --width 4");
+    INFO(one.text);
+    CHECK(one.code == exit_done);
+    CHECK_THAT(one.text, Contains("ball.xml: 4x4 pixels, 2 samples per pixel, deltaTracking (unbiased)"));
+    CHECK_THAT(one.text, Contains("would write ball.exr, ball.png, r.json"));
+    const Run frames = scene.vkvol("ball.xml --dry-run -f 2..3 -o 'x.#.png'");
+    CHECK(frames.code == exit_done);
+    CHECK_THAT(frames.text,
+               Contains("ball.xml, frame 3: 8x8") && Contains("would write x.3.png") && Contains("2 frames checked"));
+    CHECK(scene.files() == std::set<std::string>{"ball.xml"});
+    CHECK(scene.vkvol("ball.xml --dry-run -q").text.empty());
+    CHECK(scene.vkvol("ball.xml --dry-run --report r.json -o ball.xml.exr --grid none.nvdb").code == exit_bad_input);
+    CHECK(scene.vkvol("ball.xml --dry-run -o none/a.exr").code == exit_bad_input);
+    CHECK(scene.vkvol("ball.xml --dry-run --grid none.nvdb").code == exit_bad_input);
+    CHECK(scene.vkvol("ball.xml --dry-run --crop 0,9,0,1").code == exit_bad_input);
+    CHECK(run(fmt::format("'{}' '{}' --dry-run --device no-such-device", VKVOL_BINARY, scene.file("ball.xml").string()))
+              .code == exit_no_device);
+    CHECK(scene.files() == std::set<std::string>{"ball.xml"});
+}
