@@ -3,6 +3,7 @@
 #include <chrono>
 #include <fmt/format.h>
 
+#include "atomic_file.h"
 #include "error.h"
 #include "frames.h"
 #include "interrupt.h"
@@ -55,6 +56,10 @@ void print_end(const RenderOptions& options, const std::vector<int>& done, int c
 
 int run_sequence(const RenderOptions& options) {
     const auto start = std::chrono::steady_clock::now();
+    if (is_special(options.scene))
+        throw InputError(
+            fmt::format("{}: a pipe is read once, but -f reads the scene for each frame; write it to a file",
+                        options.scene.string()));
     RenderSession session;
     std::vector<int> done;
     for (const int frame : options.frames)
