@@ -5,10 +5,11 @@
 #include <fmt/format.h>
 #include <utility>
 
-#include "bench_figures.h"
 #include "bench_render.h"
 #include "bench_report.h"
 #include "bench_schedule.h"
+#include "bench_table.h"
+#include "bench_text.h"
 #include "error.h"
 #include "file_uses.h"
 #include "image_io.h"
@@ -43,7 +44,9 @@ public:
 
 private:
     void warm_up(const std::vector<Estimator>& estimators);
+    double warm_up(const Estimator& estimator, double& setup_seconds);
     void leave_out_slow();
+    void announce(double reference_seconds) const;
     std::uint32_t next_seed() { return seed_of_run(options_.render.seed, ++renders_); }
     bool get_reference(const std::vector<Estimator>& estimators);
     std::optional<double> measure(std::size_t index, std::uint32_t samples, double time_limit);
@@ -51,24 +54,32 @@ private:
     const BenchOptions& options_;
     const Device device_;
     BenchResult result_;
-    std::vector<double> seconds_per_sample_; // of the warm-up
-    std::uint32_t renders_ = 0;              // number of the next seed; 0 is the reference's
+    std::vector<double> seconds_per_sample_, setup_seconds_; // of the warm-up
+    std::uint32_t renders_ = 0;                              // number of the next seed; 0 is the reference's
     double spent_ = 0.0;
 };
 
-// One sample that is not measured, for kernels to be compiled and files to be in memory, and then one for the speed. An
-// estimator that nobody asked for is left out if it cannot be rendered after all.
-void Bench::warm_up(const std::vector<Estimator>& estimators) {
+// One sample that is not measured, for kernels to be compiled and files to be in memory, and then one for the speed,
+// which is returned as seconds.
+double Bench::warm_up(const Estimator& estimator, double& setup_seconds) {
     const double hopeless = std::max(options_.seconds, 10.0); // the second render is spared then
+    RenderResult result = render_whole(options_, estimator, device_, 1, next_seed(), std::nullopt);
+    print_warnings(options_.render, result.warnings);
+    if (result.render_seconds < hopeless)
+        result = render_whole(options_, estimator, device_, 1, next_seed(), std::nullopt);
+    setup_seconds = result.load_seconds + result.upload_seconds + result.pipeline_seconds;
+    return result.render_seconds;
+}
+
+// An estimator that nobody asked for is left out if it cannot be rendered after all.
+void Bench::warm_up(const std::vector<Estimator>& estimators) {
     for (const Estimator& estimator : estimators) {
         if (interrupted())
             return;
         try {
-            RenderResult result = render_whole(options_, estimator, device_, 1, next_seed(), std::nullopt);
-            print_warnings(options_.render, result.warnings);
-            if (result.render_seconds < hopeless)
-                result = render_whole(options_, estimator, device_, 1, next_seed(), std::nullopt);
-            seconds_per_sample_.push_back(result.render_seconds);
+            double setup_seconds = 0.0;
+            seconds_per_sample_.push_back(warm_up(estimator, setup_seconds));
+            setup_seconds_.push_back(setup_seconds);
         } catch (const InputError& error) {
             if (!options_.integrators.empty() || estimator.is_default)
                 throw;
@@ -93,11 +104,25 @@ void Bench::leave_out_slow() {
             return;
         if (!options_.render.quiet)
             tell(stderr,
-                 "vkvol: note: {} is left out: {:.3g} s a sample are too many for --time; raise it, or name it\n",
-                 list[slowest].estimator.integrator, seconds_per_sample_[slowest]);
+                 "vkvol: note: {} is left out: {:.3g} s a sample are too many; give --time {} or more, or name it\n",
+                 list[slowest].estimator.integrator, seconds_per_sample_[slowest],
+                 round_duration(share_worth_measuring(seconds_per_sample_[slowest]) * double(list.size())));
         list.erase(list.begin() + std::ptrdiff_t(slowest));
         seconds_per_sample_.erase(seconds_per_sample_.begin() + std::ptrdiff_t(slowest));
+        setup_seconds_.erase(setup_seconds_.begin() + std::ptrdiff_t(slowest));
     }
+}
+
+// What the user is in for, from here on.
+void Bench::announce(double reference_seconds) const {
+    if (options_.render.quiet || interrupted())
+        return;
+    const double rounds = expected_seconds(seconds_per_sample_, setup_seconds_, options_.seconds);
+    const std::size_t count = result_.measurements.size();
+    tell(stderr, "vkvol: {} integrator{} to measure, {:g} s of rendering; {}with setting up, about {} in all\n", count,
+         count == 1 ? "" : "s", options_.seconds,
+         reference_seconds > 0.0 ? fmt::format("with a reference of {:.3g} s, and ", reference_seconds) : "",
+         duration_text(rounds + reference_seconds));
 }
 
 bool Bench::get_reference(const std::vector<Estimator>& estimators) {
@@ -105,8 +130,12 @@ bool Bench::get_reference(const std::vector<Estimator>& estimators) {
     // reference's error a tenth of theirs, even if it is made half as efficiently.
     const double part = std::max(0.5, 3.0 / double(seconds_per_sample_.size()));
     const ReferenceWish wish{part * options_.seconds, seed_of_run(options_.render.seed, 0)};
+    std::optional<Reference> kept;
     if (!options_.reference)
-        result_.reference = find_reference(options_, estimators, device_, wish);
+        kept = find_reference(options_, estimators, wish);
+    announce(options_.reference || kept ? 0.0 : wish.seconds);
+    if (!options_.reference)
+        result_.reference = kept ? std::move(*kept) : make_reference(options_, estimators, device_, wish);
     const Reference& reference = result_.reference;
     if (!options_.render.quiet && !interrupted())
         tell(stderr, "vkvol: reference {}{}: {} samples per pixel{}\n", reference.cached ? "read" : "rendered",
@@ -123,7 +152,12 @@ std::optional<double> Bench::measure(std::size_t index, std::uint32_t samples, d
     if (result.interrupted || result.samples < samples)
         return std::nullopt;
     const Film& reference = result_.reference.film;
-    BenchRun run{samples, seed, result.render_seconds, relative_mse(result.film, reference), std::nullopt};
+    BenchRun run{samples,
+                 seed,
+                 result.render_seconds,
+                 relative_mse(result.film, reference),
+                 std::nullopt,
+                 relative_noise(result.film)};
     if (samples > 1)
         run.relmse_from_variance = relative_variance(result.film, reference);
     measurement.runs.push_back(run);
@@ -151,7 +185,8 @@ BenchResult Bench::run(const std::vector<Estimator>& estimators) {
     result_.interrupted = interrupted();
     for (const Measurement& measurement : result_.measurements)
         if (measurement.runs.empty() && !result_.interrupted)
-            tell(stderr, "vkvol: warning: {}: no render fitted in --time\n", measurement.estimator.integrator);
+            tell(stderr, "vkvol: warning: {}: no render fitted in --time; raise it\n",
+                 measurement.estimator.integrator);
     std::erase_if(result_.measurements, [](const Measurement& m) { return m.runs.empty(); });
     return std::move(result_);
 }
@@ -170,6 +205,13 @@ void check_files(const BenchOptions& options, const std::vector<Estimator>& esti
     for (const Estimator& estimator : estimators)
         uses.writes("a picture of the bench", bench_picture(options, estimator.integrator), "-o");
     uses.check();
+    const std::filesystem::path pictures = picture_folder(options);
+    std::error_code error;
+    if (std::filesystem::exists(pictures, error) && !std::filesystem::is_directory(pictures, error))
+        throw InputError(
+            fmt::format("{}: is no folder, and the pictures are to go into one of that name; move it away, "
+                        "or give another name with -o",
+                        pictures.string()));
 }
 
 void print_notes(const BenchOptions& options, const BenchResult& result) {
@@ -223,7 +265,7 @@ int run_bench(const BenchOptions& options) {
         return result.interrupted ? exit_interrupted : exit_render_failed;
     }
     write_bench(options, bench.device(), result);
-    print_bench(result);
+    print_bench(options, result);
     print_notes(options, result);
     return result.interrupted ? exit_interrupted : exit_done;
 }

@@ -48,15 +48,39 @@ bool is_unbiased(const Estimator& estimator) {
     return estimator.method.biases == bias_none;
 }
 
-bool same_method(const Method& a, const Method& b) {
-    const bool same_shadows = a.nee == NEE_NONE || a.transmittance == b.transmittance;
-    return a.scattering == b.scattering && a.free_flight == b.free_flight && a.nee == b.nee && same_shadows &&
-           a.emission_at == b.emission_at && a.filter == b.filter && a.jitter == b.jitter;
+bool marches(const Method& method) {
+    return method.free_flight == FREE_FLIGHT_MARCH || method.free_flight == FREE_FLIGHT_ADAPTIVE ||
+           (method.nee != NEE_NONE && method.transmittance >= TRANSMITTANCE_MARCH);
 }
 
-bool contains_method(const std::vector<Estimator>& list, const Estimator& estimator) {
-    return std::any_of(list.begin(), list.end(),
-                       [&](const Estimator& known) { return same_method(known.method, estimator.method); });
+// Of estimators of one picture: whether kernels and their parameters are the same. Choices that nothing in the scene
+// asks about leave no trace there.
+bool same_kernel(const Estimator& x, const Estimator& y) {
+    const Method &a = x.method, &b = y.method;
+    const bool same_shadows = a.nee == NEE_NONE || a.transmittance == b.transmittance;
+    const bool same_filter = density_kind(x.scene) != FIELD_GRID || a.filter == b.filter;
+    const bool same_steps = !marches(a) || a.jitter == b.jitter;
+    return a.scattering == b.scattering && a.free_flight == b.free_flight && a.nee == b.nee && same_shadows &&
+           a.emission_at == b.emission_at && same_filter && same_steps && a.material_colour == b.material_colour;
+}
+
+Estimator* find_same(std::vector<Estimator>& list, const Estimator& estimator) {
+    const auto found =
+        std::find_if(list.begin(), list.end(), [&](const Estimator& known) { return same_kernel(known, estimator); });
+    return found == list.end() ? nullptr : &*found;
+}
+
+bool contains_same(const std::vector<Estimator>& list, const Estimator& estimator) {
+    return std::any_of(list.begin(), list.end(), [&](const Estimator& known) { return same_kernel(known, estimator); });
+}
+
+// At its end, or as another name of one that is there.
+void add(std::vector<Estimator>& list, Estimator estimator) {
+    Estimator* known = find_same(list, estimator);
+    if (!known)
+        list.push_back(std::move(estimator));
+    else if (known->integrator != estimator.integrator)
+        known->same.push_back(estimator.integrator);
 }
 
 // Calls use(estimator) for what make() returns, unless this scene cannot be rendered so.
@@ -72,18 +96,20 @@ template <typename Make, typename Use> void if_possible(const Make& make, const 
 
 Estimator default_estimator(const RenderOptions& options) {
     Estimator estimator = load_estimator(options, std::nullopt);
-    if (!is_unbiased(estimator))
+    if (!is_unbiased(estimator)) {
+        const std::string named = estimator.integrator;
         estimator = load_estimator(options, ""); // the choice for a scene that names none
+        estimator.stands_for = named;
+    }
     estimator.is_default = true;
     return estimator;
 }
 
-void check_same_picture(const std::vector<Estimator>& list) {
-    for (const Estimator& estimator : list)
-        if (expected_hash(estimator) != expected_hash(list.front()))
-            throw InputError(fmt::format("--integrators: {} and {} do not estimate the same picture: one leaves out "
-                                         "light that the other sees, or scatters differently; measure them apart",
-                                         list.front().integrator, estimator.integrator));
+void check_same_picture(const Estimator& first, const Estimator& estimator) {
+    if (expected_hash(estimator) != expected_hash(first))
+        throw InputError(fmt::format("--integrators: {} and {} do not estimate the same picture: one leaves out light "
+                                     "that the other sees, or scatters differently; measure them apart",
+                                     first.integrator, estimator.integrator));
 }
 
 // Departures from `of` by one choice.
@@ -124,20 +150,21 @@ std::vector<Estimator> find_estimators(const BenchOptions& options) {
     const Estimator usual = default_estimator(options.render);
     std::vector<Estimator> list;
     for (const std::string& text : options.integrators) {
-        list.push_back(load_estimator(options.render, text));
-        list.back().is_default = same_method(list.back().method, usual.method);
+        Estimator estimator = load_estimator(options.render, text);
+        estimator.is_default = same_kernel(estimator, usual);
+        estimator.stands_for = estimator.is_default ? usual.stands_for : "";
+        if (!list.empty())
+            check_same_picture(list.front(), estimator);
+        add(list, std::move(estimator));
     }
-    if (!list.empty()) {
-        check_same_picture(list);
+    if (!list.empty())
         return list;
-    }
     list.push_back(usual);
     for (const Integrator& preset : integrators())
         if_possible([&] { return load_estimator(options.render, preset.name); },
                     [&](Estimator estimator) {
-                        if (is_unbiased(estimator) && !contains_method(list, estimator) &&
-                            scene_hash(estimator.scene) == scene_hash(usual.scene))
-                            list.push_back(std::move(estimator));
+                        if (is_unbiased(estimator) && scene_hash(estimator.scene) == scene_hash(usual.scene))
+                            add(list, std::move(estimator));
                     });
     return list;
 }
@@ -147,20 +174,20 @@ std::vector<Estimator> reference_candidates(const std::vector<Estimator>& measur
     const Estimator& first = measured.front();
     const std::string hash = expected_hash(first);
     std::vector<Estimator> candidates;
-    const auto add = [&](const IntegratorRequest& request) {
+    const auto consider = [&](const IntegratorRequest& request) {
         if_possible([&] { return with_request(first, request); },
                     [&](Estimator estimator) {
                         if (candidates.size() < enough && is_unbiased(estimator) &&
-                            scene_hash(estimator.scene) == hash && !contains_method(measured, estimator) &&
-                            !contains_method(candidates, estimator))
+                            scene_hash(estimator.scene) == hash && !contains_same(measured, estimator) &&
+                            !contains_same(candidates, estimator))
                             candidates.push_back(std::move(estimator));
                     });
     };
     for (const Integrator& preset : integrators())
-        add(same_light(first, preset));
+        consider(same_light(first, preset));
     if (candidates.empty())
         for (const IntegratorRequest& request : neighbours(first))
-            add(request);
+            consider(request);
     if (!candidates.empty())
         return candidates;
     for (const Estimator& estimator : measured)

@@ -14,11 +14,13 @@ struct Estimator {
     std::string integrator; // name and explicit choices
     Scene scene;
     Method method;
-    bool is_default = false; // what `vkvol scene.xml` renders by, or would if that were unbiased
+    bool is_default = false;       // what `vkvol scene.xml` renders by, or would if that were unbiased
+    std::string stands_for;        // the biased one that the scene names, of the default in its place
+    std::vector<std::string> same; // other integrators that come to the same kernel in this scene
 };
 
-// Those asked for, or the unbiased presets that estimate what the default does and come to different methods in this
-// scene, the default first. Throws InputError, also if those asked for estimate different pictures.
+// Those asked for, or the unbiased presets that estimate what the default does, the default first. What comes to one
+// and the same kernel is listed once. Throws InputError, also if those asked for estimate different pictures.
 std::vector<Estimator> find_estimators(const BenchOptions& options);
 
 // Hash of the exact picture that the estimator is after: of biased ones, the hash that an unbiased estimator of the

@@ -1,25 +1,9 @@
 #include "bench_figures.h"
 
 #include <algorithm>
-#include <array>
-#include <fmt/format.h>
-
-#include "messages.h"
+#include <tuple>
 
 namespace vkvol {
-
-namespace {
-
-constexpr double one_percent = 1e-4; // relMSE of a root mean square relative error of 1 %
-
-const Measurement* find_default(const BenchResult& result) {
-    for (const Measurement& measurement : result.measurements)
-        if (measurement.estimator.is_default)
-            return &measurement;
-    return nullptr;
-}
-
-} // namespace
 
 double median_at_largest(const Measurement& measurement, const std::function<double(const RenderResult&)>& figure) {
     const std::uint32_t largest = largest_count(measurement.runs);
@@ -37,61 +21,77 @@ double median_of_all(const Measurement& measurement, const std::function<double(
     return median(std::move(values));
 }
 
-Figures figures_of(const BenchResult& result, const Measurement& measurement) {
+namespace {
+
+std::optional<double> median_noise(const std::vector<BenchRun>& runs) {
+    std::vector<double> values;
+    for (const BenchRun& run : runs)
+        if (run.samples == largest_count(runs) && run.noise)
+            values.push_back(*run.noise);
+    return values.empty() ? std::nullopt : std::optional(median(std::move(values)));
+}
+
+Figures own_figures(const BenchResult& result, const Measurement& measurement) {
+    const std::vector<BenchRun>& runs = measurement.runs;
     Figures figures;
-    figures.slope = error_slope(measurement.runs);
-    figures.floor = bias_floor(measurement.runs, result.reference.offset_error);
-    figures.efficiency = efficiency(measurement.runs);
-    if (figures.efficiency)
-        figures.seconds_to_one_percent = seconds_to(one_percent, *figures.efficiency, figures.floor);
-    const Measurement* usual = find_default(result);
-    if (usual == &measurement)
-        figures.ratio = Interval{1.0, 1.0, 1.0};
-    else if (usual)
-        figures.ratio = efficiency_ratio(measurement.runs, usual->runs);
+    figures.slope = error_slope(runs);
+    figures.efficiency = efficiency(runs);
+    figures.times_to_judge = times_to_judge(runs);
+    figures.judged = figures.times_to_judge <= 1.0;
+    figures.below_reference = result.reference.relmse.value_or(0.0) > points_of(runs).back().relmse;
+    figures.noise = median_noise(runs);
+    figures.seconds_to_one_percent = seconds_to_noise(0.01, runs);
     figures.samples_per_second = median_at_largest(measurement, [](const RenderResult& r) {
         return static_cast<double>(r.counts.paths) / std::max(r.render_seconds, 1e-9);
     });
     return figures;
 }
 
-namespace {
-
-constexpr std::size_t columns = 9;
-using Row = std::array<std::string, columns>;
-
-std::string number_text(std::optional<double> value) {
-    return value ? fmt::format("{:.3g}", *value) : "-";
+void find_floors(std::vector<Row>& rows, double offset_error) {
+    const auto floor_of = [&](const Row& row, double probability) {
+        return bias_floor(row.measurement->runs, offset_error, probability);
+    };
+    const auto tested = std::count_if(rows.begin(), rows.end(), [&](const Row& row) { return floor_of(row, 0.95); });
+    for (Row& row : rows)
+        row.figures.floor = floor_of(row, probability_of_each(std::size_t(tested)));
 }
 
-std::string interval_text(const std::optional<Interval>& interval) {
-    return interval ? fmt::format("{:.3g} ({:.3g} to {:.3g})", interval->value, interval->low, interval->high) : "-";
+void find_ratios(std::vector<Row>& rows) {
+    const auto usual = std::find_if(rows.begin(), rows.end(), [](const Row& row) { return row.is_default(); });
+    if (usual == rows.end() || !usual->figures.judged)
+        return;
+    for (Row& row : rows)
+        if (row.is_default())
+            row.figures.ratio = Interval{1.0, 1.0, 1.0};
+        else if (row.figures.judged)
+            row.figures.ratio = efficiency_ratio(row.measurement->runs, usual->measurement->runs);
 }
 
 } // namespace
 
-void print_bench(const BenchResult& result) {
-    std::vector<Row> rows = {{"integrator", "samples/s", "spp", "relMSE", "slope", "bias floor", "efficiency",
-                              "ratio to default", "s to 1 %"}};
-    for (const Measurement& measurement : result.measurements) {
-        const Figures figures = figures_of(result, measurement);
-        const BenchPoint last = points_of(measurement.runs).back();
-        rows.push_back({measurement.estimator.integrator, number_text(figures.samples_per_second),
-                        fmt::format("{}", last.samples), number_text(last.relmse), interval_text(figures.slope),
-                        interval_text(figures.floor), interval_text(figures.efficiency), interval_text(figures.ratio),
-                        number_text(figures.seconds_to_one_percent)});
-    }
-    std::array<std::size_t, columns> widths{};
+std::vector<Row> rows_of(const BenchResult& result) {
+    std::vector<Row> rows;
+    for (const Measurement& measurement : result.measurements)
+        rows.push_back({&measurement, own_figures(result, measurement)});
+    find_floors(rows, result.reference.offset_error);
+    find_ratios(rows);
+    return rows;
+}
+
+std::vector<Row> ranked(std::vector<Row> rows) {
+    const auto rank = [](const Row& row) {
+        const double efficiency = row.figures.efficiency ? row.figures.efficiency->value : 0.0;
+        return std::tuple(!row.biased().empty(), !row.figures.judged, -efficiency);
+    };
+    std::stable_sort(rows.begin(), rows.end(), [&](const Row& a, const Row& b) { return rank(a) < rank(b); });
+    return rows;
+}
+
+std::optional<double> seconds_to_judge(const std::vector<Row>& rows, double seconds) {
+    double times = 1.0;
     for (const Row& row : rows)
-        for (std::size_t i = 0; i < columns; ++i)
-            widths[i] = std::max(widths[i], row[i].size());
-    for (const Row& row : rows) {
-        std::string line;
-        for (std::size_t i = 0; i < columns; ++i)
-            line += fmt::format("{:<{}}{}", row[i], i + 1 < columns ? widths[i] : 0, i + 1 < columns ? "  " : "\n");
-        tell(stdout, "{}", line);
-    }
-    tell(stdout, "relMSE at the most samples per pixel (spp); in brackets 95 % confidence\n");
+        times = std::max(times, row.figures.times_to_judge);
+    return times > 1.0 ? std::optional(times * seconds) : std::nullopt;
 }
 
 } // namespace vkvol

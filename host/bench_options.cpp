@@ -68,7 +68,7 @@ void add_options(CLI::App& app, BenchOptions& bench, BenchTexts& texts) {
     app.add_option("--integrators", texts.integrators, "What to measure; see vkvol integrators")
         ->option_text("A,B,... [the unbiased ones that suit the scene]")
         ->group(group);
-    app.add_option("--time", texts.time, "Measured rendering in all: 30s, 5m, 2h, or seconds")
+    app.add_option("--time", texts.time, "Rendering that is measured: 30s, 5m, 2h, or seconds")
         ->option_text("T [60s]")
         ->group(group);
     app.add_option("--reference", bench.reference, "An image to measure against, rather than one rendered for it")

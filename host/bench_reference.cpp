@@ -182,13 +182,19 @@ Reference read_reference(const std::filesystem::path& file, const std::vector<Es
     return reference;
 }
 
-Reference find_reference(const BenchOptions& options, const std::vector<Estimator>& measured, const Device& device,
+std::optional<Reference> find_reference(const BenchOptions& options, const std::vector<Estimator>& measured,
+                                        const ReferenceWish& wish) {
+    if (options.render.no_cache)
+        return std::nullopt;
+    for (const Estimator& candidate : reference_candidates(measured))
+        if (std::optional<Reference> cached = read_cached(candidate, wish))
+            return cached;
+    return std::nullopt;
+}
+
+Reference make_reference(const BenchOptions& options, const std::vector<Estimator>& measured, const Device& device,
                          const ReferenceWish& wish) {
     const std::vector<Estimator> candidates = reference_candidates(measured);
-    for (const Estimator& candidate : candidates)
-        if (!options.render.no_cache)
-            if (std::optional<Reference> cached = read_cached(candidate, wish))
-                return std::move(*cached);
     const Estimator& best = most_efficient(options, candidates, device, wish);
     if (!options.render.quiet)
         tell(stderr, "vkvol: reference by {}, {:.3g} s\n", best.integrator, wish.seconds);

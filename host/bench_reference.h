@@ -32,10 +32,13 @@ struct ReferenceWish {
 // Reads the image given by --reference. Throws InputError if it shows anything else than the estimators do.
 Reference read_reference(const std::filesystem::path& file, const std::vector<Estimator>& measured);
 
-// From the cache, if a file there holds the same picture by one of the candidates, rendered for as long as wished for;
-// else rendered, by the candidate with the least expected error per second, and kept. A damaged file in the cache is as
-// good as none.
-Reference find_reference(const BenchOptions& options, const std::vector<Estimator>& measured, const Device& device,
+// From the cache, if a file there holds the same picture by one of the candidates, rendered for as long as wished for.
+// A damaged file is as good as none.
+std::optional<Reference> find_reference(const BenchOptions& options, const std::vector<Estimator>& measured,
+                                        const ReferenceWish& wish);
+
+// Rendered by the candidate with the least expected error per second, and kept in the cache.
+Reference make_reference(const BenchOptions& options, const std::vector<Estimator>& measured, const Device& device,
                          const ReferenceWish& wish);
 
 } // namespace vkvol

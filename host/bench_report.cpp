@@ -86,10 +86,12 @@ Json passes_json(const Measurement& measurement) {
     return passes;
 }
 
-Json estimator_json(const BenchResult& result, const Measurement& measurement, const Json& image) {
-    const Figures figures = figures_of(result, measurement);
+Json estimator_json(const Row& row, const Json& image) {
+    const Measurement& measurement = *row.measurement;
+    const Figures& figures = row.figures;
     const RenderCounts counts = counts_of_all_runs(measurement);
     return {{"integrator", measurement.estimator.integrator},
+            {"sameAs", measurement.estimator.same},
             {"isDefault", measurement.estimator.is_default},
             {"biased", measurement.results.back().biased},
             {"setupSeconds", setup_json(measurement)},
@@ -97,6 +99,8 @@ Json estimator_json(const BenchResult& result, const Measurement& measurement, c
             {"slope", interval_json(figures.slope)},
             {"biasFloor", interval_json(figures.floor)},
             {"efficiency", interval_json(figures.efficiency)},
+            {"judged", figures.judged},
+            {"noise", number(figures.noise)},
             {"secondsToOnePercent", number(figures.seconds_to_one_percent)},
             {"perPath", per_path_json(counts)},
             {"laneUse", {{"track", counts.lane_use()}}},
@@ -132,19 +136,11 @@ Json reference_json(const Reference& reference) {
             {"relMse", number(reference.relmse)}};
 }
 
-// Best first; what has no efficiency comes last.
-Json ranking_json(const BenchResult& result) {
-    std::vector<std::pair<double, Json>> rows;
-    for (const Measurement& measurement : result.measurements) {
-        const Figures figures = figures_of(result, measurement);
-        rows.push_back({figures.efficiency ? figures.efficiency->value : 0.0,
-                        {{"integrator", measurement.estimator.integrator},
-                         {"efficiencyRatioToDefault", interval_json(figures.ratio)}}});
-    }
-    std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+Json ranking_json(const std::vector<Row>& rows) {
     Json ranking = Json::array();
-    for (const auto& [value, row] : rows)
-        ranking.push_back(row);
+    for (const Row& row : ranked(rows))
+        ranking.push_back({{"integrator", row.measurement->estimator.integrator},
+                           {"efficiencyRatioToDefault", interval_json(row.figures.ratio)}});
     return ranking;
 }
 
@@ -156,12 +152,14 @@ Json write_last(const BenchOptions& options, const Device& device, const Measure
     result.film = measurement.last;
     const std::filesystem::path path = bench_picture(options, measurement.estimator.integrator);
     try {
+        std::error_code error;
+        std::filesystem::create_directory(path.parent_path(), error); // what is wrong with it, writing says
         write_exr(path, result.film, make_metadata(as, measurement.estimator.scene, device, result));
     } catch (const RenderError& error) {
         tell(stderr, "vkvol: warning: {}\n", error.what());
         return nullptr;
     }
-    return path.filename().string();
+    return (path.parent_path().filename() / path.filename()).string();
 }
 
 std::string make_json(const BenchOptions& options, const Device& device, const BenchResult& result) {
@@ -183,10 +181,12 @@ std::string make_json(const BenchOptions& options, const Device& device, const B
     json["seed"] = options.render.seed;
     json["interrupted"] = result.interrupted;
     json["reference"] = reference_json(result.reference);
+    const std::vector<Row> rows = rows_of(result);
+    json["secondsToJudge"] = number(seconds_to_judge(rows, options.seconds));
     json["estimators"] = Json::array();
-    for (const Measurement& measurement : result.measurements)
-        json["estimators"].push_back(estimator_json(result, measurement, write_last(options, device, measurement)));
-    json["ranking"] = ranking_json(result);
+    for (const Row& row : rows)
+        json["estimators"].push_back(estimator_json(row, write_last(options, device, *row.measurement)));
+    json["ranking"] = ranking_json(rows);
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -204,11 +204,15 @@ std::string make_csv(const BenchResult& result) {
 
 } // namespace
 
+std::filesystem::path picture_folder(const BenchOptions& options) {
+    return options.name.string() + ".bench";
+}
+
 std::filesystem::path bench_picture(const BenchOptions& options, const std::string& integrator) {
     std::string name = integrator;
     std::replace_if(
         name.begin(), name.end(), [](char c) { return c == ':' || c == '='; }, '-');
-    return options.name.string() + "." + name + ".exr";
+    return picture_folder(options) / (name + ".exr");
 }
 
 void write_bench(const BenchOptions& options, const Device& device, const BenchResult& result) {

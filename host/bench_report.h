@@ -5,11 +5,12 @@
 
 namespace vkvol {
 
-// NAME.INTEGRATOR.exr.
+// Where the pictures go, NAME.bench, and one of them.
+std::filesystem::path picture_folder(const BenchOptions& options);
 std::filesystem::path bench_picture(const BenchOptions& options, const std::string& integrator);
 
-// Writes NAME.bench.json, NAME.bench.csv and NAME.INTEGRATOR.exr; the keys are documented in the README. A picture that
-// cannot be written is missing in the JSON, with a warning; for the other two RenderError is thrown.
+// Writes NAME.bench.json, NAME.bench.csv and NAME.bench/INTEGRATOR.exr; the keys are documented in the README. A
+// picture that cannot be written is missing in the JSON, with a warning; for the other two RenderError is thrown.
 void write_bench(const BenchOptions& options, const Device& device, const BenchResult& result);
 
 } // namespace vkvol

@@ -107,12 +107,28 @@ private:
 } // namespace
 
 bool is_worth_measuring(double seconds_per_sample, double share) {
-    return margin * runs_wanted * seconds_per_sample <= share;
+    return share_worth_measuring(seconds_per_sample) <= share;
+}
+
+double share_worth_measuring(double seconds_per_sample) {
+    return margin * runs_wanted * seconds_per_sample;
 }
 
 void run_rounds(const std::vector<double>& seconds_per_sample, double budget, const MeasuredRender& render,
                 const std::function<bool()>& interrupted) {
     Rounds(seconds_per_sample, budget, render, interrupted).run();
+}
+
+double expected_seconds(const std::vector<double>& seconds_per_sample, const std::vector<double>& setup_seconds,
+                        double budget) {
+    double sum = 0.0;
+    const auto render = [&](std::size_t estimator, std::uint32_t samples, double limit) {
+        const double seconds = std::max(seconds_per_sample[estimator], 1e-6) * samples;
+        sum += setup_seconds[estimator] + std::min(seconds, limit);
+        return seconds <= limit ? std::optional(seconds) : std::nullopt;
+    };
+    run_rounds(seconds_per_sample, budget, render, [] { return false; });
+    return sum;
 }
 
 } // namespace vkvol

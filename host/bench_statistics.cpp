@@ -174,7 +174,11 @@ std::optional<Interval> error_slope(std::span<const BenchRun> runs) {
     return Interval{slope, slope - half_width, slope + half_width};
 }
 
-std::optional<Interval> bias_floor(std::span<const BenchRun> runs, double offset_error) {
+double probability_of_each(std::size_t count) {
+    return std::pow(0.95, 1.0 / double(std::max<std::size_t>(1, count)));
+}
+
+std::optional<Interval> bias_floor(std::span<const BenchRun> runs, double offset_error, double probability) {
     std::vector<double> differences, weights;
     for (const BenchRun& run : runs)
         if (run.relmse_from_variance) {
@@ -193,8 +197,8 @@ std::optional<Interval> bias_floor(std::span<const BenchRun> runs, double offset
         squares += weights[i] * square(differences[i] - mean);
     const double freedom = double(differences.size()) - 1.0;
     const double error = std::sqrt(squares / freedom / sum);
-    const double normal95 = 1.959964;
-    const double half_width = std::hypot(student_t95(freedom) * error, normal95 * offset_error);
+    const double half_width =
+        std::hypot(student_t(freedom, probability) * error, normal_quantile(probability) * offset_error);
     return Interval{mean, mean - half_width, mean + half_width};
 }
 
@@ -215,11 +219,25 @@ std::optional<Interval> efficiency_ratio(std::span<const BenchRun> runs, std::sp
     return exponential(a->mean - b->mean, student_t95(freedom) * std::sqrt(variance));
 }
 
-std::optional<double> seconds_to(double target, const Interval& efficiency, const std::optional<Interval>& floor) {
-    const double left = target - (floor && floor->low > 0.0 ? floor->value : 0.0);
-    if (!(left > 0.0))
-        return std::nullopt;
-    return 1.0 / (efficiency.value * left);
+double times_to_judge(std::span<const BenchRun> runs) {
+    constexpr double fewest = 4.0, wanted = 5.0; // effective runs
+    const std::optional<LogEfficiency> log = log_efficiency(runs);
+    if (!log) // one run, or the reference is no better than the runs: it grows with the bench
+        return std::max(2.0, wanted / std::max(1.0, double(runs.size())));
+    const double most = std::log(2.0), half_width = student_t95(log->freedom) * log->error;
+    const double effective = log->freedom + 1.0;
+    if (effective >= fewest && half_width <= most)
+        return 1.0;
+    const double then = student_t95(std::max(log->freedom, wanted - 1.0)) * log->error;
+    return std::max({1.0 + 1e-6, wanted / effective, square(then / most)});
+}
+
+std::optional<double> seconds_to_noise(double target, std::span<const BenchRun> runs) {
+    std::vector<double> seconds;
+    for (const BenchRun& run : runs)
+        if (run.samples == largest_count(runs) && run.noise)
+            seconds.push_back(square(*run.noise / target) * run.seconds);
+    return seconds.empty() ? std::nullopt : std::optional(median(std::move(seconds)));
 }
 
 } // namespace vkvol

@@ -22,6 +22,7 @@ struct BenchRun {
     double seconds = 0.0;
     double relmse = 0.0;
     std::optional<double> relmse_from_variance; // what its own variance predicts; one sample has none
+    std::optional<double> noise;                // see film.h
 };
 
 // All runs of one count of samples.
@@ -70,8 +71,13 @@ std::optional<Interval> error_slope(std::span<const BenchRun> runs);
 // difference is, pixel by pixel, the sum of e_k e_l over k != l, over n (n - 1): its expectation is the squared bias,
 // and without bias its variance is in proportion to 1 / (n (n - 1)), which gives the weights, whatever the tails of e.
 // Student's t with runs - 1 degrees of freedom on the weighted scatter; `offset_error`, of the reference, added in
-// quadrature. Runs of one sample do not count. May come out below 0 by chance.
-std::optional<Interval> bias_floor(std::span<const BenchRun> runs, double offset_error);
+// quadrature. Runs of one sample do not count. May come out below 0 by chance. The interval holds the true value with
+// `probability`.
+std::optional<Interval> bias_floor(std::span<const BenchRun> runs, double offset_error, double probability = 0.95);
+
+// What each of `count` intervals must hold its value with, for all together to do so with 95 % (Sidak): of many floors
+// of 0, one would else seem to be more.
+double probability_of_each(std::size_t count);
 
 // 1 / (relMSE seconds), as a mean over all runs of its logarithm, weighted by seconds: short runs pay for starting up,
 // and it is long ones that are waited for. Student's t on the weighted scatter of the logarithms, with as many degrees
@@ -82,8 +88,14 @@ std::optional<Interval> efficiency(std::span<const BenchRun> runs);
 // efficiency(runs) / efficiency(base): Welch's t on the logarithms.
 std::optional<Interval> efficiency_ratio(std::span<const BenchRun> runs, std::span<const BenchRun> base);
 
-// Until relMSE = `target`: 1 / (efficiency (target - floor)), the floor where its interval excludes 0. Nothing if the
-// floor forbids it.
-std::optional<double> seconds_to(double target, const Interval& efficiency, const std::optional<Interval>& floor);
+// How many times as long a bench would have to be for the efficiency to be fit to compare: 1 if it is. Fit it is from
+// four effective runs on, with an interval from half to twice its value at most: what is measured so differs by less
+// than the estimators that are worth telling apart, and a t of fewer runs is a guess. From longer benches, with five
+// runs and errors in proportion to 1 / sqrt(seconds), t * error is to be log 2.
+double times_to_judge(std::span<const BenchRun> runs);
+
+// Until the picture's noise is `target`: noise^2 seconds / target^2, the median over the runs of the most samples,
+// since noise^2 falls as 1 / seconds. Nothing if that is not known, as of single samples.
+std::optional<double> seconds_to_noise(double target, std::span<const BenchRun> runs);
 
 } // namespace vkvol

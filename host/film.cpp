@@ -1,26 +1,19 @@
 #include "film.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace vkvol {
 
 std::optional<double> relative_noise(const Film& film) {
-    if (std::all_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n < 2; }))
-        return std::nullopt;
-    double sum = 0.0;
-    std::size_t counted = 0;
-    const glm::dvec3 luminance(0.2126, 0.7152, 0.0722);
+    double error = 0.0, signal = 0.0;
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
-        const double mean = glm::dot(luminance, glm::dvec3(film.mean[i]));
-        // Channels of one pixel vary together: the standard deviations add, not the variances.
-        const double deviation = glm::dot(luminance, glm::sqrt(glm::dvec3(film.variance[i])));
-        if (film.samples[i] < 2 || mean <= 1e-6)
+        if (film.samples[i] < 2)
             continue;
-        sum += deviation * deviation / (mean * mean);
-        ++counted;
+        const glm::dvec3 mean(film.mean[i]);
+        error += glm::dot(glm::dvec3(film.variance[i]), glm::dvec3(1.0));
+        signal += glm::dot(mean, mean);
     }
-    return counted > 0 ? std::sqrt(sum / static_cast<double>(counted)) : 0.0;
+    return signal > 0.0 ? std::optional(std::sqrt(error / signal)) : std::nullopt;
 }
 
 ImageMean image_mean(const Film& film) {

@@ -26,8 +26,12 @@ struct Film {
     std::size_t pixel_count() const { return mean.size(); }
 };
 
-// Root of the mean over pixels of variance / mean^2 (of luminance, dark pixels left out): the picture's relative
-// standard error. Unknown if no pixel has two samples.
+// The picture's noise: its root mean square error over its root mean square signal, sqrt(sum of the variances / sum of
+// the squared means), over all channels of the pixels that have two samples. One sum over another and not a mean of
+// quotients, which is whatever the darkest pixels make it: a pixel that is nearly black, and of which nobody sees the
+// error, would count for more than all others. A factor on the picture cancels, black pixels change nothing, and it
+// falls as 1 / sqrt(samples). Since squared means hold their own variance it never exceeds 1, unless samples are below
+// 0. Unknown if no pixel has two samples, or none has light.
 std::optional<double> relative_noise(const Film& film);
 
 // Of the picture, over the pixels that have samples. Pixels are independent, so their variances add; of a pixel with a

@@ -70,7 +70,7 @@ struct BenchOptions {
     std::vector<std::string> integrators; // NAME:axis=choice...; empty: the unbiased ones that suit the scene
     double seconds = 60.0;                // of measured rendering, shared by all
     std::optional<std::filesystem::path> reference;
-    std::filesystem::path name; // NAME.bench.json, NAME.bench.csv and NAME.INTEGRATOR.exr are written
+    std::filesystem::path name; // NAME.bench.json, NAME.bench.csv and NAME.bench/INTEGRATOR.exr
     std::string command;        // as it was typed, for the record
 };
 

@@ -57,9 +57,10 @@ inline constexpr const char* bench_description = "Measures integrators on a scen
                                                  "4, ... samples per pixel against a reference.";
 
 inline constexpr const char* bench_footer =
-    R"(Writes NAME.bench.json, NAME.bench.csv and each integrator's last picture, NAME.INTEGRATOR.exr. All
-integrators must estimate the same picture; biased ones are measured when named. A reference is rendered
-first, for half of the time again or more, and kept in the user's cache directory.
+    R"(Writes NAME.bench.json, NAME.bench.csv and each integrator's last picture, NAME.bench/INTEGRATOR.exr.
+All integrators must estimate the same picture; biased ones are measured when named. A reference is
+rendered first, for half of the time again or more, and kept in the user's cache directory. With that and
+with setting up, a bench takes longer than --time: how long is printed before it begins.
 
 Example:
   vkvol bench cloud.xml --width 120 --integrators ratioTracking,ratioTracking:flight=weighted --time 2m)";

@@ -50,19 +50,19 @@ void Progress::update(std::uint32_t samples, std::optional<double> noise) {
     const double of_time = time_limit_ && *time_limit_ > 0.0 ? seconds / *time_limit_ : 0.0;
     const double fraction = std::min(std::max(of_samples, of_time), 1.0);
     const double remaining = fraction > 0.0 ? seconds * (1.0 - fraction) / fraction : 0.0;
-    const bool know_noise = noise && std::isfinite(*noise);
+    noise_ = noise ? noise : noise_;
 
     if (mode_ == Mode::json) {
         tell(out_, R"({{"progress": {:.4f}, "samples": {}, "total": {}, "seconds": {:.3f}, "remaining": {:.1f}, )",
              fraction, samples, total_, seconds, remaining);
-        tell(out_, "\"noise\": {}}}\n", know_noise ? fmt::format("{:.6g}", *noise) : "null");
+        tell(out_, "\"noise\": {}}}\n", noise_ ? fmt::format("{:.6g}", *noise_) : "null");
         std::fflush(out_);
         return;
     }
     const std::string of_total = of_time > of_samples ? "" : fmt::format("/{}", total_);
     const std::string status =
         fmt::format("{}{} samples, {} left{}", samples, of_total, fraction > 0.0 ? duration_text(remaining) : "?",
-                    know_noise ? fmt::format(", noise {:.2g} %", 100.0 * *noise) : "");
+                    noise_ ? fmt::format(", noise {:.2g} %", 100.0 * *noise_) : "");
     if (mode_ == Mode::lines) {
         if (const int tenth = static_cast<int>(fraction * 10.0); tenth > last_tenth_) {
             last_tenth_ = tenth;

@@ -23,7 +23,7 @@ public:
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    // `noise`: present relative standard error of the picture, e.g. the root of the mean relative variance.
+    // `noise`: the picture's at present, see film.h; the last that was known is shown until the next is.
     void update(std::uint32_t samples, std::optional<double> noise = std::nullopt);
 
     // Removes the bar, so that other lines can be printed. Called twice it does nothing.
@@ -41,6 +41,7 @@ private:
     std::FILE* out_;
     Clock::time_point start_;
     Clock::time_point last_draw_;
+    std::optional<double> noise_;
     int last_tenth_ = -1;
     bool drawn_ = false;
 };

@@ -17,6 +17,13 @@ std::string samples_text(const Film& film) {
     return *most == 1 ? "1 sample" : fmt::format("{} samples", *most);
 }
 
+// Nothing of single samples, and of a black picture that it has none to speak of.
+std::string noise_text(const Film& film) {
+    if (const std::optional<double> noise = relative_noise(film))
+        return fmt::format(", noise {:.2g} %", 100.0 * *noise);
+    return *std::max_element(film.samples.begin(), film.samples.end()) > 1 ? ", noise -" : "";
+}
+
 // As a shell reads it, also where printable() had to write a control character otherwise.
 std::string quoted(const std::string& text) {
     if (const std::string shown = printable(text); shown != text && text.find_first_of("'\\") == std::string::npos)
@@ -84,10 +91,8 @@ void print_summary(const RenderOptions& options, const Device& device, const Ren
     std::string outputs;
     for (const std::filesystem::path& output : options.outputs)
         outputs += (outputs.empty() ? "" : ", ") + output.string();
-    const std::optional<double> noise = relative_noise(result.film);
     tell(stdout, "{}: {} per pixel, {:.2f} s{}, on {}{}\n", outputs, samples_text(result.film), result.render_seconds,
-         noise ? fmt::format(", noise {:.2g} %", 100.0 * *noise) : "", device.info().name,
-         device.is_cpu() ? " (software)" : "");
+         noise_text(result.film), device.info().name, device.is_cpu() ? " (software)" : "");
 }
 
 std::string no_samples_text(const RenderResult& result) {

@@ -152,7 +152,7 @@ std::string make_report(const RenderOptions& options, const Scene& scene, const 
     report["caps"] = caps_json(result);
     report["mean"] = mean_json(result.film);
     const std::optional<double> noise = relative_noise(result.film);
-    report["meanRelativeVariance"] = noise ? Json(*noise * *noise) : Json();
+    report["noise"] = noise ? Json(*noise) : Json();
     report["memory"] = {{"peakHostBytes", peak_host_bytes()}, {"deviceBytes", result.device_bytes}};
     report["warnings"] = scene.warnings;
     for (const std::string& warning : result.warnings)

@@ -24,12 +24,14 @@ double central_probability(double t, double freedom) {
 
 } // namespace
 
-double student_t95(double freedom) {
+double student_t(double freedom, double probability) {
     freedom = std::max(freedom, 1.0);
-    double low = 1.9, high = 13.0; // 1.960 at infinity, 12.706 at 1
-    for (int i = 0; i < 50; ++i) {
+    double low = 0.0, high = 2.0;
+    while (high < 1e9 && central_probability(high, freedom) < probability)
+        high *= 2.0;
+    for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
-        (central_probability(middle, freedom) < 0.95 ? low : high) = middle;
+        (central_probability(middle, freedom) < probability ? low : high) = middle;
     }
     return 0.5 * (low + high);
 }

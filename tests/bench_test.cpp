@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -86,9 +87,9 @@ std::map<std::pair<std::string, std::uint32_t>, std::vector<double>> read_csv(co
 }
 
 void check_estimator(const nlohmann::json& estimator, const Folder& folder) {
-    check_keys(estimator,
-               {"integrator", "isDefault", "biased", "setupSeconds", "points", "slope", "biasFloor", "efficiency",
-                "secondsToOnePercent", "perPath", "laneUse", "passSeconds", "samplesPerSecond", "image"});
+    check_keys(estimator, {"integrator", "sameAs", "judged", "noise", "isDefault", "biased", "setupSeconds", "points",
+                           "slope", "biasFloor", "efficiency", "secondsToOnePercent", "perPath", "laneUse",
+                           "passSeconds", "samplesPerSecond", "image"});
     check_keys(estimator["setupSeconds"], {"load", "upload", "pipeline"});
     check_keys(estimator["perPath"], {"realCollisions", "nullCollisions", "lookups", "majorantCells", "shadowRays"});
     check_keys(estimator["passSeconds"], {"sky", "generate", "track"});
@@ -109,9 +110,11 @@ TEST_CASE("a bench writes what it measured, as JSON, CSV and pictures", "[gpu][b
     CAPTURE(run.text);
     REQUIRE(run.code == exit_done);
     CHECK_THAT(run.text, Contains("bias floor") && Contains("ratioTracking:flight=delta"));
+    CHECK_THAT(run.text, Contains("2 integrators to measure, 2 s of rendering; with a reference of 3 s") &&
+                             Contains("in all") && Contains("ratioTracking, default") && Contains("For ball "));
     const nlohmann::json json = folder.json("ball.bench.json");
     check_keys(json, {"format", "version", "scene", "sceneHash", "command", "program", "date", "device", "machine",
-                      "image", "budgetSeconds", "seed", "reference", "estimators", "ranking"});
+                      "image", "budgetSeconds", "seed", "reference", "estimators", "ranking", "secondsToJudge"});
     CHECK(json["format"] == "vkvol-bench");
     check_keys(json["device"], {"name", "driver", "api"});
     check_keys(json["machine"], {"processor", "cores", "load"});
@@ -141,8 +144,44 @@ TEST_CASE("a bench writes what it measured, as JSON, CSV and pictures", "[gpu][b
     }
     CHECK(seconds <= 2.0);
     Metadata metadata;
-    const Film film = read_exr(folder.file("ball.ratioTracking.exr"), &metadata);
+    CHECK(json["estimators"][0]["image"] == "ball.bench/ratioTracking.exr");
+    const Film film = read_exr(folder.file("ball.bench/ratioTracking.exr"), &metadata);
     CHECK(film.samples.front() == json["estimators"][0]["points"].back()["samples"]);
+}
+
+// In a homogeneous medium all these flights and transmittances are closed forms.
+TEST_CASE("integrators that come to one kernel are measured once, and all their names told", "[gpu][bench]") {
+    const Folder folder;
+    const char* names[] = {"ratioTracking", "deltaTrackingNEE", "residualRatioTracking", "weightedTracking"};
+    const Run run = folder.vkvol(
+        fmt::format("bench ball.xml --time 1s --integrators {},ratioTracking:flight=delta", fmt::join(names, ",")));
+    CAPTURE(run.text);
+    REQUIRE(run.code == exit_done);
+    CHECK_THAT(run.text, Contains(fmt::format("measured once: {}.", fmt::join(names, " = "))));
+    const nlohmann::json json = folder.json("ball.bench.json");
+    REQUIRE(json["estimators"].size() == 2);
+    CHECK(json["estimators"][0]["sameAs"] == nlohmann::json({names[1], names[2], names[3]}));
+    CHECK(json["estimators"][1]["sameAs"].empty());
+    std::vector<Film> films;
+    for (const char* name : names) {
+        REQUIRE(folder.vkvol(fmt::format("ball.xml --spp 4 --integrator {} -o same.exr -q", name)).code == exit_done);
+        films.push_back(read_exr(folder.file("same.exr")));
+        CHECK(films.back().mean == films.front().mean);
+    }
+}
+
+TEST_CASE("a bench that is too short claims nothing", "[gpu][bench]") {
+    const Folder folder;
+    REQUIRE(folder.vkvol("ball.xml --spp 64 --seed 9 -o reference.exr -q").code == exit_done);
+    // A thousand pixels a side: a render or two of a sample each are all that fits.
+    const Run big = folder.vkvol("ball.xml --width 512 --height 512 --spp 16 --seed 9 -o reference.exr -q");
+    REQUIRE(big.code == exit_done);
+    const Run run = folder.vkvol("bench ball.xml --width 512 --height 512 --reference reference.exr --time 0.4s -q "
+                                 "--integrators ratioTracking:flight=delta,ratioTracking:flight=decomposition");
+    CAPTURE(run.text);
+    REQUIRE(run.code == exit_done);
+    CHECK_THAT(run.text,
+               Contains("too short to judge") && Contains("give --time ") && !Contains("times the efficiency"));
 }
 
 TEST_CASE("a reference is kept, read again, and rendered anew if it is damaged", "[gpu][bench]") {
@@ -199,6 +238,7 @@ TEST_CASE("a bench against a given reference checks what that shows", "[gpu][ben
 
 TEST_CASE("bench refuses command lines that make no sense", "[gpu][bench][options]") {
     const Folder folder;
+    std::ofstream(folder.file("taken.bench")) << "something";
     for (const auto& [arguments, message] : {
              std::pair{"", "no scene given"},
              {"none.xml", "none.xml"},
@@ -209,6 +249,7 @@ TEST_CASE("bench refuses command lines that make no sense", "[gpu][bench][option
              {"ball.xml --integrators ratioTracking,ratioTracking", "given twice"},
              {"ball.xml --integrators ratioTracking,deltaTracking", "do not estimate the same picture"},
              {"ball.xml -o none/there", "does not exist"},
+             {"ball.xml -o taken", "taken.bench: is no folder"},
          }) {
         const Run run = folder.vkvol(std::string("bench ") + arguments);
         CAPTURE(arguments, run.text);

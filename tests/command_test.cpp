@@ -76,7 +76,21 @@ TEST_CASE("a single sample tells no noise", "[gpu][command]") {
     std::ifstream report(folder.file("ball.json"));
     const auto json = nlohmann::json::parse(report);
     CHECK(json["mean"]["standardError"].is_null());
-    CHECK(json["meanRelativeVariance"].is_null());
+    CHECK(json["noise"].is_null());
+}
+
+TEST_CASE("summary, report and progress tell one noise, and a black picture has none", "[gpu][command]") {
+    const Folder folder("");
+    const Run run = folder.vkvol("ball.xml --spp 64 --progress json --report ball.json");
+    std::ifstream report(folder.file("ball.json"));
+    const double noise = nlohmann::json::parse(report)["noise"];
+    CHECK(noise == Approx(*relative_noise(read_exr(folder.file("ball.exr")))).epsilon(1e-12));
+    CHECK_THAT(run.text, Contains(fmt::format(", noise {:.2g} %", 100.0 * noise)));
+    const Folder dark("<backgroundColor r=\"0\" g=\"0\" b=\"0\"/>");
+    const Run black = dark.vkvol("ball.xml --spp 8 --report ball.json");
+    CHECK_THAT(black.text, Contains("noise -"));
+    std::ifstream black_report(dark.file("ball.json"));
+    CHECK(nlohmann::json::parse(black_report)["noise"].is_null());
 }
 
 TEST_CASE("a picture without caps is exact, and --strict is content", "[gpu][command]") {

@@ -131,3 +131,63 @@ TEST_CASE("the mean of a picture and its error, by hand", "[cpu][film]") {
     film.samples = {1, 1, 0};
     CHECK_FALSE(relative_noise(film));
 }
+
+namespace {
+
+// Pixels of mean 1 are the object, those of `sky` the rest: each the mean of `n` samples with standard deviation a half
+// of it in the object, and of `sky` itself in the sky.
+Film lit_object(std::size_t object, std::size_t sky_pixels, float sky, std::uint32_t n) {
+    Film film;
+    for (std::size_t i = 0; i < object + sky_pixels; ++i) {
+        const float mean = i < object ? 1.0f : sky;
+        const float deviation = i < object ? 0.5f : sky;
+        film.mean.emplace_back(mean);
+        film.variance.emplace_back(deviation * deviation / float(n));
+        film.samples.push_back(n);
+    }
+    return film;
+}
+
+} // namespace
+
+TEST_CASE("a picture's noise is that of what is bright in it", "[cpu][film]") {
+    for (const float sky : {0.0f, 1e-6f, 1e-3f}) {
+        CAPTURE(sky);
+        // Signals 100 against at most 9900e-6, errors 25 / n against as little: 5e-5 and 2e-4 of the sums, half in the
+        // root.
+        const std::optional<double> noise = relative_noise(lit_object(100, 9900, sky, 100));
+        REQUIRE(noise);
+        CHECK(*noise == Approx(0.05).epsilon(2e-4));
+    }
+    SECTION("it falls as 1 / sqrt(samples)") {
+        const double one = *relative_noise(lit_object(10, 90, 0.01f, 16));
+        CHECK(*relative_noise(lit_object(10, 90, 0.01f, 1024)) == Approx(one / 8.0).epsilon(1e-6));
+    }
+    SECTION("a factor on the picture, and black pixels, change nothing") {
+        Film film = lit_object(10, 90, 0.1f, 16);
+        const double noise = *relative_noise(film);
+        for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+            film.mean[i] *= 1024.0f; // exact
+            film.variance[i] *= 1024.0f * 1024.0f;
+        }
+        CHECK(*relative_noise(film) == Approx(noise).epsilon(1e-12));
+        film.mean.resize(1000, glm::vec3(0.0f));
+        film.variance.resize(1000, glm::vec3(0.0f));
+        film.samples.resize(1000, 16);
+        CHECK(*relative_noise(film) == Approx(noise).epsilon(1e-12));
+    }
+    SECTION("pixels of a single sample tell nothing, and black pictures have none") {
+        Film film = lit_object(2, 0, 0.0f, 100);
+        film.mean[1] = glm::vec3(1000.0f);
+        film.samples[1] = 1;
+        CHECK(*relative_noise(film) == Approx(0.05));
+        CHECK_FALSE(relative_noise(lit_object(0, 4, 0.0f, 8)));
+        CHECK_FALSE(relative_noise(lit_object(4, 4, 0.5f, 1)));
+    }
+    SECTION("one bright sample in each pixel is no more than 100 %") {
+        Film film = lit_object(1, 0, 0.0f, 8);
+        film.mean[0] = glm::vec3(1.0f / 8.0f); // of 1, 0, ... 0
+        film.variance[0] = glm::vec3((1.0f / 8.0f - 1.0f / 64.0f) / 7.0f);
+        CHECK(*relative_noise(film) == Approx(1.0));
+    }
+}

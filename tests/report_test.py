@@ -86,8 +86,24 @@ class Conclusions(Folder):
 
     def test_single_runs_support_no_comparison(self):
         data = made.bench([made.estimator("ratioTracking", default=True, spread=None),
-                           made.estimator("ratioNEE", variance=0.05, spread=None)])
-        self.assertIn("too few runs", self.said(data)[0])
+                           made.estimator("ratioNEE", variance=0.05, spread=None)], secondsToJudge=299.5)
+        text = self.said(data)
+        self.assertIn("was measured long enough", text[0])
+        self.assertIn("Give `--time 300` or more", text[0])
+        self.assertFalse(any("times" in t for t in text))
+
+    def test_what_a_bench_calls_too_short_is_not_compared(self):
+        """However large the ratio, and although the file has an interval of it."""
+        data = made.bench([made.estimator("ratioTracking", default=True), made.estimator("ratioNEE", 0.2),
+                           made.estimator("weightedTracking", variance=0.004, judged=False)])
+        text = self.said(data)
+        self.assertIn("use `ratioTracking`, its default: ", text[0])
+        about = [t for t in text if "weightedTracking" in t]
+        self.assertEqual(about, ["Too few runs to judge `weightedTracking`. Give a longer `--time`."])
+
+    def test_other_names_of_an_estimator_are_said(self):
+        text = self.said(made.bench([made.estimator("ratioTracking", default=True, sameAs=["ratioNEE", "weightedTracking"])]))
+        self.assertTrue(any("`ratioNEE`, `weightedTracking` and `ratioTracking` are one and the same" in t for t in text))
 
     def test_floors_of_unbiased_estimators_are_suspicious(self):
         text = self.said(made.bench([made.estimator("ratioTracking", default=True), made.estimator("ratioNEE", floor=1e-3)]))

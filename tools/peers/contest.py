@@ -113,8 +113,6 @@ class Measured:
         entry = {"renderer": self.renderer.name(), "isDefault": True, "biased": "",
                  "setupSeconds": self.renderer.set_up(), "points": [point], "slope": None, "biasFloor": None,
                  "efficiency": efficiency,
-                 # A relative error of 1 % in the root of the mean square is a relMSE of 1e-4.
-                 "secondsToOnePercent": 1e4 / efficiency["value"],
                  "perPath": None, "laneUse": {}, "passSeconds": None,
                  "samplesPerSecond": self.samples * pixels / seconds, "busyCores": statistics.median(self.cores),
                  "image": None, "agreement": self.agreement}

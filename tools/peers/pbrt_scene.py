@@ -170,7 +170,7 @@ def result_entry(options, table):
              "secondsHigh": None, "relMse": statistics.fmean(errors), "relMseError": spread, "relMseFromVariance": None}
     return {"renderer": options.title, "isDefault": False, "biased": "",
             "setupSeconds": {"load": None, "upload": None, "pipeline": None, "coldPipeline": None}, "points": [point],
-            "slope": None, "biasFloor": None, "efficiency": efficiency, "secondsToOnePercent": 1e4 / efficiency["value"],
+            "slope": None, "biasFloor": None, "efficiency": efficiency,
             "perPath": None, "laneUse": {}, "passSeconds": None, "samplesPerSecond": options.samples * pixels / options.seconds,
             "busyCores": None, "image": str(options.result[0]), "agreement": agreement}
 

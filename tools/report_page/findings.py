@@ -20,6 +20,7 @@ def findings_of(bench):
     found = [headline(bench, choice)]
     if choice.judged:
         found += ties(bench, choice) + cost_of_the_worst(bench, choice) + time_to_one_percent(choice)
+    found += same(bench)
     found += [bias(estimator) for estimator in bench.estimators if estimator.biased]
     found += unexpected_floors(bench) + slopes(bench) + not_judged(bench)
     return found + reference(bench, choice) + circumstances(bench) + where_time_goes(choice)
@@ -28,7 +29,8 @@ def findings_of(bench):
 def headline(bench, choice):
     scene, default, advised = bench.name, bench.default, choice.advised
     if choice.best is None:
-        return Finding(CAUTION, f"No unbiased estimator of {scene} has a measured efficiency: there is nothing to choose from.")
+        return Finding(CAUTION, f"No unbiased estimator of {scene} was measured long enough to be judged: there is nothing to choose "
+                                f"from. {longer(bench)}")
     if not choice.judged:
         return Finding(CAUTION, f"For {scene} the reference is too noisy to rank the estimators: {percent(choice.noise)} of the "
                                 "smallest squared difference measured is its own error. Give a longer `--time`, or a better `--reference`.")
@@ -39,13 +41,13 @@ def headline(bench, choice):
         return Finding(USE, f"For {scene} use `{advised.name}`, the most efficient unbiased estimator. The scene's default, "
                             f"`{default.name}`, is biased: {default.biased}.")
     if default not in bench.unbiased:
-        return Finding(USE, f"For {scene} use `{advised.name}`, the most efficient of the estimators measured; the efficiency of "
-                            f"`{default.name}`, the scene's default, is not known.")
+        return Finding(USE, f"For {scene} use `{advised.name}`, the most efficient of the estimators that could be judged; "
+                            f"`{default.name}`, the scene's default, could not.")
     if advised is not default:
         return Finding(USE, f"For {scene} use `{advised.name}`: {choice.gain} times the efficiency of `{default.name}`, the "
                             "scene's default, which is not the best unbiased choice.")
     if len(bench.unbiased) == 1:
-        return Finding(USE, f"For {scene} `{default.name}`, its default, is the only unbiased estimator measured.")
+        return Finding(USE, f"For {scene} `{default.name}`, its default, is the only unbiased estimator that was judged.")
     if choice.best is default:
         return Finding(USE, f"For {scene} use `{default.name}`, its default: {runner_up(bench, choice)}.")
     return Finding(USE, f"For {scene} stay with `{default.name}`, its default: {comparison(choice.best, choice.gain)}.")
@@ -84,13 +86,18 @@ def cost_of_the_worst(bench, choice):
     return [Finding(NOTE, f"The same noise takes `{worst.name}` {ratio} times as long as `{choice.advised.name}`.")]
 
 
+def same(bench):
+    return [Finding(NOTE, f"In this scene {', '.join(f'`{n}`' for n in e.same_as)} and `{e.name}` are one and the same, and were measured "
+                          f"once, as `{e.name}`.") for e in bench.estimators if e.same_as]
+
+
 def time_to_one_percent(choice):
     seconds = choice.advised.seconds_to_one_percent
     if seconds is None:
         return []
     setup = setup_seconds(choice.advised.setup)
     then = "" if setup is None else f", and takes {duration(setup)} to set up"
-    return [Finding(NOTE, f"`{choice.advised.name}` reaches a relative error of 1\u00a0% (root mean square) after "
+    return [Finding(NOTE, f"`{choice.advised.name}` reaches a noise of 1\u00a0% after "
                           f"{duration(seconds)} of rendering{then}.")]
 
 
@@ -134,8 +141,13 @@ def slopes(bench):
 
 
 def not_judged(bench):
-    names = [f"`{e.name}`" for e in bench.estimators if not e.efficiency.bounded]
-    return [Finding(CAUTION, f"Too few runs to judge {', '.join(names)}: give a longer `--time`.")] if names else []
+    names = [f"`{e.name}`" for e in bench.estimators if not e.judged]
+    return [Finding(CAUTION, f"Too few runs to judge {', '.join(names)}. {longer(bench)}")] if names else []
+
+
+def longer(bench):
+    seconds = bench.seconds_to_judge
+    return f"Give `--time {math.ceil(seconds)}` or more." if seconds else "Give a longer `--time`."
 
 
 def reference(bench, choice):

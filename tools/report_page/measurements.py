@@ -29,6 +29,7 @@ def setup_seconds(phases):
 @dataclass
 class Estimator:
     name: str
+    same_as: list  # other names of it in this scene
     is_default: bool
     biased: str
     setup: dict
@@ -36,6 +37,7 @@ class Estimator:
     slope: Interval
     floor: Interval
     efficiency: Interval
+    judged: bool  # measured long enough to be compared
     seconds_to_one_percent: Optional[float]
     per_path: dict
     lane_use: dict
@@ -67,6 +69,7 @@ class Bench:
     estimators: list
     ranking: dict
     interrupted: bool
+    seconds_to_judge: Optional[float]  # --time that judges all
 
     @property
     def name(self):
@@ -78,11 +81,14 @@ class Bench:
 
     @property
     def unbiased(self):
-        return [e for e in self.estimators if not e.biased and e.efficiency.known]
+        """Those to choose from."""
+        return [e for e in self.estimators if not e.biased and e.judged and e.efficiency.known]
 
     def ratio(self, a, b):
         """Efficiency of a over that of b. The file's own, which knows what runs share, where it has one."""
         unknown = Interval(None)
+        if not (a.judged and b.judged):
+            return unknown
         if b.is_default and self.ranking.get(a.name, unknown).known:
             return self.ranking[a.name]
         if a.is_default and self.ranking.get(b.name, unknown).known:
@@ -96,10 +102,12 @@ def read_point(node):
 
 
 def read_estimator(node):
+    efficiency = node.interval("efficiency")
     return Estimator(
-        node.text("integrator"), node.truth("isDefault"), node.text("biased"), node.numbers("setupSeconds"),
+        node.text("integrator"), node.get("sameAs", (list,), "a list", None) or [], node.truth("isDefault"), node.text("biased"), node.numbers("setupSeconds"),
         sorted((read_point(p) for p in node.objects("points")), key=lambda p: p.samples), node.interval("slope"),
-        node.interval("biasFloor"), node.interval("efficiency"), node.number("secondsToOnePercent"),
+        node.interval("biasFloor"), efficiency, node.truth("judged", efficiency.bounded),
+        node.number("secondsToOnePercent"),
         node.numbers("perPath"), node.numbers("laneUse"), node.numbers("passSeconds"), node.number("samplesPerSecond"),
         node.text("image"))
 
@@ -130,7 +138,7 @@ def read_bench(file):
                   image.needed("width"), image.needed("height"), read_reference(root.object("reference")),
                   [read_estimator(e) for e in root.objects("estimators")],
                   {e.text("integrator"): e.interval("efficiencyRatioToDefault") for e in root.objects("ranking")},
-                  root.truth("interrupted", False))
+                  root.truth("interrupted", False), root.number("secondsToJudge", None))
     if not bench.estimators:
         root.fail("estimators", "is empty")
     return bench

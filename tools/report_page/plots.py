@@ -72,13 +72,17 @@ def clipped(name):
     return name if len(name) <= LONGEST_NAME else name[:LONGEST_NAME - 1] + "…"
 
 
+def is_shown(estimator):
+    return estimator.judged and estimator.efficiency.known
+
+
 def relative_efficiencies(bench):
     """[(estimator, efficiency over the default's)], or over the best one's if the default was not measured; and over whose."""
-    unit = bench.default if bench.default and bench.default.efficiency.known else None
-    unit = unit or max((e for e in bench.estimators if e.efficiency.known), key=lambda e: e.efficiency.value, default=None)
+    unit = bench.default if bench.default and is_shown(bench.default) else None
+    unit = unit or max((e for e in bench.estimators if is_shown(e)), key=lambda e: e.efficiency.value, default=None)
     if unit is None:
         return [], None
-    ratios = [(e, Interval(1.0) if e is unit else bench.ratio(e, unit)) for e in bench.estimators if e.efficiency.known]
+    ratios = [(e, Interval(1.0) if e is unit else bench.ratio(e, unit)) for e in bench.estimators if is_shown(e)]
     return sorted(ratios, key=lambda pair: -pair[1].value), unit
 
 

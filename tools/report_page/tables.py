@@ -31,10 +31,10 @@ def known(value, form=number):
 COLUMNS = (
     ("Efficiency, 1/s", "1 / (relMSE × seconds of rendering), with its 95 % interval"),
     ("Against the default", "efficiency over that of the scene's default"),
-    ("To 1 % error", "seconds of rendering until the root mean square of the relative error is 1 %, extrapolated"),
+    ("To 1 % noise", "seconds of rendering until the noise, root mean square error over root mean square signal, is 1 %, extrapolated"),
     ("Samples/s", "camera paths finished per second of rendering"),
     ("Error’s power", "of seconds by which relMSE falls; −1 is what independent samples give"),
-    ("Bias floor", "relMSE that more samples would not remove, with its 95 % interval; 0 if it contains that. "
+    ("Bias floor", "relMSE that more samples would not remove, with an interval; all of them together hold with 95 %. 0 if it contains that. "
      "This and the power take five numbers of samples"),
     ("Lookups", "of density, per path"),
     ("Real collisions", "per path"),
@@ -54,7 +54,9 @@ def estimator_row(bench, e, swatch):
     if floor.low is not None and floor.low <= 0:
         floor = Interval(0.0)
     lanes = ", ".join(f"{k} {number(100 * v)} %" for k, v in e.lane_use.items())
-    return [name, known(e.efficiency, str), "1" if e.is_default else known(against, str), known(e.seconds_to_one_percent, duration),
+    name += f" <small>= {escape(', '.join(e.same_as))}</small>" if e.same_as else ""
+    efficiency = e.efficiency if e.judged else Interval(None)
+    return [name, known(efficiency, str), "1" if e.is_default and e.judged else known(against, str), known(e.seconds_to_one_percent, duration),
             known(e.samples_per_second), known(slope, str), known(floor, str),
             known(e.per_path.get("lookups")), known(real), known(null / real if real and null is not None else None),
             known(e.per_path.get("majorantCells")), known(e.per_path.get("shadowRays")), escape(lanes) or "–",
