@@ -87,6 +87,21 @@ void say_floors(Sentences& said, const std::vector<Row>& rows) {
                         fmt::join(floors, ", ")));
 }
 
+// The error of independent samples falls as 1 / seconds. Where it fell faster, each doubling of the samples took less
+// than twice the seconds: what every render costs at least was much of its time.
+void say_short_renders(Sentences& said, const std::vector<Row>& rows) {
+    constexpr double steep = -1.1; // 7 % more than half the error in twice the time
+    Sentences names;
+    for (const Row& row : rows)
+        if (row.figures.judged && row.figures.slope && row.figures.slope->high < steep)
+            names.push_back(row.name());
+    if (!names.empty())
+        said.push_back(
+            fmt::format("Starting up was much of these renders' time: {}. Longer ones are more efficient than "
+                        "the figures say; a longer --time measures them.",
+                        fmt::join(names, ", ")));
+}
+
 // Part of the smallest squared difference that was measured.
 double reference_share(const Reference& reference, const std::vector<Row>& rows) {
     const double own = reference.relmse.value_or(0.0);
@@ -156,6 +171,7 @@ std::vector<std::string> findings_of(const BenchOptions& options, const BenchRes
     say_same(said, rows);
     say_reference(said, result.reference, rows);
     say_floors(said, rows);
+    say_short_renders(said, rows);
     for (const Row& row : rows)
         if (!row.figures.judged)
             unjudged.push_back(row.name());

@@ -22,7 +22,7 @@ struct BenchRun {
     double seconds = 0.0;
     double relmse = 0.0;
     std::optional<double> relmse_from_variance; // what its own variance predicts; one sample has none
-    std::optional<double> noise;                // see film.h
+    std::optional<double> noise = std::nullopt; // see film.h
 };
 
 // All runs of one count of samples.

@@ -109,6 +109,15 @@ TEST_CASE("the last sentence says what to use", "[cpu][bench]") {
     }
 }
 
+TEST_CASE("renders that mostly start up are called that", "[cpu][bench]") {
+    Measurement slow = default_of(measured("slow to start", 1.0));
+    CHECK_THAT(all_of(said_of(bench_of({slow}))), !Contains("Starting up"));
+    for (BenchRun& run : slow.runs)
+        run.seconds += 20.0; // a third of the longest
+    CHECK_THAT(all_of(said_of(bench_of({slow}))),
+               Contains("Starting up was much of these renders' time: slow to start."));
+}
+
 TEST_CASE("what else there is to know of the rows is said", "[cpu][bench]") {
     Measurement usual = default_of(measured("usual", 1.0));
     usual.estimator.same = {"alike", "too"};
