@@ -86,10 +86,11 @@ TEST_CASE("summary, report and progress tell one noise, and a black picture has 
     const double noise = nlohmann::json::parse(report)["noise"];
     CHECK(noise == Approx(*relative_noise(read_exr(folder.file("ball.exr")))).epsilon(1e-12));
     CHECK_THAT(run.text, Contains(fmt::format(", noise {:.2g} %", 100.0 * noise)));
-    const Folder dark("<backgroundColor r=\"0\" g=\"0\" b=\"0\"/>");
-    const Run black = dark.vkvol("ball.xml --spp 8 --report ball.json");
+    std::ofstream(folder.file("black.xml")) << "<options><sphere radius=\"1\"/><width>8</width><height>8</height>"
+                                               "<camera z=\"5\" fov=\"25\"/></options>";
+    const Run black = folder.vkvol("black.xml --spp 8 --report black.json");
     CHECK_THAT(black.text, Contains("noise -"));
-    std::ifstream black_report(dark.file("ball.json"));
+    std::ifstream black_report(folder.file("black.json"));
     CHECK(nlohmann::json::parse(black_report)["noise"].is_null());
 }
 
