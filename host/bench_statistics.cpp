@@ -224,7 +224,7 @@ double times_to_judge(std::span<const BenchRun> runs) {
     const std::optional<LogEfficiency> log = log_efficiency(runs);
     if (!log) // one run, or the reference is no better than the runs: it grows with the bench
         return std::max(2.0, wanted / std::max(1.0, double(runs.size())));
-    const double most = std::log(2.0), half_width = student_t95(log->freedom) * log->error;
+    const double most = std::log(3.0), half_width = student_t95(log->freedom) * log->error;
     const double effective = log->freedom + 1.0;
     if (effective >= fewest && half_width <= most)
         return 1.0;

@@ -158,7 +158,7 @@ TEST_CASE("a bench is called too short until its figures are fit to compare", "[
     CHECK(times_to_judge(runs_with(1, 0.0)) >= 5.0);
     CHECK(times_to_judge({}) >= 5.0);
     // Six runs: the error is spread sqrt(6 / 5) / sqrt(6), and t with 5 degrees of freedom 2.571.
-    const double error = 2.0 / std::sqrt(5.0), needed = std::pow(2.5706 * error / std::log(2.0), 2.0);
+    const double error = 2.0 / std::sqrt(5.0), needed = std::pow(2.5706 * error / std::log(3.0), 2.0);
     CHECK(times_to_judge(runs_with(6, 2.0)) == Approx(needed).epsilon(1e-3));
     CHECK(times_to_judge(runs_with(6 * std::size_t(std::ceil(needed)), 2.0)) == 1.0); // so many it is
     std::vector<BenchRun> below = runs_with(6, 0.01);

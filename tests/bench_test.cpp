@@ -111,7 +111,7 @@ TEST_CASE("a bench writes what it measured, as JSON, CSV and pictures", "[gpu][b
     REQUIRE(run.code == exit_done);
     CHECK_THAT(run.text, Contains("bias floor") && Contains("ratioTracking:flight=delta"));
     CHECK_THAT(run.text, Contains("2 integrators to measure, 2 s of rendering; with a reference of 3 s") &&
-                             Contains("in all") && Contains("ratioTracking, default") && Contains("For ball "));
+                             Contains("in all") && Contains("ratioTracking, default") && Contains("or ball"));
     const nlohmann::json json = folder.json("ball.bench.json");
     check_keys(json, {"format", "version", "scene", "sceneHash", "command", "program", "date", "device", "machine",
                       "image", "budgetSeconds", "seed", "reference", "estimators", "ranking", "secondsToJudge"});
