@@ -9,8 +9,8 @@ without. Looked at are the files that the compiler read, what was linked and is 
 tests and the scripts of tools/ call, and the modules that Python files import. Programs and modules are looked for where
 Debian puts them: what another Python or /usr/local offers does not count.
 
-Exit code 0: all are; 1: some are not, and each is named; 2: nothing is built; 77: this machine cannot tell (no dpkg, or
-another compiler was chosen than Debian's).
+Exit code 0: all are; 1: some are not, and each is named; 2: there is no build; 77: this cannot be told (no dpkg, no ninja,
+or another compiler was chosen than Debian's).
 """
 import argparse
 import os
@@ -63,7 +63,7 @@ def complaints(missing):
     for text in by_package.pop(None, []):
         yield f"{text} is of no package that tools/setup.sh lists, nor of another one here"
     for package, texts in sorted(by_package.items()):
-        more = f", and {len(texts) - 1} more files" if len(texts) > 1 else ""
+        more = f", and {len(texts) - 1} more" if len(texts) > 1 else ""
         yield f"{package} is not listed in tools/setup.sh, but used: {texts[0]}{more}"
 
 
@@ -81,9 +81,12 @@ def main():
     if not any(os.access(os.path.join(place, "dpkg-query"), os.X_OK) for place in PROGRAM_PLACES):
         print("skipped: there is no dpkg here, whose packages tools/setup.sh lists")
         return SKIPPED
-    if not (chosen.build / "build.ninja").is_file():
-        print(f"check_packages: {chosen.build} is no build by ninja; run tools/test.sh, or name one", file=sys.stderr)
+    if not (chosen.build / "CMakeCache.txt").is_file():
+        print(f"check_packages: {chosen.build} is no build; name one, or make it: cmake --preset release", file=sys.stderr)
         return 2
+    if not (chosen.build / "build.ninja").is_file():
+        print(f"skipped: {chosen.build} is not built by ninja, which knows what was read")
+        return SKIPPED
     declared = Declared(Packages(installed_packages()), [name for name in listed_packages() if name not in chosen.without])
     build = Build(chosen.build, ROOT)
     if not declared.has(build.compiler):
