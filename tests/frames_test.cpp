@@ -108,7 +108,7 @@ TEST_CASE("what does not go together with frames is refused", "[cpu][options]") 
     CHECK_THAT(options_error({"s.xml", "-f", "1..3", "-D", "F4=2"}), Contains("with -f, F is the number"));
     CHECK_THAT(options_error({"s.xml", "-f", "1..3", "--trace", "--pixel", "1,1", "--sample", "0"}),
                Contains("choose the frame with -D F=3"));
-    CHECK_THAT(options_error({"s.xml", "-f", ""}), Contains("expected frames"));
+    CHECK_THAT(options_error({"s.xml", "-f", ""}), Contains("-f: is empty"));
     CHECK(options_error({"s.xml", "-f", "1..3", "-D", "speed=2"}) == "no error");
 }
 
