@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "error.h"
+#include "file_ending.h"
 #include "grid_tree.h"
 #include "input_file.h"
 #include "missing_field.h"
@@ -45,18 +46,6 @@ std::string list_names(const std::vector<std::string>& names) {
     return text.empty() ? "no grid" : text;
 }
 
-std::vector<std::string> grid_names(const std::filesystem::path& file) {
-    check_input_file(file, missing_field_hint(file));
-    std::vector<std::string> names;
-    if (file.extension() == ".vdb")
-        for (const VdbEntry& entry : read_vdb_entries(file))
-            names.push_back(entry.name);
-    else
-        for (const GridEntry& entry : read_nvdb_entries(file))
-            names.push_back(entry.name);
-    return names;
-}
-
 [[noreturn]] void no_such_grid(const GridFile& file, const std::vector<std::string>& names) {
     const std::string nearest = nearest_name(file.grid, names);
     throw InputError(one_line(fmt::format("{}: has no grid \"{}\"{}; it holds {}", file.path.string(), file.grid,
@@ -68,7 +57,7 @@ GridBytes read_grid(const GridFile& file) {
     const std::vector<std::string> names = grid_names(file.path);
     if (std::find(names.begin(), names.end(), file.grid) == names.end())
         no_such_grid(file, names);
-    if (file.path.extension() == ".vdb")
+    if (file_ending(file.path) == ".vdb")
         return read_vdb_grid(file.path, file.grid);
     const std::vector<GridEntry> entries = read_nvdb_entries(file.path);
     return read_nvdb_grid(file.path, *std::find_if(entries.begin(), entries.end(),
@@ -144,6 +133,18 @@ DensityField make_density_field(GridBytes bytes, const std::string& place) {
     field.type = *type;
     read_tree(field, place);
     return field;
+}
+
+std::vector<std::string> grid_names(const std::filesystem::path& file) {
+    check_input_file(file, missing_field_hint(file));
+    std::vector<std::string> names;
+    if (file_ending(file) == ".vdb")
+        for (const VdbEntry& entry : read_vdb_entries(file))
+            names.push_back(entry.name);
+    else
+        for (const GridEntry& entry : read_nvdb_entries(file))
+            names.push_back(entry.name);
+    return names;
 }
 
 bool has_grid(const GridFile& file) {

@@ -21,6 +21,7 @@ struct DensityField {
     glm::ivec3 leaf_min{0};
     glm::ivec3 leaf_dims{0};
     std::vector<std::uint32_t> leaf_table;
+    float background = 0.0f;   // what voxels have that the file gives no value: it counts in the box, as all others do
     std::uint64_t cleaned = 0; // values that were NaN, infinite or negative and count as 0
 
     // Decoded value of a voxel, >= 0; 0 outside the box of active voxels.
@@ -39,6 +40,9 @@ struct DensityField {
 
 // Throws InputError naming file, grid, what is wrong and the remedy.
 DensityField load_density_field(const GridFile& file);
+
+// Of all grids in the file, in its order. Throws InputError if it cannot be read.
+std::vector<std::string> grid_names(const std::filesystem::path& file);
 
 // True if the file can be read and has a grid of that name. Throws InputError if it cannot be read.
 bool has_grid(const GridFile& file);

@@ -97,6 +97,7 @@ public:
         const nanovdb::CoordBBox box = root->mBBox;
         field_.voxel_min = {box.min()[0], box.min()[1], box.min()[2]};
         field_.voxel_max = {box.max()[0], box.max()[1], box.max()[2]};
+        field_.background = root->mBackground;
         if (field_.active_voxels == 0 || box.empty()) {
             field_.active_voxels = 0;
             return;
@@ -105,6 +106,7 @@ public:
         size_table();
         bytes_left_ = field_.bytes.size();
         clean(root->mBackground);
+        field_.background = root->mBackground;
         std::fill(field_.leaf_table.begin(), field_.leaf_table.end(), entry_of_value(&root->mBackground));
         for (std::uint32_t i = 0; i < root->mTableSize; ++i)
             visit_root_tile(*at<Root::Tile>(root_offset + sizeof(Root) + i * sizeof(Root::Tile)), root_offset);

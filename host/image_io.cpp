@@ -17,6 +17,7 @@
 #include "atomic_file.h"
 #include "error.h"
 #include "exr_check.h"
+#include "file_ending.h"
 #include "input_file.h"
 #include "one_line.h"
 
@@ -225,7 +226,7 @@ void check_size(const OIIO::ImageSpec& spec, const path& file) {
 } // namespace
 
 void check_writable(const path& target) {
-    const std::string extension = target.extension().string();
+    const std::string extension = file_ending(target);
     if (extension != ".exr" && extension != ".png")
         throw InputError(fmt::format("{}: unknown kind of picture '{}'; expected .exr or .png", target.string(),
                                      extension.empty() ? target.filename().string() : extension));
@@ -253,7 +254,7 @@ void check_directory_writable(const path& target, const char* option) {
 }
 
 void write_image(const path& target, const Film& film, const Metadata& metadata, const ToneMapping& mapping) {
-    if (target.extension() == ".png")
+    if (file_ending(target) == ".png")
         write_png(target, film, mapping);
     else
         write_exr(target, film, metadata);
@@ -298,7 +299,7 @@ namespace {
 
 Film read_exr(const path& file, Metadata* metadata) {
     check_input_file(file, "");
-    if (file.extension() != ".exr")
+    if (file_ending(file) != ".exr")
         throw InputError(fmt::format("{}: expected an .exr file", file.string()));
     check_exr_header(file);
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());

@@ -106,6 +106,10 @@ void load_grid(const Scene& scene, const Volume& volume, const Method& method, c
     DensityField field = load_field(file, kept);
     if (field.active_voxels == 0)
         return;
+    if (field.background > 0.0f)
+        loaded.warnings.push_back(fmt::format("{}: \"{}\" has a background of {:g}: it fills the box of active voxels, "
+                                              "and ends where they do",
+                                              file.path.string(), file.grid, field.background));
     const double scale = scene.settings.majorant_scale;
     const double voxel_sigma_t = largest(world_sigma_t(volume, &field)) * field.voxel_size();
     loaded.majorants = choose_majorant_grid(field, pilot_scene(scene, method, field, voxel_sigma_t * scale),

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "error.h"
+#include "file_ending.h"
 #include "image_io.h"
 #include "messages.h"
 
@@ -44,7 +45,7 @@ void RenderOutputs::write(const Device& device, const RenderResult& result) {
         try {
             write_image(output, result.film, metadata, options_.tone_mapping);
             append(written, ", ", output.string());
-            exr_written = exr_written || output.extension() == ".exr";
+            exr_written = exr_written || file_ending(output) == ".exr";
         } catch (const RenderError& error) {
             append(failures, "; ", error.what());
         }

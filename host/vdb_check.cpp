@@ -42,10 +42,48 @@ const std::map<std::string, std::uint32_t> map_doubles = {{"AffineMap", 16},
                                                           {"ScaleTranslateMap", 18},
                                                           {"UniformScaleTranslateMap", 18}};
 
+// Grids of one name are told apart by what follows this character.
+constexpr char separator = '\x1e';
+
+bool holds_floats(const std::string& type) {
+    return type == "Tree_float_5_4_3" || type == "Tree_float_5_4_3_HalfFloat";
+}
+
 struct Descriptor {
     std::string name, type;
+    std::string parent; // whose tree it shares; or none
     std::uint64_t position = 0, blocks = 0, end = 0;
+
+    std::string plain_name() const { return name.substr(0, name.find(separator)); }
 };
+
+// As OpenVDB writes names for people, "name[1]", and back.
+std::string shown_name(const std::string& name) {
+    const std::size_t at = name.find(separator);
+    return at == std::string::npos ? name : fmt::format("{}[{}]", name.substr(0, at), name.substr(at + 1));
+}
+
+std::string stored_name(std::string name) {
+    if (const std::size_t at = name.find('['); at != std::string::npos && name.back() == ']') {
+        name.pop_back();
+        name[at] = separator;
+    }
+    return name;
+}
+
+// The one that OpenVDB opens by this name, or null: for a name without number the first of its copies.
+const Descriptor* find(const std::vector<Descriptor>& grids, const std::string& name) {
+    const std::string stored = stored_name(name);
+    const auto pick = [&](const std::string& plain) -> const Descriptor* {
+        for (const Descriptor& grid : grids)
+            if (grid.plain_name() == plain && (name == stored || grid.name == stored || grid.name == name))
+                return &grid;
+        return nullptr;
+    };
+    const bool literal =
+        std::any_of(grids.begin(), grids.end(), [&](const Descriptor& grid) { return grid.plain_name() == name; });
+    return pick(literal ? name : stored.substr(0, stored.find(separator)));
+}
 
 class Walk {
 public:
@@ -59,27 +97,18 @@ public:
                 fmt::format("{}: cannot be opened: {}", file.string(), error ? error.message() : std::strerror(errno)));
     }
 
-    void walk(const char* grid) {
-        for (const Descriptor& descriptor : headers()) {
-            seek(descriptor.position);
-            if (const std::uint32_t compression = get<std::uint32_t>(); compression <= 7)
-                compression_ = compression;
-            else
-                damaged("a grid's compression");
-            metadata();
-            // Copies of one name are told apart by what follows this character.
-            const std::string name = descriptor.name.substr(0, descriptor.name.find('\x1e'));
-            const bool wanted = grid && name == grid;
-            if (wanted && !descriptor.type.starts_with("Tree_float_5_4_3"))
-                throw InputError(fmt::format("{}: grid \"{}\" is not a grid of floats; only float and half are read",
-                                             file_.string(), one_line(name)));
-            transform(wanted); // read for the list of grids too
-            if (wanted) {
-                tree();
-                if (position_ != descriptor.end)
-                    damaged("the end of a grid");
-            }
+    std::vector<VdbEntry> walk(const char* name) {
+        const std::vector<Descriptor> grids = headers();
+        if (const Descriptor* grid = name ? find(grids, name) : nullptr)
+            check(grids, *grid);
+        std::vector<VdbEntry> entries;
+        for (const Descriptor& grid : grids) {
+            // The first of several is known by the plain name too.
+            const std::string plain = grid.plain_name();
+            const bool first = &grid == find(grids, plain);
+            entries.push_back({first ? plain : shown_name(grid.name), grid.type, shown_name(grid.name)});
         }
+        return entries;
     }
 
 private:
@@ -88,6 +117,39 @@ private:
             fmt::format("{}: not readable as OpenVDB: {} makes no sense at byte {}: the file is damaged; copy "
                         "or export it again",
                         file_.string(), what, position_));
+    }
+
+    // The grid that OpenVDB will read, and the one that holds its tree.
+    void check(const std::vector<Descriptor>& grids, const Descriptor& grid) {
+        if (!holds_floats(grid.type))
+            throw InputError(fmt::format("{}: grid \"{}\" is not a grid of floats; only float and half are read",
+                                         file_.string(), one_line(shown_name(grid.name))));
+        check_grid(grid);
+        if (grid.parent.empty())
+            return;
+        const Descriptor* parent = find(grids, shown_name(grid.parent));
+        if (!parent || !parent->parent.empty() || parent->type != grid.type)
+            throw InputError(fmt::format("{}: grid \"{}\" shares the tree of \"{}\", {}; save it again without "
+                                         "instances",
+                                         file_.string(), one_line(shown_name(grid.name)),
+                                         one_line(shown_name(grid.parent)),
+                                         !parent                   ? "which the file does not have"
+                                         : !parent->parent.empty() ? "which has none of its own"
+                                                                   : "which is of another type"));
+        check_grid(*parent);
+    }
+
+    void check_grid(const Descriptor& grid) {
+        seek(grid.position);
+        compression_ = get<std::uint32_t>();
+        if (compression_ > (compress_zip | compress_active | compress_blosc))
+            damaged("a grid's compression");
+        metadata();
+        transform();
+        if (grid.parent.empty())
+            tree();
+        if (position_ != grid.end)
+            damaged("the end of a grid");
     }
 
     void read(void* data, std::uint64_t bytes) {
@@ -149,14 +211,13 @@ private:
             Descriptor grid;
             grid.name = string();
             grid.type = string();
-            if (!string().empty())
-                throw InputError(fmt::format("{}: grid \"{}\" shares its tree with another; save it again without "
-                                             "instances",
-                                             file_.string(), one_line(grid.name)));
+            grid.parent = string();
             grid.position = get<std::uint64_t>();
             grid.blocks = get<std::uint64_t>();
             grid.end = get<std::uint64_t>();
-            if (grid.position < position_ || grid.blocks < grid.position || grid.end < grid.blocks || grid.end > size_)
+            const bool in_order =
+                !grid.parent.empty() || (grid.position <= grid.blocks && grid.blocks <= grid.end); // a tree has blocks
+            if (grid.position < position_ || grid.end < grid.position || !in_order || grid.end > size_)
                 damaged("a grid's place");
             if (!names.insert(grid.name).second)
                 damaged("a grid's name");
@@ -187,8 +248,10 @@ private:
         }
     }
 
-    // A table with an entry per leaf, of which each takes at least two masks of 64 bytes.
+    // A table with an entry per leaf, of which each takes at least two masks of 64 bytes; nothing where there are none.
     void delayed_loading(std::uint32_t bytes) {
+        if (bytes == 0)
+            return;
         const std::uint64_t end = position_ + bytes;
         if (bytes < 4 || end > size_)
             damaged("the table for delayed loading");
@@ -227,11 +290,8 @@ private:
         skip(bytes - sizeof header);
     }
 
-    void transform(bool wanted) {
-        const std::string type = string();
-        const auto known = map_doubles.find(type);
-        if (known == map_doubles.end() && !wanted)
-            return;
+    void transform() {
+        const auto known = map_doubles.find(string());
         if (known == map_doubles.end())
             throw InputError(
                 fmt::format("{}: has a transform of unknown kind; resample the grid to an affine one, e.g. in "
@@ -327,8 +387,8 @@ private:
 
 } // namespace
 
-void check_vdb(const std::filesystem::path& file, const char* grid) {
-    Walk(file).walk(grid);
+std::vector<VdbEntry> check_vdb(const std::filesystem::path& file, const char* grid) {
+    return Walk(file).walk(grid);
 }
 
 } // namespace vkvol

@@ -2,11 +2,21 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace vkvol {
 
-// Throws InputError where a count, a size or an offset of the file's headers, or of the named grid of floats (if `grid`
-// is not null and the file has it), leads beyond the file or contradicts another.
-void check_vdb(const std::filesystem::path& file, const char* grid);
+// Name and type ("Tree_float_5_4_3") of a grid. Of several grids of one name, all but the first are "name[1]", ...
+struct VdbEntry {
+    std::string name;
+    std::string type;
+    std::string full_name; // by which OpenVDB knows it: that of the first has a number too
+};
+
+// The grids of a file, in its order. Throws InputError where a count, a size or an offset of the file's headers, or of
+// the named grid (if `grid` is not null and the file has it), leads beyond the file or contradicts another, or where
+// that grid is not one of floats. What is wrong with other grids is no reason to refuse this one.
+std::vector<VdbEntry> check_vdb(const std::filesystem::path& file, const char* grid);
 
 } // namespace vkvol

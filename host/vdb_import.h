@@ -6,14 +6,9 @@
 #include <vector>
 
 #include "nvdb_file.h"
+#include "vdb_check.h"
 
 namespace vkvol {
-
-// Name and type ("Tree_float_5_4_3") of each grid in a .vdb file.
-struct VdbEntry {
-    std::string name;
-    std::string type;
-};
 
 // Both throw InputError naming the file, what is wrong, and the remedy.
 std::vector<VdbEntry> read_vdb_entries(const std::filesystem::path& file);

@@ -123,6 +123,18 @@ TEST_CASE("a sample that is not finite is dropped, and its path can be followed"
     CHECK(folder.vkvol("ball.xml --seed 4 -q --strict --width 16384 --crop 8184,8200,8184,8200").code == exit_caps_hit);
 }
 
+TEST_CASE("pictures and scenes whose endings are in upper case", "[gpu][command]") {
+    const Folder folder("");
+    std::filesystem::rename(folder.file("ball.xml"), folder.file("BALL.XML"));
+    REQUIRE(folder.vkvol("BALL.XML -o BALL.EXR -o BALL.PNG --spp 2").code == exit_done);
+    CHECK(read_exr(folder.file("BALL.EXR")).samples.front() == 2);
+    REQUIRE(folder.vkvol("BALL.XML -o ball.exr -o ball.png --spp 2").code == exit_done);
+    CHECK(std::filesystem::file_size(folder.file("BALL.PNG")) == std::filesystem::file_size(folder.file("ball.png")));
+    CHECK(run(fmt::format("'{}' compare '{}' '{}'", VKVOL_BINARY, folder.file("BALL.EXR").string(),
+                          folder.file("ball.exr").string()))
+              .code == exit_done);
+}
+
 TEST_CASE("--trace writes no picture that was not asked for", "[gpu][command]") {
     const Folder folder("");
     const Run trace = folder.vkvol("ball.xml --pixel 8,8 --sample 3 --trace");

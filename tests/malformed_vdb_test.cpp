@@ -19,6 +19,7 @@ struct VdbFile {
     std::uint32_t version = 224, file_metadata = 0, grids = 1, compression = 0, grid_metadata = 0, tiles = 1,
                   children = 0;
     std::uint8_t offsets = 1;
+    bool has_tree = true;
     std::string parent, metadata_type = "bool", map = "ScaleTranslateMap";
     std::uint32_t metadata_bytes = 1;
     std::int32_t origin = 4096;
@@ -44,6 +45,8 @@ struct VdbFile {
         add_text(text, map);
         const double values[18] = {0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0.5, 0.5, 0.5};
         text.append(reinterpret_cast<const char*>(values), sizeof values);
+        if (!has_tree)
+            return text;
         add(text, std::uint32_t{1}); // buffers
         add(text, 0.0f);
         add(text, tiles);
@@ -113,7 +116,8 @@ TEST_CASE("counts, sizes and places in .vdb files are not believed", "[cpu][dens
         CHECK_THAT(error_of([&](VdbFile& f) { f.grids = 1 + count; }),
                    Contains("makes no sense") || Contains("not readable") || Contains("has no grid"));
         CHECK_THAT(error_of([&](VdbFile& f) { f.grid_metadata = 1 + count; }),
-                   Contains("makes no sense") || Contains("not readable") || Contains("has no grid"));
+                   Contains("unknown kind") || Contains("makes no sense") || Contains("not readable") ||
+                       Contains("has no grid"));
     }
     CHECK_THAT(error_of([](VdbFile& f) { f.compression = 8; }), Contains("compression"));
     CHECK_THAT(error_of([](VdbFile& f) { f.origin = 5; }), Contains("place of a node"));
@@ -129,7 +133,18 @@ TEST_CASE("counts, sizes and places in .vdb files are not believed", "[cpu][dens
                    f.metadata_bytes = ~0u;
                }),
                Contains("makes no sense"));
-    CHECK_THAT(error_of([](VdbFile& f) { f.parent = "density"; }), Contains("instances"));
+    CHECK_THAT(error_of([](VdbFile& f) { f.parent = "density"; }),
+               Contains("end of a grid")); // it has a tree all the same
+    CHECK_THAT(error_of([](VdbFile& f) {
+                   f.parent = "density";
+                   f.has_tree = false;
+               }),
+               Contains("none of its own") && Contains("without instances"));
+    CHECK_THAT(error_of([](VdbFile& f) {
+                   f.parent = "smoke";
+                   f.has_tree = false;
+               }),
+               Contains("\"smoke\", which the file does not have"));
     CHECK_THAT(error_of([](VdbFile& f) { f.version = 219; }), Contains("version 219"));
     CHECK_THAT(error_of([](VdbFile& f) { f.offsets = 0; }), Contains("offsets"));
 }

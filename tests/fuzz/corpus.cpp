@@ -192,6 +192,13 @@ std::vector<std::string> make_vdbs(const std::filesystem::path& scratch) {
     heat->tree().setValue({1, 2, 3}, 5.0f);
     write({half, vectors, heat}, 6);
     write({half, heat}, 0);
+    const auto empty = openvdb::FloatGrid::create(0.5f);
+    empty->setName("temperature");
+    const auto instance = openvdb::FloatGrid::create(*grid); // shares the tree
+    instance->setName("temperature");
+    write({grid, empty}, 6);
+    write({grid, instance}, 2);
+    write({grid, grid, vectors}, 0); // two of one name
     std::filesystem::remove(path);
     return files;
 }

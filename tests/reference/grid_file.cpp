@@ -35,7 +35,7 @@ bool has_grid(const std::filesystem::path& path, const std::string& name) {
 }
 
 Grid load_grid(const std::filesystem::path& path, const std::string& name) {
-    if (path.extension() != ".nvdb")
+    if (path.extension() != ".nvdb" && path.extension() != ".NVDB")
         throw std::runtime_error(path.string() + ": the reference reads .nvdb files only");
     const auto handle = nanovdb::io::readGrid(path.string(), name);
     if (!handle)

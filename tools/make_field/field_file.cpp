@@ -9,6 +9,7 @@
 #include <nanovdb/util/OpenToNanoVDB.h>
 
 #include "error.h"
+#include "file_ending.h"
 
 namespace vkvol {
 namespace {
@@ -126,8 +127,8 @@ void write_openvdb(const openvdb::GridPtrVec& grids, const fs::path& path, Codec
 } // namespace
 
 FileSummary write_field(const Field& field, const fs::path& path, Codec codec, SampleType type) {
-    const bool is_vdb = path.extension() == ".vdb";
-    if (!is_vdb && path.extension() != ".nvdb")
+    const bool is_vdb = file_ending(path) == ".vdb";
+    if (!is_vdb && file_ending(path) != ".nvdb")
         throw InputError(path.string() + ": the output must end in .nvdb or .vdb");
     openvdb::initialize();
     openvdb::GridPtrVec grids;

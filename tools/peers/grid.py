@@ -203,7 +203,7 @@ class Tree:
 
 
 def read(path, name="density"):
-    if pathlib.Path(path).suffix == ".vdb":
+    if pathlib.Path(path).suffix.lower() == ".vdb":
         sys.exit(f"{path}: .vdb files are not read here; convert it with nanovdb_convert")
     try:
         data = grid_bytes(path, name)

@@ -1,0 +1,163 @@
+// .vdb files that OpenVDB itself writes: all that can be read of them is, whatever lies beside it.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <nanovdb/NanoVDB.h> // before OpenVDB's, which has macros
+#include <openvdb/openvdb.h>
+#include <unistd.h>
+
+#include "density_field.h"
+#include "error.h"
+#include "loaded_volume.h"
+#include "method.h"
+#include "support/shell.h"
+#include "test_paths.h"
+#include "vdb_import.h"
+
+using namespace vkvol;
+using Catch::Contains;
+
+namespace {
+
+class VdbFile {
+public:
+    explicit VdbFile(const openvdb::GridPtrVec& grids, const char* ending = ".vdb")
+        : path_(std::filesystem::temp_directory_path() / fmt::format("vkvol_written_{}{}", getpid(), ending)) {
+        openvdb::initialize();
+        openvdb::io::File file(path_.string());
+        file.write(grids);
+        file.close();
+    }
+    ~VdbFile() { std::filesystem::remove(path_); }
+    VdbFile(const VdbFile&) = delete;
+    VdbFile& operator=(const VdbFile&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+    DensityField field(const std::string& grid = "density") const { return load_density_field({path_, grid}); }
+
+    // In the place of some text in the file, another of the same length.
+    void replace(const std::string& text, const std::string& by) const {
+        std::ifstream in(path_, std::ios::binary);
+        std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+        REQUIRE(bytes.find(text) != std::string::npos);
+        bytes.replace(bytes.find(text), text.size(), by);
+        std::ofstream(path_, std::ios::binary) << bytes;
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+openvdb::FloatGrid::Ptr grid_named(const char* name, float background = 0.0f) {
+    openvdb::initialize();
+    const auto grid = openvdb::FloatGrid::create(background);
+    grid->setName(name);
+    return grid;
+}
+
+openvdb::FloatGrid::Ptr ramp(const char* name, float background = 0.0f) {
+    const auto grid = grid_named(name, background);
+    for (int i = 0; i < 20; ++i)
+        grid->tree().setValue({i, 1, 2}, 1.0f + float(i));
+    return grid;
+}
+
+} // namespace
+
+TEST_CASE("an empty grid in a .vdb file is read, and its neighbours are", "[cpu][density]") {
+    const VdbFile file({grid_named("shadow"), ramp("density")});
+    CHECK(file.field("shadow").active_voxels == 0);
+    CHECK(file.field().active_voxels == 20);
+    CHECK(file.field().value({7, 1, 2}) == 8.0f);
+    const Run info = run(fmt::format("'{}' info '{}'", VKVOL_BINARY, file.path().string()));
+    CHECK(info.code == exit_done);
+    CHECK_THAT(info.text, Contains("the grid is empty") && Contains("1..20, mean 10.5"));
+}
+
+TEST_CASE("a grid of tiles alone, without leaves, is read", "[cpu][density]") {
+    const auto tiles = grid_named("density");
+    tiles->tree().addTile(1, {8, 16, 24}, 0.5f, true);
+    const VdbFile file({tiles});
+    CHECK(file.field().active_voxels == 512);
+    CHECK(file.field().value({8, 16, 24}) == 0.5f);
+    CHECK(file.field().value({15, 23, 31}) == 0.5f);
+    CHECK(file.field().value({16, 23, 31}) == 0.0f);
+}
+
+TEST_CASE("a grid that shares another's tree is read with its own transform", "[cpu][density]") {
+    const auto original = ramp("density");
+    const auto instance = openvdb::FloatGrid::create(*original);
+    instance->setTree(original->treePtr());
+    instance->setName("twin");
+    instance->setTransform(openvdb::math::Transform::createLinearTransform(0.25));
+    const VdbFile file({original, instance});
+    CHECK(file.field().value({7, 1, 2}) == 8.0f);
+    CHECK(file.field("twin").value({7, 1, 2}) == 8.0f);
+    CHECK(file.field("twin").voxel_size() == Approx(0.25));
+    CHECK(std::filesystem::file_size(file.path()) < std::filesystem::file_size(VdbFile({original}).path()) + 1000);
+}
+
+TEST_CASE("of several grids of one name the first has it, and all can be named", "[cpu][density]") {
+    const auto second = ramp("density");
+    second->tree().setValue({7, 1, 2}, 100.0f);
+    const VdbFile file({ramp("density"), second});
+    const std::vector<VdbEntry> entries = read_vdb_entries(file.path());
+    REQUIRE(entries.size() == 2);
+    CHECK(entries[0].name == "density");
+    CHECK(entries[1].name == "density[1]");
+    CHECK(file.field().value({7, 1, 2}) == 8.0f);
+    CHECK(file.field("density[1]").value({7, 1, 2}) == 100.0f);
+}
+
+TEST_CASE("a grid of a type that nobody knows costs itself alone", "[cpu][density]") {
+    const auto vectors = openvdb::Vec3SGrid::create();
+    vectors->setName("velocity");
+    const VdbFile file({vectors, ramp("density")});
+    file.replace("Tree_vec3s_5_4_3", "Tree_quark_7_7_7");
+    CHECK(file.field().value({7, 1, 2}) == 8.0f);
+    CHECK_THROWS_WITH(file.field("velocity"), Contains("is not a grid of floats"));
+    const Run info = run(fmt::format("'{}' info '{}'", VKVOL_BINARY, file.path().string()));
+    CHECK(info.code == exit_done);
+    CHECK_THAT(info.text, Contains("velocity: Tree_quark_7_7_7") && Contains("not usable as density") &&
+                              Contains("1..20, mean 10.5"));
+}
+
+TEST_CASE("a damaged grid costs itself alone", "[cpu][density]") {
+    const VdbFile file({ramp("density"), ramp("heat")});
+    file.replace("ScaleMap", "SkaleMap"); // of the first
+    CHECK_THROWS_WITH(file.field(), Contains("transform of unknown kind"));
+    CHECK(file.field("heat").value({7, 1, 2}) == 8.0f);
+}
+
+TEST_CASE("a background other than 0 counts in the box of active voxels, and is named", "[cpu][density]") {
+    const auto grid = grid_named("density", 0.25f);
+    grid->tree().setValue({0, 0, 0}, 1.0f);
+    grid->tree().setValue({40, 40, 40}, 1.0f);
+    const VdbFile file({grid, ramp("heat")});
+    const DensityField field = file.field();
+    CHECK(field.background == 0.25f);
+    CHECK(field.value({0, 0, 1}) == 0.25f);
+    CHECK(field.value({20, 20, 20}) == 0.25f);
+    CHECK(field.value({41, 40, 40}) == 0.0f);
+    CHECK(file.field("heat").background == 0.0f);
+    const Run info = run(fmt::format("'{}' info '{}'", VKVOL_BINARY, file.path().string()));
+    CHECK_THAT(info.text, Contains("background     0.25"));
+
+    Scene scene;
+    scene.volumes.emplace_back();
+    scene.volumes.front().shape = GridFile{file.path(), "density"};
+    const LoadedVolume loaded = load_volume(scene, choose_method(scene));
+    REQUIRE(loaded.warnings.size() == 1);
+    CHECK_THAT(loaded.warnings.front(), Contains("background of 0.25"));
+}
+
+TEST_CASE("endings in upper case are those in lower case", "[cpu][density]") {
+    const VdbFile file({ramp("density")}, ".VDB");
+    CHECK(file.field().value({7, 1, 2}) == 8.0f);
+    const std::filesystem::path nvdb = std::filesystem::temp_directory_path() / fmt::format("vkvol_{}.NVDB", getpid());
+    std::filesystem::copy_file(std::filesystem::path(VKVOL_TEST_FIELDS) / "ramp.nvdb", nvdb,
+                               std::filesystem::copy_options::overwrite_existing);
+    CHECK(load_density_field({nvdb, "density"}).active_voxels > 0);
+    std::filesystem::remove(nvdb);
+}
