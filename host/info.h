@@ -1,12 +1,10 @@
-// The `info` command: what is in a grid file.
+// vkvol info FILE: what a density file holds, and a view of it to start from.
 #pragma once
 
 #include <filesystem>
 
 namespace vkvol {
 
-// Grids, types, boxes, voxel size, active voxels, value range, memory, and optical depth across the box per unit sigma,
-// on standard output. Returns the exit code; throws InputError for a file that cannot be read.
-int run_info(const std::filesystem::path& file);
+int run_info(const std::filesystem::path& file, bool json = false);
 
 } // namespace vkvol

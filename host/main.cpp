@@ -50,7 +50,7 @@ int run(const vkvol::Options& options) {
     case vkvol::Command::devices:
         return vkvol::run_devices(options.devices_json);
     case vkvol::Command::info:
-        return vkvol::run_info(options.info_file);
+        return vkvol::run_info(options.info_file, options.info_json);
     case vkvol::Command::integrators:
         return vkvol::run_integrators(options.integrators_json);
     case vkvol::Command::compare:

@@ -53,7 +53,7 @@ struct ToneTexts {
 
 // The options of `render` that need a second look after CLI11 has read them.
 struct RenderTexts {
-    std::string time, crop, checkpoint, pixel, progress = "auto";
+    std::string time, crop, checkpoint, pixel, up, progress = "auto";
     std::vector<std::string> defines;
     std::vector<std::string> outputs;
     ToneTexts tone;
@@ -72,6 +72,11 @@ void add_picture_options(CLI::App& app, RenderOptions& render, RenderTexts& text
                    "Render only this window of the picture: pixels, x1 and y1 excluded; or fractions if written with "
                    "a dot and all at most 1")
         ->option_text("X0,X1,Y0,Y1")
+        ->group(group);
+    app.add_flag("--frame", render.frame, "Move the camera, without turning it, so that the medium fills the picture")
+        ->group(group);
+    app.add_option("--up", texts.up, "Of a grid file without a scene: y, or z as Blender has it")
+        ->option_text("AXIS [y]")
         ->group(group);
     texts.tone.add(app, render.tone_mapping);
 }
@@ -213,6 +218,8 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
     render.progress = choose<ProgressStyle>(
         "--progress", texts.progress,
         {{"auto", ProgressStyle::automatic}, {"json", ProgressStyle::json}, {"none", ProgressStyle::none}});
+    if (!texts.up.empty())
+        render.up = choose<Up>("--up", texts.up, {{"y", Up::y}, {"z", Up::z}});
     render.tone_mapping.curve = tone_curve(texts.tone.curve);
     if (render.integrator)
         try {
@@ -225,7 +232,9 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
 void parse_render(const std::vector<std::string>& arguments, Options& options) {
     CLI::App app(render_description, "vkvol");
     RenderTexts texts;
-    app.add_option("scene", options.render.scene, "Scene file; see scenes/README.md")->option_text("SCENE.xml");
+    app.add_option("scene", options.render.scene,
+                   "Scene file, see scenes/README.md; or a density file, for which a scene is made")
+        ->option_text("SCENE.xml|FILE.nvdb|FILE.vdb");
     add_picture_options(app, options.render, texts);
     add_sampling_options(app, options.render, texts);
     add_run_options(app, options.render, texts);
@@ -254,8 +263,12 @@ void parse_integrators(const std::vector<std::string>& arguments, Options& optio
 }
 
 void parse_info(const std::vector<std::string>& arguments, Options& options) {
-    CLI::App app("Says what is in a density file: grids, types, bounds, transform, value range.", "vkvol info");
+    CLI::App app("Says what is in a density file: grids, types, bounds, transform, value range; and a view and "
+                 "coefficients that "
+                 "suit it.",
+                 "vkvol info");
     app.add_option("file", options.info_file, "The file")->option_text("FILE.nvdb|.vdb");
+    app.add_flag("--json", options.info_json, "For machines");
     if (run_parser(app, arguments, options) && options.info_file.empty())
         fail_command_line("info: no file given; e.g. vkvol info cloud.nvdb");
 }

@@ -15,6 +15,7 @@
 namespace vkvol {
 
 enum class Command { render, devices, info, integrators, compare, merge, bench, print };
+enum class Up { y, z };
 enum class ProgressStyle { automatic, json, none };
 
 // x0, x1, y0, y1: pixels of the picture, or fractions of it.
@@ -24,7 +25,7 @@ struct CropRequest {
 };
 
 struct RenderOptions {
-    std::filesystem::path scene;
+    std::filesystem::path scene;                // or a .nvdb or .vdb file, for which one is made
     std::vector<std::filesystem::path> outputs; // the scene's stem with .exr and .png if none was asked for
     std::optional<std::uint32_t> spp;
     std::uint32_t seed = 0;
@@ -32,6 +33,8 @@ struct RenderOptions {
     std::optional<std::string> integrator; // NAME:axis=choice...
     std::optional<double> time_limit;      // seconds
     std::optional<int> width, height;
+    bool frame = false;   // move the camera so that the medium fills the picture
+    std::optional<Up> up; // of a grid file without a scene
     std::optional<CropRequest> crop;
     std::optional<std::filesystem::path> grid;
     std::map<std::string, std::string> defines;
@@ -81,6 +84,7 @@ struct Options {
     MergeOptions merge;
     BenchOptions bench;
     std::filesystem::path info_file;
+    bool info_json = false;
     bool devices_json = false;
     bool integrators_json = false;
     std::string text; // Command::print: help or version, for standard output

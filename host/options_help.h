@@ -10,7 +10,7 @@ inline constexpr const char* render_description =
 
 inline constexpr const char* render_footer = R"(Other commands (each has its own --help):
   vkvol devices               the Vulkan devices of this machine
-  vkvol info FILE.nvdb        what is in a density file
+  vkvol info FILE.nvdb        what is in a density file, with a camera and coefficients that suit it
   vkvol integrators           the estimators there are, by name, and which of them are biased
   vkvol compare A.exr B.exr   are these renders of the same picture?
   vkvol merge A.exr B.exr -o OUT.exr   one image of all their samples
@@ -18,6 +18,7 @@ inline constexpr const char* render_footer = R"(Other commands (each has its own
 
 Examples:
   vkvol scenes/cumulus.xml                         writes cumulus.exr and cumulus.png here
+  vkvol cloud.nvdb                                 a picture of a density file, and a scene to start from
   vkvol cloud.xml --width 480 --spp 4 -o look.png  a quick look
   vkvol cloud.xml --time 5m -o cloud.exr           the best picture of five minutes
   vkvol cloud.xml --spp 64 --sample-offset 64 -o part2.exr   samples 64 to 127, for merge

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
-#include <limits>
 #include <new>
 
 #include "checkpoint_file.h"
@@ -16,9 +15,9 @@
 #include "progress.h"
 #include "render_notes.h"
 #include "render_outputs.h"
+#include "render_scene.h"
 #include "render_session.h"
 #include "renderer.h"
-#include "scene_xml.h"
 #include "sequence.h"
 #include "trace.h"
 
@@ -26,24 +25,16 @@ namespace vkvol {
 
 namespace {
 
-Scene load(const RenderOptions& options) {
-    Scene scene = load_scene(options.scene, options.defines, {options.grid, options.integrator});
-    if (options.spp)
-        scene.settings.spp = *options.spp;
-    else if (options.time_limit) // time alone decides
-        scene.settings.spp = std::numeric_limits<std::int32_t>::max() - options.sample_offset;
-    resize_picture(scene.picture, options.width, options.height);
-    return scene;
-}
-
 // Before any work is done: a render that cannot be written, or would be written over its own files, is not worth its
 // time.
-void check_files(const RenderOptions& options, const Scene& scene, const CheckpointFile& checkpoint) {
+void check_files(const RenderOptions& options, const RenderScene& loaded, const CheckpointFile& checkpoint) {
     FileUses uses;
     uses.reads("the scene", options.scene);
-    uses.reads_files_of(scene);
+    uses.reads_files_of(loaded.scene);
     for (const std::filesystem::path& output : options.outputs)
         uses.writes("a picture", output, "-o");
+    if (is_kept(options, loaded))
+        uses.writes("the scene that is made", loaded.xml_file, "-o");
     if (!checkpoint.path().empty())
         uses.writes("the checkpoint", checkpoint.path(), "-o");
     if (options.report)
@@ -136,17 +127,19 @@ int render_scene(const RenderOptions& options, const Scene& scene, RenderSession
 } // namespace
 
 void check_picture(const RenderOptions& options) {
-    const Scene scene = load(options);
-    resolve_crop(options.crop, scene.picture);
-    check_files(options, scene, CheckpointFile(options));
+    const RenderScene loaded = load_render_scene(options);
+    resolve_crop(options.crop, loaded.scene.picture);
+    check_files(options, loaded, CheckpointFile(options));
 }
 
 int render_picture(const RenderOptions& options, RenderSession& session) {
-    const Scene scene = load(options);
+    const RenderScene loaded = load_render_scene(options);
+    const Scene& scene = loaded.scene;
     print_reading(options);
     print_warnings(options, session.new_warnings(scene.warnings));
     CheckpointFile checkpoint(options);
-    check_files(options, scene, checkpoint);
+    check_files(options, loaded, checkpoint);
+    keep_made_scene(options, loaded);
     RenderOutputs outputs(options, scene);
     try {
         return render_scene(options, scene, session, checkpoint, outputs);

@@ -47,6 +47,10 @@ std::string replay_command(const RenderOptions& options, const NonFiniteSample& 
         command += fmt::format(" --width {}", *options.width);
     if (options.height)
         command += fmt::format(" --height {}", *options.height);
+    if (options.frame)
+        command += " --frame";
+    if (options.up)
+        command += *options.up == Up::z ? " --up z" : " --up y";
     if (options.device != "auto")
         command += " --device " + quoted(options.device);
     return command + fmt::format(" --seed {} --pixel {},{} --sample {} --trace", options.seed, s.x, s.y, s.sample);

@@ -96,28 +96,6 @@ RenderSettings SceneReader::settings() const {
     return settings;
 }
 
-Camera SceneReader::camera() const {
-    const XmlElement element = one("camera");
-    element.allow({"x", "y", "z", "pitch", "yaw", "roll", "fov"});
-    const auto number = [&](const char* name, const Limits& limits) {
-        return element.attribute_number(name, 0.0, limits);
-    };
-    Camera camera;
-    camera.position = {number("x", coordinate), number("y", coordinate), number("z", coordinate)};
-    camera.pitch = number("pitch", any_number);
-    camera.yaw = number("yaw", any_number);
-    camera.roll = number("roll", any_number);
-    camera.fov = element.attribute_number("fov", camera.fov,
-                                          {0, 180, false, false, "an angle between 0 and 180 degrees, both excluded"});
-    constexpr double narrowest = 1e-30, widest = 179.9999; // what single precision can tell from 0 and 180
-    if (camera.fov < narrowest || camera.fov > widest)
-        element.fail_attribute("fov",
-                               fmt::format("<camera> fov: {:g} cannot be told from 0 or 180 in single precision; "
-                                           "expected an angle from {:g} to {:.4f}",
-                                           camera.fov, narrowest, widest));
-    return camera;
-}
-
 void SceneReader::read_edge(const char* name, int& size, double& start, double& reference) const {
     const XmlElement element = one(name);
     element.allow({"startOffset", "reference"}, true);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "camera_view.h"
 #include "error.h"
 #include "light_cache.h"
 #include "noise.h"
@@ -165,15 +166,6 @@ shared::VolumeParams make_volume(const Scene& scene, const LoadedVolume& loaded,
     params.g = static_cast<float>(volume.g);
     params.emission = make_emission(volume, loaded, method, origin);
     return params;
-}
-
-// The angles' rotation Rz(roll) * Ry(yaw) * Rx(pitch).
-glm::dmat3 camera_rotation(const Camera& camera) {
-    glm::dmat4 m(1.0);
-    m = glm::rotate(m, glm::radians(camera.roll), glm::dvec3(0, 0, 1));
-    m = glm::rotate(m, glm::radians(camera.yaw), glm::dvec3(0, 1, 0));
-    m = glm::rotate(m, glm::radians(camera.pitch), glm::dvec3(1, 0, 0));
-    return glm::dmat3(m);
 }
 
 // Of the medium, in world units.

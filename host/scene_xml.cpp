@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "file_ending.h"
 #include "input_file.h"
 #include "scene_reader.h"
 
@@ -32,6 +33,10 @@ Scene parse_scene(const std::string& xml, const std::filesystem::path& file, con
 }
 
 Scene load_scene(const std::filesystem::path& file, const Defines& defines, const SceneOverrides& overrides) {
+    if (is_grid_file(file))
+        throw InputError(fmt::format("{}: is a density file; expected a scene file (.xml), like that which `vkvol {}` "
+                                     "writes beside its picture",
+                                     file.string(), file.string()));
     return parse_scene(read_file(file), file, defines, overrides);
 }
 

@@ -1,0 +1,37 @@
+// Where a camera looks: its angles, and those that make it look at a point.
+#pragma once
+
+#include "scene.h"
+
+namespace vkvol {
+
+// Rz(roll) * Ry(yaw) * Rx(pitch): columns are the camera's right, up and back in world space.
+glm::dmat3 camera_rotation(const Camera& camera);
+
+// Turns the camera to look along `forward`, with `up` upwards in the picture. They may have any length, and must not be
+// parallel.
+void look_along(Camera& camera, glm::dvec3 forward, glm::dvec3 up);
+
+// Are these so nearly parallel that the picture could be turned any way?
+bool is_parallel(glm::dvec3 forward, glm::dvec3 up);
+
+// A circle around a target: at azimuth 0 and elevation 0 the camera is at +z of it and looks along -z; azimuth turns it
+// counter-clockwise as seen from above, elevation lifts it. Where `up` is not y, all of that is turned along, by the
+// shortest way; for up = z, azimuth 0 is at -y.
+struct Orbit {
+    glm::dvec3 target{0.0};
+    double distance = 1.0;
+    double azimuth = 0.0, elevation = 0.0; // degrees
+    glm::dvec3 up{0.0, 1.0, 0.0};          // of any length but 0
+};
+
+void place_on_orbit(Camera& camera, const Orbit& orbit);
+
+// The part of the image plane at distance 1 that the picture shows, camera space: x to the right, y upwards.
+struct ViewWindow {
+    double left, right, bottom, top;
+};
+
+ViewWindow view_window(const Camera& camera, const Picture& picture);
+
+} // namespace vkvol

@@ -1,0 +1,109 @@
+#include "framing.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "camera_view.h"
+#include "error.h"
+#include "loaded_volume.h"
+
+namespace vkvol {
+
+namespace {
+
+Corners corners_between(glm::dvec3 low, glm::dvec3 high) {
+    Corners corners;
+    for (int i = 0; i < 8; ++i)
+        corners[i] = glm::mix(low, high, glm::dvec3(i & 1, i >> 1 & 1, i >> 2));
+    return corners;
+}
+
+Corners corners_of(const Mesh& mesh) {
+    const glm::dvec3 low = lowest_corner(mesh);
+    return corners_between(low, 2.0 * box_center(mesh) - low);
+}
+
+// One axis of the picture: where along it, and how far back, an eye sees all points between two slopes.
+struct Side {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    double low_slope, high_slope;
+
+    Side(double from, double to) : low_slope(from), high_slope(to) {}
+
+    void include(double x, double z) {
+        low = std::min(low, x + low_slope * z);
+        high = std::max(high, x + high_slope * z);
+    }
+    double depth() const { return (high - low) / (high_slope - low_slope); } // the least
+    double place(double depth) const { return 0.5 * (high - high_slope * depth + low - low_slope * depth); }
+};
+
+} // namespace
+
+Corners corners_of(const DensityField& field) {
+    Corners corners = corners_between(glm::dvec3(field.voxel_min) - 1.0, glm::dvec3(field.voxel_max) + 1.0);
+    for (glm::dvec3& corner : corners)
+        corner = glm::dvec3(field.index_to_world * glm::dvec4(corner, 1.0));
+    return corners;
+}
+
+std::optional<Corners> medium_corners(const Scene& scene) {
+    const Volume* volume = find_volume(scene);
+    if (!volume)
+        return std::nullopt;
+    if (const auto* sphere = std::get_if<Sphere>(&volume->shape))
+        return corners_between(sphere->center - sphere->radius, sphere->center + sphere->radius);
+    if (const auto* box = std::get_if<Box>(&volume->shape))
+        return corners_between(box->center - 0.5 * box->size, box->center + 0.5 * box->size);
+    if (const auto* files = std::get_if<MeshFiles>(&volume->shape))
+        return corners_of(load_mesh(*files));
+    const DensityField field = load_density_field(std::get<GridFile>(volume->shape));
+    return field.active_voxels > 0 ? std::optional(corners_of(field)) : std::nullopt;
+}
+
+glm::dvec3 middle_of(const Corners& corners) {
+    return 0.5 * (corners.front() + corners.back());
+}
+
+double diagonal_of(const Corners& corners) {
+    double longest = 0.0;
+    for (int i = 0; i < 4; ++i)
+        longest = std::max(longest, glm::length(corners[i] - corners[7 - i]));
+    return longest;
+}
+
+void frame(Camera& camera, const Picture& picture, const Corners& corners) {
+    constexpr double filled = 0.94; // of the picture's width or height
+    const glm::dmat3 rotation = camera_rotation(camera);
+    const ViewWindow window = view_window(camera, picture);
+    const auto narrowed = [](double from, double to) {
+        const double middle = 0.5 * (from + to), half = 0.5 * filled * (to - from);
+        return Side(middle - half, middle + half);
+    };
+    Side across = narrowed(window.left, window.right), upwards = narrowed(window.bottom, window.top);
+    // About the middle, so that a box far from the origin loses no digits.
+    const glm::dvec3 middle = middle_of(corners);
+    double towards_eye = -std::numeric_limits<double>::infinity();
+    for (const glm::dvec3& corner : corners) {
+        const glm::dvec3 seen = glm::transpose(rotation) * (corner - middle);
+        across.include(seen.x, seen.z);
+        upwards.include(seen.y, seen.z);
+        towards_eye = std::max(towards_eye, seen.z);
+    }
+    // A wide view could have the nearest corner in the eye itself.
+    constexpr double nearest = 0.1; // diagonals
+    const double depth = std::max({across.depth(), upwards.depth(), towards_eye + nearest * diagonal_of(corners)});
+    camera.position = middle + rotation * glm::dvec3(across.place(depth), upwards.place(depth), depth);
+}
+
+void frame_medium(Scene& scene) {
+    const std::optional<Corners> corners = medium_corners(scene);
+    if (!corners)
+        throw InputError(scene.volumes.empty()
+                             ? "--frame: the scene has no medium to frame; leave --frame out"
+                             : "--frame: the medium is a grid without voxels, which has no box to frame; leave --frame "
+                               "out, or give another grid with --grid FILE");
+    frame(scene.camera, scene.picture, *corners);
+}
+
+} // namespace vkvol

@@ -1,0 +1,30 @@
+// Moves a camera so that what it looks at fills the picture.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "density_field.h"
+#include "scene.h"
+
+namespace vkvol {
+
+using Corners = std::array<glm::dvec3, 8>; // of a box, world space
+
+// Of the box that holds the grid's density.
+Corners corners_of(const DensityField& field);
+
+// Of the scene's medium; none without one, or if it is a grid without voxels. Opens its files; throws InputError.
+std::optional<Corners> medium_corners(const Scene& scene);
+
+glm::dvec3 middle_of(const Corners& corners);
+double diagonal_of(const Corners& corners);
+
+// Moves the camera, without turning it, to the nearest place from which the picture shows all corners with some air
+// around them, but not up to the box itself; the box is in its middle.
+void frame(Camera& camera, const Picture& picture, const Corners& corners);
+
+// The same for the scene's medium. Throws InputError if there is none.
+void frame_medium(Scene& scene);
+
+} // namespace vkvol

@@ -1,0 +1,82 @@
+#include "render_scene.h"
+
+#include <fmt/format.h>
+#include <limits>
+
+#include "error.h"
+#include "file_ending.h"
+#include "file_scene.h"
+#include "framing.h"
+#include "image_io.h"
+#include "messages.h"
+#include "scene_beside.h"
+#include "scene_xml.h"
+
+namespace vkvol {
+
+namespace {
+
+void check_file_options(const RenderOptions& options) {
+    const auto refuse = [&](const char* option, const char* reason) {
+        throw InputError(fmt::format("{}: {}; render {} without it, or change the scene that is then written beside "
+                                     "the picture",
+                                     option, reason, options.scene.string()));
+    };
+    if (!options.defines.empty())
+        refuse("-D and -f", "fill in the $keys of a scene, and a grid file has none");
+    if (options.grid)
+        refuse("--grid", "replaces the density field of a scene, and there is a grid file in place of the scene");
+}
+
+RenderScene make_scene(const RenderOptions& options) {
+    check_file_options(options);
+    FileSceneOptions file;
+    file.picture = file_picture();
+    resize_picture(file.picture, options.width, options.height);
+    file.spp = options.spp;
+    file.integrator = options.integrator.value_or("");
+    file.up = options.up.value_or(Up::y);
+    RenderScene made;
+    made.xml_file = scene_beside(options.outputs.empty() ? options.scene.filename() : options.outputs.front());
+    const FileScene scene = make_file_scene(options.scene, made.xml_file.parent_path(), file);
+    made.xml = marked(scene.xml);
+    made.assumed = scene.assumed;
+    made.scene = parse_scene(made.xml, made.xml_file);
+    made.scene.warnings.insert(made.scene.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
+    return made;
+}
+
+} // namespace
+
+RenderScene load_render_scene(const RenderOptions& options) {
+    RenderScene result;
+    if (is_grid_file(options.scene))
+        result = make_scene(options);
+    else if (options.up)
+        throw InputError("--up: is for grid files rendered without a scene; a scene's <camera> has lookAt and up");
+    else
+        result.scene = load_scene(options.scene, options.defines, {options.grid, options.integrator});
+    Scene& scene = result.scene;
+    if (options.spp)
+        scene.settings.spp = *options.spp;
+    else if (options.time_limit) // time alone decides
+        scene.settings.spp = std::numeric_limits<std::int32_t>::max() - options.sample_offset;
+    resize_picture(scene.picture, options.width, options.height);
+    if (options.frame)
+        frame_medium(scene);
+    return result;
+}
+
+bool is_kept(const RenderOptions& options, const RenderScene& scene) {
+    return !scene.xml.empty() && !options.outputs.empty() && !options.dry_run;
+}
+
+void keep_made_scene(const RenderOptions& options, const RenderScene& made) {
+    if (!is_kept(options, made))
+        return;
+    write_text(made.xml_file, made.xml);
+    if (!options.quiet)
+        tell(stdout, "{}; scene: {}\n", made.assumed, made.xml_file.string());
+}
+
+} // namespace vkvol

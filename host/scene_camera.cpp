@@ -1,0 +1,108 @@
+// The part of SceneReader that reads the camera.
+#include <cmath>
+#include <fmt/format.h>
+
+#include "camera_view.h"
+#include "scene_reader.h"
+
+namespace vkvol {
+
+namespace {
+
+const char* first_of(const XmlElement& element, std::initializer_list<const char*> names) {
+    for (const char* name : names)
+        if (element.has(name))
+            return name;
+    return nullptr;
+}
+
+glm::dvec3 point(const XmlElement& element, const char* name, const Limits& limits) {
+    const std::vector<double> numbers = element.attribute_numbers(name, limits);
+    if (numbers.size() != 3)
+        element.fail_attribute(name,
+                               fmt::format("<camera> {}: expected three numbers x y z, e.g. {}=\"0 1 0\"", name, name));
+    return {numbers[0], numbers[1], numbers[2]};
+}
+
+// What belongs to lookAt, or against it.
+void check_combination(const XmlElement& element) {
+    if (!element.has("lookAt")) {
+        if (const char* name = first_of(element, {"distance", "azimuth", "elevation", "up"}))
+            element.fail_attribute(name, fmt::format("<camera> {}: has a meaning beside lookAt only; add "
+                                                     "lookAt=\"x y z\", the point to look at",
+                                                     name));
+        return;
+    }
+    if (const char* name = first_of(element, {"pitch", "yaw", "roll"}))
+        element.fail_attribute(name, fmt::format("<camera> {}: lookAt turns the camera already; remove one of them "
+                                                 "(up=\"x y z\" tilts the picture)",
+                                                 name));
+    const char* orbit = first_of(element, {"distance", "azimuth", "elevation"});
+    if (!orbit)
+        return;
+    if (const char* name = first_of(element, {"x", "y", "z"}))
+        element.fail_attribute(name, fmt::format("<camera> {}: {} and lookAt say where the camera is; keep either x, "
+                                                 "y, z or distance, azimuth, elevation",
+                                                 name, orbit));
+    if (!element.has("distance"))
+        element.fail_attribute(orbit, fmt::format("<camera> {}: how far from lookAt? add distance=\"...\"", orbit));
+}
+
+glm::dvec3 up_of(const XmlElement& element) {
+    const glm::dvec3 up = element.has("up") ? point(element, "up", any_number) : glm::dvec3(0.0, 1.0, 0.0);
+    if (up == glm::dvec3(0.0))
+        element.fail_attribute("up", "<camera> up: has no direction; expected e.g. up=\"0 1 0\"");
+    return up;
+}
+
+void look_at(const XmlElement& element, Camera& camera) {
+    const glm::dvec3 target = point(element, "lookAt", coordinate), up = up_of(element);
+    if (element.has("distance")) {
+        Orbit orbit{target, 0.0, 0.0, 0.0, up};
+        orbit.distance = element.attribute_number("distance", 0.0, length);
+        orbit.azimuth = element.attribute_number("azimuth", 0.0, any_number);
+        orbit.elevation =
+            element.attribute_number("elevation", 0.0, {-90, 90, true, true, "an angle from -90 to 90 degrees"});
+        return place_on_orbit(camera, orbit);
+    }
+    const glm::dvec3 forward = target - camera.position;
+    if (forward == glm::dvec3(0.0))
+        element.fail_attribute("lookAt", "<camera> lookAt: is where the camera is; move one of them, or give distance, "
+                                         "azimuth and elevation in place of x, y, z");
+    if (is_parallel(forward, up))
+        element.fail_attribute(element.has("up") ? "up" : "lookAt",
+                               fmt::format("<camera> {}: the camera looks along {}, so that the picture could be "
+                                           "turned any way; give another up, e.g. up=\"{}\"",
+                                           element.has("up") ? "up" : "lookAt", element.has("up") ? "it" : "up (y)",
+                                           std::abs(up.z) > std::abs(up.y) ? "0 1 0" : "0 0 -1"));
+    look_along(camera, forward, up);
+}
+
+} // namespace
+
+Camera SceneReader::camera() const {
+    const XmlElement element = one("camera");
+    element.allow({"x", "y", "z", "pitch", "yaw", "roll", "fov", "lookAt", "up", "distance", "azimuth", "elevation"});
+    const auto number = [&](const char* name, const Limits& limits) {
+        return element.attribute_number(name, 0.0, limits);
+    };
+    Camera camera;
+    camera.position = {number("x", coordinate), number("y", coordinate), number("z", coordinate)};
+    camera.pitch = number("pitch", any_number);
+    camera.yaw = number("yaw", any_number);
+    camera.roll = number("roll", any_number);
+    camera.fov = element.attribute_number("fov", camera.fov,
+                                          {0, 180, false, false, "an angle between 0 and 180 degrees, both excluded"});
+    constexpr double narrowest = 1e-30, widest = 179.9999; // what single precision can tell from 0 and 180
+    if (camera.fov < narrowest || camera.fov > widest)
+        element.fail_attribute("fov",
+                               fmt::format("<camera> fov: {:g} cannot be told from 0 or 180 in single precision; "
+                                           "expected an angle from {:g} to {:.4f}",
+                                           camera.fov, narrowest, widest));
+    check_combination(element);
+    if (element.has("lookAt"))
+        look_at(element, camera);
+    return camera;
+}
+
+} // namespace vkvol
