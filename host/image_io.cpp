@@ -227,7 +227,7 @@ void check_size(const OIIO::ImageSpec& spec, const path& file) {
 
 void check_writable(const path& target) {
     const std::string extension = file_ending(target);
-    if (extension != ".exr" && extension != ".png")
+    if (extension != ".exr" && !is_display_file(target))
         throw InputError(fmt::format("{}: unknown kind of picture '{}'; expected .exr or .png", target.string(),
                                      extension.empty() ? target.filename().string() : extension));
     check_directory_writable(target);
@@ -253,9 +253,13 @@ void check_directory_writable(const path& target, const char* option) {
     unlink(probe.c_str());
 }
 
+bool is_display_file(const path& target) {
+    return file_ending(target) == ".png";
+}
+
 void write_image(const path& target, const Film& film, const Metadata& metadata, const ToneMapping& mapping) {
-    if (file_ending(target) == ".png")
-        write_png(target, film, mapping);
+    if (is_display_file(target))
+        write_display(target, film, mapping);
     else
         write_exr(target, film, metadata);
 }
@@ -280,7 +284,7 @@ void write_exr(const path& target, const Film& film, const Metadata& metadata, c
     });
 }
 
-void write_png(const path& target, const Film& film, const ToneMapping& mapping) {
+void write_display(const path& target, const Film& film, const ToneMapping& mapping) {
     write_atomically(target, "-o", [&](AtomicFile& file) {
         check_consistent(film);
         OIIO::ImageSpec spec(film.width(), film.height(), 3, OIIO::TypeDesc::UINT8);

@@ -11,13 +11,17 @@ namespace vkvol {
 // Every writer fills a new file that then takes the place of the old one: a file of this name is never half written.
 // Failures throw RenderError with path, reason and remedy: `option` is the one that names another place.
 
-// Throws InputError unless `path` ends in .exr or .png and a file can be made there. Leaves nothing behind.
+// Throws InputError unless `path` ends as a picture we can write does and a file can be made there. Leaves nothing
+// behind.
 void check_writable(const std::filesystem::path& path);
 
 // The same for any file (a report): only that it can be made.
 void check_directory_writable(const std::filesystem::path& path, const char* option = "-o");
 
-// By extension: .exr or .png.
+// Whether it is for looking at: .png.
+bool is_display_file(const std::filesystem::path& path);
+
+// By extension: .exr, or for looking at.
 void write_image(const std::filesystem::path& path, const Film& film, const Metadata& metadata,
                  const ToneMapping& mapping);
 
@@ -27,7 +31,7 @@ void write_exr(const std::filesystem::path& path, const Film& film, const Metada
                const char* option = "-o");
 
 // 8 bit sRGB; the crop alone.
-void write_png(const std::filesystem::path& path, const Film& film, const ToneMapping& mapping);
+void write_display(const std::filesystem::path& path, const Film& film, const ToneMapping& mapping);
 
 // R, G and B are required; a file without variance or samples gives zeros there. Samples may be
 // floats, as they were once. Throws InputError.

@@ -11,6 +11,7 @@
 
 #include "bench.h"
 #include "compare.h"
+#include "develop.h"
 #include "device_command.h"
 #include "error.h"
 #include "info.h"
@@ -57,6 +58,8 @@ int run(const vkvol::Options& options) {
         return vkvol::run_compare(options.compare);
     case vkvol::Command::merge:
         return vkvol::run_merge(options.merge);
+    case vkvol::Command::develop:
+        return vkvol::run_develop(options.develop);
     case vkvol::Command::bench:
         return vkvol::run_bench(options.bench);
     case vkvol::Command::print:

@@ -13,6 +13,7 @@
 #include "metadata.h"
 #include "one_line.h"
 #include "sample_ranges.h"
+#include "tone_choice.h"
 
 namespace vkvol {
 
@@ -189,10 +190,11 @@ void check_files(const MergeOptions& options) {
 
 // All are tried before the first failure is reported.
 void write_outputs(const MergeOptions& options, const MergeResult& result) {
+    const ToneMapping mapping = choose_tone({}, result.film, result.metadata).mapping;
     std::string failures, written;
     for (const std::filesystem::path& output : options.outputs)
         try {
-            write_image(output, result.film, result.metadata, options.tone_mapping);
+            write_image(output, result.film, result.metadata, mapping);
             written += (written.empty() ? "; written: " : ", ") + output.string();
         } catch (const RenderError& error) {
             failures += (failures.empty() ? "" : "; ") + std::string(error.what());
@@ -220,7 +222,8 @@ int run_merge(const MergeOptions& options) {
         input.film = read_exr(path, &input.metadata);
         inputs.push_back(std::move(input));
     }
-    const MergeResult result = merge_films(inputs);
+    MergeResult result = merge_films(inputs);
+    record_tone(options.tone, result.metadata);
     if (!options.quiet)
         print_warnings(result);
     write_outputs(options, result);

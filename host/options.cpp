@@ -11,6 +11,7 @@
 #include "option_groups.h"
 #include "option_values.h"
 #include "options_help.h"
+#include "tone_options.h"
 
 namespace vkvol {
 
@@ -28,28 +29,6 @@ T choose(const char* option, const std::string& name, const std::vector<std::pai
     }
     fail_command_line(fmt::format("{}: unknown value '{}'{}", option, name, name_hint(name, names)));
 }
-
-ToneCurve tone_curve(const std::string& name) {
-    return choose<ToneCurve>("--tonemap", name,
-                             {{"srgb", ToneCurve::srgb},
-                              {"aces", ToneCurve::aces},
-                              {"agx", ToneCurve::agx},
-                              {"reinhard", ToneCurve::reinhard}});
-}
-
-struct ToneTexts {
-    std::string curve = "srgb";
-
-    void add(CLI::App& app, ToneMapping& mapping) {
-        app.add_option("--tonemap", curve, "Curve for PNG: srgb, aces, agx, or reinhard (the original's)")
-            ->option_text("CURVE [srgb]")
-            ->group("Picture");
-        app.add_option("--exposure", mapping.exposure, "Brightness of PNG in stops: 1 doubles, -1 halves")
-            ->check(in_range(-100.0, 100.0))
-            ->option_text("EV [0]")
-            ->group("Picture");
-    }
-};
 
 // The options of `render` that need a second look after CLI11 has read them.
 struct RenderTexts {
@@ -78,7 +57,7 @@ void add_picture_options(CLI::App& app, RenderOptions& render, RenderTexts& text
     app.add_option("--up", texts.up, "Of a grid file without a scene: y, or z as Blender has it")
         ->option_text("AXIS [y]")
         ->group(group);
-    texts.tone.add(app, render.tone_mapping);
+    texts.tone.add(app, "agx if it glows, else srgb", "0");
 }
 
 void add_sampling_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
@@ -220,7 +199,7 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
         {{"auto", ProgressStyle::automatic}, {"json", ProgressStyle::json}, {"none", ProgressStyle::none}});
     if (!texts.up.empty())
         render.up = choose<Up>("--up", texts.up, {{"y", Up::y}, {"z", Up::z}});
-    render.tone_mapping.curve = tone_curve(texts.tone.curve);
+    render.tone = texts.tone.request();
     if (render.integrator)
         try {
             parse_integrator(*render.integrator);
@@ -300,7 +279,7 @@ void parse_merge(const std::vector<std::string>& arguments, Options& options) {
     add_list(app, "-o,--output", outputs, "Where to write, .exr or .png; may be given several times")
         ->option_text("FILE")
         ->group("Picture");
-    tone.add(app, merge.tone_mapping);
+    tone.add(app, "as rendered", "as rendered");
     app.add_flag("-q,--quiet", merge.quiet, "Print errors only");
     app.footer(merge_footer);
     if (!run_parser(app, arguments, options))
@@ -309,7 +288,27 @@ void parse_merge(const std::vector<std::string>& arguments, Options& options) {
         fail_command_line("merge: images and an output are needed; e.g. vkvol merge a.exr b.exr -o all.exr");
     merge.inputs.assign(inputs.begin(), inputs.end());
     merge.outputs.assign(outputs.begin(), outputs.end());
-    merge.tone_mapping.curve = tone_curve(tone.curve);
+    merge.tone = tone.request();
+}
+
+void parse_develop(const std::vector<std::string>& arguments, Options& options) {
+    DevelopOptions& develop = options.develop;
+    CLI::App app(develop_description, "vkvol develop");
+    std::vector<std::string> outputs;
+    ToneTexts tone;
+    app.add_option("image", develop.input, "A render, or any image with channels R, G and B")->option_text("A.exr");
+    add_list(app, "-o,--output", outputs, "Where to write, .png; may be given several times")
+        ->option_text("FILE")
+        ->group("Picture");
+    tone.add(app, "as rendered", "as rendered");
+    app.add_flag("-q,--quiet", develop.quiet, "Print errors only");
+    app.footer(develop_footer);
+    if (!run_parser(app, arguments, options))
+        return;
+    if (develop.input.empty() || outputs.empty())
+        fail_command_line("develop: an image and an output are needed; e.g. vkvol develop a.exr -o b.png --exposure 1");
+    develop.outputs.assign(outputs.begin(), outputs.end());
+    develop.tone = tone.request();
 }
 
 // A misspelt command would be taken for a scene.
@@ -331,7 +330,7 @@ Options parse_options(int argc, const char* const* argv) {
         {"render", {Command::render, parse_render}},    {"devices", {Command::devices, parse_devices}},
         {"info", {Command::info, parse_info}},          {"integrators", {Command::integrators, parse_integrators}},
         {"compare", {Command::compare, parse_compare}}, {"merge", {Command::merge, parse_merge}},
-        {"bench", {Command::bench, parse_bench}}};
+        {"develop", {Command::develop, parse_develop}}, {"bench", {Command::bench, parse_bench}}};
     Options options;
     Parser parse = parse_render;
     if (!arguments.empty()) {

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "scene.h"
-#include "tone_map.h"
+#include "tone_choice.h"
 
 namespace vkvol {
 
-enum class Command { render, devices, info, integrators, compare, merge, bench, print };
+enum class Command { render, devices, info, integrators, compare, merge, develop, bench, print };
 enum class Up { y, z };
 enum class ProgressStyle { automatic, json, none };
 
@@ -46,7 +46,7 @@ struct RenderOptions {
     bool dry_run = false;             // check everything, render and write nothing
     bool trace = false;               // print the path's vertices; crop and sample range hold just one
     ProgressStyle progress = ProgressStyle::automatic;
-    ToneMapping tone_mapping;
+    ToneRequest tone;
     bool quiet = false;    // errors only
     bool strict = false;   // caps hit or non-finite samples: exit code 5
     bool robust = false;   // robust buffer access
@@ -64,7 +64,14 @@ struct CompareOptions {
 struct MergeOptions {
     std::vector<std::filesystem::path> inputs;
     std::vector<std::filesystem::path> outputs;
-    ToneMapping tone_mapping;
+    ToneRequest tone;
+    bool quiet = false;
+};
+
+struct DevelopOptions {
+    std::filesystem::path input;
+    std::vector<std::filesystem::path> outputs; // 8 bit
+    ToneRequest tone;
     bool quiet = false;
 };
 
@@ -82,6 +89,7 @@ struct Options {
     RenderOptions render;
     CompareOptions compare;
     MergeOptions merge;
+    DevelopOptions develop;
     BenchOptions bench;
     std::filesystem::path info_file;
     bool info_json = false;

@@ -14,6 +14,7 @@ inline constexpr const char* render_footer = R"(Other commands (each has its own
   vkvol integrators           the estimators there are, by name, and which of them are biased
   vkvol compare A.exr B.exr   are these renders of the same picture?
   vkvol merge A.exr B.exr -o OUT.exr   one image of all their samples
+  vkvol develop A.exr -o B.png   a PNG of another exposure or tone curve, without rendering
   vkvol bench SCENE.xml       error against time of the integrators that suit a scene
 
 Examples:
@@ -53,6 +54,21 @@ inline constexpr const char* merge_footer =
     R"(Images of different scenes or integrators are refused, and images that share samples: each run needs its
 own --seed or --sample-offset. Pixels that no image holds are black, and a warning says how many. The
 merged image adds up what its parts count, is biased if one of them is, and can be merged again.)";
+
+inline constexpr const char* develop_description =
+    "Makes an 8-bit picture of an image's linear radiance, without rendering: with the tone curve and exposure of the "
+    "render that wrote it, or with others.";
+
+inline constexpr const char* develop_footer =
+    R"(Without options the picture has the same bytes as the one that the render wrote, or would have. An image
+that does not tell how it was rendered gets curve srgb and exposure 0.
+
+Curves: srgb keeps values up to 1 as they are and cuts what is brighter, which turns fire yellow and white;
+agx and aces lead bright colours towards white by and by; reinhard, the original renderer's, makes the
+brightest value white.
+
+Example:
+  vkvol develop fire.exr -o fire.png --exposure -1 --tonemap agx)";
 
 inline constexpr const char* bench_description = "Measures integrators on a scene, error against time: relMSE at 1, 2, "
                                                  "4, ... samples per pixel against a reference.";

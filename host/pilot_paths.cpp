@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "cell_walk.h"
 #include "empty_space.h"
 
 namespace vkvol {
@@ -14,41 +15,6 @@ namespace {
 constexpr int paths = 256;
 constexpr int most_collisions = 64; // of a path
 constexpr int most_steps = 1 << 21; // of all: where majorants are far too high, or cells very many, fewer paths will do
-
-// Calls visit(bound, t0, t1) for every cell that the ray passes within [0, length], until it returns false. With
-// reaches (else there are none) empty cells are passed together, as kernels do.
-template <class Visit>
-void walk(const MajorantGrid& cells, const std::vector<std::uint8_t>& reaches, glm::dvec3 origin, glm::dvec3 direction,
-          double length, const Visit& visit) {
-    const glm::dvec3 from = (origin - glm::dvec3(cells.origin)) / double(cells.cell);
-    const glm::dvec3 speed = direction / double(cells.cell);
-    const glm::ivec3 side(glm::sign(direction));
-    glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(from)), glm::ivec3(0), cells.dims - 1);
-    for (double t = 0.0; t < length;) {
-        const std::size_t i = (std::size_t(cell.x) * cells.dims.y + cell.y) * cells.dims.z + cell.z;
-        const glm::ivec3 last = cell + (reaches.empty() ? 0 : int(reaches[i])) * side;
-        int axis = 0;
-        double exit = std::numeric_limits<double>::infinity();
-        for (int a = 0; a < 3; ++a) {
-            const double face = side[a] > 0 ? last[a] + 1.0 : last[a];
-            const double at = side[a] != 0 ? (face - from[a]) / speed[a] : exit;
-            if (at < exit) {
-                exit = at;
-                axis = a;
-            }
-        }
-        exit = std::clamp(exit, t, length);
-        if (!visit(cells.bounds[i], t, exit))
-            return;
-        const glm::ivec3 there(glm::floor(from + exit * speed));
-        const glm::ivec3 most = glm::clamp(last, glm::ivec3(0), cells.dims - 1);
-        cell = glm::clamp(there, glm::min(cell, most), glm::max(cell, most));
-        cell[axis] = last[axis] + side[axis];
-        if (cell != glm::clamp(cell, glm::ivec3(0), cells.dims - 1))
-            return;
-        t = exit;
-    }
-}
 
 class Pilot {
 public:
@@ -80,7 +46,7 @@ private:
     double fly(glm::dvec3 origin, glm::dvec3 direction, double length, bool& collides) {
         double tau = -std::log1p(-uniform()), gone = length;
         collides = false;
-        walk(cells_, {}, origin, direction, length, [&](double bound, double t0, double t1) {
+        walk_cells(cells_, {}, origin, direction, length, [&](double bound, double t0, double t1) {
             const double sigma_maj = scene_.sigma_t * bound;
             if (--steps_left_ < 0)
                 return false;
@@ -155,7 +121,7 @@ std::vector<double> pilot_steps(const std::vector<PilotSegment>& segments, const
     std::vector<double> all_steps;
     for (const PilotSegment& s : segments) {
         double steps = s.collides ? -1.0 : 0.0; // the last cell is not crossed
-        walk(cells, reaches, s.origin, s.direction, s.length, [&](double bound, double t0, double t1) {
+        walk_cells(cells, reaches, s.origin, s.direction, s.length, [&](double bound, double t0, double t1) {
             steps += sigma_t * bound * (t1 - t0) + 1.0;
             return true;
         });

@@ -8,6 +8,7 @@
 #include "checkpoint_file.h"
 #include "dry_run.h"
 #include "error.h"
+#include "explain.h"
 #include "file_uses.h"
 #include "image_io.h"
 #include "interrupt.h"
@@ -77,6 +78,11 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
     }
 }
 
+// Whether a picture is written that is for looking at.
+bool shows(const RenderOptions& options) {
+    return std::any_of(options.outputs.begin(), options.outputs.end(), is_display_file);
+}
+
 bool has_samples(const Film& film) {
     return std::any_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n > 0; });
 }
@@ -91,8 +97,16 @@ void check_result(const Device& device, const RenderResult& result) {
                                       result.counts.queue_overflows));
 }
 
+// Once, also where all frames of a sequence have the same.
+void tell_why(const RenderOptions& options, RenderSession& session, const std::optional<Explanation>& explanation) {
+    if (explanation && !session.new_warnings({explanation->text}).empty())
+        print_explanation(options, *explanation);
+}
+
 int render_scene(const RenderOptions& options, const Scene& scene, RenderSession& session, CheckpointFile& checkpoint,
                  RenderOutputs& outputs) {
+    const std::optional<Explanation> foreseen = options.trace ? std::nullopt : foresee(scene);
+    tell_why(options, session, foreseen);
     const Device& device = session.device(options);
     outputs.set_device(device.info());
     const RenderResult result = render_with_progress(options, scene, session, checkpoint);
@@ -110,15 +124,21 @@ int render_scene(const RenderOptions& options, const Scene& scene, RenderSession
         tell(stderr, "vkvol: {}: no picture is written\n", why); // which might spoil a good one
         return result.interrupted ? exit_interrupted : exit_render_failed;
     }
-    outputs.write(device, result);
+    Shown shown;
+    if (shows(options))
+        shown.tone = choose_tone(options.tone, result.film, make_metadata(options, scene, device, result));
+    shown.explanation = foreseen || options.trace ? foreseen : explain(scene, result, shown.tone);
+    outputs.write(device, result, shown);
     if (result.samples == scene.settings.spp) // it is of no more use
         checkpoint.remove();
+    if (!foreseen)
+        tell_why(options, session, shown.explanation);
     if (!options.quiet)
         print_caps(options, result);
     if (options.trace)
         put(stdout, trace_table(result.trace, result.trace_origin, scene.background));
     else if (!options.quiet)
-        print_summary(options, device, result);
+        print_summary(options, device, result, shown.tone);
     if (result.interrupted)
         return exit_interrupted;
     return options.strict && result.counts.any_cap() ? exit_caps_hit : exit_done;

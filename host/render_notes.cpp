@@ -71,6 +71,11 @@ void print_reading(const RenderOptions& options) {
                      "picture is 0.0,1.0,0.0,1.0\n");
 }
 
+void print_explanation(const RenderOptions& options, const Explanation& explanation) {
+    if (!options.quiet)
+        tell(stderr, "vkvol: note: {}\n", explanation.text);
+}
+
 void print_caps(const RenderOptions& options, const RenderResult& result) {
     const RenderCounts& c = result.counts;
     const auto line = [](std::uint64_t count, const char* what) {
@@ -91,12 +96,14 @@ void print_caps(const RenderOptions& options, const RenderResult& result) {
              options.seed, replay_command(options, s));
 }
 
-void print_summary(const RenderOptions& options, const Device& device, const RenderResult& result) {
+void print_summary(const RenderOptions& options, const Device& device, const RenderResult& result, const Tone& tone) {
     std::string outputs;
     for (const std::filesystem::path& output : options.outputs)
         outputs += (outputs.empty() ? "" : ", ") + output.string();
-    tell(stdout, "{}: {} per pixel, {:.2f} s{}, on {}{}\n", outputs, samples_text(result.film), result.render_seconds,
-         noise_text(result.film), device.info().name, device.is_cpu() ? " (software)" : "");
+    const std::string told = tone_text(tone);
+    tell(stdout, "{}: {} per pixel, {:.2f} s{}{}, on {}{}\n", outputs, samples_text(result.film), result.render_seconds,
+         noise_text(result.film), told.empty() ? "" : ", " + told, device.info().name,
+         device.is_cpu() ? " (software)" : "");
 }
 
 std::string no_samples_text(const RenderResult& result) {

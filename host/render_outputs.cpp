@@ -36,14 +36,14 @@ void append(std::string& list, const char* separator, const std::string& text) {
 
 } // namespace
 
-void RenderOutputs::write(const Device& device, const RenderResult& result) {
+void RenderOutputs::write(const Device& device, const RenderResult& result, const Shown& shown) {
     const auto start = std::chrono::steady_clock::now();
     const Metadata metadata = make_metadata(options_, scene_, device, result);
     std::string failures, written;
     bool exr_written = false;
     for (const std::filesystem::path& output : options_.outputs)
         try {
-            write_image(output, result.film, metadata, options_.tone_mapping);
+            write_image(output, result.film, metadata, shown.tone.mapping);
             append(written, ", ", output.string());
             exr_written = exr_written || file_ending(output) == ".exr";
         } catch (const RenderError& error) {
@@ -52,7 +52,7 @@ void RenderOutputs::write(const Device& device, const RenderResult& result) {
     const std::string kept = failures.empty() || exr_written ? "" : rescue(result.film, metadata);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (std::string failure;
-        !try_report(make_report(options_, scene_, device, result, seconds, failures + kept), failure))
+        !try_report(make_report(options_, scene_, device, result, shown, seconds, failures + kept), failure))
         append(failures, "; ", failure);
     else if (options_.report)
         append(written, ", ", options_.report->string());
@@ -61,7 +61,7 @@ void RenderOutputs::write(const Device& device, const RenderResult& result) {
 }
 
 void RenderOutputs::write_report(const Device& device, const RenderResult& result, const std::string& error) {
-    if (std::string failure; !try_report(make_report(options_, scene_, device, result, 0.0, error), failure))
+    if (std::string failure; !try_report(make_report(options_, scene_, device, result, {}, 0.0, error), failure))
         tell(stderr, "vkvol: warning: {}\n", failure);
 }
 

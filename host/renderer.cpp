@@ -101,6 +101,8 @@ public:
             result_.warnings.insert(result_.warnings.end(), more.begin(), more.end());
         Specialization specialization = specialize(scene_, volume, method);
         const bool chromatic = is_chromatic(scene_);
+        const bool has_colour = method.material_colour && volume.mesh && volume.mesh->diffuse; // fog, not fire
+        result_.glows = specialization[SPEC_EMISSION] != EMISSION_NONE && !has_colour;
         result_.integrator = method.integrator;
         result_.biased = method.biased;
         result_.specialization = describe(specialization, volume, chromatic);
@@ -120,6 +122,7 @@ public:
         if (job.checkpoint || job.resume)
             begin_identity(device, specialization, volume);
         result_.trace_origin = render_origin(scene_, volume);
+        result_.outline = make_outline(scene_, volume, specialization[SPEC_EMISSION] != EMISSION_NONE);
         if (job.session)
             keep_fields(job.session->fields(), scene_, std::move(volume));
         volume = {};

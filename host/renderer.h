@@ -7,6 +7,7 @@
 #include "checkpoint.h"
 #include "device.h"
 #include "film.h"
+#include "medium_outline.h"
 #include "scene.h"
 #include "wavefront.h"
 
@@ -40,11 +41,13 @@ struct RenderResult {
     std::vector<NonFiniteSample> non_finite; // the first few
     std::vector<std::string> warnings;       // what the scene asks for and its files do not hold
     std::string integrator;
+    bool glows = false;         // the medium does, by <medium> or <emission>
     std::string biased;         // why its mean is not exact; empty: it is
     std::string specialization; // in words: what the kernels were compiled for
     PassSeconds pass_seconds{};
     double load_seconds = 0, upload_seconds = 0, pipeline_seconds = 0, render_seconds = 0;
     std::uint64_t device_bytes = 0;         // of all buffers
+    MediumOutline outline;                  // to explain the picture by
     std::vector<shared::TraceRecord> trace; // positions relative to trace_origin
     glm::dvec3 trace_origin{0.0};           // world space
     std::uint32_t samples = 0;              // per pixel, finished for every pixel

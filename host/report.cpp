@@ -63,6 +63,39 @@ std::string text_of(const Json& report) {
     return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+Json tone_json(const Tone& tone) {
+    if (tone.pixels == 0)
+        return {};
+    return {
+        {"curve", name_of(tone.mapping.curve)}, {"exposure", tone.mapping.exposure}, {"clippedPixels", tone.clipped}};
+}
+
+Json vector_json(const glm::dvec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+Json explanation_json(const std::optional<Explanation>& explanation, const Camera& camera) {
+    if (!explanation)
+        return {};
+    Json json{{"picture", explanation->picture}, {"cause", explanation->cause}, {"text", explanation->text}};
+    if (const auto& look = explanation->look)
+        json.update({{"brightest", look->brightest},
+                     {"pixels", look->pixels},
+                     {"unsampledPixels", look->unsampled},
+                     {"visiblePixels", look->shown},
+                     {"pixelsUnlikeBackground", look->apart}});
+    if (const auto& sight = explanation->sight)
+        json.update({{"mediumBox", {vector_json(sight->box.low), vector_json(sight->box.high)}},
+                     {"camera",
+                      {{"position", vector_json(sight->eye)},
+                       {"direction", vector_json(sight->forward)},
+                       {"fov", camera.fov},
+                       {"insideMediumBox", sight->inside}}},
+                     {"raysEntering", sight->entering},
+                     {"opticalDepth", {{"least", sight->least_depth}, {"most", sight->most_depth}}}});
+    return json;
+}
+
 Json mean_json(const Film& film) {
     const auto [value, error] = image_mean(film);
     Json json{{"value", {value.x, value.y, value.z}}, {"standardError", nullptr}};
@@ -99,30 +132,33 @@ std::string bias_of(const RenderResult& result) {
 Metadata make_metadata(const RenderOptions& options, const Scene& scene, const Device& device,
                        const RenderResult& result) {
     const auto most = std::max_element(result.film.samples.begin(), result.film.samples.end());
-    return {{"Software", std::string("vkvol ") + version},
-            {"samplesPerPixel", static_cast<int>(*most)},
-            {"renderTimeSeconds", static_cast<float>(result.render_seconds)},
-            {"vkvol/version", std::string(version)},
-            {"vkvol/sceneHash", scene_hash(scene)},
-            {"vkvol/integrator", result.integrator},
-            {"vkvol/biased", bias_of(result)},
-            {"vkvol/specialization", result.specialization},
-            {"vkvol/seed", std::to_string(options.seed)},
-            {"vkvol/sampleOffset", static_cast<int>(options.sample_offset)},
-            {"vkvol/device", device.info().name},
-            {"vkvol/driver", device.info().driver},
-            {"vkvol/capsHit", result.counts.any_cap() ? 1 : 0},
-            {"vkvol/depthCaps", metadata_count(result.counts.depth_caps)},
-            {"vkvol/stepCaps", metadata_count(result.counts.step_caps)},
-            {"vkvol/majorantViolations", metadata_count(result.counts.majorant_violations)},
-            {"vkvol/nullCollisions", std::to_string(result.counts.null_collisions)},
-            {"vkvol/queueOverflows", metadata_count(result.counts.queue_overflows)},
-            {"vkvol/abandonedPaths", metadata_count(result.counts.abandoned)},
-            {"vkvol/nonFiniteSamples", metadata_count(result.counts.non_finite)}};
+    Metadata metadata{{"Software", std::string("vkvol ") + version},
+                      {"samplesPerPixel", static_cast<int>(*most)},
+                      {"renderTimeSeconds", static_cast<float>(result.render_seconds)},
+                      {"vkvol/version", std::string(version)},
+                      {"vkvol/sceneHash", scene_hash(scene)},
+                      {"vkvol/integrator", result.integrator},
+                      {"vkvol/biased", bias_of(result)},
+                      {"vkvol/specialization", result.specialization},
+                      {"vkvol/seed", std::to_string(options.seed)},
+                      {"vkvol/sampleOffset", static_cast<int>(options.sample_offset)},
+                      {"vkvol/device", device.info().name},
+                      {"vkvol/driver", device.info().driver},
+                      {"vkvol/capsHit", result.counts.any_cap() ? 1 : 0},
+                      {"vkvol/depthCaps", metadata_count(result.counts.depth_caps)},
+                      {"vkvol/stepCaps", metadata_count(result.counts.step_caps)},
+                      {"vkvol/majorantViolations", metadata_count(result.counts.majorant_violations)},
+                      {"vkvol/nullCollisions", std::to_string(result.counts.null_collisions)},
+                      {"vkvol/queueOverflows", metadata_count(result.counts.queue_overflows)},
+                      {"vkvol/abandonedPaths", metadata_count(result.counts.abandoned)},
+                      {"vkvol/nonFiniteSamples", metadata_count(result.counts.non_finite)}};
+    record_tone(options.tone, result.glows, metadata);
+    return metadata;
 }
 
 std::string make_report(const RenderOptions& options, const Scene& scene, const Device& device,
-                        const RenderResult& result, double write_seconds, const std::string& error) {
+                        const RenderResult& result, const Shown& shown, double write_seconds,
+                        const std::string& error) {
     const auto [least, most] = std::minmax_element(result.film.samples.begin(), result.film.samples.end());
     const double seconds = std::max(result.render_seconds, 1e-9);
     Json report;
@@ -153,6 +189,8 @@ std::string make_report(const RenderOptions& options, const Scene& scene, const 
     report["mean"] = mean_json(result.film);
     const std::optional<double> noise = relative_noise(result.film);
     report["noise"] = noise ? Json(*noise) : Json();
+    report["tone"] = tone_json(shown.tone);
+    report["explanation"] = explanation_json(shown.explanation, scene.camera);
     report["memory"] = {{"peakHostBytes", peak_host_bytes()}, {"deviceBytes", result.device_bytes}};
     report["warnings"] = scene.warnings;
     for (const std::string& warning : result.warnings)

@@ -151,6 +151,12 @@ struct Expected {
     bool exact = false; // every sample has this value, so noise is no excuse
 };
 
+// An element that could give light and is black: what it lacks, nobody may have meant to leave out.
+struct BlackElement {
+    std::string name;
+    std::string place; // "file:line:column"
+};
+
 struct Scene {
     Camera camera;
     Picture picture;
@@ -159,6 +165,7 @@ struct Scene {
     Rgb background{0.0}; // constant radiance from every direction
     RenderSettings settings;
     std::optional<Expected> expected;
+    std::vector<BlackElement> black;   // without effect on the picture
     std::vector<std::string> warnings; // "file:line:column: ..." for what was understood but is not honoured
 };
 

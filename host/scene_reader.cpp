@@ -40,6 +40,9 @@ Scene SceneReader::read() {
     check_method(scene);
     read_without_effect();
     read_bookkeeping();
+    for (const char* name : {"light", "backgroundColor", "medium", "emission"})
+        if (const XmlElement element = one(name); element.exists() && color(element) == Rgb(0.0))
+            scene.black.push_back({name, element.place()});
     scene.warnings = document_.warnings();
     return scene;
 }

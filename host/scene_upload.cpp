@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "camera_view.h"
+#include "camera_rays.h"
 #include "error.h"
 #include "light_cache.h"
 #include "noise.h"
@@ -188,20 +188,14 @@ double ray_start(const Scene& scene, glm::dvec3 forward, glm::dvec3 center, doub
 
 // `origin`: of render space, the middle of the medium. `radius`: of a ball about it that holds the medium.
 shared::CameraParams make_camera(const Scene& scene, glm::dvec3 origin, double radius) {
-    const Picture& picture = scene.picture;
-    const double s = std::tan(glm::radians(scene.camera.fov) / 2.0);
-    const double aspect = picture.reference_width / picture.reference_height;
-    const double dx = 2.0 * aspect * s / picture.reference_width;
-    const double dy = -2.0 * s / picture.reference_height;
-    const glm::dmat3 rotation = camera_rotation(scene.camera);
-    const glm::dvec3 corner = rotation * glm::dvec3(-aspect * s + picture.start_x * dx, s + picture.start_y * dy, -1.0);
-    const double start = ray_start(scene, rotation * glm::dvec3(0.0, 0.0, -1.0), origin, radius);
+    const CameraRays rays = camera_rays(scene.camera, scene.picture);
+    const double start = ray_start(scene, rays.forward, origin, radius);
     shared::CameraParams params{};
-    params.position = scene.camera.position - origin + start * corner;
+    params.position = rays.position - origin + start * rays.corner;
     params.start = static_cast<float>(start);
-    params.corner = corner;
-    params.right = rotation * glm::dvec3(dx, 0.0, 0.0);
-    params.down = rotation * glm::dvec3(0.0, dy, 0.0);
+    params.corner = rays.corner;
+    params.right = rays.right;
+    params.down = rays.down;
     return params;
 }
 

@@ -32,17 +32,27 @@ Vec3 aces(const Vec3& v) {
     return (v * (2.51 * v + 0.03)) / (v * (2.43 * v + 0.59) + 0.14);
 }
 
-// Sobotka's AgX, base look: inset into the working space, log2 encoding between -12.47393 and 4.026069 stops around 1,
-// Wrensch's sixth-order polynomial for the sigmoid (2023), outset. The result is display-encoded already.
-Vec3 agx(const Vec3& v) {
+// AgX encodes the logarithm of what lies between these, in stops around 1.
+constexpr double agx_min_stop = -12.47393;
+constexpr double agx_max_stop = 4.026069;
+
+const glm::dmat3& agx_inset() {
     static const glm::dmat3 inset = from_rows({0.842479062253094, 0.0784335999999992, 0.0792237451477643},
                                               {0.0423282422610123, 0.878468636469772, 0.0791661274605434},
                                               {0.0423756549057051, 0.0784336, 0.879142973793104});
-    static const glm::dmat3 outset = glm::inverse(inset);
-    constexpr double min_stop = -12.47393;
-    constexpr double max_stop = 4.026069;
-    const Vec3 working = glm::max(inset * v, Vec3(1e-10));
-    const Vec3 x = (glm::clamp(glm::log2(working), min_stop, max_stop) - min_stop) / (max_stop - min_stop);
+    return inset;
+}
+
+Vec3 agx_stops(const Vec3& v) {
+    return glm::log2(glm::max(agx_inset() * v, Vec3(1e-10)));
+}
+
+// Sobotka's AgX, base look: inset into the working space, log2 encoding, Wrensch's sixth-order polynomial for the
+// sigmoid (2023), outset. The result is display-encoded already.
+Vec3 agx(const Vec3& v) {
+    static const glm::dmat3 outset = glm::inverse(agx_inset());
+    const Vec3 x =
+        (glm::clamp(agx_stops(v), agx_min_stop, agx_max_stop) - agx_min_stop) / (agx_max_stop - agx_min_stop);
     const Vec3 x2 = x * x;
     const Vec3 x4 = x2 * x2;
     const Vec3 sigmoid =
@@ -69,6 +79,22 @@ Vec3 display_value(const Vec3& radiance, ToneCurve curve, double white) {
     return srgb_encode(clamped(radiance));
 }
 
+// Beyond what the curve tells apart. Reinhard's, which ends at the brightest value, has nothing beyond.
+bool clips(const Vec3& radiance, ToneCurve curve) {
+    constexpr double rounding = 1e-6; // a white of 1 is white, and no loss
+    switch (curve) {
+    case ToneCurve::aces:
+        return glm::any(glm::greaterThan(aces(radiance), Vec3(1.0 + rounding)));
+    case ToneCurve::agx:
+        return glm::any(glm::greaterThan(agx_stops(radiance), Vec3(agx_max_stop + rounding)));
+    case ToneCurve::reinhard:
+        return false;
+    case ToneCurve::srgb:
+        break;
+    }
+    return glm::any(glm::greaterThan(radiance, Vec3(1.0 + rounding)));
+}
+
 // Not finite: black. Negative radiance cannot come from a render, but from a file it can.
 Vec3 exposed(const glm::vec3& mean, double gain) {
     const Vec3 v = Vec3(mean) * gain;
@@ -77,18 +103,23 @@ Vec3 exposed(const glm::vec3& mean, double gain) {
     return glm::max(v, Vec3(0.0));
 }
 
+double brightest_channel(const Vec3& v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+// The original cut to bytes (1e-6: but white, computed as 1 - 1 ulp, is white); the other curves round to the nearest.
+double rounding_of(ToneCurve curve) {
+    return curve == ToneCurve::reinhard ? 1e-6 : 0.5;
+}
+
 } // namespace
 
 std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping) {
     const double gain = std::exp2(mapping.exposure);
     double white = 0.0;
-    for (const glm::vec3& mean : film.mean) {
-        const Vec3 v = exposed(mean, gain);
-        white = std::max({white, v.x, v.y, v.z});
-    }
-    // The original cut to bytes (1e-6: but white, computed as 1 - 1 ulp, is white); the other curves round to the
-    // nearest.
-    const double rounding = mapping.curve == ToneCurve::reinhard ? 1e-6 : 0.5;
+    for (const glm::vec3& mean : film.mean)
+        white = std::max(white, brightest_channel(exposed(mean, gain)));
+    const double rounding = rounding_of(mapping.curve);
     std::vector<std::uint8_t> bytes;
     bytes.reserve(film.mean.size() * 3);
     for (const glm::vec3& mean : film.mean) {
@@ -97,6 +128,42 @@ std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping)
             bytes.push_back(static_cast<std::uint8_t>(255.0 * v[channel] + rounding));
     }
     return bytes;
+}
+
+std::size_t clipped_pixels(const Film& film, const ToneMapping& mapping) {
+    const double gain = std::exp2(mapping.exposure);
+    return std::size_t(std::count_if(film.mean.begin(), film.mean.end(),
+                                     [&](const glm::vec3& mean) { return clips(exposed(mean, gain), mapping.curve); }));
+}
+
+double faintest_radiance(const ToneMapping& mapping) {
+    double low = -200.0, high = 200.0; // stops
+    while (high - low > 1e-3) {
+        const double middle = 0.5 * (low + high), radiance = std::exp2(middle + mapping.exposure);
+        const double value = display_value(Vec3(radiance), mapping.curve, 1e100).x;
+        (255.0 * value + rounding_of(mapping.curve) < 1.0 ? low : high) = middle;
+    }
+    return std::exp2(high);
+}
+
+double suitable_exposure(const Film& film, ToneCurve curve) {
+    std::vector<double> values;
+    for (const glm::vec3& mean : film.mean)
+        if (const double value = brightest_channel(exposed(mean, 1.0)); value > 0.0)
+            values.push_back(value);
+    if (values.empty())
+        return 0.0;
+    const double white = *std::max_element(values.begin(), values.end());
+    const auto bright = values.begin() + std::ptrdiff_t(0.99 * double(values.size() - 1));
+    std::nth_element(values.begin(), bright, values.end());
+    constexpr double most = 100.0; // stops, as on the command line
+    double low = -most, high = most;
+    while (high - low > 1e-3) {
+        const double middle = 0.5 * (low + high), gain = std::exp2(middle);
+        (display_value(Vec3(*bright * gain), curve, white * gain).x < 0.9 ? low : high) = middle;
+    }
+    // Where the curve makes its own white, of a picture of nearly one value, no exposure helps.
+    return low == -most || high == most ? 0.0 : std::floor(100.0 * low) / 100.0;
 }
 
 } // namespace vkvol

@@ -1,6 +1,7 @@
 // From linear radiance to 8-bit pictures.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -21,5 +22,15 @@ struct ToneMapping {
 
 // Three bytes a pixel, rows top to bottom. Values that are not finite become black.
 std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping);
+
+// Pixels brighter than the curve has values for, in one channel or more: what they differ by is lost.
+std::size_t clipped_pixels(const Film& film, const ToneMapping& mapping);
+
+// What is darker is black on the screen. (By reinhard, of a picture with a bright white.)
+double faintest_radiance(const ToneMapping& mapping);
+
+// The exposure, in hundredths of a stop, at which of the pixels that are not black the curve puts 99 % below nine
+// tenths of white. 0 if all are black.
+double suitable_exposure(const Film& film, ToneCurve curve);
 
 } // namespace vkvol

@@ -100,8 +100,8 @@ TEST_CASE("every option is read, before or after the scene", "[cpu][options]") {
     CHECK(render.device == "cpu");
     CHECK(render.report.value() == "r.json");
     CHECK(render.progress == ProgressStyle::json);
-    CHECK(render.tone_mapping.curve == ToneCurve::agx);
-    CHECK(render.tone_mapping.exposure == -1.5);
+    CHECK(render.tone.curve.value() == ToneCurve::agx);
+    CHECK(render.tone.exposure.value() == -1.5);
     CHECK((render.quiet && render.strict && render.robust && render.validate && render.no_cache));
     CHECK(render.crop.value().window == std::array<double, 4>{0, 8, 4, 16});
 }

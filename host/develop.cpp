@@ -1,0 +1,37 @@
+#include "develop.h"
+
+#include <fmt/format.h>
+
+#include "error.h"
+#include "file_uses.h"
+#include "image_io.h"
+#include "messages.h"
+
+namespace vkvol {
+
+int run_develop(const DevelopOptions& options) {
+    FileUses uses;
+    uses.reads("the image", options.input);
+    for (const std::filesystem::path& output : options.outputs) {
+        if (!is_display_file(output))
+            throw InputError(fmt::format("{}: develop writes what is to be looked at; expected .png", output.string()));
+        check_writable(output);
+        uses.writes("the picture", output, "-o");
+    }
+    uses.check();
+    Metadata metadata;
+    const Film film = read_exr(options.input, &metadata);
+    const Tone tone = choose_tone(options.tone, film, metadata);
+    for (const std::filesystem::path& output : options.outputs)
+        write_display(output, film, tone.mapping);
+    if (options.quiet)
+        return exit_done;
+    std::string outputs;
+    for (const std::filesystem::path& output : options.outputs)
+        outputs += (outputs.empty() ? "" : ", ") + output.string();
+    const std::string told = tone_text(tone);
+    tell(stdout, "{}: {}x{} pixels{}\n", outputs, film.width(), film.height(), told.empty() ? "" : ", " + told);
+    return exit_done;
+}
+
+} // namespace vkvol

@@ -1,0 +1,104 @@
+#include "explain.h"
+
+#include <fmt/format.h>
+
+#include "explain_causes.h"
+
+namespace vkvol {
+
+namespace {
+
+// What less than a thousandth of the pixels say is a firefly or a speck.
+bool few(std::size_t count, const FilmLook& look) {
+    return 1000 * count <= look.pixels;
+}
+
+// By what it shows alone; that it is nothing but noise is asked later, of pictures from within a medium.
+std::optional<Odd> oddity(const FilmLook& look, const Scene& scene, const Tone& tone) {
+    if (2 * look.unsampled > look.pixels)
+        return Odd::unfinished;
+    const bool has_screen = tone.pixels > 0;
+    if (look.brightest == 0.0 || (has_screen && few(look.shown, look)))
+        return Odd::black;
+    if (few(look.apart, look) && scene.background != Rgb(0.0))
+        return Odd::background;
+    if (has_screen && 5 * tone.clipped >= 4 * tone.pixels)
+        return Odd::white;
+    return std::nullopt;
+}
+
+const char* name_of(Odd odd) {
+    constexpr const char* names[] = {"unfinished", "black", "background", "white", "noise"};
+    return names[static_cast<int>(odd)];
+}
+
+std::string percent(std::size_t part, std::size_t whole) {
+    return fmt::format("{:.0f} % of the pixels", 100.0 * double(part) / double(whole));
+}
+
+std::string beginning(const Evidence& evidence) {
+    switch (evidence.odd) {
+    case Odd::unfinished:
+        return percent(evidence.look->unsampled, evidence.look->pixels) + " have no sample";
+    case Odd::black:
+        return !evidence.look                   ? "the picture will be black"
+               : evidence.look->brightest > 0.0 ? "the picture is all but black"
+                                                : "the picture is black";
+    case Odd::background:
+        return "the picture shows its background alone";
+    case Odd::white:
+        return percent(evidence.tone->clipped, evidence.tone->pixels) + " clip";
+    case Odd::noise:
+        break;
+    }
+    return "the picture shows noise alone";
+}
+
+std::optional<Explanation> find_cause(const Evidence& evidence) {
+    for (const Cause& cause : causes())
+        if (const std::optional<std::string> why = cause.explain(evidence)) {
+            Explanation explanation;
+            explanation.picture = name_of(evidence.odd);
+            explanation.cause = cause.name;
+            explanation.text = beginning(evidence) + ": " + *why;
+            return explanation;
+        }
+    return std::nullopt;
+}
+
+} // namespace
+
+std::optional<Explanation> foresee(const Scene& authored) {
+    const Scene scene = with_preset(authored);
+    const Method method = choose_method(scene);
+    if (sees_light(scene, method) || scene.background != Rgb(0.0) || emits(scene) || method.material_colour)
+        return std::nullopt;
+    Evidence evidence{scene, authored, method};
+    return find_cause(evidence);
+}
+
+std::optional<Explanation> explain(const Scene& authored, const RenderResult& result, const Tone& tone) {
+    const Scene scene = with_preset(authored);
+    const FilmLook seen = look(result.film, scene.background, tone.mapping);
+    std::optional<Odd> odd = oddity(seen, scene, tone);
+    std::optional<Sight> sight;
+    if (result.outline.exists)
+        sight = look(scene, result.outline, result.film.crop);
+    // Only where all that is seen is medium: elsewhere noise may hide a thing or two.
+    if (!odd && sight && sight->inside && sight->least_depth >= deep && is_without_structure(result.film))
+        odd = Odd::noise;
+    if (!odd)
+        return std::nullopt;
+    const Method method = choose_method(scene);
+    Evidence evidence{scene, authored, method, *odd, result.outline.emits, &result, &seen};
+    evidence.sight = sight ? &*sight : nullptr;
+    evidence.tone = tone.pixels > 0 ? &tone : nullptr;
+    std::optional<Explanation> explanation = find_cause(evidence);
+    if (explanation) {
+        explanation->look = seen;
+        explanation->sight = sight;
+    }
+    return explanation;
+}
+
+} // namespace vkvol

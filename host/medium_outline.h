@@ -1,0 +1,42 @@
+// Where the medium is and how dense it is at most: what is kept of it while its picture is rendered, to explain the
+// picture by.
+#pragma once
+
+#include <optional>
+
+#include "loaded_volume.h"
+
+namespace vkvol {
+
+struct MediumOutline {
+    bool exists = false;      // false: no volume, no voxel, or an extinction of 0, and what follows means nothing
+    bool is_ball = false;     // the unit ball of medium space; else the box
+    bool fills = true;        // the ball or box; meshes are somewhere in theirs
+    glm::dmat4 to_world{1.0}; // from medium space, which is a grid's index space
+    glm::dvec3 low{-1.0}, high{1.0};
+    double sigma_t = 0.0;              // the largest channel's [1 / world unit], times
+    double densest = 1.0;              // which no density exceeds
+    std::optional<MajorantGrid> cells; // of grids, times
+    double cell_scale = 1.0;           // which makes their bounds the density's own again
+    double voxel = 0.0;                // world units; 0: no grid
+    bool emits = false;                // uniformly, or by its temperature
+    bool has_temperature = false;
+    double hottest = 0.0; // kelvin, of black bodies
+};
+
+// Takes the majorants with it.
+MediumOutline make_outline(const Scene& scene, LoadedVolume& loaded, bool emits);
+
+struct WorldBox {
+    glm::dvec3 low, high;
+};
+WorldBox world_box(const MediumOutline& outline);
+
+// How far along the ray it enters the ball or box and leaves it, in lengths of `direction`; the former is 0 from
+// within. None if it misses.
+std::optional<glm::dvec2> crossing(const MediumOutline& outline, glm::dvec3 origin, glm::dvec3 direction);
+
+// No more than this is the optical depth along the ray.
+double depth_bound(const MediumOutline& outline, glm::dvec3 origin, glm::dvec3 direction);
+
+} // namespace vkvol
