@@ -45,6 +45,9 @@ TEST_CASE("every scene is complete without keys, and names fields that make_fiel
     REQUIRE(scene_files().size() > 60);
     for (const std::filesystem::path& file : scene_files()) {
         INFO(file.string());
+        // Whether its integrator suits depends on what is in the grid; hard_scenes_test.cpp has it.
+        if (file.stem() == "13-empty-grid" && !std::filesystem::exists(root / "density_fields/empty.nvdb"))
+            continue;
         const Scene scene = load_scene(file);
         const GridFile* grid = grid_of(scene);
         if (!grid)

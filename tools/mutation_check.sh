@@ -34,7 +34,7 @@ leap a cell too far ~ host/empty_space.cpp ~ std::max<std::uint8_t>(nearest, 1) 
 leap beyond the point at its end ~ shaders/include/majorant.glsl ~ next = clamp(there, ~ next = clamp(there + side, ~ [majorant]
 film variance / n for / (n - 1) ~ host/film_bands.cpp ~ / (n - 1.0) ~ / n ~ [determinism]
 voxel length inverted ~ host/loaded_volume.cpp ~ sigma_t / field->voxel_size() ~ sigma_t * field->voxel_size() ~ [invariance]
-camera rows flipped ~ host/scene_upload.cpp ~ dy = -2.0 * s ^ dx, s + picture.start_y ~ dy = 2.0 * s ^ dx, -s + picture.start_y ~ [image]
+camera rows flipped ~ host/camera_rays.cpp ~ dy = -2.0 * s ^ dx, s + picture.start_y ~ dy = 2.0 * s ^ dx, -s + picture.start_y ~ [image]
 nearest lookup truncates ~ shaders/include/density.glsl ~ floor(p + 0.5) ~ floor(p) ~ [image]
 stochastic corner reversed ~ shaders/include/density.glsl ~ lessThan(tap, p - base) ~ greaterThan(tap, p - base) ~ [density]
 depth limit off by one ~ shaders/include/lane.glsl ~ lane.path.depth >= frame.max_depth ~ lane.path.depth > frame.max_depth ~ [image]
