@@ -7,7 +7,7 @@
 #   MUTATION_DIR=DIR                   where the copy, its build and the rows done are kept
 #
 # Ended at any time and started again, it goes on after the last row that was done, as long as the sources are the same;
-# the table that it prints at its end is always of one state of them. All takes about half an hour on two cores.
+# the table that it prints at its end is always of one state of them. All takes about an hour on two cores.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -67,6 +67,10 @@ lattice a node off ~ shaders/include/lattice.glsl ~ uint i = lattice_index(which
 samples lost to a driver's loops ~ shaders/passes/sky.comp ~ if (hit || tally.paths < push.sample_end - push.sample_begin) { ~ if (hit) { ~ [determinism]
 a long batch beside a mesh ~ host/wavefront.cpp ~ 16.0 + 4.0 * std::sqrt(double(loops.mesh_nodes)) : 1.0 ~ 1.0 : 1.0 ~ [determinism]
 octaves lost to a driver's loops ~ host/wavefront.cpp ~ per_turn += 4.0 * steps * (loops.octaves + 1.0); ~ per_turn += 2.0 * steps * loops.octaves; ~ [determinism]
+an output over an input by a link ~ host/file_uses.cpp ~ if (is_same_file(output.file, input.file)) ~ if (output.file == input.file) ~ no output is an input or another output
+a checkpoint written over ~ host/checkpoint_file.cpp ~ if (!options_.resume && is_checkpoint(path_)) ~ if (false) ~ [checkpoint]
+azimuth clockwise ~ host/camera_view.cpp ~ camera.yaw = orbit.azimuth; ~ camera.yaw = -orbit.azimuth; ~ [xml]
+noise against no signal ~ host/film.cpp ~ signal += glm::dot(mean, mean); ~ signal += 1.0; ~ [film]
 crop forgotten in random numbers ~ shaders/include/camera.glsl ~ frame.crop_x + pixel ~ pixel ~ [determinism]
 END
 }
