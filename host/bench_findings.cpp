@@ -136,6 +136,8 @@ std::string verdict(const std::string& scene, const Reference& reference, const 
         return fmt::format("For {} the reference is too noisy to rank the integrators: {} % of the smallest squared "
                            "difference is its own error. Give a longer --time, or a better --reference.",
                            scene, number_text(100.0 * share));
+    if (std::none_of(rows.begin(), rows.end(), [](const Row& row) { return row.biased().empty(); }))
+        return fmt::format("All that was measured for {} is biased; name an unbiased integrator too.", scene);
     if (list.empty())
         return fmt::format("Too short to choose an integrator for {}: give --time {} or more.", scene, longer);
     const Row* usual = find_default(rows);

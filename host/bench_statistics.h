@@ -89,9 +89,9 @@ std::optional<Interval> efficiency(std::span<const BenchRun> runs);
 std::optional<Interval> efficiency_ratio(std::span<const BenchRun> runs, std::span<const BenchRun> base);
 
 // How many times as long a bench would have to be for the efficiency to be fit to compare: 1 if it is. Fit it is from
-// four effective runs on, with an interval from a third to thrice its value at most: what is measured so differs by less
-// than the estimators that are worth telling apart, and a t of fewer runs is a guess. From longer benches, with five
-// runs and errors in proportion to 1 / sqrt(seconds), t * error is to be log 3.
+// four effective runs on, with an interval from a third to thrice its value at most: what is measured so differs by
+// less than the estimators that are worth telling apart, and a t of fewer runs is a guess. From longer benches, with
+// five runs and errors in proportion to 1 / sqrt(seconds), t * error is to be log 3.
 double times_to_judge(std::span<const BenchRun> runs);
 
 // Until the picture's noise is `target`: noise^2 seconds / target^2, the median over the runs of the most samples,

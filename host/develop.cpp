@@ -22,8 +22,7 @@ int run_develop(const DevelopOptions& options) {
     Metadata metadata;
     const Film film = read_exr(options.input, &metadata);
     const Tone tone = choose_tone(options.tone, film, metadata);
-    for (const std::filesystem::path& output : options.outputs)
-        write_display(output, film, tone.mapping);
+    write_images(options.outputs, film, metadata, tone.mapping);
     if (options.quiet)
         return exit_done;
     std::string outputs;

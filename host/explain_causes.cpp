@@ -20,8 +20,10 @@ bool sees_light(const Evidence& e) {
     return sees_light(e.scene, e.method);
 }
 
+// Before a background that is no darker than night, a picture that is black is so by its exposure.
 bool shows_nothing(const Evidence& e) {
-    return e.odd == Odd::black || e.odd == Odd::background;
+    constexpr double night = 1e-3;
+    return e.odd == Odd::background || (e.odd == Odd::black && largest(e.scene.background) < night);
 }
 
 double least(const Rgb& color) {
@@ -62,8 +64,14 @@ bool is_dark_around(const Evidence& e) {
 Answer unfinished(const Evidence& e) {
     if (e.odd != Odd::unfinished)
         return {};
-    return e.result->interrupted ? "the render was interrupted early; --checkpoint 60s and --resume go on from there"
-                                 : "time was up early; give it more --time, or a smaller --width";
+    if (e.result->interrupted)
+        return "the render was interrupted early; --checkpoint 60s and --resume go on from there";
+    if (e.result->counts.non_finite > 0)
+        return fmt::format(
+            "{} samples were not finite, or too bright to add up, and were dropped; lower the lights, or "
+            "bring heyneygreenstein_g nearer to 0",
+            e.result->counts.non_finite);
+    return "time was up early; give it more --time, or a smaller --width";
 }
 
 // Elements that are there to give light, and are black: a colour without r, g and b is.
@@ -167,6 +175,12 @@ Answer speck(const Evidence& e) {
     constexpr double small = 0.002; // of the rays
     if (!shows_nothing(e) || !e.sight || e.sight->inside || e.sight->entering > small)
         return {};
+    if (e.sight->pixels > 0.05 * std::min(e.scene.picture.width, e.scene.picture.height))
+        return fmt::format("only an edge of the medium, whose box is {}, is in view: {:.1g} % of the rays enter it; "
+                           "{}{}",
+                           box_text(e.sight->box), 100.0 * e.sight->entering,
+                           e.sight->entering_picture > 2.0 * e.sight->entering ? "move --crop, or " : "",
+                           frame_advice(*e.sight));
     return fmt::format("the medium, whose box is {}, measures {:.2g} pixels in a picture of {}x{}; go nearer, narrow "
                        "fov, or --frame it",
                        box_text(e.sight->box), e.sight->pixels, e.scene.picture.width, e.scene.picture.height);

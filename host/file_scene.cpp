@@ -135,7 +135,8 @@ std::string path_from(const std::filesystem::path& file, const std::filesystem::
     std::filesystem::path name = file;
     if (file.is_relative()) {
         name = std::filesystem::relative(file, beside.empty() ? "." : beside, error);
-        if (error || name.empty())
+        // Scenes take the .. of a name as text, which behind a link leads elsewhere.
+        if (error || name.empty() || !std::filesystem::equivalent((beside / name).lexically_normal(), file, error))
             name = std::filesystem::absolute(file);
     }
     const std::string text = name.string();

@@ -12,7 +12,14 @@ namespace {
 
 using std::filesystem::path;
 
-// Absolute, without links in the part that is there.
+// "cloud.vdb is", or both names where they differ.
+std::string both_names(const path& output, const path& other) {
+    return output == other ? fmt::format("{} is", output.string())
+                           : fmt::format("{} is the same file as {},", output.string(), other.string());
+}
+
+} // namespace
+
 path real_name(const path& file) {
     std::error_code error;
     const path absolute = std::filesystem::absolute(file, error);
@@ -21,14 +28,6 @@ path real_name(const path& file) {
     const path real = std::filesystem::weakly_canonical(absolute, error);
     return error ? absolute.lexically_normal() : real;
 }
-
-// "cloud.vdb is", or both names where they differ.
-std::string both_names(const path& output, const path& other) {
-    return output == other ? fmt::format("{} is", output.string())
-                           : fmt::format("{} is the same file as {},", output.string(), other.string());
-}
-
-} // namespace
 
 bool is_same_file(const path& a, const path& b) {
     if (is_special(a) || is_special(b))

@@ -31,6 +31,9 @@ private:
     std::vector<Use> inputs_, outputs_;
 };
 
+// Absolute, without links in the part that is there: two spellings of a file have one.
+std::filesystem::path real_name(const std::filesystem::path& file);
+
 // Whether to write one would change the other, now or once they are there.
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 

@@ -264,6 +264,20 @@ void write_image(const path& target, const Film& film, const Metadata& metadata,
         write_exr(target, film, metadata);
 }
 
+void write_images(const std::vector<path>& targets, const Film& film, const Metadata& metadata,
+                  const ToneMapping& mapping) {
+    std::string failures, written;
+    for (const path& target : targets)
+        try {
+            write_image(target, film, metadata, mapping);
+            written += (written.empty() ? "; written: " : ", ") + target.string();
+        } catch (const RenderError& error) {
+            failures += (failures.empty() ? "" : "; ") + std::string(error.what());
+        }
+    if (!failures.empty())
+        throw RenderError(failures + written);
+}
+
 void write_exr(const path& target, const Film& film, const Metadata& metadata, const char* option) {
     write_atomically(target, option, [&](AtomicFile& file) {
         check_consistent(film);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "film.h"
 #include "tone_map.h"
@@ -24,6 +25,10 @@ bool is_display_file(const std::filesystem::path& path);
 // By extension: .exr, or for looking at.
 void write_image(const std::filesystem::path& path, const Film& film, const Metadata& metadata,
                  const ToneMapping& mapping);
+
+// All of them. What cannot be written is told when all have been tried, with what was written.
+void write_images(const std::vector<std::filesystem::path>& paths, const Film& film, const Metadata& metadata,
+                  const ToneMapping& mapping);
 
 // ZIP; channels R, G, B, variance.R, variance.G, variance.B of floats, samples of whole numbers. Data window = crop,
 // display = picture.

@@ -188,21 +188,6 @@ void check_files(const MergeOptions& options) {
     uses.check();
 }
 
-// All are tried before the first failure is reported.
-void write_outputs(const MergeOptions& options, const MergeResult& result) {
-    const ToneMapping mapping = choose_tone({}, result.film, result.metadata).mapping;
-    std::string failures, written;
-    for (const std::filesystem::path& output : options.outputs)
-        try {
-            write_image(output, result.film, result.metadata, mapping);
-            written += (written.empty() ? "; written: " : ", ") + output.string();
-        } catch (const RenderError& error) {
-            failures += (failures.empty() ? "" : "; ") + std::string(error.what());
-        }
-    if (!failures.empty())
-        throw RenderError(failures + written);
-}
-
 void print_summary(const MergeOptions& options, const MergeResult& result) {
     std::string outputs;
     for (const std::filesystem::path& output : options.outputs)
@@ -226,7 +211,7 @@ int run_merge(const MergeOptions& options) {
     record_tone(options.tone, result.metadata);
     if (!options.quiet)
         print_warnings(result);
-    write_outputs(options, result);
+    write_images(options.outputs, result.film, result.metadata, choose_tone({}, result.film, result.metadata).mapping);
     if (!options.quiet)
         print_summary(options, result);
     return exit_done;

@@ -62,21 +62,23 @@ RenderScene load_render_scene(const RenderOptions& options) {
     else if (options.time_limit) // time alone decides
         scene.settings.spp = std::numeric_limits<std::int32_t>::max() - options.sample_offset;
     resize_picture(scene.picture, options.width, options.height);
-    if (options.frame)
+    if (options.frame && result.xml.empty()) // what was made for a file is framed
         frame_medium(scene);
     return result;
 }
 
 bool is_kept(const RenderOptions& options, const RenderScene& scene) {
-    return !scene.xml.empty() && !options.outputs.empty() && !options.dry_run;
+    return !scene.xml.empty() && !options.outputs.empty();
 }
 
 void keep_made_scene(const RenderOptions& options, const RenderScene& made) {
     if (!is_kept(options, made))
         return;
-    write_text(made.xml_file, made.xml);
+    if (!options.dry_run)
+        write_text(made.xml_file, made.xml);
     if (!options.quiet)
-        tell(stdout, "{}; scene: {}\n", made.assumed, made.xml_file.string());
+        tell(stdout, "{}; scene{}: {}\n", made.assumed, options.dry_run ? " that would be written" : "",
+             made.xml_file.string());
 }
 
 } // namespace vkvol

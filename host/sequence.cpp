@@ -2,9 +2,11 @@
 
 #include <chrono>
 #include <fmt/format.h>
+#include <map>
 
 #include "atomic_file.h"
 #include "error.h"
+#include "file_uses.h"
 #include "frames.h"
 #include "interrupt.h"
 #include "messages.h"
@@ -29,6 +31,30 @@ template <class Work> auto of_frame(int frame, const std::vector<int>& done, con
         throw RenderError(message(error));
     }
 }
+
+// No frame may write what another one has written. Each frame's own names are checked with the frame.
+class FrameFiles {
+public:
+    void add(int frame, const RenderOptions& options) {
+        std::vector<std::filesystem::path> files = options.outputs;
+        if (options.report)
+            files.push_back(*options.report);
+        if (options.checkpoint || options.resume)
+            files.push_back(std::filesystem::path(options.outputs.front()).replace_extension(".checkpoint"));
+        for (const std::filesystem::path& file : files) {
+            if (is_special(file))
+                continue;
+            const auto [known, is_new] = writer_.emplace(real_name(file), frame);
+            if (!is_new && known->second != frame)
+                throw InputError(fmt::format("{} is frame {}'s too, and one would be lost; let the names hold the "
+                                             "frame in as many digits as the longest has, as #### does",
+                                             file.string(), known->second));
+        }
+    }
+
+private:
+    std::map<std::filesystem::path, int> writer_;
+};
 
 // For machines, which see the progress of each frame begin anew.
 void announce(const RenderOptions& options, std::size_t index) {
@@ -62,8 +88,13 @@ int run_sequence(const RenderOptions& options) {
                         options.scene.string()));
     RenderSession session;
     std::vector<int> done;
+    FrameFiles files;
     for (const int frame : options.frames)
-        of_frame(frame, done, [&] { check_picture(frame_options(options, frame)); });
+        of_frame(frame, done, [&] {
+            const RenderOptions one = frame_options(options, frame);
+            files.add(frame, one);
+            check_picture(one);
+        });
     int code = exit_done;
     for (std::size_t i = 0; i < options.frames.size() && code != exit_interrupted && code != exit_render_failed; ++i) {
         const int frame = options.frames[i];

@@ -32,7 +32,8 @@ ToneRequest ToneTexts::request() const {
         request.automatic_exposure = true;
     } else if (!exposure.empty()) {
         double stops = 0.0;
-        const auto [end, error] = std::from_chars(exposure.data(), exposure.data() + exposure.size(), stops);
+        const std::size_t sign = exposure.size() > 1 && exposure[0] == '+' && exposure[1] != '-' ? 1 : 0;
+        const auto [end, error] = std::from_chars(exposure.data() + sign, exposure.data() + exposure.size(), stops);
         if (error != std::errc() || end != exposure.data() + exposure.size() || !(stops >= -most && stops <= most))
             fail_command_line(
                 fmt::format("--exposure: '{}' is neither a number from {:g} to {:g} nor auto", exposure, -most, most));

@@ -217,3 +217,26 @@ TEST_CASE("the report says why a render failed", "[gpu][command]") {
     const Run late = folder.vkvol("ball.xml -o none.exr --width 8000 --time 1us --report r.json");
     CHECK(late.code == exit_bad_input); // no such unit: nothing was begun, and the report is the old one
 }
+
+TEST_CASE("no frame of a sequence takes another's picture", "[gpu][command]") {
+    const Folder folder("");
+    std::string scene = folder.text("ball.xml");
+    scene.replace(scene.find("<options>"), 9, "<options><russianRoulette threshold=\"${=${F:-1}/100}\"/>");
+    folder.write("turn.xml", scene);
+    const Run run = folder.vkvol("turn.xml -f 1,11 -q -o 'a.#.png' -o 'a.1#.png'");
+    CHECK(run.code == exit_bad_input);
+    CHECK_THAT(run.text, Contains("frame 11: a.11.png is frame 1's too") && Contains("####"));
+    CHECK_FALSE(fs::exists(folder.file("a.1.png")));
+    CHECK(folder.vkvol("turn.xml -f 1,11 -q -o 'a.##.png'").code == exit_done);
+    CHECK((fs::exists(folder.file("a.01.png")) && fs::exists(folder.file("a.11.png"))));
+}
+
+TEST_CASE("one picture that cannot be developed takes no other with it", "[gpu][command]") {
+    const Folder folder("");
+    REQUIRE(folder.vkvol("ball.xml -q -o a.exr").code == exit_done);
+    fs::create_symlink("/dev/full", folder.file("full.png"));
+    const Run run = folder.vkvol("develop a.exr -o full.png -o b.png --exposure +1");
+    CHECK(run.code == exit_render_failed);
+    CHECK_THAT(run.text, Contains("full.png: cannot be written") && Contains("written: b.png"));
+    CHECK(fs::exists(folder.file("b.png")));
+}

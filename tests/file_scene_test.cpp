@@ -160,6 +160,23 @@ TEST_CASE("a density file is rendered, and the scene beside its picture gives th
     CHECK(same_pixels(folder.file("b.exr"), folder.file("c.exr")));
 }
 
+TEST_CASE("a made scene finds its file through links, and is framed as it says", "[gpu][command]") {
+    const Folder folder;
+    std::filesystem::create_directories(folder.file("real/deep"));
+    std::filesystem::create_directory_symlink("real/deep", folder.file("link"));
+    REQUIRE(folder.vkvol("cloud.nvdb --spp 1 --width 16 -q -o link/x.exr").code == exit_done);
+    REQUIRE(folder.vkvol("link/x.xml -q -o again.exr").code == exit_done);
+    CHECK(same_pixels(folder.file("link/x.exr"), folder.file("again.exr")));
+    REQUIRE(folder.vkvol("cloud.nvdb --spp 1 --width 16 -q --frame -o f.exr").code == exit_done);
+    REQUIRE(folder.vkvol("f.xml -q -o again.exr").code == exit_done);
+    CHECK(same_pixels(folder.file("f.exr"), folder.file("again.exr")));
+    const Run dry = folder.vkvol("cloud.nvdb --report cloud.xml --dry-run");
+    CHECK(dry.code == exit_bad_input);
+    CHECK_THAT(dry.text, Contains("cloud.xml"));
+    CHECK_THAT(folder.vkvol("cloud.nvdb --dry-run").text, Contains("scene that would be written: cloud.xml"));
+    CHECK_FALSE(std::filesystem::exists(folder.file("cloud.xml")));
+}
+
 TEST_CASE("a scene that its user has changed is never overwritten", "[gpu][command]") {
     const Folder folder;
     const std::string render = "cloud.nvdb --spp 1 --width 16 -q";
