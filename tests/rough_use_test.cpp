@@ -25,11 +25,6 @@ namespace {
 
 const std::string wicked = "b\xe9\x1b[31m.xml"; // Latin-1, and red
 
-// A shell's script in that folder, with the program as $vkvol.
-Run shell(const Folder& folder, const std::string& script) {
-    return run(fmt::format("cd '{}' && vkvol='{}' && {{ {}\n}}", folder.file("").string(), VKVOL_BINARY, script));
-}
-
 // Root may read everything; nobody may not.
 class AsNobody {
 public:
@@ -83,7 +78,7 @@ TEST_CASE("the first signal ends the wait for a pipe", "[gpu][command]") {
     const Run scene = folder.vkvol("p.xml", interrupted);
     CHECK(scene.code == exit_interrupted);
     CHECK_THAT(scene.text, Contains("p.xml: interrupted while waiting"));
-    const Run slow = shell(folder, "{ echo '<options>'; sleep 9; } >p.xml & " + interrupted + "\"$vkvol\" p.xml");
+    const Run slow = folder.script("{ echo '<options>'; sleep 9; } >p.xml & " + interrupted + "\"$vkvol\" p.xml");
     CHECK(slow.code == exit_interrupted);
     CHECK_THAT(slow.text, Contains("p.xml: interrupted while waiting"));
     const Run grid = folder.vkvol("ball.xml --grid p.nvdb", interrupted);
@@ -91,7 +86,7 @@ TEST_CASE("the first signal ends the wait for a pipe", "[gpu][command]") {
     CHECK_THAT(grid.text, Contains("p.nvdb: is a pipe or device"));
     // The shell makes its background commands deaf to SIGINT. With a.exr there, p.png is next.
     const Run output =
-        shell(folder, "\"$vkvol\" ball.xml -q -o a.exr -o p.png & until [ -f a.exr ]; do sleep 0.1; done; "
+        folder.script("\"$vkvol\" ball.xml -q -o a.exr -o p.png & until [ -f a.exr ]; do sleep 0.1; done; "
                       "sleep 1; kill -TERM $!; wait $!");
     CHECK(output.code == exit_render_failed);
     CHECK_THAT(output.text, Contains("p.png: cannot be written: Interrupted") && Contains("start its reader first") &&
@@ -104,7 +99,7 @@ TEST_CASE("pipes are read and written", "[gpu][command]") {
     const Run read = folder.vkvol("/dev/stdin -q -o a.png", "cat ball.xml |");
     CHECK(read.code == exit_done);
     const Run written =
-        shell(folder, "cat p.png >copy.png & \"$vkvol\" ball.xml -q -o p.png; code=$?; wait; exit $code");
+        folder.script("cat p.png >copy.png & \"$vkvol\" ball.xml -q -o p.png; code=$?; wait; exit $code");
     CHECK(written.code == exit_done);
     CHECK_FALSE(folder.text("a.png").empty());
     CHECK(folder.text("copy.png") == folder.text("a.png"));
@@ -118,14 +113,14 @@ TEST_CASE("a reader who has seen enough is no error", "[gpu][command]") {
              {std::string("info " VKVOL_TEST_FIELDS "/constant.nvdb"), std::string("integrators"),
               std::string("integrators --json"), std::string("compare a.exr a.exr"), std::string("--help")}) {
             CAPTURE(arguments);
-            const Run run = shell(folder, std::string(trap) + "{ sleep 0.2; \"$vkvol\" " + arguments +
-                                              "; echo code $? >&2; } | true");
+            const Run run = folder.script(std::string(trap) + "{ sleep 0.2; \"$vkvol\" " + arguments +
+                                          "; echo code $? >&2; } | true");
             CHECK(run.text == "code 0\n");
         }
-    const Run full = shell(folder, "\"$vkvol\" integrators >/dev/full");
+    const Run full = folder.script("\"$vkvol\" integrators >/dev/full");
     CHECK(full.code == exit_render_failed);
     CHECK_THAT(full.text, Contains("check free space"));
-    const Run render = shell(folder, "{ sleep 0.2; \"$vkvol\" ball.xml -o b.exr; } | true; sleep 3");
+    const Run render = folder.script("{ sleep 0.2; \"$vkvol\" ball.xml -o b.exr; } | true; sleep 3");
     CHECK(fs::exists(folder.file("b.exr")));
 }
 

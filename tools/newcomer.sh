@@ -76,7 +76,7 @@ new_system() {
     cp --remove-destination -L /etc/resolv.conf "$system/etc/resolv.conf"
     echo "127.0.0.1 localhost $(uname -n)" >"$system/etc/hosts"
     mkdir -p "$system/home/vkvol"
-    git -C "$vkvol_root" archive HEAD | tar -C "$system/home/vkvol" -x
+    git -C "$vkvol_root" archive "${commit#commit }" | tar -C "$system/home/vkvol" -x
     if [ "$2" = user ]; then
         inside 'apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends sudo && useradd -d /home newcomer &&
             echo "newcomer ALL=(ALL) NOPASSWD: ALL" >/etc/sudoers.d/newcomer && chown -R newcomer: /home' >"$cache/sudo.log" 2>&1 ||
@@ -90,7 +90,7 @@ circumstances() {
         sed -E 's/^(\S+) (\S+)$/g++ \1, Mesa \2/'
     sed -nE 's/.* out of ([0-9]+)$/\1 tests/p' "$1"
     echo "$(nproc) cores with load $load"
-    git -C "$vkvol_root" log -1 --format='commit %h'
+    echo "$commit"
 }
 
 # attempt RELEASE USER COMMAND: one row.
@@ -125,6 +125,7 @@ keep() {
 }
 
 failed=0
+commit=$(git -C "$vkvol_root" log -1 --format='commit %h')
 for release in "${releases[@]}"; do
     bare "$release"
     for user in "${users[@]}"; do

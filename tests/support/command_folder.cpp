@@ -28,6 +28,10 @@ Run Folder::vkvol(const std::string& arguments, const std::string& before) const
                            device ? fmt::format(" --device '{}'", device) : ""));
 }
 
+Run Folder::script(const std::string& text) const {
+    return run(fmt::format("cd '{}' && vkvol='{}' && {{ {}\n}}", path_.string(), VKVOL_BINARY, text));
+}
+
 std::string Folder::text(const std::string& name) const {
     std::ifstream stream(file(name), std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};

@@ -18,6 +18,8 @@ public:
 
     // On the device under test. `before` stands before the program's name: environment, or another command.
     Run vkvol(const std::string& arguments, const std::string& before = "") const;
+    // A shell's script, with the program as $vkvol.
+    Run script(const std::string& text) const;
     std::filesystem::path file(const std::string& name) const { return path_ / name; }
     std::string text(const std::string& name) const; // of a file; empty if there is none
     void write(const std::string& name, const std::string& text) const;
