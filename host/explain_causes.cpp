@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "scene_upload.h"
 #include "shared/bindings.h"
 
 namespace vkvol {
@@ -39,15 +40,6 @@ std::string text_of(glm::dvec3 v) {
 
 std::string box_text(const WorldBox& box) {
     return fmt::format("{} to {}", text_of(box.low), text_of(box.high));
-}
-
-// What is left of light at a collision.
-Rgb albedo_of(const Volume& volume) {
-    Rgb albedo(0.0);
-    for (int i = 0; i < 3; ++i)
-        if (volume.sigma_s[i] > 0.0)
-            albedo[i] = volume.sigma_s[i] / (volume.sigma_a[i] + volume.sigma_s[i]);
-    return albedo;
 }
 
 // The emission that the scene asks for, whether there will be any or not.

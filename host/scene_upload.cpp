@@ -37,14 +37,6 @@ int shape_kind(const Scene& scene, const LoadedVolume& loaded) {
     return loaded.field || std::holds_alternative<Box>(volume->shape) ? SHAPE_BOX : SHAPE_NONE;
 }
 
-Rgb albedo_of(const Volume& volume) {
-    Rgb albedo(0.0);
-    for (int i = 0; i < 3; ++i)
-        if (volume.sigma_s[i] > 0.0)
-            albedo[i] = volume.sigma_s[i] / (volume.sigma_a[i] + volume.sigma_s[i]);
-    return albedo;
-}
-
 // Where the device counts a grid's voxels from. Some tools give grids far from the world's origin indices in the
 // millions, at which single precision knows a sixteenth of a voxel; below 4096 it knows half a thousandth, and grids
 // that reach as far as they are away would gain nothing. A multiple of 8, so that leaves stay leaves.
@@ -206,6 +198,14 @@ int emission_kind(const Volume& volume, const LoadedVolume& loaded, const Method
 }
 
 } // namespace
+
+Rgb albedo_of(const Volume& volume) {
+    Rgb albedo(0.0);
+    for (int i = 0; i < 3; ++i)
+        if (volume.sigma_s[i] > 0.0)
+            albedo[i] = volume.sigma_s[i] / (volume.sigma_a[i] + volume.sigma_s[i]);
+    return albedo;
+}
 
 bool is_chromatic(const Scene& scene) {
     if (scene.volumes.empty())

@@ -7,6 +7,9 @@
 
 namespace vkvol {
 
+// What is left of light at a collision; 0 in channels that do not scatter.
+Rgb albedo_of(const Volume& volume);
+
 // Extinction or albedo differs between the colour channels.
 bool is_chromatic(const Scene& scene);
 
