@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "file_limit.h"
 #include "vulkan_error.h"
 
 namespace vkvol {
@@ -44,7 +45,14 @@ Buffer::Buffer(const Device& device, const std::string& name, VkDeviceSize bytes
     allocate.pNext = usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT ? &flags : nullptr;
     allocate.allocationSize = need.size;
     allocate.memoryTypeIndex = static_cast<std::uint32_t>(type);
+    file_limit_met(); // by others before
     const VkResult result = vkAllocateMemory(device.handle(), &allocate, nullptr, &memory_);
+    if (file_limit_met()) { // even where the result is a success: its pages would not be there
+        release();
+        throw RenderError(fmt::format("\"{}\" keeps its memory in a file, and no file may grow enough for the {} "
+                                      "({:.1f} MiB); raise the limit of file sizes (ulimit -f)",
+                                      device.info().name, name, bytes / 1048576.0));
+    }
     if (result != VK_SUCCESS) {
         release();
         throw RenderError(fmt::format("{} for the {} ({:.1f} MiB) on \"{}\"; use a smaller picture or grid",

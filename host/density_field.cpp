@@ -153,11 +153,7 @@ bool has_grid(const GridFile& file) {
 }
 
 bool is_empty_grid(const GridFile& file) {
-    try {
-        return load_density_field(file).active_voxels == 0;
-    } catch (const InputError&) {
-        return false; // whoever needs the grid will say why
-    }
+    return load_density_field(file).active_voxels == 0;
 }
 
 DensityField load_density_field(const GridFile& file) {

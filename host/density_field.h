@@ -47,7 +47,7 @@ std::vector<std::string> grid_names(const std::filesystem::path& file);
 // True if the file can be read and has a grid of that name. Throws InputError if it cannot be read.
 bool has_grid(const GridFile& file);
 
-// True if the grid can be read and has no active voxel.
+// True if the grid has no active voxel. Throws as load_density_field.
 bool is_empty_grid(const GridFile& file);
 
 // From a NanoVDB grid in memory; `place` stands in messages.

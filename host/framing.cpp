@@ -47,7 +47,7 @@ Corners corners_of(const DensityField& field) {
     return corners;
 }
 
-std::optional<Corners> medium_corners(const Scene& scene) {
+std::optional<Corners> medium_corners(const Scene& scene, FieldCache& fields) {
     const Volume* volume = find_volume(scene);
     if (!volume)
         return std::nullopt;
@@ -57,8 +57,11 @@ std::optional<Corners> medium_corners(const Scene& scene) {
         return corners_between(box->center - 0.5 * box->size, box->center + 0.5 * box->size);
     if (const auto* files = std::get_if<MeshFiles>(&volume->shape))
         return corners_of(load_mesh(*files));
-    const DensityField field = load_density_field(std::get<GridFile>(volume->shape));
-    return field.active_voxels > 0 ? std::optional(corners_of(field)) : std::nullopt;
+    const GridFile& file = std::get<GridFile>(volume->shape);
+    DensityField field = fields.take(file);
+    const std::optional<Corners> corners = field.active_voxels > 0 ? std::optional(corners_of(field)) : std::nullopt;
+    fields.keep(file, std::move(field));
+    return corners;
 }
 
 glm::dvec3 middle_of(const Corners& corners) {
@@ -96,8 +99,8 @@ void frame(Camera& camera, const Picture& picture, const Corners& corners) {
     camera.position = middle + rotation * glm::dvec3(across.place(depth), upwards.place(depth), depth);
 }
 
-void frame_medium(Scene& scene) {
-    const std::optional<Corners> corners = medium_corners(scene);
+void frame_medium(Scene& scene, FieldCache& fields) {
+    const std::optional<Corners> corners = medium_corners(scene, fields);
     if (!corners)
         throw InputError(scene.volumes.empty()
                              ? "--frame: the scene has no medium to frame; leave --frame out"

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "density_field.h"
+#include "field_cache.h"
 #include "scene.h"
 
 namespace vkvol {
@@ -14,8 +15,9 @@ using Corners = std::array<glm::dvec3, 8>; // of a box, world space
 // Of the box that holds the grid's density.
 Corners corners_of(const DensityField& field);
 
-// Of the scene's medium; none without one, or if it is a grid without voxels. Opens its files; throws InputError.
-std::optional<Corners> medium_corners(const Scene& scene);
+// Of the scene's medium; none without one, or if it is a grid without voxels. Opens its files, and leaves a grid among
+// `fields` for what comes next; throws InputError.
+std::optional<Corners> medium_corners(const Scene& scene, FieldCache& fields);
 
 glm::dvec3 middle_of(const Corners& corners);
 double diagonal_of(const Corners& corners);
@@ -25,6 +27,6 @@ double diagonal_of(const Corners& corners);
 void frame(Camera& camera, const Picture& picture, const Corners& corners);
 
 // The same for the scene's medium. Throws InputError if there is none.
-void frame_medium(Scene& scene);
+void frame_medium(Scene& scene, FieldCache& fields);
 
 } // namespace vkvol

@@ -14,6 +14,7 @@
 #include "develop.h"
 #include "device_command.h"
 #include "error.h"
+#include "file_limit.h"
 #include "info.h"
 #include "integrators_command.h"
 #include "interrupt.h"
@@ -25,7 +26,7 @@
 namespace {
 
 // A file opened while one of the three standard streams is closed would take its number, and what is told its bytes. A
-// file that grows beyond `ulimit -f` is an error to report, not a death, and a reader who has seen enough is neither.
+// reader who has seen enough is no reason to die.
 void prepare_process() {
     while (true) {
         const int descriptor = open("/dev/null", O_RDWR);
@@ -34,7 +35,7 @@ void prepare_process() {
         if (descriptor < 0 || descriptor > 2)
             break;
     }
-    std::signal(SIGXFSZ, SIG_IGN);
+    vkvol::install_file_limit_handler();
     std::signal(SIGPIPE, SIG_IGN);
 }
 

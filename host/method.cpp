@@ -264,8 +264,20 @@ bool is_analytic_in_nothing(const Scene& scene) {
 } // namespace
 
 Method choose_method(const Scene& scene) {
-    const int field = is_analytic_in_nothing(scene) ? FIELD_CONSTANT : density_kind(scene);
-    return choose_method(scene, field, has_chromatic_extinction(scene), emits(scene));
+    int field = density_kind(scene);
+    std::string unread; // why
+    try {
+        field = is_analytic_in_nothing(scene) ? FIELD_CONSTANT : field;
+    } catch (const InputError& error) {
+        unread = error.what();
+    }
+    try {
+        return choose_method(scene, field, has_chromatic_extinction(scene), emits(scene));
+    } catch (const InputError& error) {
+        if (unread.empty())
+            throw;
+        throw InputError(fmt::format("{}; also, {}", error.what(), unread));
+    }
 }
 
 Scene with_preset(Scene scene) {

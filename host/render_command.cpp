@@ -146,14 +146,14 @@ int render_scene(const RenderOptions& options, const Scene& scene, RenderSession
 
 } // namespace
 
-void check_picture(const RenderOptions& options) {
-    const RenderScene loaded = load_render_scene(options);
+void check_picture(const RenderOptions& options, RenderSession& session) {
+    const RenderScene loaded = load_render_scene(options, session.fields());
     resolve_crop(options.crop, loaded.scene.picture);
     check_files(options, loaded, CheckpointFile(options));
 }
 
 int render_picture(const RenderOptions& options, RenderSession& session) {
-    const RenderScene loaded = load_render_scene(options);
+    const RenderScene loaded = load_render_scene(options, session.fields());
     const Scene& scene = loaded.scene;
     print_reading(options);
     print_warnings(options, session.new_warnings(scene.warnings));
@@ -176,7 +176,7 @@ int run_render(const RenderOptions& options) {
     install_interrupt_handler();
     if (!options.frames.empty())
         return run_sequence(options);
-    RenderSession session;
+    RenderSession session(false);
     const int code = render_picture(options, session);
     if (options.dry_run && !options.quiet)
         tell(stdout, "all is well: nothing is rendered, nothing written\n");

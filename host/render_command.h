@@ -15,6 +15,6 @@ int render_picture(const RenderOptions& options, RenderSession& session);
 
 // What can be told without a device: the command line, the scene, and whether the outputs can be written. Throws
 // InputError.
-void check_picture(const RenderOptions& options);
+void check_picture(const RenderOptions& options, RenderSession& session);
 
 } // namespace vkvol

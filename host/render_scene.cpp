@@ -48,7 +48,7 @@ RenderScene make_scene(const RenderOptions& options) {
 
 } // namespace
 
-RenderScene load_render_scene(const RenderOptions& options) {
+RenderScene load_render_scene(const RenderOptions& options, FieldCache& fields) {
     RenderScene result;
     if (is_grid_file(options.scene))
         result = make_scene(options);
@@ -63,7 +63,7 @@ RenderScene load_render_scene(const RenderOptions& options) {
         scene.settings.spp = std::numeric_limits<std::int32_t>::max() - options.sample_offset;
     resize_picture(scene.picture, options.width, options.height);
     if (options.frame && result.xml.empty()) // what was made for a file is framed
-        frame_medium(scene);
+        frame_medium(scene, fields);
     return result;
 }
 

@@ -1,6 +1,7 @@
 // The scene that a command line asks for: from a scene file, or made for a grid file.
 #pragma once
 
+#include "field_cache.h"
 #include "options.h"
 
 namespace vkvol {
@@ -12,8 +13,8 @@ struct RenderScene {
     std::string assumed;            // in it, in one line
 };
 
-// With the samples, size and view of the command line. Throws InputError.
-RenderScene load_render_scene(const RenderOptions& options);
+// With the samples, size and view of the command line; `fields` as in framing.h. Throws InputError.
+RenderScene load_render_scene(const RenderOptions& options, FieldCache& fields);
 
 // Was it made, and are pictures to be written that it can lie beside?
 bool is_kept(const RenderOptions& options, const RenderScene& scene);

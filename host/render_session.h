@@ -1,4 +1,5 @@
-// What the frames of a sequence share: the device, what is compiled for it, the grids, and what was said already.
+// What the frames of a sequence share: the device, what is compiled for it, the grids, and what was said already. One
+// picture is a sequence without further frames.
 #pragma once
 
 #include <optional>
@@ -15,6 +16,10 @@ namespace vkvol {
 
 class RenderSession {
 public:
+    explicit RenderSession(bool has_frames) : has_frames_(has_frames) {}
+
+    // Whether what is read is worth its memory once a frame has it on the device.
+    bool has_frames() const { return has_frames_; }
     // Opened when it is first asked for.
     const Device& device(const RenderOptions& options) {
         if (!device_)
@@ -39,6 +44,7 @@ public:
     }
 
 private:
+    bool has_frames_;
     std::optional<Device> device_;
     std::optional<PipelineCache> pipelines_; // goes before its device
     FieldCache fields_;

@@ -123,7 +123,7 @@ public:
             begin_identity(device, specialization, volume);
         result_.trace_origin = render_origin(scene_, volume);
         result_.outline = make_outline(scene_, volume, specialization[SPEC_EMISSION] != EMISSION_NONE);
-        if (job.session)
+        if (job.session && job.session->has_frames())
             keep_fields(job.session->fields(), scene_, std::move(volume));
         volume = {};
         result_.upload_seconds = watch.lap();

@@ -31,7 +31,7 @@ struct RenderJob {
     std::function<void(const Checkpoint&)> checkpoint;
     const Checkpoint* resume = nullptr; // goes on from there
     bool trace = false;                 // record the vertices of the path; crop and samples leave just one
-    RenderSession* session = nullptr;   // of a sequence: its grids and pipelines are used and kept
+    RenderSession* session = nullptr;   // whose grids and pipelines are used, and kept for further frames
     bool dry_run = false;               // set up everything, and render nothing
 };
 

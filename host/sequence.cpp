@@ -86,14 +86,14 @@ int run_sequence(const RenderOptions& options) {
         throw InputError(
             fmt::format("{}: a pipe is read once, but -f reads the scene for each frame; write it to a file",
                         options.scene.string()));
-    RenderSession session;
+    RenderSession session(true);
     std::vector<int> done;
     FrameFiles files;
     for (const int frame : options.frames)
         of_frame(frame, done, [&] {
             const RenderOptions one = frame_options(options, frame);
             files.add(frame, one);
-            check_picture(one);
+            check_picture(one, session);
         });
     int code = exit_done;
     for (std::size_t i = 0; i < options.frames.size() && code != exit_interrupted && code != exit_render_failed; ++i) {

@@ -154,11 +154,12 @@ TEST_CASE("a framed box fills the picture and is all in it", "[cpu][xml]") {
 }
 
 TEST_CASE("each kind of medium is framed by its box", "[cpu][xml]") {
-    const auto corners = [](const char* shape) { return *medium_corners(parse(shape)); };
+    FieldCache fields;
+    const auto corners = [&](const char* shape) { return *medium_corners(parse(shape), fields); };
     CHECK(same(middle_of(corners("<sphere x='1' y='2' z='3' radius='4'/>")), {1, 2, 3}));
     CHECK(diagonal_of(corners("<sphere radius='4'/>")) == Approx(8.0 * std::sqrt(3.0)));
     CHECK(diagonal_of(corners("<box width='3' height='4' depth='12'/>")) == Approx(13.0));
-    CHECK_FALSE(medium_corners(parse("<camera/>")));
+    CHECK_FALSE(medium_corners(parse("<camera/>"), fields));
     Scene nothing = parse("<camera/>");
-    CHECK_THROWS_WITH(frame_medium(nothing), Contains("no medium to frame"));
+    CHECK_THROWS_WITH(frame_medium(nothing, fields), Contains("no medium to frame"));
 }

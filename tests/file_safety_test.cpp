@@ -23,8 +23,9 @@ nlohmann::json report_of(const Folder& folder, const char* name) {
 
 // A checkpoint of the ball, as an interrupted render leaves it.
 void leave_checkpoint(const Folder& folder) {
-    const Run run = folder.script("\"$vkvol\" ball.xml -o ball.exr -q --spp 1000000000 --checkpoint 0.1s & "
-                                  "until [ -f ball.checkpoint ]; do sleep 0.05; done; kill -TERM $!; wait $!");
+    const Run run =
+        folder.script("\"$vkvol\" ball.xml -o ball.exr -q --spp 1000000000 --checkpoint 0.1s & "
+                      "until [ -f ball.checkpoint ] || ! kill -0 $!; do sleep 0.05; done; kill -TERM $!; wait $!");
     REQUIRE(run.code == exit_interrupted);
     REQUIRE(fs::exists(folder.file("ball.checkpoint")));
 }

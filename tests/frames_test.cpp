@@ -10,6 +10,7 @@
 #include "field_cache.h"
 #include "frames.h"
 #include "image_io.h"
+#include "support/command_folder.h"
 #include "support/shell.h"
 #include "test_paths.h"
 
@@ -151,6 +152,25 @@ TEST_CASE("a sequence is the pictures of its frames", "[gpu][command]") {
     CHECK(scene.vkvol("ball.xml -f 12,3 -o 'a.##.png' -q").text.empty());
     CHECK(scene.files().count("a.03.png") == 1);
     CHECK(scene.files().count("a.12.png") == 1);
+}
+
+TEST_CASE("an interrupted sequence says how to go on, and does", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("two.xml", "<options><sphere/><sigma_a>1</sigma_a><width>16</width><height>16</height><camera z='5'/>"
+                            "<rayPerPixelCount>${= max(1, (F - 1) * 400000000)}</rayPerPixelCount></options>");
+    const Run stopped =
+        folder.script("\"$vkvol\" two.xml -f 1..3 -o a.#.exr --checkpoint 0.1s & "
+                      "until [ -f a.2.checkpoint ] || ! kill -0 $!; do sleep 0.02; done; kill -TERM $!; wait $!");
+    INFO(stopped.text);
+    CHECK(stopped.code == exit_interrupted);
+    CHECK_THAT(stopped.text, Contains("interrupted at frame 2: 1 of 3 frames are done; -f 2,3 goes on, with --resume"));
+    CHECK_FALSE(std::filesystem::exists(folder.file("a.3.exr")));
+    const std::uint32_t before = read_exr(folder.file("a.2.exr")).samples.front();
+    const Run on = folder.vkvol("two.xml -f 2..3 -o a.#.exr --checkpoint 0.1s --resume --time 0.2s -q");
+    INFO(on.text);
+    CHECK(on.code == exit_done);
+    CHECK(read_exr(folder.file("a.2.exr")).samples.front() > before);
+    CHECK(read_exr(folder.file("a.3.exr")).samples.front() > 0);
 }
 
 TEST_CASE("errors of a sequence say in which frame, before any is rendered", "[gpu][command]") {

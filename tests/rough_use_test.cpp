@@ -85,9 +85,9 @@ TEST_CASE("the first signal ends the wait for a pipe", "[gpu][command]") {
     CHECK(grid.code == exit_bad_input);
     CHECK_THAT(grid.text, Contains("p.nvdb: is a pipe or device"));
     // The shell makes its background commands deaf to SIGINT. With a.exr there, p.png is next.
-    const Run output =
-        folder.script("\"$vkvol\" ball.xml -q -o a.exr -o p.png & until [ -f a.exr ]; do sleep 0.1; done; "
-                      "sleep 1; kill -TERM $!; wait $!");
+    const Run output = folder.script(
+        "\"$vkvol\" ball.xml -q -o a.exr -o p.png & until [ -f a.exr ] || ! kill -0 $!; do sleep 0.1; done; "
+        "sleep 1; kill -TERM $!; wait $!");
     CHECK(output.code == exit_render_failed);
     CHECK_THAT(output.text, Contains("p.png: cannot be written: Interrupted") && Contains("start its reader first") &&
                                 Contains("; written: a.exr"));
@@ -162,6 +162,11 @@ TEST_CASE("a missing field names the command that makes it", "[cpu][command]") {
                Contains("make_field ramp --size 440 --type fp8 -o ramp-440-fp8.nvdb`"));
     for (const char* other : {"mine.nvdb", "cumulus-mine.nvdb", "440.nvdb", ""})
         CHECK_THAT(missing_field_hint(other), Contains("check the path"));
+    // Also where the method asks first what is in the grid.
+    CHECK_THROWS_WITH(parse_scene("<options><densityField>none/empty.nvdb</densityField><sigma_a>1</sigma_a>"
+                                  "<integrator>densitySampling</integrator></options>",
+                                  "s.xml"),
+                      Contains("none/empty.nvdb: no such file; make it with `"));
     std::ifstream stream(VKVOL_SOURCE_DIR "/tools/make_field/recipes.cpp");
     const std::string recipes((std::istreambuf_iterator<char>(stream)), {});
     const std::regex name("\\{\"([a-z_0-9]+)\", \"");
