@@ -112,6 +112,19 @@ double reference_share(const Reference& reference, const std::vector<Row>& rows)
     return share;
 }
 
+// The most efficient of `list`, which were judged, best first, and all that may well be as efficient: their intervals
+// overlap.
+std::string most_efficient(const std::vector<const Row*>& list) {
+    Sentences names;
+    for (const Row* row : list)
+        if (row == list.front() || row->figures.efficiency->high >= list.front()->figures.efficiency->low)
+            names.push_back(row->name());
+    return names.size() == 1 ? fmt::format("use {}, the most efficient unbiased integrator of those", names.front())
+                             : fmt::format("use one of {}, whose efficiencies do not differ measurably, the most "
+                                           "efficient unbiased integrators of those",
+                                           fmt::join(names, ", "));
+}
+
 std::string compare_with_others(const std::string& scene, const Row& usual, const std::vector<const Row*>& others) {
     if (others.empty())
         return fmt::format("For {} use {}, its default, the only unbiased integrator that was judged.", scene,
@@ -142,14 +155,10 @@ std::string verdict(const std::string& scene, const Reference& reference, const 
         return fmt::format("Too short to choose an integrator for {}: give --time {} or more.", scene, longer);
     const Row* usual = find_default(rows);
     if (!usual)
-        return fmt::format(
-            "For {} use {}, the most efficient unbiased integrator of those measured; the scene's default "
-            "is not among them.",
-            scene, list.front()->name());
+        return fmt::format("For {} {} measured; the scene's default is not among them.", scene, most_efficient(list));
     if (!usual->figures.judged)
-        return fmt::format("For {} use {}, the most efficient of those judged, until a longer bench judges {}, its "
-                           "default, too.",
-                           scene, list.front()->name(), usual->name());
+        return fmt::format("For {} {} judged, until a longer bench judges {}, its default, too.", scene,
+                           most_efficient(list), usual->name());
     std::vector<const Row*> others, better;
     for (const Row* row : list) {
         if (row->is_default())

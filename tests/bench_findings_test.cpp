@@ -101,6 +101,12 @@ TEST_CASE("the last sentence says what to use", "[cpu][bench]") {
         CHECK_THAT(said_of(bench_of({default_of(hasty("usual")), measured("good", 1.0)})).back(),
                    Contains("use good") && Contains("until a longer bench judges usual"));
     }
+    SECTION("without the default, all that may be the best") {
+        CHECK_THAT(said_of(bench_of({measured("good", 1.0), measured("like", 0.999), measured("poor", 3.0)})).back(),
+                   Contains("use one of like, good, whose efficiencies do not differ measurably"));
+        CHECK_THAT(said_of(bench_of({measured("good", 1.0), measured("poor", 3.0)})).back(),
+                   Contains("use good, the most efficient unbiased integrator of those measured"));
+    }
     SECTION("none by a reference that is noisier than what it judges") {
         const std::vector<std::string> said = said_of(bench_of({usual, measured("good", 0.5)}, 0.01));
         CHECK_THAT(said.back(), Contains("too noisy to rank"));
