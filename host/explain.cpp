@@ -22,7 +22,7 @@ std::optional<Odd> oddity(const FilmLook& look, const Scene& scene, const Tone& 
         return Odd::black;
     if (few(look.apart, look) && scene.background != Rgb(0.0))
         return Odd::background;
-    if (has_screen && 5 * tone.clipped >= 4 * tone.pixels)
+    if (has_screen && 20 * look.shown >= look.pixels && 5 * tone.clipped >= 4 * look.shown)
         return Odd::white;
     return std::nullopt;
 }
@@ -47,7 +47,8 @@ std::string beginning(const Evidence& evidence) {
     case Odd::background:
         return "the picture shows its background alone";
     case Odd::white:
-        return percent(evidence.tone->clipped, evidence.tone->pixels) + " clip";
+        return percent(evidence.tone->clipped, evidence.look->shown) +
+               (evidence.look->shown < evidence.look->pixels ? " that are not black clip" : " clip");
     case Odd::noise:
         break;
     }

@@ -282,6 +282,18 @@ Answer backlit(const Evidence& e) {
                        text_of(direction), e.sight->most_depth);
 }
 
+Answer unlike_colours(const Evidence& e) {
+    const Volume* volume = volume_of(e.scene);
+    if (e.odd != Odd::black || !volume || !sees_light(e) || e.emits || e.scene.background != Rgb(0.0))
+        return {};
+    const Rgb& irradiance = e.scene.lights.front().irradiance;
+    if (irradiance * volume->sigma_s != Rgb(0.0))
+        return {};
+    return fmt::format("light and medium have no colour in common: the <light> has {}, of which sigma_s {} scatters "
+                       "nothing; change one of them",
+                       text_of(irradiance), text_of(volume->sigma_s));
+}
+
 std::string exposure_advice(const Evidence& e) {
     const double suits = suitable_exposure(e.result->film, e.tone->mapping.curve);
     return fmt::format("--exposure {:g} suits, also of vkvol develop", suits);
@@ -357,6 +369,7 @@ const std::vector<Cause>& causes() {
         {"inside", inside},
         {"depthLimit", depth_limit},
         {"absorbsAll", absorbs_all},
+        {"unlikeColours", unlike_colours},
         {"phasePeak", phase_peak},
         {"backlit", backlit},
         {"dim", dim},

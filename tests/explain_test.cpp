@@ -289,6 +289,20 @@ TEST_CASE("renders that ended early, and those that found nothing, are explained
     CHECK_THAT(unlit.text, Contains("none of its 1 paths met light; the optical depth in view reaches 0.04"));
 }
 
+TEST_CASE("light that the medium does not scatter is explained", "[gpu][explain]") {
+    const std::string blue = with(lit_ball, "<sigma_s>2</sigma_s>", "<sigma_s r=\"0\" g=\"0\" b=\"5\"/>");
+    const Found red = explanation_of(with(blue, "r=\"5\" g=\"5\" b=\"5\"", "r=\"5\" g=\"0\" b=\"0\""));
+    CHECK(red.cause == "unlikeColours");
+    CHECK_THAT(red.text, Contains("the <light> has (5, 0, 0), of which sigma_s (0, 0, 5) scatters nothing"));
+    CHECK(explanation_of(blue).cause == "");
+}
+
+TEST_CASE("what is seen may be white before black", "[gpu][explain]") {
+    const Found white = explanation_of(with(lit_ball, "r=\"5\" g=\"5\" b=\"5\"", "r=\"5e9\" g=\"5e9\" b=\"5e9\""));
+    CHECK(white.cause == "overexposed");
+    CHECK_THAT(white.text, Contains("of the pixels that are not black clip: ") && Contains("--exposure -"));
+}
+
 TEST_CASE("pictures that show something need no explanation", "[gpu][explain]") {
     const std::string sun_and_sky = "<backgroundColor r=\"0.12\" g=\"0.26\" b=\"0.56\"/>"
                                     "<light x=\"0.74\" y=\"0.5\" z=\"-0.4\" r=\"6\" g=\"5.5\" b=\"4.7\"/>";
