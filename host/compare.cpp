@@ -11,26 +11,16 @@
 #include "error.h"
 #include "image_io.h"
 #include "messages.h"
+#include "student_t.h"
 
 namespace vkvol {
 
 namespace {
 
-// Quantile of the standard normal distribution, by bisection on erfc: exact to rounding, and fast enough for once.
-double normal_quantile_upper(double tail) {
-    double low = 0.0;
-    double high = 40.0;
-    for (int i = 0; i < 200; ++i) {
-        const double middle = 0.5 * (low + high);
-        (0.5 * std::erfc(middle / std::sqrt(2.0)) > tail ? low : high) = middle;
-    }
-    return 0.5 * (low + high);
-}
-
 // |z| that all of `count` independent standard normals stay below with probability 1 - significance (Sidak).
 double sidak_bound(double significance, std::size_t count) {
     const double each = -std::expm1(std::log1p(-significance) / double(std::max<std::size_t>(1, count)));
-    return normal_quantile_upper(0.5 * each);
+    return normal_limit(0.5 * each);
 }
 
 bool finite(const glm::vec3& v) {

@@ -1,4 +1,4 @@
-// Student's t distribution, for confidence intervals.
+// Quantiles of Student's t and of the normal distribution, for confidence intervals and tests.
 #pragma once
 
 namespace vkvol {
@@ -10,9 +10,12 @@ inline double student_t95(double freedom) {
     return student_t(freedom, 0.95);
 }
 
-// Of the normal distribution.
+// x with P(Z > x) = `tail` in (0, 1).
+double normal_limit(double tail);
+
+// x with P(|Z| <= x) = `probability`.
 inline double normal_quantile(double probability) {
-    return student_t(1e7, probability);
+    return normal_limit(0.5 * (1.0 - probability));
 }
 
 } // namespace vkvol
