@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "estimator_traits.h"
 #include "integrators.h"
 #include "scene_hash.h"
 #include "scene_xml.h"
@@ -49,8 +50,8 @@ bool is_unbiased(const Estimator& estimator) {
 }
 
 bool marches(const Method& method) {
-    return method.free_flight == FREE_FLIGHT_MARCH || method.free_flight == FREE_FLIGHT_ADAPTIVE ||
-           (method.nee != NEE_NONE && method.transmittance >= TRANSMITTANCE_MARCH);
+    return flight_has(method.free_flight, TRAIT_MARCH) ||
+           (method.nee != NEE_NONE && transmittance_has(method.transmittance, TRAIT_MARCH));
 }
 
 // Of estimators of one picture: whether kernels and their parameters are the same. Choices that nothing in the scene

@@ -12,7 +12,7 @@ namespace vkvol {
 
 namespace {
 
-constexpr std::size_t leaf_size = 4; // at most 7: three bits hold it
+static_assert(MESH_LEAF <= 7, "three bits hold the number of a leaf's triangles");
 constexpr int bin_count = 16;
 
 struct Box {
@@ -104,7 +104,7 @@ void build(Bvh& bvh, Triangles triangles) {
         box.add(t.box);
     bvh.nodes[node].low = box.low;
     bvh.nodes[node].high = box.high;
-    if (triangles.size() <= leaf_size) {
+    if (triangles.size() <= MESH_LEAF) {
         bvh.nodes[node].leaf = static_cast<std::uint32_t>(bvh.triangles.size() / 3 * 8 + triangles.size());
         for (const Triangle& t : triangles)
             bvh.triangles.insert(bvh.triangles.end(), t.corners.begin(), t.corners.end());

@@ -5,6 +5,7 @@
 
 #include "blackbody.h"
 #include "error.h"
+#include "estimator_traits.h"
 #include "pilot_paths.h"
 #include "render_limits.h"
 #include "shared/bindings.h"
@@ -80,9 +81,9 @@ void load_temperature(const Volume& volume, const GridFile& file, FieldCache* ke
 // Walks over cells, of flights and of shadow rays, pass empty ones together; but not those voxel by voxel, nor over
 // residuals.
 bool leaps(const Method& method) {
-    const bool flights = method.free_flight >= FREE_FLIGHT_ADAPTIVE;
-    const bool shadows = method.nee == NEE_NONE || (method.transmittance != TRANSMITTANCE_REGULAR &&
-                                                    method.transmittance != TRANSMITTANCE_RESIDUAL);
+    const bool flights = flight_has(method.free_flight, TRAIT_CELLS);
+    const bool shadows =
+        method.nee == NEE_NONE || !transmittance_has(method.transmittance, TRAIT_VOXELS | TRAIT_CONTROL);
     return flights && shadows;
 }
 
@@ -114,8 +115,8 @@ void load_grid(const Scene& scene, const Volume& volume, const Method& method, c
     const double voxel_sigma_t = largest(world_sigma_t(volume, &field)) * field.voxel_size();
     loaded.majorants = choose_majorant_grid(field, pilot_scene(scene, method, field, voxel_sigma_t * scale),
                                             scene.settings.majorant_cell);
-    const bool decomposes = method.free_flight == FREE_FLIGHT_DECOMPOSITION;
-    if (decomposes || (method.nee != NEE_NONE && method.transmittance == TRANSMITTANCE_RESIDUAL))
+    const bool decomposes = flight_has(method.free_flight, TRAIT_CONTROL);
+    if (decomposes || (method.nee != NEE_NONE && transmittance_has(method.transmittance, TRAIT_CONTROL)))
         loaded.controls = make_controls(field, *loaded.majorants, decomposes ? 0.0 : voxel_sigma_t);
     for (float& bound : loaded.majorants->bounds)
         bound *= static_cast<float>(scale);

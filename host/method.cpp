@@ -5,24 +5,13 @@
 
 #include "density_field.h"
 #include "error.h"
+#include "estimator_traits.h"
 #include "integrators.h"
 #include "shared/bindings.h"
 
 namespace vkvol {
 
 namespace {
-
-bool samples_null_collisions(int free_flight) {
-    return free_flight >= FREE_FLIGHT_DELTA;
-}
-
-bool marches_shadows(int transmittance) {
-    return transmittance >= TRANSMITTANCE_MARCH;
-}
-
-bool marches(int free_flight) {
-    return free_flight == FREE_FLIGHT_MARCH || free_flight == FREE_FLIGHT_ADAPTIVE;
-}
 
 // One method in the making: each rule builds on those before.
 class Resolution {
@@ -77,7 +66,7 @@ void Resolution::choose_flight() {
     flight = choices_.free_flight.value_or(preset_.free_flight);
     if (field_ == FIELD_CONSTANT) {
         const bool explicitly = choices_.free_flight.has_value();
-        if (flight == FREE_FLIGHT_REGULAR || (samples_null_collisions(flight) && !explicitly))
+        if (flight == FREE_FLIGHT_REGULAR || (flight_has(flight, TRAIT_NULL) && !explicitly))
             flight = FREE_FLIGHT_ANALYTIC;
     } else if (flight == FREE_FLIGHT_ANALYTIC) {
         throw InputError(fmt::format("{}: analytic flights need constant density, and this medium's varies; use "
@@ -88,9 +77,7 @@ void Resolution::choose_flight() {
                                      "delta, or integrator ratioTracking",
                                      method_.integrator));
     }
-    const bool grey_only =
-        flight == FREE_FLIGHT_DELTA || flight == FREE_FLIGHT_WEIGHTED || flight == FREE_FLIGHT_DECOMPOSITION;
-    if (!chromatic_ || !grey_only)
+    if (!chromatic_ || !flight_has(flight, TRAIT_GREY))
         return;
     if (choices_.free_flight)
         warn("flights are spectral, since the extinction differs between the colour channels");
@@ -113,7 +100,7 @@ void Resolution::choose_nee() {
         // A march with single scattering that sends no shadow rays would not scatter at all: only if told so.
         if (!choices_.nee || nee == NEE_COLLISIONS || nee == NEE_CACHED)
             nee = NEE_TENTATIVE;
-    } else if (nee == NEE_TENTATIVE && !samples_null_collisions(method_.free_flight)) {
+    } else if (nee == NEE_TENTATIVE && !flight_has(method_.free_flight, TRAIT_NULL)) {
         if (choices_.nee)
             warn("these flights have no null collisions; shadow rays start at real ones");
         nee = NEE_COLLISIONS;
@@ -156,7 +143,7 @@ void Resolution::choose_emission() {
         return;
     if (is_through(method_)) {
         method_.emission_at = EMISSION_AT_COLLISIONS; // the march adds it anyway
-    } else if (chromatic_ && !samples_null_collisions(method_.free_flight)) {
+    } else if (chromatic_ && !flight_has(method_.free_flight, TRAIT_NULL)) {
         warn("emission is added at collisions: along these flights it would be biased, since the extinction differs "
              "between the colour channels; flight spectral adds it at steps");
         method_.emission_at = EMISSION_AT_COLLISIONS;
@@ -166,9 +153,9 @@ void Resolution::choose_emission() {
 // The stochastic filter is exact wherever the density enters linearly, which it does in null-collision estimators.
 void Resolution::choose_filter() {
     const int transmittance = method_.transmittance;
-    const bool linear_shadows =
-        method_.nee == NEE_NONE || (transmittance != TRANSMITTANCE_REGULAR && !marches_shadows(transmittance));
-    const bool linear = samples_null_collisions(method_.free_flight) && linear_shadows;
+    const bool linear_shadows = method_.nee == NEE_NONE || (transmittance != TRANSMITTANCE_REGULAR &&
+                                                            !transmittance_has(transmittance, TRAIT_MARCH));
+    const bool linear = flight_has(method_.free_flight, TRAIT_NULL) && linear_shadows;
     if (field_ != FIELD_GRID || linear) {
         method_.filter = scene_.settings.filter.value_or(Filter::stochastic);
         return;
@@ -176,7 +163,7 @@ void Resolution::choose_filter() {
     method_.filter = scene_.settings.filter.value_or(Filter::trilinear);
     if (method_.filter != Filter::stochastic)
         return;
-    const bool flight = !samples_null_collisions(method_.free_flight);
+    const bool flight = !flight_has(method_.free_flight, TRAIT_NULL);
     const std::string name = flight ? axes()[1].names[std::size_t(method_.free_flight)] + " flights"
                                     : axes()[2].names[std::size_t(transmittance)] + " transmittance";
     warn(fmt::format("the filter is trilinear: {} would be biased by a stochastic one, since the mean of an "
@@ -192,17 +179,16 @@ void Resolution::find_biases() {
         reasons.push_back(reason);
     };
     // At constant density a march knows its optical depths exactly, but not the light between its sample points.
-    if (marches(method_.free_flight) && field_ != FIELD_CONSTANT)
+    if (flight_has(method_.free_flight, TRAIT_MARCH) && field_ != FIELD_CONSTANT)
         add(bias_flight_steps, "flights take the density of one point for that of a whole step");
-    else if (marches(method_.free_flight) && is_through(method_) && method_.nee != NEE_NONE)
+    else if (flight_has(method_.free_flight, TRAIT_MARCH) && is_through(method_) && method_.nee != NEE_NONE)
         add(bias_flight_steps, "the march takes the light of one point for that of a whole step");
-    if (method_.nee != NEE_NONE && marches_shadows(method_.transmittance) &&
+    if (method_.nee != NEE_NONE && transmittance_has(method_.transmittance, TRAIT_MARCH) &&
         method_.transmittance != TRANSMITTANCE_TELESCOPING && field_ != FIELD_CONSTANT)
         add(bias_shadow_steps, "shadow rays take the density of one point for that of a whole step");
     // The other null-collision estimators weight what exceeds the majorant.
-    const bool needs_majorant = method_.free_flight == FREE_FLIGHT_DELTA ||
-                                method_.free_flight == FREE_FLIGHT_DECOMPOSITION ||
-                                (method_.nee != NEE_NONE && method_.transmittance == TRANSMITTANCE_DELTA);
+    const bool needs_majorant = flight_has(method_.free_flight, TRAIT_BOUND) ||
+                                (method_.nee != NEE_NONE && transmittance_has(method_.transmittance, TRAIT_BOUND));
     if (needs_majorant && scene_.settings.majorant_scale < 1.0)
         add(bias_majorant, "the majorant is scaled below the density");
     method_.biased = fmt::format("{}", fmt::join(reasons, "; "));
@@ -213,7 +199,7 @@ void Resolution::find_biases() {
 bool is_through(const Method& method) {
     if (method.scattering == SCATTERING_NONE && method.free_flight == FREE_FLIGHT_ANALYTIC)
         return true;
-    return method.scattering != SCATTERING_MULTIPLE && marches(method.free_flight);
+    return method.scattering != SCATTERING_MULTIPLE && flight_has(method.free_flight, TRAIT_MARCH);
 }
 
 int density_kind(const Scene& scene) {

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "error.h"
+#include "estimator_traits.h"
 #include "noise.h"
 #include "shared/bindings.h"
 
@@ -59,9 +60,7 @@ double majorant_depth(const Scene& scene, const LoadedVolume& loaded, double dia
 void check_patience(const Scene& scene, const Method& method, double depth) {
     const bool shadows = method.nee != NEE_NONE;
     const bool null_collisions =
-        method.free_flight >= FREE_FLIGHT_DELTA ||
-        (shadows && (method.transmittance == TRANSMITTANCE_DELTA || method.transmittance == TRANSMITTANCE_RATIO ||
-                     method.transmittance == TRANSMITTANCE_RESIDUAL));
+        flight_has(method.free_flight, TRAIT_NULL) || (shadows && transmittance_has(method.transmittance, TRAIT_NULL));
     if (null_collisions && !(depth <= most_collisions))
         throw InputError(
             fmt::format("a ray through the medium meets {:.3g} tentative collisions, and would never get "

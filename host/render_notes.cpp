@@ -85,7 +85,7 @@ void print_caps(const RenderOptions& options, const RenderResult& result) {
     line(c.cleaned_voxels, "voxels were NaN, infinite or negative and count as 0");
     line(c.depth_caps, "paths ended at maxDepth: the light of further scatterings is missing (raise maxDepth; without "
                        "one it is a million)");
-    line(c.step_caps, "segments were cut, by the step limit or by the driver: their light is missing");
+    line(c.step_caps, "segments were cut by the step limit: their light is missing");
     line(c.abandoned, "paths would not end when the render was to, and are missing: they are the long ones");
     line(c.majorant_violations,
          "collisions met a density above its majorant: delta estimators lose light there, ratio and weighted ones "

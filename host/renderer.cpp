@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "error.h"
+#include "estimator_traits.h"
 #include "film_bands.h"
 #include "integrators.h"
 #include "light_cache.h"
@@ -80,8 +81,8 @@ std::uint32_t steps_per_look(const Specialization& s, const LoadedVolume& volume
     const bool at_once = s[SPEC_FREE_FLIGHT] == FREE_FLIGHT_ANALYTIC && s[SPEC_TRANSMITTANCE] == TRANSMITTANCE_ANALYTIC;
     if (at_once && s[SPEC_SHAPE] != SHAPE_MESH)
         return 1;
-    const bool walks = s[SPEC_FREE_FLIGHT] >= FREE_FLIGHT_DELTA && s[SPEC_TRANSMITTANCE] != TRANSMITTANCE_REGULAR &&
-                       s[SPEC_TRANSMITTANCE] < TRANSMITTANCE_MARCH;
+    const bool walks = flight_has(s[SPEC_FREE_FLIGHT], TRAIT_NULL) &&
+                       !transmittance_has(s[SPEC_TRANSMITTANCE], TRAIT_VOXELS | TRAIT_MARCH);
     return walks && volume.majorants ? best_steps_per_look(volume.majorants->segment_steps) : 0;
 }
 
@@ -107,7 +108,7 @@ public:
         result_.biased = method.biased;
         result_.specialization = describe(specialization, volume, chromatic);
         LoopSizes loops;
-        loops.mesh_nodes = volume.bvh ? volume.bvh->nodes.size() : 0;
+        loops.mesh = volume.bvh.has_value();
         if (density_kind(scene_) == FIELD_NOISE)
             loops.octaves = static_cast<std::uint32_t>(scene_.volumes.front().noise->octaves);
         Tuning wish = job.tuning;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "estimator_traits.h"
 #include "integrators.h"
 #include "scene_reader.h"
 #include "shared/bindings.h"
@@ -12,11 +13,11 @@ namespace vkvol {
 namespace {
 
 bool marches(const Method& method) {
-    return method.free_flight == FREE_FLIGHT_MARCH || method.free_flight == FREE_FLIGHT_ADAPTIVE;
+    return flight_has(method.free_flight, TRAIT_MARCH);
 }
 
 bool marches_shadow_rays(const Method& method) {
-    return method.nee != NEE_NONE && method.transmittance >= TRANSMITTANCE_MARCH;
+    return method.nee != NEE_NONE && transmittance_has(method.transmittance, TRAIT_MARCH);
 }
 
 } // namespace

@@ -7,6 +7,7 @@
 
 #include "camera_rays.h"
 #include "error.h"
+#include "estimator_traits.h"
 #include "light_cache.h"
 #include "noise.h"
 #include "shared/items.h"
@@ -21,7 +22,7 @@ static_assert(sizeof(shared::VolumeParams) == 3 * 16 + 3 * 12 + sizeof(shared::G
                                                   sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) + 4);
 static_assert(sizeof(shared::Walk) == 2 * 12 + 8 * 4 + 12 + 7 * 4);
 static_assert(sizeof(shared::LatticeParams) == 3 * 12);
-static_assert(sizeof(shared::Suspended) == 2 * sizeof(shared::Walk) + 4 * 12 + 4 * 4);
+static_assert(sizeof(shared::Suspended) == 2 * sizeof(shared::Walk) + 4 * 12 + 4 * 4 + sizeof(shared::PartSearch));
 static_assert(sizeof(shared::PassPush) <= 128, "the least push constant space that Vulkan promises");
 
 namespace {
@@ -147,7 +148,7 @@ shared::VolumeParams make_volume(const Scene& scene, const LoadedVolume& loaded,
         params.cell_dims = loaded.majorants->dims;
         params.cell_size = static_cast<float>(loaded.majorants->cell);
     }
-    fill_density(volume, scene.settings.majorant_scale, method.free_flight == FREE_FLIGHT_DECOMPOSITION, params);
+    fill_density(volume, scene.settings.majorant_scale, flight_has(method.free_flight, TRAIT_CONTROL), params);
     if (volume.noise)
         params.noise = make_noise(*volume.noise, origin);
     params.bvh_nodes = loaded.bvh ? static_cast<std::uint32_t>(loaded.bvh->nodes.size()) : 0;
@@ -261,7 +262,7 @@ shared::MarchParams make_march(const Scene& scene, const LoadedVolume& loaded, c
     const double diagonal = diagonal_of(scene, loaded);
     if (method.free_flight == FREE_FLIGHT_MARCH)
         check_step("step", step, diagonal, unit);
-    if (method.nee != NEE_NONE && method.transmittance >= TRANSMITTANCE_MARCH)
+    if (method.nee != NEE_NONE && transmittance_has(method.transmittance, TRAIT_MARCH))
         check_step("shadowStep", shadow_step, diagonal, unit);
     shared::MarchParams params{};
     params.step = static_cast<float>(step);

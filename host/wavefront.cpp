@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
-#include <cmath>
 #include <cstring>
 #include <future>
 #include <utility>
@@ -47,30 +46,26 @@ bool is_empty(const shared::QueueHeader& header) {
 
 // llvmpipe leaves every loop of an invocation after so many iterations in all, the one that ends a loop included, and
 // without a word.
-constexpr double most_iterations = 65535.0;
+constexpr std::uint32_t most_iterations = 65535;
 
-// Of all loops, for one look at the crossings of a mesh. A ray meets some 4 sqrt(n) of the n nodes over a surface where
-// it grazes it, the lanes of a group together more, with a few triangles each.
-double crossing_iterations(std::size_t mesh_nodes) {
-    return mesh_nodes > 0 ? 4.0 * (16.0 + 4.0 * std::sqrt(double(mesh_nodes))) : 0.0;
-}
-
-// What the turns of a budget loop over must stay below the limit. A turn may ask for several crossings; should it not
-// be enough after all, the kernel counts a cap. Of noise there is no such count. It is a loop over octaves, and every
-// step has up to four places for one, which all lanes of a group pass under a mask: a flight's look-up, emission along
-// it, and two of a shadow ray that marches in several sets of samples.
-std::uint32_t longest_budget(const LoopSizes& loops, std::uint32_t steps) {
-    double per_turn = 2.0 + (steps + 1.0) + 4.0 * crossing_iterations(loops.mesh_nodes);
+// Of all loops in a turn of the track pass, at most. Every step has up to four places for a sum over octaves, which all
+// lanes of a group pass under a mask: a flight's look-up, emission along it, and two of a shadow ray that marches in
+// several sets of samples.
+std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
+    constexpr std::uint32_t triangle = 2, node = 1 + (MESH_LEAF + 1) + MESH_LEAF * triangle;
+    std::uint32_t iterations = 2 + (steps + 1);
+    if (loops.mesh)
+        iterations += 2 + 1 + MESH_NODES_PER_TURN * node;
     if (loops.octaves > 0)
-        per_turn += 4.0 * steps * (loops.octaves + 1.0);
-    return static_cast<std::uint32_t>(std::clamp(most_iterations / per_turn, 4.0, 1024.0));
+        iterations += 4 * steps * (loops.octaves + 1);
+    return iterations;
 }
 
-// Likewise of the sky pass, which loops over a pixel's samples. Rays that meet the mesh leave that loop.
-std::uint32_t longest_batch(const LoopSizes& loops) {
-    const double per_sample = 2.0 + crossing_iterations(loops.mesh_nodes);
-    return static_cast<std::uint32_t>(std::clamp(most_iterations / per_sample, 16.0, 32767.0));
+// Turns of the track pass, and samples of a pixel that the sky pass loops over, whose loops stay below the limit.
+std::uint32_t longest_budget(const LoopSizes& loops, std::uint32_t steps) {
+    return std::min(most_iterations / turn_iterations(loops, steps), 1024u);
 }
+constexpr std::uint32_t longest_batch = most_iterations / 2;
 
 std::span<const std::uint32_t> track_kernel(const TrackVariant& variant) {
     if (variant.window_bits)
@@ -89,7 +84,7 @@ Tuning tune(const Device& device, const LoopSizes& loops, const Tuning& wish) {
     tuning.steps_per_look = pick(wish.steps_per_look, 4u);
     tuning.budget = pick(wish.budget, longest_budget(loops, tuning.steps_per_look));
     tuning.step_limit = pick(wish.step_limit, 1u << 26);
-    tuning.most_batch = pick(wish.most_batch, longest_batch(loops));
+    tuning.most_batch = pick(wish.most_batch, longest_batch);
     tuning.most_film_bytes =
         pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
     tuning.most_grid_bytes = pick(wish.most_grid_bytes, std::uint64_t{device.limits().maxStorageBufferRange});

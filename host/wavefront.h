@@ -27,10 +27,10 @@ struct Tuning {
     std::uint64_t most_texel_bytes = 0; // what has more is read as storage
 };
 
-// Of what a step loops over; 0 without it.
+// What a turn of the track pass loops over.
 struct LoopSizes {
-    std::size_t mesh_nodes = 0;
-    std::uint32_t octaves = 0; // of noise
+    bool mesh = false;
+    std::uint32_t octaves = 0; // of noise; 0 without it
 };
 
 // What suits the device and the scene; fields of `wish` that are not 0 win.

@@ -264,3 +264,22 @@ TEST_CASE("a constant grid has the optical depth of its voxels", "[gpu][hard][cl
                                            Rgb(0.0), fmt::format("constant grid at {}, {}", at.x, at.y)));
     }
 }
+
+// A shadow ray along a row of thin bodies passes them all. Both the flight across the first one and that ray are known
+// in closed form: each sample is a collision's, beyond which light has 1.495 of the row's optical depth to cross, or
+// none.
+TEST_CASE("light shines through a row of a hundred and fifty bodies", "[gpu][hard][closed_form]") {
+    Mesh row;
+    for (int k = 0; k < 150; ++k)
+        row = join(row, make_box({-3.0, -3.0, 0.02 * k}, {3.0, 3.0, 0.02 * k + 0.01}, 1));
+    Scene scene = beam(medium(write_mesh(row), 1.0, 0.9), {10.0, 0.0, 0.005});
+    scene.camera.yaw = 90.0;
+    scene.background = Rgb(0.0);
+    scene.lights = {{{0.0, 0.0, 1.0}, Rgb(3.0, 2.0, 1.0)}};
+    scene.settings.integrator = "ratioTracking";
+    scene.settings.choices = {SCATTERING_SINGLE, FREE_FLIGHT_ANALYTIC, TRANSMITTANCE_ANALYTIC, NEE_COLLISIONS, {}};
+    const double escapes = std::exp(-6.0), depth = 0.005 + 149 * 0.01;
+    const Rgb seen = scene.lights.front().irradiance * (0.9 / (4.0 * std::numbers::pi) * std::exp(-depth));
+    CHECK_AGREEMENT(
+        agree_with_escapes(render_here(scene, 21).film, everywhere(scene, escapes), Rgb(0.0), seen, "a row of bodies"));
+}

@@ -42,15 +42,6 @@ const std::string cube_vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\n
 const std::string cube_sides = "f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 const std::string cube = cube_vertices + "f 4 3 2 1\nf 5 6 7 8\n" + cube_sides;
 
-std::string as_obj(const Mesh& mesh) {
-    std::string text;
-    for (const glm::dvec3 v : mesh.vertices)
-        text += "v " + std::to_string(v.x) + ' ' + std::to_string(v.y) + ' ' + std::to_string(v.z) + '\n';
-    for (const glm::uvec3 t : mesh.triangles)
-        text += "f " + std::to_string(t.x + 1) + ' ' + std::to_string(t.y + 1) + ' ' + std::to_string(t.z + 1) + '\n';
-    return text;
-}
-
 double volume(const Mesh& mesh) {
     double sum = 0.0;
     for (const glm::uvec3 t : mesh.triangles)

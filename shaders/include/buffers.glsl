@@ -4,7 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-#include "../shared/bindings.h"
+#include "../shared/estimators.h"
 #include "../shared/items.h"
 #include "../shared/scene.h"
 #include "spectrum.glsl"
@@ -25,15 +25,16 @@ layout(constant_id = SPEC_TRACE) const int TRACE = 0;
 layout(constant_id = SPEC_TEXELS) const int TEXELS = 0;
 layout(constant_id = SPEC_LEAPS) const int LEAPS = 0;
 
-// Estimators that walk from one tentative collision to the next.
-const bool NULL_FLIGHT = FREE_FLIGHT >= FREE_FLIGHT_DELTA;
-const bool NULL_TRANSMITTANCE = TRANSMITTANCE >= TRANSMITTANCE_DELTA && TRANSMITTANCE <= TRANSMITTANCE_RESIDUAL;
-const bool MARCHED_TRANSMITTANCE = TRANSMITTANCE >= TRANSMITTANCE_MARCH;
+const int FLIGHT_TRAITS = FREE_FLIGHT_TRAITS(FREE_FLIGHT);
+const int SHADOW_TRAITS = TRANSMITTANCE_TRAITS(TRANSMITTANCE);
+const bool NULL_FLIGHT = (FLIGHT_TRAITS & TRAIT_NULL) != 0;
+const bool NULL_TRANSMITTANCE = (SHADOW_TRAITS & TRAIT_NULL) != 0;
+const bool MARCHED_TRANSMITTANCE = (SHADOW_TRAITS & TRAIT_MARCH) != 0;
 
 // Where light scatters at most once a march samples no collision: it goes through and gathers along the ray. (A
-// function, since spirv-opt 2023.1 misorders some operations on constants.)
+// function, with a variable, for the sake of glslang 12: see LOOKS.)
 bool goes_through() {
-    bool marches = FREE_FLIGHT == FREE_FLIGHT_MARCH || FREE_FLIGHT == FREE_FLIGHT_ADAPTIVE;
+    bool marches = (FLIGHT_TRAITS & TRAIT_MARCH) != 0;
     return (SCATTERING != SCATTERING_MULTIPLE && marches) ||
            (SCATTERING == SCATTERING_NONE && FREE_FLIGHT == FREE_FLIGHT_ANALYTIC);
 }

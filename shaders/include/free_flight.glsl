@@ -22,7 +22,7 @@ float begin_flight(VolumeParams v, Spectrum beta, float e, float select) {
 
 // Called for each part of the ray within the medium.
 void begin_flight_part(VolumeParams v, inout Walk w) {
-    if (NULL_FLIGHT || FREE_FLIGHT == FREE_FLIGHT_ADAPTIVE)
+    if ((FLIGHT_TRAITS & TRAIT_CELLS) != 0)
         begin_cells(v, false, w);
     if (FREE_FLIGHT == FREE_FLIGHT_REGULAR)
         begin_voxels(v, w);

@@ -5,13 +5,12 @@
 // that vertex alone, and on which side of an edge the origin lies is decided exactly, ties included; so all triangles
 // agree on one picture of the surface, and since that is closed, the crossings of a whole line always add up to 0.
 // `precise` keeps the compiler from rounding the same expression differently for different triangles.
+//
+// A search visits one node of the hierarchy per step, so that a lane can lay it aside at any time: no loop of a kernel
+// depends on how many triangles or bodies a mesh has.
 #ifndef MESH_GLSL
 #define MESH_GLSL
 #include "shape.glsl"
-
-// Passes of the outer loop. Each goes beyond two surfaces behind neither of which the ray is inside; without rounding
-// there are only such where bodies touch or a crossing is grazing.
-const int MESH_QUERIES = 64;
 
 const float SMALLEST = 9.094947e-13; // 2^-40
 
@@ -22,11 +21,12 @@ struct Shear {
     float inverse; // world distance per unit of z
 };
 
-struct Crossings {
-    int winding;  // bodies that the ray is inside of just behind t_from
-    float first;  // distance to the first crossing, or FAR
-    int turn;     // surfaces left less those entered there
-    float second; // distance to the next crossing behind that, or FAR
+// What the steps of a search need of their ray.
+struct MeshRay {
+    Shear shear;
+    vec3 before; // the origin, beyond what boxes are enlarged by
+    vec3 after;
+    vec3 inverse; // of the direction
 };
 
 // A cyclic exchange of axes keeps the handedness.
@@ -86,8 +86,8 @@ bool is_left(float a, vec2 p, vec2 q) {
     return a != 0.0 ? a > 0.0 : (p.y != q.y ? p.y > q.y : q.x > p.x);
 }
 
-// Counts triangle `i` if the ray meets it beyond t_from.
-void add_crossing(Shear s, uint i, float t_from, inout Crossings c) {
+// Counts triangle `i` if the ray meets it beyond where the search began.
+void add_crossing(Shear s, uint i, inout PartSearch c) {
     vec3 p = project(s, triangles[3u * i]);
     vec3 q = project(s, triangles[3u * i + 1u]);
     vec3 r = project(s, triangles[3u * i + 2u]);
@@ -105,7 +105,7 @@ void add_crossing(Shear s, uint i, float t_from, inout Crossings c) {
     precise float sum = areas.x + areas.y + areas.z;
     precise float weighted = areas.x * p.z + areas.y * q.z + areas.z * r.z;
     precise float t = weighted / sum;
-    bool met = turn != 0 && t > t_from;
+    bool met = turn != 0 && t > c.t_from;
     turn = met ? turn : 0;
     t = met ? t : FAR;
     c.winding += turn;
@@ -114,60 +114,68 @@ void add_crossing(Shear s, uint i, float t_from, inout Crossings c) {
     c.first = min(c.first, t);
 }
 
-// All crossings beyond t_from (>= 0). The hierarchy is walked without a stack: on to the next node, or past its
-// subtree.
-//
 // Boxes are enlarged by 2^-18 R, R the greatest distance along an axis between the ray's origin and the mesh, which
 // with u = 2^-24 is 64 u R. Projecting moves a vertex by at most 10 u R, and a computed t is within 10 u R sqrt(3) of
 // where the ray passes the projected triangle: so the point at t is within 28 u R of the triangle's box. The slab
 // test's own distances, at most 2 sqrt(3) R where they matter, err by at most 5 u of themselves, or 18 u R. The rest is
 // spare.
-Crossings find_crossings(uint bvh_nodes, Ray ray, float t_from) {
-    Shear s = make_shear(ray);
+MeshRay make_mesh_ray(uint bvh_nodes, Ray ray) {
+    MeshRay m;
+    m.shear = make_shear(ray);
     vec3 reach = bvh_nodes > 0u ? max(abs(bvh[0].low), abs(bvh[0].high)) + abs(ray.origin) : vec3(0.0);
     float margin = 3.8147e-6 * max(reach.x, max(reach.y, reach.z));
-    vec3 before = ray.origin + margin, after = ray.origin - margin;
+    m.before = ray.origin + margin;
+    m.after = ray.origin - margin;
     // Components so small that their inverse would overflow are taken for 1e-30, which moves the ray by nothing.
     vec3 d = ray.direction;
-    vec3 inverse = 1.0 / vec3(abs(d.x) < 1.0e-30 ? 1.0e-30 : d.x, abs(d.y) < 1.0e-30 ? 1.0e-30 : d.y,
-                              abs(d.z) < 1.0e-30 ? 1.0e-30 : d.z);
-    Crossings c = Crossings(0, FAR, 0, FAR);
-    uint i = 0u;
-    while (i < bvh_nodes) {
-        BvhNode node = bvh[i];
-        vec3 t0 = (node.low - before) * inverse, t1 = (node.high - after) * inverse;
-        vec3 entries = min(t0, t1), exits = max(t0, t1);
-        float entry = max(max(entries.x, entries.y), max(entries.z, t_from));
-        float exit = min(exits.x, min(exits.y, exits.z));
-        bool meets = entry <= exit;
-        uint first = node.leaf >> 3u, last = first + (meets ? node.leaf & 7u : 0u);
-        for (uint k = first; k < last; ++k)
-            add_crossing(s, k, t_from, c);
-        i = meets && node.leaf == 0u ? i + 1u : node.skip;
-    }
-    if (i < bvh_nodes) // the driver left the loop, see longest_budget in wavefront.cpp
-        atomicAdd(counters.step_caps, 1u);
-    return c;
+    m.inverse = 1.0 / vec3(abs(d.x) < 1.0e-30 ? 1.0e-30 : d.x, abs(d.y) < 1.0e-30 ? 1.0e-30 : d.y,
+                           abs(d.z) < 1.0e-30 ? 1.0e-30 : d.z);
+    return m;
 }
 
-// The first part [t.x, t.y], t_from <= t.x < t.y, of the ray beyond t_from (>= 0) that lies inside of what the surfaces
-// enclose; false if there is none. The next part, to be asked for from t.y, may begin where this one ends. Space here
-// is render space, so the ray's direction is a unit vector.
-bool next_mesh_interval(uint bvh_nodes, Ray ray, float t_from, out vec2 t) {
+// Whether the ray may be in the box beyond t_from.
+bool meets(MeshRay m, BvhNode box, float t_from) {
+    vec3 t0 = (box.low - m.before) * m.inverse, t1 = (box.high - m.after) * m.inverse;
+    vec3 entries = min(t0, t1), exits = max(t0, t1);
+    float entry = max(max(entries.x, entries.y), max(entries.z, t_from));
+    float exit = min(exits.x, min(exits.y, exits.z));
+    return entry <= exit;
+}
+
+// Whether the ray may meet the mesh at all.
+bool may_meet_mesh(uint bvh_nodes, Ray ray) {
+    return bvh_nodes > 0u && meets(make_mesh_ray(bvh_nodes, ray), bvh[0], 0.0);
+}
+
+// For the first part [t.x, t.y], t_from <= t.x < t.y, of the ray beyond t_from (>= 0) that lies inside of what the
+// surfaces enclose. The next part, to be looked for from t.y, may begin where this one ends. Space here is render
+// space, so the ray's direction is a unit vector.
+PartSearch begin_search(uint stage, float t_from) {
+    return PartSearch(stage, t_from, 0u, 0, FAR, 0, FAR);
+}
+
+// One node of the search: on to the next in depth-first order, or past its subtree. True once the search is over, with
+// the part, or an empty one if there is none.
+bool step_search(uint bvh_nodes, MeshRay m, inout PartSearch s, out vec2 t) {
     t = vec2(0.0);
-    for (int query = 0; query < MESH_QUERIES; ++query) {
-        Crossings c = find_crossings(bvh_nodes, ray, t_from);
-        bool here = c.winding > 0;
-        bool next = c.winding - c.turn > 0;
-        if (here || next) {
-            t = here ? vec2(t_from, c.first) : vec2(c.first, c.second);
-            return true;
-        }
-        if (c.second == FAR)
-            return false;
-        t_from = c.second;
+    if (s.node < bvh_nodes) {
+        BvhNode node = bvh[s.node];
+        bool met = meets(m, node, s.t_from);
+        uint first = node.leaf >> 3u, last = first + (met ? node.leaf & 7u : 0u);
+        for (uint k = first; k < last; ++k) // at most MESH_LEAF
+            add_crossing(m.shear, k, s);
+        s.node = met && node.leaf == 0u ? s.node + 1u : node.skip;
     }
-    atomicAdd(counters.step_caps, 1u);
+    if (s.node < bvh_nodes)
+        return false;
+    bool here = s.winding > 0;
+    bool next = s.winding - s.turn > 0;
+    t = here ? vec2(s.t_from, s.first) : next ? vec2(s.first, s.second) : t;
+    if (here || next || s.second == FAR)
+        return true;
+    // Two surfaces behind neither of which the ray is inside; without rounding there are only such where bodies touch
+    // or a crossing is grazing.
+    s = begin_search(s.stage, s.second);
     return false;
 }
 

@@ -1,22 +1,26 @@
 // Segments: what flights and shadow rays have in common. Both cross the medium part by part; a mesh that is not convex
-// has several, and the optical depth left is carried over from one to the next.
+// has several, and the optical depth left is carried over from one to the next. Spheres and boxes have one, which is
+// known at once; a mesh's parts are searched for, some nodes of its hierarchy at a time.
 #ifndef SEGMENT_GLSL
 #define SEGMENT_GLSL
 #include "free_flight.glsl"
 #include "transmittance.glsl"
 
-// Where a shadow ray is a walk of its own; a homogeneous medium's is known at once.
-const bool LOOKS = NEE != NEE_NONE && TRANSMITTANCE != TRANSMITTANCE_ANALYTIC;
+// Where a shadow ray is a walk of its own; that of a homogeneous medium of one part is known at once. (In bits,
+// since glslang 12 branches for nested `&&` and `||`, and takes the outcome for a constant nevertheless.)
+const bool LOOKS =
+    (int(NEE != NEE_NONE) & (int(TRANSMITTANCE != TRANSMITTANCE_ANALYTIC) | int(SHAPE == SHAPE_MESH))) != 0;
 
 // What the scene's estimators need of a walk that is laid aside. The rest is dropped, so that nothing computes it.
 Walk kept(Walk w) {
-    bool marches = FREE_FLIGHT == FREE_FLIGHT_MARCH || (LOOKS && MARCHED_TRANSMITTANCE);
+    int shadow_traits = LOOKS ? SHADOW_TRAITS : 0;
+    int traits = FLIGHT_TRAITS | shadow_traits;
+    bool marches = FREE_FLIGHT == FREE_FLIGHT_MARCH || (shadow_traits & TRAIT_MARCH) != 0;
     bool adds_depth = !NULL_FLIGHT || (LOOKS && !NULL_TRANSMITTANCE);
-    bool walks = NULL_FLIGHT || FREE_FLIGHT == FREE_FLIGHT_ADAPTIVE || (LOOKS && NULL_TRANSMITTANCE);
-    bool voxels = FREE_FLIGHT == FREE_FLIGHT_REGULAR || (LOOKS && TRANSMITTANCE == TRANSMITTANCE_REGULAR);
-    bool controlled =
-        FREE_FLIGHT == FREE_FLIGHT_DECOMPOSITION || (LOOKS && TRANSMITTANCE == TRANSMITTANCE_RESIDUAL);
-    bool marches_more = LOOKS && TRANSMITTANCE > TRANSMITTANCE_MARCH; // marches in several sets of samples
+    bool walks = (traits & TRAIT_CELLS) != 0;
+    bool voxels = (traits & TRAIT_VOXELS) != 0;
+    bool controlled = (traits & TRAIT_CONTROL) != 0;
+    bool marches_more = (traits & TRAIT_SETS) != 0;
     w.at = 0.0; // set by every step
     if (!adds_depth)
         w.depth = 0.0;
@@ -55,36 +59,56 @@ void begin_part(VolumeParams v, Ray ray, vec2 t, bool seeing, inout Walk w) {
 }
 
 // A vertex on the boundary, heading out, has no such part, nor a camera ray that misses: then an empty one, which the
-// first step leaves.
-void begin_segment(VolumeParams v, vec3 position, vec3 direction, bool seeing, inout Walk w) {
-    Ray ray = to_medium(v, position, direction);
-    vec2 t;
-    if (!next_interval(v, ray, 0.0, t))
-        t = vec2(0.0);
-    begin_part(v, ray, t, seeing, w);
+// first step leaves. Of a mesh, the search for it only begins.
+void begin_segment(VolumeParams v, vec3 position, vec3 direction, bool seeing, inout Walk w, inout PartSearch search) {
+    search.stage = SEARCH_OVER;
+    if (SHAPE == SHAPE_MESH) {
+        search = begin_search(SEARCH_FIRST, 0.0);
+    } else {
+        Ray ray = to_medium(v, position, direction);
+        vec2 t;
+        if (!medium_interval(v, ray, t))
+            t = vec2(0.0);
+        begin_part(v, ray, t, seeing, w);
+    }
 }
 
-// Beyond a part that ended. A mesh may have further ones; the optical depth left is carried over.
-uint next_part(VolumeParams v, vec3 position, vec3 direction, bool seeing, inout Walk w) {
-    Ray ray = to_medium(v, position, direction);
-    vec2 t;
-    if (!next_interval(v, ray, w.start + w.t_end, t))
-        return EVENT_LEFT;
-    begin_part(v, ray, t, seeing, w);
-    return EVENT_MOVING;
+// What `event` of a step means for the segment: where a part of a mesh has ended there may be a further one.
+uint after_step(uint event, Walk w, inout PartSearch search) {
+    bool searches = SHAPE == SHAPE_MESH && event == EVENT_LEFT && search.stage == SEARCH_OVER;
+    if (searches)
+        search = begin_search(SEARCH_NEXT, w.start + w.t_end);
+    return searches ? EVENT_MOVING : event;
 }
 
-// Transmittance of a homogeneous medium, which may have many parts.
+bool is_searching(PartSearch search) {
+    return SHAPE == SHAPE_MESH && (search.stage == SEARCH_FIRST || search.stage == SEARCH_NEXT);
+}
+
+// Goes on with a search for some nodes. Where it ends, the segment is in the next part, or has left the medium.
+uint search_part(VolumeParams v, vec3 position, vec3 direction, bool seeing, inout Walk w, inout PartSearch search) {
+    uint event = EVENT_MOVING;
+    // A loop, since software drivers do both sides of an `if`: a group none of whose lanes searches passes it by.
+    for (bool begins = is_searching(search); begins; begins = false) {
+        Ray ray = to_medium(v, position, direction);
+        MeshRay mesh_ray = make_mesh_ray(v.bvh_nodes, ray);
+        vec2 t;
+        bool over = false;
+        for (int k = 0; k < MESH_NODES_PER_TURN && !over; ++k)
+            over = step_search(v.bvh_nodes, mesh_ray, search, t);
+        bool found = over && t.x < t.y;
+        if (over && (found || search.stage == SEARCH_FIRST))
+            begin_part(v, ray, t, seeing, w);
+        event = over && !found && search.stage == SEARCH_NEXT ? EVENT_LEFT : EVENT_MOVING;
+        search.stage = found ? SEARCH_OVER : over ? SEARCH_EMPTY : search.stage;
+    }
+    return event;
+}
+
+// Transmittance of a homogeneous sphere or box.
 Spectrum analytic_shadow(VolumeParams v, vec3 position, vec3 direction) {
-    Ray ray = to_medium(v, position, direction);
-    float inside = 0.0;
-    vec2 t = vec2(0.0);
-    const int most_parts = 256;
-    int part = 0;
-    for (; part < most_parts && next_interval(v, ray, t.y, t); ++part)
-        inside += t.y - t.x;
-    if (part == most_parts) // the light may be too bright, and it is counted
-        atomicAdd(counters.step_caps, 1u);
+    vec2 t;
+    float inside = medium_interval(v, to_medium(v, position, direction), t) ? t.y - t.x : 0.0;
     return analytic_transmittance(v, inside);
 }
 

@@ -45,6 +45,9 @@ void begin_transmittance_part(VolumeParams v, inout Walk w) {
 uint see(VolumeParams v, Collision c, uint event, inout Walk w, inout Rng rng, inout Spectrum T, out bool opaque,
          inout Tally tally) {
     switch (TRANSMITTANCE) {
+    case TRANSMITTANCE_ANALYTIC:
+        event = analytic_step(w);
+        break;
     case TRANSMITTANCE_REGULAR:
         event = regular_transmittance(v, w, tally);
         break;
@@ -72,14 +75,15 @@ uint see(VolumeParams v, Collision c, uint event, inout Walk w, inout Rng rng, i
         tally.null_collisions += 1u;
         event = EVENT_MOVING;
     }
-    bool exact = TRANSMITTANCE == TRANSMITTANCE_REGULAR || TRANSMITTANCE == TRANSMITTANCE_MARCH;
-    opaque = exact ? v.sigma_t * smallest(to_spectrum(v.sigma_ratio)) * w.depth > OPAQUE : largest(T) == 0.0;
+    bool adds_depth = (SHADOW_TRAITS & (TRAIT_NULL | TRAIT_SETS)) == 0;
+    opaque = adds_depth ? v.sigma_t * smallest(to_spectrum(v.sigma_ratio)) * w.depth > OPAQUE : largest(T) == 0.0;
     return event;
 }
 
 // When the ray has left the medium.
 Spectrum end_transmittance(VolumeParams v, Walk w, Spectrum T) {
     switch (TRANSMITTANCE) {
+    case TRANSMITTANCE_ANALYTIC:
     case TRANSMITTANCE_REGULAR:
     case TRANSMITTANCE_MARCH:
         return analytic_transmittance(v, w.depth);

@@ -17,13 +17,12 @@ void main() {
     uint place = place_of(pixel);
     bool hit = false;
     for (uint i = push.sample_begin; i < push.sample_end && !hit; ++i) {
-        vec2 t;
         CameraRay ray = camera_ray(place, i);
-        hit = next_interval(frame.volume, to_medium(frame.volume, ray.origin, ray.direction), 0.0, t);
+        hit = may_meet_medium(frame.volume, to_medium(frame.volume, ray.origin, ray.direction));
         film_add(entry, frame.background, place, i, tally);
     }
-    // llvmpipe leaves loops early, see longest_budget in wavefront.cpp: what it did not look at is for paths to see. So
-    // they are counted, for a condition on `i` would be optimized away.
+    // llvmpipe leaves loops early, see most_iterations in wavefront.cpp: what it did not look at is for paths to see.
+    // So they are counted, for a condition on `i` would be optimized away.
     if (hit || tally.paths < push.sample_end - push.sample_begin) {
         work[atomicAdd(counters.work_count, 1u)] = pixel;
     } else {

@@ -88,11 +88,12 @@
 #define EMISSION_AT_COLLISIONS 0 // real ones
 #define EMISSION_AT_STEPS 1      // integrated along the flight, one sample per step
 
+// What these do is in estimators.h.
 #define FREE_FLIGHT_ANALYTIC 0
 #define FREE_FLIGHT_REGULAR 1
 #define FREE_FLIGHT_MARCH 2
 #define FREE_FLIGHT_ADAPTIVE 3
-#define FREE_FLIGHT_DELTA 4 // from here on by null collisions
+#define FREE_FLIGHT_DELTA 4
 #define FREE_FLIGHT_WEIGHTED 5
 #define FREE_FLIGHT_DECOMPOSITION 6
 #define FREE_FLIGHT_SPECTRAL 7
@@ -100,13 +101,21 @@
 
 #define TRANSMITTANCE_ANALYTIC 0
 #define TRANSMITTANCE_REGULAR 1
-#define TRANSMITTANCE_DELTA 2 // from here on by null collisions
+#define TRANSMITTANCE_DELTA 2
 #define TRANSMITTANCE_RATIO 3
 #define TRANSMITTANCE_RESIDUAL 4
-#define TRANSMITTANCE_MARCH 5 // from here on by marches
+#define TRANSMITTANCE_MARCH 5
 #define TRANSMITTANCE_TELESCOPING 6
 #define TRANSMITTANCE_JACKKNIFE 7
 #define TRANSMITTANCE_COUNT 8
+
+#define SEARCH_OVER 0 // the ray is within a part
+#define SEARCH_FIRST 1
+#define SEARCH_NEXT 2
+#define SEARCH_EMPTY 3 // there is no further part
+
+#define MESH_LEAF 4            // triangles in a leaf of a mesh's hierarchy, at most
+#define MESH_NODES_PER_TURN 64 // of the hierarchy, which a turn of the track pass visits
 
 // A slot is in exactly one queue, or held by a lane.
 #define QUEUE_GENERATE 0 // free

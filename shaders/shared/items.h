@@ -42,6 +42,17 @@ struct Walk {
     float base;      // telescoping: with the coarsest set of samples
 };
 
+// A search for the next part of a ray within meshes, as far as it has gone; see mesh.glsl.
+struct PartSearch {
+    uint stage;   // SEARCH_...
+    float t_from; // beyond which
+    uint node;    // of the hierarchy, to be visited next
+    int winding;  // bodies that the ray is inside of just behind t_from, by the crossings found so far
+    float first;  // distance to the first crossing, or infinitely far
+    int turn;     // surfaces left less those entered there
+    float second; // distance to the next crossing behind that, or infinitely far
+};
+
 // A path laid aside amid a segment, when its lane's budget was spent.
 struct Suspended {
     Walk walk;
@@ -54,6 +65,7 @@ struct Suspended {
     uint steps;   // of the segment
     vec3 cached;  // transmittance that the shadow ray corrects
     float chance; // with which it was sent
+    PartSearch search;
 };
 
 // A ring of slot numbers. Items of queue q start at q * capacity; positions grow without end and wrap modulo the

@@ -57,7 +57,7 @@ struct BvhNode {
     vec3 low;
     uint skip; // the node to go to when the ray misses this one, or after a leaf; the number of nodes at the end
     vec3 high;
-    uint leaf; // 0 for inner nodes; else first triangle * 8 + number of triangles
+    uint leaf; // 0 for inner nodes; else first triangle * 8 + number of triangles, at most MESH_LEAF
 };
 
 // A control density in a majorant cell and the bound of the rest: |density - control| <= residual.

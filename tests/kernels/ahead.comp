@@ -1,5 +1,5 @@
-// One segment per ray, in render space: a flight, or with push.sample_end a shadow ray. With push.sample_begin steps are found
-// several ahead and looked up together, else one after the other.
+// One segment per ray, in render space: a flight, or with push.sample_end a shadow ray. With push.sample_begin steps
+// are found several ahead and looked up together, else one after the other.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "kernel.glsl"
@@ -23,7 +23,8 @@ void main() {
     Walk w;
     w.tau = ray.e;
     w.depth = 0.0;
-    begin_segment(v, ray.origin, ray.direction, seeing, w);
+    PartSearch search;
+    begin_segment(v, ray.origin, ray.direction, seeing, w, search);
     uint event = EVENT_MOVING;
     for (uint turn = 0u; turn < push.step_limit && event == EVENT_MOVING; ++turn) {
         if (ahead) {

@@ -11,7 +11,12 @@ void put(uint word) {
     outputs[count] = word;
     count += 1u;
 }
-void put(float x) { put(floatBitsToUint(x)); }
+void put(int i) {
+    put(uint(i));
+}
+void put(float x) {
+    put(floatBitsToUint(x));
+}
 void put(vec3 v) {
     put(v.x);
     put(v.y);

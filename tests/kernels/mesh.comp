@@ -10,16 +10,21 @@ void main() {
     if (i >= push.lanes)
         return;
     Ray ray = Ray(inputs[i].origin, inputs[i].direction);
-    float t_from = 0.0;
+    MeshRay mesh_ray = make_mesh_ray(frame.volume.bvh_nodes, ray);
+    PartSearch search = begin_search(SEARCH_FIRST, 0.0);
     float total = 0.0;
     uint count = 0u;
-    vec2 t;
-    while (count < 100u && next_mesh_interval(frame.volume.bvh_nodes, ray, t_from, t)) {
-        if (count < MESH_INTERVALS)
-            outputs[i].t[count] = t;
-        total += t.y - t.x;
-        t_from = t.y;
-        ++count;
+    vec2 t = vec2(0.0, 1.0);
+    while (count < 100u && t.x < t.y) {
+        if (!step_search(frame.volume.bvh_nodes, mesh_ray, search, t)) {
+            t = vec2(0.0, 1.0);
+        } else if (t.x < t.y) {
+            if (count < MESH_INTERVALS)
+                outputs[i].t[count] = t;
+            total += t.y - t.x;
+            search = begin_search(SEARCH_NEXT, t.y);
+            ++count;
+        }
     }
     outputs[i].count = count;
     outputs[i].total = total;

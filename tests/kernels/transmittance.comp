@@ -17,12 +17,14 @@ void main() {
     Rng rng = Rng(ray.key, i % push.sample_end, 0u, frame.seed);
     Spectrum T = to_spectrum(vec3(1.0));
     Walk w;
+    PartSearch search;
+    search.stage = SEARCH_OVER;
     uint event = EVENT_MOVING;
     if (LOOKS) {
         uvec4 words = next_words(rng);
         w.tau = to_exponential(words.x, words);
         begin_transmittance(words, w);
-        begin_segment(v, ray.origin, ray.direction, true, w);
+        begin_segment(v, ray.origin, ray.direction, true, w, search);
     } else {
         T = analytic_shadow(v, ray.origin, ray.direction);
         event = EVENT_LEFT;
@@ -30,14 +32,15 @@ void main() {
     bool opaque = false;
     uint steps = 0u;
     for (; steps < push.step_limit && event == EVENT_MOVING; ++steps) {
+        if (is_searching(search)) {
+            event = search_part(v, ray.origin, ray.direction, true, w, search);
+            continue;
+        }
         Collision c = Collision(0.0, 1.0, 0.0, 0.0, 0.0);
         if (NULL_TRANSMITTANCE)
             event = next_collision(v, true, w, rng, tally, c);
         event = see(v, c, event, w, rng, T, opaque, tally);
-        if (opaque)
-            event = EVENT_LEFT;
-        else if (SHAPE == SHAPE_MESH && event == EVENT_LEFT)
-            event = next_part(v, ray.origin, ray.direction, true, w);
+        event = opaque ? EVENT_LEFT : after_step(event, w, search);
     }
     if (LOOKS)
         T = opaque ? to_spectrum(vec3(0.0)) : end_transmittance(v, w, T);

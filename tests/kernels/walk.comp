@@ -13,7 +13,7 @@ void main() {
     VolumeParams v = frame.volume;
     Ray ray = Ray(inputs[i].origin, inputs[i].direction);
     vec2 t;
-    uint event = next_interval(v, ray, 0.0, t) ? EVENT_MOVING : EVENT_LEFT;
+    uint event = medium_interval(v, ray, t) ? EVENT_MOVING : EVENT_LEFT;
     Walk w;
     w.tau = inputs[i].e > 0.0 ? inputs[i].e : 1.0e4;
     begin_part(v, ray, event == EVENT_MOVING ? t : vec2(0.0), false, w);

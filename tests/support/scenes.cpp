@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>
+#include <fstream>
 #include <numbers>
 #include <unistd.h>
 
@@ -32,6 +33,12 @@ private:
     std::filesystem::path path_;
 };
 
+std::filesystem::path temporary_file(const char* extension) {
+    static const TemporaryDirectory directory;
+    static int count = 0;
+    return directory.path() / fmt::format("{}.{}", count++, extension);
+}
+
 double hash(glm::ivec3 i, std::uint32_t octave) {
     return reference::pcg4d({std::uint32_t(i.x), std::uint32_t(i.y), std::uint32_t(i.z), octave})[0] * 0x1p-32;
 }
@@ -51,9 +58,7 @@ double value_noise(glm::dvec3 p, std::uint32_t octave) {
 } // namespace
 
 GridFile write_grids(const std::vector<GridRecipe>& grids) {
-    static const TemporaryDirectory directory;
-    static int count = 0;
-    const std::filesystem::path path = directory.path() / fmt::format("{}.nvdb", count++);
+    const std::filesystem::path path = temporary_file("nvdb");
     std::vector<nanovdb::GridHandle<>> handles;
     for (const GridRecipe& grid : grids) {
         const GridBytes bytes = make_grid_bytes(grid);
@@ -67,6 +72,12 @@ GridFile write_grids(const std::vector<GridRecipe>& grids) {
 
 GridFile write_grid(const GridRecipe& grid) {
     return write_grids({grid});
+}
+
+MeshFiles write_mesh(const Mesh& mesh) {
+    const std::filesystem::path path = temporary_file("obj");
+    std::ofstream(path) << as_obj(mesh);
+    return {{path}};
 }
 
 glm::dvec3 center_of(const GridRecipe& grid) {

@@ -2,12 +2,16 @@
 #pragma once
 
 #include "test_grids.h"
+#include "test_meshes.h"
 
 namespace vkvol {
 
 // A file of its own, removed when the tests end. The GridFile names the first of the grids.
 GridFile write_grids(const std::vector<GridRecipe>& grids);
 GridFile write_grid(const GridRecipe& grid);
+
+// Likewise a mesh, as .obj.
+MeshFiles write_mesh(const Mesh& mesh);
 
 // Of its voxels, in world space.
 glm::dvec3 center_of(const GridRecipe& grid);

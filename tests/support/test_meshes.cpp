@@ -104,4 +104,13 @@ Mesh join(Mesh a, const Mesh& b) {
     return a;
 }
 
+std::string as_obj(const Mesh& mesh) {
+    std::string text;
+    for (const glm::dvec3 v : mesh.vertices)
+        text += "v " + std::to_string(v.x) + ' ' + std::to_string(v.y) + ' ' + std::to_string(v.z) + '\n';
+    for (const glm::uvec3 t : mesh.triangles)
+        text += "f " + std::to_string(t.x + 1) + ' ' + std::to_string(t.y + 1) + ' ' + std::to_string(t.z + 1) + '\n';
+    return text;
+}
+
 } // namespace vkvol

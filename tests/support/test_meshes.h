@@ -1,6 +1,8 @@
 // Closed meshes of known shape.
 #pragma once
 
+#include <string>
+
 #include "mesh.h"
 
 namespace vkvol {
@@ -18,5 +20,8 @@ Mesh make_torus(double major, double minor, int n, int m);
 Mesh make_letter_l();
 
 Mesh join(Mesh a, const Mesh& b);
+
+// The text of its .obj file.
+std::string as_obj(const Mesh& mesh);
 
 } // namespace vkvol

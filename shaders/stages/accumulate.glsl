@@ -1,0 +1,14 @@
+// A path is over: its radiance is a sample of its pixel, and the next sample's turn.
+#ifndef STAGE_ACCUMULATE_GLSL
+#define STAGE_ACCUMULATE_GLSL
+#include "../include/film.glsl"
+#include "../include/trace.glsl"
+
+void accumulate(inout FilmPixel sums, inout Lane lane, inout Tally tally) {
+    trace(TRACE_END, lane, lane.path.position, lane.path.direction);
+    film_add(sums, lane.path.radiance, lane.path.place, lane.path.sample_index, tally);
+    lane.path.sample_index += 1u;
+    lane.todo = lane.path.sample_index < push.sample_end ? TODO_BEGIN : TODO_DONE;
+}
+
+#endif

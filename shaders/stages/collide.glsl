@@ -1,0 +1,63 @@
+// A flight meets matter.
+#ifndef STAGE_COLLIDE_GLSL
+#define STAGE_COLLIDE_GLSL
+#include "../include/emission.glsl"
+#include "../include/light.glsl"
+#include "../include/light_cache.glsl"
+#include "../include/trace.glsl"
+
+// Light at a point that an interaction of throughput `lit` there scatters into the path. Known at once in a homogeneous
+// medium, else the lane goes to look, or, by chance, makes do with the cache; and then does as `next` says.
+void gather_light(VolumeParams v, vec3 position, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
+    if (LOOKS) {
+        lane.position = position;
+        lane.lit = lit;
+        lane.resume = next;
+        lane.todo = TODO_LOOK;
+        if (NEE == NEE_CACHED) {
+            lane.cached = cached_transmittance(v, position);
+            Spectrum scattered = lit * hg_eval(v.g, hg_from_peak(v.g, lane.path.direction, frame.light.direction));
+            lane.path.radiance += scattered * lane.cached * frame.light.irradiance;
+            lane.chance = looking_chance(largest(scattered) / INV_4PI, lane.cached);
+            lane.todo = to_uniform(next_words(rng)).x < lane.chance ? TODO_LOOK : next;
+        }
+    } else {
+        Spectrum T = analytic_shadow(v, position, frame.light.direction);
+        lane.path.radiance += sun_contribution(v, frame.light, lane.path.direction, lit * T);
+        lane.todo = next;
+    }
+}
+
+// At a real collision: emission, absorption, light. Then the path departs, or ends.
+void collide(VolumeParams v, Spectrum deposit, inout Lane lane, inout Rng rng, inout Tally tally) {
+    lane.path.position += (lane.walk.start + lane.walk.t) * lane.path.direction;
+    if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_COLLISIONS)
+        lane.path.radiance += lane.beta * emitted_radiance(v.emission, lane.path.position);
+    lane.beta *= to_spectrum(v.albedo);
+    bool capped = SCATTERING != SCATTERING_NONE && lane.path.depth >= frame.max_depth;
+    tally.depth_caps += capped ? 1u : 0u;
+    lane.path.depth += 1u;
+    bool ended = capped || SCATTERING == SCATTERING_NONE || largest(lane.beta) == 0.0;
+    lane.todo = ended || SCATTERING == SCATTERING_SINGLE ? TODO_END : TODO_DEPART;
+    if (NEE != NEE_NONE && !ended) {
+        Spectrum lit = NEE == NEE_TENTATIVE ? deposit * to_spectrum(v.albedo) : lane.beta;
+        gather_light(v, lane.path.position, lit, lane.todo, lane, rng);
+    }
+    trace(TRACE_COLLISION, lane, lane.path.position, lane.path.direction);
+}
+
+// Amid a flight: a null collision, or a step of a march through.
+void touch(VolumeParams v, Spectrum deposit, inout Lane lane, inout Rng rng) {
+    vec3 position = lane.path.position + (lane.walk.start + lane.walk.at) * lane.path.direction;
+    uint next = TODO_FLY;
+    if (goes_through()) {
+        if (EMISSION != EMISSION_NONE)
+            lane.path.radiance += deposit * emitted_radiance(v.emission, position);
+        next = largest(lane.beta) == 0.0 ? TODO_END : TODO_FLY;
+    }
+    lane.todo = next;
+    if (NEE == NEE_TENTATIVE && lane.path.depth < frame.max_depth)
+        gather_light(v, position, deposit * to_spectrum(v.albedo), next, lane, rng);
+}
+
+#endif

@@ -1,0 +1,59 @@
+// A segment begins: a flight from the camera or from a vertex, where the path scatters first, or a shadow ray.
+#ifndef STAGE_DEPART_GLSL
+#define STAGE_DEPART_GLSL
+#include "../include/light_cache.glsl"
+#include "../include/trace.glsl"
+
+// Russian roulette on the throughput: unbiased, survivors are raised to the threshold.
+bool survives(inout Spectrum beta, float u) {
+    float m = largest(beta);
+    if (m >= frame.roulette_threshold)
+        return true;
+    bool alive = u * frame.roulette_threshold < m;
+    beta *= alive ? frame.roulette_threshold / m : 0.0;
+    return alive;
+}
+
+// The words of the draw with which a segment begins. A shadow ray known in closed form leaves nothing to chance.
+uvec4 first_words(bool looks, inout Rng rng) {
+    uint drawn = rng.draw;
+    uvec4 words = next_words(rng);
+    if (looks && TRANSMITTANCE == TRANSMITTANCE_ANALYTIC)
+        rng.draw = drawn;
+    return words;
+}
+
+// Scatters, or ends by roulette.
+void scatter(VolumeParams v, vec4 u, inout Lane lane) {
+    vec3 before = lane.path.direction;
+    lane.path.direction = hg_sample(v.g, before, u.yz);
+    lane.todo = survives(lane.beta, u.w) ? TODO_FLY : TODO_END;
+    if (LOOKS && NEE == NEE_CACHED && lane.path.depth < frame.max_depth)
+        lane.path.radiance -= lane.beta * frame.light.irradiance *
+                              foreseen_light(v, lane.cached, before, lane.path.direction);
+}
+
+void depart(VolumeParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
+    bool looks = LOOKS && lane.todo == TODO_LOOK;
+    bool at_camera = !looks && lane.path.depth == 0u;
+    uvec4 words = first_words(looks, rng);
+    lane.todo = looks ? TODO_SEE : TODO_FLY;
+    if (!looks && !at_camera)
+        scatter(v, to_uniform(words), lane);
+    if (NEE == NEE_TENTATIVE && looks)
+        lane.flight = lane.walk;
+    float e = to_exponential(at_camera ? words.z : words.x, words);
+    lane.walk.tau = looks ? e : begin_flight(v, lane.beta, e, to_tap(words).z);
+    lane.walk.depth = 0.0;
+    if (LOOKS && looks)
+        begin_transmittance(words, lane.walk);
+    begin_segment(v, looks ? looking_from(lane) : lane.path.position,
+                  looks ? frame.light.direction : lane.path.direction, looks, lane.walk, lane.search);
+    tally.shadow_rays += looks ? 1u : 0u;
+    lane.T = to_spectrum(vec3(1.0));
+    lane.steps = 0u;
+    if (!looks)
+        trace(TRACE_DEPART, lane, lane.path.position, lane.path.direction);
+}
+
+#endif

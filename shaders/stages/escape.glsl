@@ -1,0 +1,15 @@
+// A flight leaves the medium, into the background.
+#ifndef STAGE_ESCAPE_GLSL
+#define STAGE_ESCAPE_GLSL
+#include "../include/trace.glsl"
+
+void escape(VolumeParams v, inout Lane lane) {
+    Spectrum beta = lane.beta;
+    if (!NULL_FLIGHT && !goes_through())
+        beta *= depth_weight(v, beta, lane.walk.depth, false);
+    lane.path.radiance += beta * frame.background;
+    trace(TRACE_ESCAPE, lane, lane.path.position, lane.path.direction);
+    lane.todo = TODO_END;
+}
+
+#endif

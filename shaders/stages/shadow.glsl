@@ -1,0 +1,20 @@
+// A shadow ray has ended, at the light, at nothing left, or cut.
+#ifndef STAGE_SHADOW_GLSL
+#define STAGE_SHADOW_GLSL
+#include "../include/light.glsl"
+#include "../include/trace.glsl"
+
+void end_shadow(VolumeParams v, uint event, inout Lane lane) {
+    Spectrum T = event == EVENT_LEFT ? end_transmittance(v, lane.walk, lane.T) : to_spectrum(vec3(0.0));
+    Spectrum more = NEE == NEE_CACHED ? (T - lane.cached) / lane.chance : T;
+    lane.path.radiance += sun_contribution(v, frame.light, lane.path.direction, lit_beta(lane) * more);
+    lane.T = T;
+    trace(TRACE_LIGHT, lane, looking_from(lane), frame.light.direction);
+    lane.todo = after_looking(lane);
+    if (NEE == NEE_TENTATIVE) {
+        lane.walk = lane.flight;
+        lane.search.stage = SEARCH_OVER;
+    }
+}
+
+#endif

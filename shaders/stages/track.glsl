@@ -1,0 +1,61 @@
+// A segment goes on: steps of a flight or a shadow ray, until something happens or it is time for another look.
+#ifndef STAGE_TRACK_GLSL
+#define STAGE_TRACK_GLSL
+#include "../include/ahead.glsl"
+#include "../include/emission.glsl"
+#include "../include/lane.glsl"
+
+// Emission along what was just flown, by one sample: a track-length estimate.
+vec3 emission_along(VolumeParams v, Spectrum beta, float from, Walk w, PathState path, inout Rng rng,
+                    inout Tally tally) {
+    uvec4 words = next_words(rng);
+    float t = mix(from, w.t, to_uniform(words).x);
+    tally.lookups += 1u;
+    float sigma_t = v.sigma_t * density(v, w.origin + t * w.direction, to_tap(words));
+    vec3 Le = emitted_radiance(v.emission, path.position + (w.start + t) * path.direction);
+    return beta * (w.t - from) * sigma_t * to_spectrum(v.sigma_ratio) * Le;
+}
+
+// One step of the lane's segment, flight or shadow ray.
+uint step_segment(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum deposit, inout Tally tally) {
+    bool seeing = LOOKS && lane.todo == TODO_SEE;
+    uint event = EVENT_MOVING;
+    deposit = to_spectrum(vec3(0.0));
+    Collision c = Collision(0.0, 1.0, 0.0, 0.0, 0.0);
+    if ((NULL_FLIGHT && NULL_TRANSMITTANCE) || (seeing ? NULL_TRANSMITTANCE : NULL_FLIGHT))
+        event = next_collision(v, seeing, lane.walk, rng, tally, c);
+    if (seeing) {
+        bool opaque;
+        event = see(v, c, event, lane.walk, rng, lane.T, opaque, tally);
+        event = opaque ? EVENT_OPAQUE : event;
+    } else {
+        float from = lane.walk.t - c.flown; // a walk has gone its step already
+        Spectrum before = lane.beta;
+        event = fly(v, c, event, lane.walk, rng, lane.beta, deposit, tally);
+        bool matter = !NULL_FLIGHT || c.sigma_maj > 0.0; // else the cell is empty
+        if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS && !goes_through() && matter)
+            lane.path.radiance += emission_along(v, before, from, lane.walk, lane.path, rng, tally);
+    }
+    return after_step(event, lane.walk, lane.search);
+}
+
+// EVENT_MOVING: nothing has happened yet. `deposit`: see free_flight.glsl.
+uint track(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum deposit, inout Tally tally) {
+    deposit = to_spectrum(vec3(0.0));
+    uint event = EVENT_MOVING;
+    bool seeing = LOOKS && lane.todo == TODO_SEE;
+    if (SHAPE == SHAPE_MESH)
+        event = search_part(v, seeing ? looking_from(lane) : lane.path.position,
+                            seeing ? frame.light.direction : lane.path.direction, seeing, lane.walk, lane.search);
+    if (looks_ahead()) {
+        event = step_ahead(v, seeing, lane.walk, rng, lane.beta, lane.T, tally);
+    } else {
+        for (int k = 0; k < STEPS && event == EVENT_MOVING && !is_searching(lane.search); ++k) {
+            event = step_segment(v, lane, rng, deposit, tally);
+            tally.steps += 1u;
+        }
+    }
+    return event;
+}
+
+#endif
