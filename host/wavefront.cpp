@@ -48,9 +48,9 @@ bool is_empty(const shared::QueueHeader& header) {
 // without a word.
 constexpr std::uint32_t most_iterations = 65535;
 
-// Of all loops in a turn of the track pass, at most. Every step has up to four places for a sum over octaves, which all
-// lanes of a group pass under a mask: a flight's look-up, emission along it, and two of a shadow ray that marches in
-// several sets of samples.
+// Of all loops in a turn of the track pass that are not unrolled, at most. Every step has up to four places for a sum
+// over octaves, which all lanes of a group pass under a mask: a flight's look-up, emission along it, and two of a
+// shadow ray that marches in several sets of samples.
 std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
     constexpr std::uint32_t triangle = 2, node = 1 + (MESH_LEAF + 1) + MESH_LEAF * triangle;
     std::uint32_t iterations = 2 + (steps + 1);
@@ -63,7 +63,7 @@ std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
 
 // Turns of the track pass, and samples of a pixel that the sky pass loops over, whose loops stay below the limit.
 std::uint32_t longest_budget(const LoopSizes& loops, std::uint32_t steps) {
-    return std::min(most_iterations / turn_iterations(loops, steps), 1024u);
+    return std::clamp(most_iterations / turn_iterations(loops, steps), 1u, 1024u);
 }
 constexpr std::uint32_t longest_batch = most_iterations / 2;
 
@@ -82,7 +82,8 @@ Tuning tune(const Device& device, const LoopSizes& loops, const Tuning& wish) {
     tuning.slots = pick(wish.slots, device.is_cpu() ? 8192u : 1u << 18);
     tuning.lanes = pick(wish.lanes, device.is_cpu() ? 512u : 1u << 17);
     tuning.steps_per_look = pick(wish.steps_per_look, 4u);
-    tuning.budget = pick(wish.budget, longest_budget(loops, tuning.steps_per_look));
+    const std::uint32_t longest = longest_budget(loops, tuning.steps_per_look);
+    tuning.budget = std::min(pick(wish.budget, longest), longest);
     tuning.step_limit = pick(wish.step_limit, 1u << 26);
     tuning.most_batch = pick(wish.most_batch, longest_batch);
     tuning.most_film_bytes =

@@ -66,6 +66,7 @@ foreseen light off its mean ~ shaders/include/light_cache.glsl ~ hg_eval(v.g * v
 lattice a node off ~ shaders/include/lattice.glsl ~ uint i = lattice_index(which, node); ~ uint i = lattice_index(which, node) + 1u; ~ [light_cache]
 samples lost to a driver's loops ~ shaders/passes/sky.comp ~ if (hit || tally.paths < push.sample_end - push.sample_begin) { ~ if (hit) { ~ [determinism]
 no further part of a mesh ~ shaders/include/segment.glsl ~ event == EVENT_LEFT && search.stage == SEARCH_OVER; ~ false; ~ [closed_form]
+a flight searches on after its shadow ray ~ shaders/stages/shadow.glsl ~ lane.search.stage = SEARCH_OVER; ~ ; ~ [agreement],[determinism]
 a search laid aside begins anew ~ shaders/include/lane.glsl ~ lane.search = suspended[slot].search; ~ lane.search = begin_search(SEARCH_NEXT, 0.0); ~ [closed_form]
 octaves lost to a driver's loops ~ host/wavefront.cpp ~ iterations += 4 * steps * (loops.octaves + 1); ~ iterations += 2 * steps * loops.octaves; ~ [determinism]
 an output over an input by a link ~ host/file_uses.cpp ~ if (is_same_file(output.file, input.file)) ~ if (output.file == input.file) ~ no output is an input or another output
@@ -81,6 +82,11 @@ refresh_copy() {
     mkdir -p "$copy"
     local file
     while IFS= read -r -d '' file; do
+        if [ -L "$root/$file" ]; then # to a folder, as it may be
+            mkdir -p "$copy/$(dirname "$file")"
+            ln -sfn "$(readlink "$root/$file")" "$copy/$file"
+            continue
+        fi
         [ -f "$root/$file" ] || continue
         cmp -s "$root/$file" "$copy/$file" && continue
         mkdir -p "$copy/$(dirname "$file")"

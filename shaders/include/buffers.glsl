@@ -1,6 +1,7 @@
 // Every buffer, declared once.
 #ifndef BUFFERS_GLSL
 #define BUFFERS_GLSL
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
 

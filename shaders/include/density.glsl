@@ -70,7 +70,7 @@ float lookup_trilinear(GridParams g, int type, vec3 p) {
     vec3 f = p - base;
     ivec3 i = ivec3(base);
     float plane[2];
-    for (int x = 0; x < 2; ++x) {
+    [[unroll]] for (int x = 0; x < 2; ++x) {
         float low = mix(voxel(g, type, i + ivec3(x, 0, 0)), voxel(g, type, i + ivec3(x, 0, 1)), f.z);
         float high = mix(voxel(g, type, i + ivec3(x, 1, 0)), voxel(g, type, i + ivec3(x, 1, 1)), f.z);
         plane[x] = mix(low, high, f.y);

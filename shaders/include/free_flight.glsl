@@ -1,7 +1,6 @@
 // Free flights: where along the segment the next real collision is. One file per estimator, one switch.
 #ifndef FREE_FLIGHT_GLSL
 #define FREE_FLIGHT_GLSL
-#extension GL_EXT_control_flow_attributes : require
 #include "collision.glsl"
 #include "march.glsl"
 #include "voxels.glsl"

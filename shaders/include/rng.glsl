@@ -13,7 +13,8 @@
 //   tentative collision    e_x: next distance; y: event or roulette; tap: stochastic filtering
 //   step of a march        x: position in the step; y: roulette of a march through the medium
 //   emission along a step  x: position in the step; after the step's own draw; none in an empty cell
-//   shadow ray             e_x: first distance; y, z, select: telescoping's level, offset and residue
+//   shadow ray             e_x: first distance; y, z, select: telescoping's level, offset and residue; none is drawn
+//                          for one known in closed form
 //   light from the cache   x: whether a shadow ray corrects it
 //   scattering             e_x: next free flight; y, z: phase function; w: roulette; select
 #ifndef RNG_GLSL

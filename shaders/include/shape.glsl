@@ -23,7 +23,7 @@ Ray to_medium(VolumeParams v, vec3 position, vec3 direction) {
 bool intersect_box(Ray ray, vec3 low, vec3 high, out vec2 t) {
     t = vec2(0.0, FAR);
     bool hit = true;
-    for (int axis = 0; axis < 3; ++axis) {
+    [[unroll]] for (int axis = 0; axis < 3; ++axis) {
         float d = ray.direction[axis];
         float o = ray.origin[axis];
         bool parallel = abs(d) < 1.0e-30;

@@ -2,7 +2,6 @@
 // knows whom: exp of a noisy estimate is biased upward (Jensen). One file per estimator, one switch.
 #ifndef TRANSMITTANCE_GLSL
 #define TRANSMITTANCE_GLSL
-#extension GL_EXT_control_flow_attributes : require
 #include "collision.glsl"
 #include "march.glsl"
 #include "voxels.glsl"

@@ -21,10 +21,10 @@ vec4 voxel_polynomial(VolumeParams v, Walk w, float t_exit) {
     if (FILTER == FILTER_NEAREST)
         return vec4(voxel(v.density, GRID_TYPE, w.cell), 0.0, 0.0, 0.0);
     float corner[8];
-    for (int i = 0; i < 8; ++i)
+    [[unroll]] for (int i = 0; i < 8; ++i)
         corner[i] = voxel(v.density, GRID_TYPE, w.cell + ivec3(i >> 2, i >> 1 & 1, i & 1));
     float f[4];
-    for (int i = 0; i < 4; ++i) {
+    [[unroll]] for (int i = 0; i < 4; ++i) {
         float t = mix(w.t, t_exit, float(i) / 3.0);
         vec3 p = clamp(w.origin + t * w.direction - vec3(w.cell), vec3(0.0), vec3(1.0));
         vec4 edges = mix(vec4(corner[0], corner[2], corner[4], corner[6]),

@@ -1,5 +1,5 @@
-// Sort the batch's pixels: one whose every sample misses the medium gets its background here and now, in registers;
-// the others are listed as work for paths. So the empty part of a picture costs no path, no queue and no waiting.
+// Sort the batch's pixels: one whose every sample misses the medium, or a mesh's box, gets its background here and now, in
+// registers; the others are listed as work for paths. So the empty part of a picture costs no path, no queue and no waiting.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "../include/pass.glsl"

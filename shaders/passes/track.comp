@@ -49,9 +49,10 @@ void turn(VolumeParams v, inout Lane lane, inout Rng rng, inout FilmPixel sums, 
         depart(v, lane, rng, tally);
     Spectrum deposit = to_spectrum(vec3(0.0));
     uint event = EVENT_MOVING;
+    uint steps = tally.steps;
     if (lane.todo == TODO_FLY || lane.todo == TODO_SEE)
         event = track(v, lane, rng, deposit, tally);
-    lane.steps += is_searching(lane.search) ? 0u : STEPS;
+    lane.steps += tally.steps - steps;
     arrive(v, event, deposit, lane, rng, tally);
     if (lane.todo == TODO_END)
         accumulate(sums, lane, tally);

@@ -12,7 +12,7 @@
 #define BINDING_QUEUES 6      // QueueHeader per queue
 #define BINDING_FILM 7        // FilmPixel per pixel of the crop
 #define BINDING_COUNTERS 8    // Counters
-#define BINDING_WORK 9        // pixels of the batch that meet the medium
+#define BINDING_WORK 9        // pixels of the batch that may meet the medium
 #define BINDING_BLACKBODY 10  // vec3, BLACKBODY_ENTRIES colours evenly spaced in temperature
 #define BINDING_BETAS 11      // path throughput per slot: float, or vec3 in a medium of chromatic coefficients
 #define BINDING_CONTROLS 12   // ControlCell per majorant cell

@@ -94,7 +94,7 @@ struct FilmPixel {
 // What happened since the host last read them; 32 bits hold one submit's worth.
 struct Counters {
     uint next_work;  // pixels of the batch's work list handed out so far
-    uint work_count; // pixels in that list: those in which a sample meets the medium
+    uint work_count; // pixels in that list: those in which a sample may meet the medium
     uint paths;      // finished, including those that never met the medium
     uint real_collisions;
     uint null_collisions;

@@ -7,7 +7,7 @@
 #include "../include/trace.glsl"
 
 // Light at a point that an interaction of throughput `lit` there scatters into the path. Known at once in a homogeneous
-// medium, else the lane goes to look, or, by chance, makes do with the cache; and then does as `next` says.
+// sphere or box, else the lane goes to look, or, by chance, makes do with the cache; and then does as `next` says.
 void gather_light(VolumeParams v, vec3 position, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
     if (LOOKS) {
         lane.position = position;
