@@ -124,6 +124,14 @@ TEST_CASE("a checkpoint is continued by its own render alone", "[gpu][checkpoint
         recipe.value = [](glm::ivec3 voxel) { return cloud_noise(voxel + 1); };
         other.volumes.front().shape = write_grid(recipe);
     }
+    SECTION("of a single voxel, far below its majorant") {
+        static glm::ivec3 faint;
+        for (faint = {0, 0, -19}; cloud_noise(faint) == 0.0f || cloud_noise(faint) > 0.2f;)
+            REQUIRE(++faint.z <= 10);
+        GridRecipe recipe = cloud_grid();
+        recipe.value = [](glm::ivec3 voxel) { return (voxel == faint ? 0.5f : 1.0f) * cloud_noise(voxel); };
+        other.volumes.front().shape = write_grid(recipe);
+    }
     SECTION("of the samples' range") {
         rest.sample_offset = 1;
     }

@@ -24,12 +24,17 @@ bool can_test() {
     return test_device().has_addresses();
 }
 
-std::vector<DensityInput> points_around(const TestGrid& grid, int count) {
+// Every voxel, that of the last word of each window too, and points anywhere.
+std::vector<DensityInput> points_in(const TestGrid& grid, int count) {
     std::mt19937 engine(8);
     std::uniform_real_distribution<float> uniform;
     const auto random = [&] { return glm::vec3(uniform(engine), uniform(engine), uniform(engine)); };
     const glm::vec3 low = glm::vec3(grid.voxel_min) - 2.0f, high = glm::vec3(grid.voxel_max) + 2.0f;
     std::vector<DensityInput> inputs;
+    for (int z = grid.voxel_min.z; z <= grid.voxel_max.z; ++z)
+        for (int y = grid.voxel_min.y; y <= grid.voxel_max.y; ++y)
+            for (int x = grid.voxel_min.x; x <= grid.voxel_max.x; ++x)
+                inputs.push_back({glm::vec3(x, y, z), random()});
     for (int i = 0; i < count; ++i)
         inputs.push_back({low + random() * (high - low), random()});
     return inputs;
@@ -47,7 +52,7 @@ TEST_CASE("lookups in windows equal those in one buffer", "[gpu][windows][densit
     const Storage storage = GENERATE(Storage::float32, Storage::fp4, Storage::fp8, Storage::fp16, Storage::fpn);
     const TestGrid grid = make_test_grid(cloud_grid(storage));
     TestScene scene = make_test_scene(grid.volume, {}, Filter::trilinear);
-    const std::vector<DensityInput> inputs = points_around(grid, 5000);
+    const std::vector<DensityInput> inputs = points_in(grid, 5000);
     const auto one = KernelRunner(lookup_spv, scene.specialization, scene.kernel).run<DensityOutput>(inputs);
     scene.kernel.most_grid_bytes = 1;
     const auto many = KernelRunner(lookup_windows_spv, scene.specialization, scene.kernel).run<DensityOutput>(inputs);

@@ -97,3 +97,20 @@ TEST_CASE("few collisions look at the light, and the picture is the same whateve
     job.tuning.budget = 3; // laid aside amid shadow rays
     CHECK(same_bits(result.film, render_here(scene, 3, job).film));
 }
+
+// Columns along the light, every other one empty, and thinner than the lattice's cells: where light is scattered the
+// cache has exp(-d) for what is exp(-2 d). With little to contribute few collisions look, and those correct it for all.
+TEST_CASE("a cache that is wrong everywhere is corrected by the few that look", "[gpu][light_cache]") {
+    GridRecipe columns{{0, 0, 0}, {319, 15, 15}, nullptr, Storage::float32};
+    columns.value = [](glm::ivec3 voxel) { return voxel.x / 3 % 2 == 0 ? 2.0f : 0.0f; };
+    columns.linear = glm::dmat3(0.05);
+    columns.translation = -center_of(columns);
+    Scene scene = scene_of(medium(write_grid(columns), 2.0, 0.2), 4.0, 24);
+    scene.lights = {{{0.0, 1.0, 0.0}, Rgb(3.0, 2.0, 1.0)}};
+    scene.settings.spp = 256;
+    scene.settings.integrator = "cachedRatioTracking";
+    const RenderResult cached = render_here(scene, 3);
+    CHECK(2 * cached.counts.shadow_rays < cached.counts.real_collisions);
+    scene.settings.integrator = "ratioTracking";
+    CHECK_AGREEMENT(agree(cached.film, render_here(scene, 4).film, "columns of light"));
+}

@@ -67,7 +67,7 @@ lattice a node off ~ shaders/include/lattice.glsl ~ uint i = lattice_index(which
 samples lost to a driver's loops ~ shaders/passes/sky.comp ~ if (hit || tally.paths < push.sample_end - push.sample_begin) { ~ if (hit) { ~ [determinism]
 no further part of a mesh ~ shaders/include/segment.glsl ~ event == EVENT_LEFT && search.stage == SEARCH_OVER; ~ false; ~ [closed_form]
 a flight searches on after its shadow ray ~ shaders/stages/shadow.glsl ~ lane.search.stage = SEARCH_OVER; ~ ; ~ [agreement],[determinism]
-a search laid aside begins anew ~ shaders/include/lane.glsl ~ lane.search = suspended[slot].search; ~ lane.search = begin_search(SEARCH_NEXT, 0.0); ~ [closed_form]
+a search laid aside forgets its crossings ~ shaders/include/lane.glsl ~ lane.search = suspended[slot].search; ~ lane.search = suspended[slot].search;\n        lane.search.first = FAR; ~ [closed_form]
 octaves lost to a driver's loops ~ host/wavefront.cpp ~ iterations += 4 * steps * (loops.octaves + 1); ~ iterations += 2 * steps * loops.octaves; ~ [determinism]
 an output over an input by a link ~ host/file_uses.cpp ~ if (is_same_file(output.file, input.file)) ~ if (output.file == input.file) ~ no output is an input or another output
 a checkpoint written over ~ host/checkpoint_file.cpp ~ if (!options_.resume && is_checkpoint(path_)) ~ if (false) ~ [checkpoint]
