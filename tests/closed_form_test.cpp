@@ -283,3 +283,20 @@ TEST_CASE("light shines through a row of a hundred and fifty bodies", "[gpu][har
     CHECK_AGREEMENT(
         agree_with_escapes(render_here(scene, 21).film, everywhere(scene, escapes), Rgb(0.0), seen, "a row of bodies"));
 }
+
+// Shadow rays from null collisions are sent amid a flight, which then goes on to the bodies behind.
+TEST_CASE("flights go on to the next body after a shadow ray", "[gpu][mesh][image]") {
+    const Mesh bodies =
+        join(make_box({-1.0, -1.0, -0.5}, {1.0, 1.0, 0.0}, 1), make_box({-1.0, -1.0, -2.0}, {1.0, 1.0, -1.0}, 1));
+    Scene scene = scene_of(medium(write_mesh(bodies), 1.0, 0.8), 1.6, 16);
+    scene.lights = {{{0.0, 1.0, 0.0}, Rgb(3.0)}};
+    scene.background = sky;
+    scene.settings.spp = 256;
+    scene.settings.integrator = "ratioTracking";
+    scene.settings.majorant_scale = 2.0;
+    scene.settings.choices = {SCATTERING_MULTIPLE, FREE_FLIGHT_DELTA, TRANSMITTANCE_RATIO, NEE_TENTATIVE, {}};
+    const RenderResult tentative = render_here(scene, 5);
+    CHECK(tentative.counts.shadow_rays > tentative.counts.real_collisions);
+    scene.settings.choices.nee = NEE_COLLISIONS;
+    CHECK_AGREEMENT(agree(tentative.film, render_here(scene, 6).film, "two bodies"));
+}

@@ -52,7 +52,7 @@ rays begin at far eyes ~ host/scene_upload.cpp ~ return depth > 16.0 * radius ? 
 far indices stay far ~ host/scene_upload.cpp ~ longest(middle) < std::max(4096, 4 * size) ~ longest(middle) >= -size ~ [precision]
 faces a millionth too far ~ shaders/include/majorant.glsl ~ return max(w.t, min( ~ return max(w.t, 1.000001 * min( ~ [precision]
 thin media at 24 bits ~ shaders/include/rng.glsl ~ word < small ? series ~ false ? series ~ [rng]
-window a word off ~ shaders/include/grid.glsl ~ frame_block.grid_windows[i >> WINDOW_BITS] ~ frame_block.grid_windows[(i + 1u) >> WINDOW_BITS] ~ [windows]
+window some words off ~ shaders/include/grid.glsl ~ frame_block.grid_windows[i >> WINDOW_BITS] ~ frame_block.grid_windows[(i + 64u) >> WINDOW_BITS] ~ [windows]
 pixels lost at a checkpoint ~ host/wavefront.cpp ~ first * sizeof(std::uint32_t)); ~ 0 * first); ~ [checkpoint]
 fingerprint without grids ~ host/checkpoint.cpp ~ fingerprint.add(field->bytes.span()); ~ ; ~ [checkpoint]
 huge samples kept ~ shaders/include/film.glsl ~ 281474976710656.0 ~ 3.0e38 ~ [command]
@@ -61,12 +61,12 @@ numbers for steps ahead not put back ~ shaders/include/ahead.glsl ~ rng.draw += 
 a step ahead judged by the next density ~ shaders/include/ahead.glsl ~ Collision(sigma_t[k], ~ Collision(sigma_t[(k + 1) % STEPS], ~ steps found ahead*
 roulette in closed form ~ shaders/include/free_flight/analytic.glsl ~ w.t = event == ~ beta = march_roulette(0.0, beta);\n    w.t = event == ~ [closed_form]
 march roulette weight missing ~ shaders/include/march.glsl ~ MARCH_ROULETTE / m : 0.0 ~ 1.0 : 0.0 ~ [closed_form]
-cache corrected without its chance ~ shaders/stages/shadow.glsl ~ (T - lane.cached) / lane.chance ~ (T - lane.cached) ~ [agreement]
+cache corrected without its chance ~ shaders/stages/shadow.glsl ~ (T - lane.cached) / lane.chance ~ (T - lane.cached) ~ [light_cache]
 foreseen light off its mean ~ shaders/include/light_cache.glsl ~ hg_eval(v.g * v.g, ~ hg_eval(v.g, ~ [agreement]
 lattice a node off ~ shaders/include/lattice.glsl ~ uint i = lattice_index(which, node); ~ uint i = lattice_index(which, node) + 1u; ~ [light_cache]
 samples lost to a driver's loops ~ shaders/passes/sky.comp ~ if (hit || tally.paths < push.sample_end - push.sample_begin) { ~ if (hit) { ~ [determinism]
 no further part of a mesh ~ shaders/include/segment.glsl ~ event == EVENT_LEFT && search.stage == SEARCH_OVER; ~ false; ~ [closed_form]
-a flight searches on after its shadow ray ~ shaders/stages/shadow.glsl ~ lane.search.stage = SEARCH_OVER; ~ ; ~ [agreement],[determinism]
+a flight stays in its part after a shadow ray ~ shaders/stages/shadow.glsl ~ lane.search.stage = SEARCH_OVER; ~ ; ~ flights go on to the next body*
 a search laid aside forgets its crossings ~ shaders/include/lane.glsl ~ lane.search = suspended[slot].search; ~ lane.search = suspended[slot].search;\n        lane.search.first = FAR; ~ [closed_form]
 octaves lost to a driver's loops ~ host/wavefront.cpp ~ iterations += 4 * steps * (loops.octaves + 1); ~ iterations += 2 * steps * loops.octaves; ~ [determinism]
 an output over an input by a link ~ host/file_uses.cpp ~ if (is_same_file(output.file, input.file)) ~ if (output.file == input.file) ~ no output is an input or another output
