@@ -4,11 +4,10 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "estimator_traits.h"
 #include "integrators.h"
 #include "scene_hash.h"
 #include "scene_xml.h"
-#include "shared/bindings.h"
+#include "shared/estimators.h"
 
 namespace vkvol {
 
@@ -50,8 +49,7 @@ bool is_unbiased(const Estimator& estimator) {
 }
 
 bool marches(const Method& method) {
-    return flight_has(method.free_flight, TRAIT_MARCH) ||
-           (method.nee != NEE_NONE && transmittance_has(method.transmittance, TRAIT_MARCH));
+    return method.flights_have(TRAIT_MARCH) || method.shadow_rays_have(TRAIT_MARCH);
 }
 
 // Of estimators of one picture: whether kernels and their parameters are the same. Choices that nothing in the scene

@@ -5,10 +5,9 @@
 
 #include "blackbody.h"
 #include "error.h"
-#include "estimator_traits.h"
 #include "pilot_paths.h"
 #include "render_limits.h"
-#include "shared/bindings.h"
+#include "shared/estimators.h"
 
 namespace vkvol {
 
@@ -81,10 +80,7 @@ void load_temperature(const Volume& volume, const GridFile& file, FieldCache* ke
 // Walks over cells, of flights and of shadow rays, pass empty ones together; but not those voxel by voxel, nor over
 // residuals.
 bool leaps(const Method& method) {
-    const bool flights = flight_has(method.free_flight, TRAIT_CELLS);
-    const bool shadows =
-        method.nee == NEE_NONE || !transmittance_has(method.transmittance, TRAIT_VOXELS | TRAIT_CONTROL);
-    return flights && shadows;
+    return method.flights_have(TRAIT_CELLS) && !method.shadow_rays_have(TRAIT_VOXELS | TRAIT_CONTROL);
 }
 
 PilotScene pilot_scene(const Scene& scene, const Method& method, const DensityField& field, double sigma_t) {
@@ -115,8 +111,8 @@ void load_grid(const Scene& scene, const Volume& volume, const Method& method, c
     const double voxel_sigma_t = largest(world_sigma_t(volume, &field)) * field.voxel_size();
     loaded.majorants = choose_majorant_grid(field, pilot_scene(scene, method, field, voxel_sigma_t * scale),
                                             scene.settings.majorant_cell);
-    const bool decomposes = flight_has(method.free_flight, TRAIT_CONTROL);
-    if (decomposes || (method.nee != NEE_NONE && transmittance_has(method.transmittance, TRAIT_CONTROL)))
+    const bool decomposes = method.flights_have(TRAIT_CONTROL);
+    if (decomposes || method.shadow_rays_have(TRAIT_CONTROL))
         loaded.controls = make_controls(field, *loaded.majorants, decomposes ? 0.0 : voxel_sigma_t);
     for (float& bound : loaded.majorants->bounds)
         bound *= static_cast<float>(scale);

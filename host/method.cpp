@@ -11,6 +11,14 @@
 
 namespace vkvol {
 
+bool Method::flights_have(int traits) const {
+    return flight_has(free_flight, traits);
+}
+
+bool Method::shadow_rays_have(int traits) const {
+    return nee != NEE_NONE && transmittance_has(transmittance, traits);
+}
+
 namespace {
 
 // One method in the making: each rule builds on those before.
@@ -100,7 +108,7 @@ void Resolution::choose_nee() {
         // A march with single scattering that sends no shadow rays would not scatter at all: only if told so.
         if (!choices_.nee || nee == NEE_COLLISIONS || nee == NEE_CACHED)
             nee = NEE_TENTATIVE;
-    } else if (nee == NEE_TENTATIVE && !flight_has(method_.free_flight, TRAIT_NULL)) {
+    } else if (nee == NEE_TENTATIVE && !method_.flights_have(TRAIT_NULL)) {
         if (choices_.nee)
             warn("these flights have no null collisions; shadow rays start at real ones");
         nee = NEE_COLLISIONS;
@@ -143,7 +151,7 @@ void Resolution::choose_emission() {
         return;
     if (is_through(method_)) {
         method_.emission_at = EMISSION_AT_COLLISIONS; // the march adds it anyway
-    } else if (chromatic_ && !flight_has(method_.free_flight, TRAIT_NULL)) {
+    } else if (chromatic_ && !method_.flights_have(TRAIT_NULL)) {
         warn("emission is added at collisions: along these flights it would be biased, since the extinction differs "
              "between the colour channels; flight spectral adds it at steps");
         method_.emission_at = EMISSION_AT_COLLISIONS;
@@ -153,9 +161,8 @@ void Resolution::choose_emission() {
 // The stochastic filter is exact wherever the density enters linearly, which it does in null-collision estimators.
 void Resolution::choose_filter() {
     const int transmittance = method_.transmittance;
-    const bool linear_shadows = method_.nee == NEE_NONE || (transmittance != TRANSMITTANCE_REGULAR &&
-                                                            !transmittance_has(transmittance, TRAIT_MARCH));
-    const bool linear = flight_has(method_.free_flight, TRAIT_NULL) && linear_shadows;
+    const bool linear_shadows = !method_.shadow_rays_have(TRAIT_VOXELS | TRAIT_MARCH);
+    const bool linear = method_.flights_have(TRAIT_NULL) && linear_shadows;
     if (field_ != FIELD_GRID || linear) {
         method_.filter = scene_.settings.filter.value_or(Filter::stochastic);
         return;
@@ -163,7 +170,7 @@ void Resolution::choose_filter() {
     method_.filter = scene_.settings.filter.value_or(Filter::trilinear);
     if (method_.filter != Filter::stochastic)
         return;
-    const bool flight = !flight_has(method_.free_flight, TRAIT_NULL);
+    const bool flight = !method_.flights_have(TRAIT_NULL);
     const std::string name = flight ? axes()[1].names[std::size_t(method_.free_flight)] + " flights"
                                     : axes()[2].names[std::size_t(transmittance)] + " transmittance";
     warn(fmt::format("the filter is trilinear: {} would be biased by a stochastic one, since the mean of an "
@@ -179,16 +186,15 @@ void Resolution::find_biases() {
         reasons.push_back(reason);
     };
     // At constant density a march knows its optical depths exactly, but not the light between its sample points.
-    if (flight_has(method_.free_flight, TRAIT_MARCH) && field_ != FIELD_CONSTANT)
+    if (method_.flights_have(TRAIT_MARCH) && field_ != FIELD_CONSTANT)
         add(bias_flight_steps, "flights take the density of one point for that of a whole step");
-    else if (flight_has(method_.free_flight, TRAIT_MARCH) && is_through(method_) && method_.nee != NEE_NONE)
+    else if (method_.flights_have(TRAIT_MARCH) && is_through(method_) && method_.nee != NEE_NONE)
         add(bias_flight_steps, "the march takes the light of one point for that of a whole step");
-    if (method_.nee != NEE_NONE && transmittance_has(method_.transmittance, TRAIT_MARCH) &&
-        method_.transmittance != TRANSMITTANCE_TELESCOPING && field_ != FIELD_CONSTANT)
+    if (method_.shadow_rays_have(TRAIT_MARCH) && method_.transmittance != TRANSMITTANCE_TELESCOPING &&
+        field_ != FIELD_CONSTANT)
         add(bias_shadow_steps, "shadow rays take the density of one point for that of a whole step");
     // The other null-collision estimators weight what exceeds the majorant.
-    const bool needs_majorant = flight_has(method_.free_flight, TRAIT_BOUND) ||
-                                (method_.nee != NEE_NONE && transmittance_has(method_.transmittance, TRAIT_BOUND));
+    const bool needs_majorant = method_.flights_have(TRAIT_BOUND) || method_.shadow_rays_have(TRAIT_BOUND);
     if (needs_majorant && scene_.settings.majorant_scale < 1.0)
         add(bias_majorant, "the majorant is scaled below the density");
     method_.biased = fmt::format("{}", fmt::join(reasons, "; "));
@@ -199,7 +205,7 @@ void Resolution::find_biases() {
 bool is_through(const Method& method) {
     if (method.scattering == SCATTERING_NONE && method.free_flight == FREE_FLIGHT_ANALYTIC)
         return true;
-    return method.scattering != SCATTERING_MULTIPLE && flight_has(method.free_flight, TRAIT_MARCH);
+    return method.scattering != SCATTERING_MULTIPLE && method.flights_have(TRAIT_MARCH);
 }
 
 int density_kind(const Scene& scene) {

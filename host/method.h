@@ -29,6 +29,10 @@ struct Method {
     std::vector<std::string> warnings; // what was chosen explicitly and gave way
     unsigned biases = bias_none;       // sum of Bias
     std::string biased;                // why, in words; empty if unbiased
+
+    // Any of `traits`, TRAIT_... of shaders/shared/estimators.h. Where no shadow rays are sent they have none.
+    bool flights_have(int traits) const;
+    bool shadow_rays_have(int traits) const;
 };
 
 // A march (or, without scattering, one analytic step) through the whole medium that samples no collision.

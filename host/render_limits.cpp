@@ -7,9 +7,8 @@
 #include <numeric>
 
 #include "error.h"
-#include "estimator_traits.h"
 #include "noise.h"
-#include "shared/bindings.h"
+#include "shared/estimators.h"
 
 namespace vkvol {
 
@@ -58,9 +57,7 @@ double majorant_depth(const Scene& scene, const LoadedVolume& loaded, double dia
 }
 
 void check_patience(const Scene& scene, const Method& method, double depth) {
-    const bool shadows = method.nee != NEE_NONE;
-    const bool null_collisions =
-        flight_has(method.free_flight, TRAIT_NULL) || (shadows && transmittance_has(method.transmittance, TRAIT_NULL));
+    const bool null_collisions = method.flights_have(TRAIT_NULL) || method.shadow_rays_have(TRAIT_NULL);
     if (null_collisions && !(depth <= most_collisions))
         throw InputError(
             fmt::format("a ray through the medium meets {:.3g} tentative collisions, and would never get "

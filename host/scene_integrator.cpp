@@ -3,24 +3,11 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "estimator_traits.h"
 #include "integrators.h"
 #include "scene_reader.h"
-#include "shared/bindings.h"
+#include "shared/estimators.h"
 
 namespace vkvol {
-
-namespace {
-
-bool marches(const Method& method) {
-    return flight_has(method.free_flight, TRAIT_MARCH);
-}
-
-bool marches_shadow_rays(const Method& method) {
-    return method.nee != NEE_NONE && transmittance_has(method.transmittance, TRAIT_MARCH);
-}
-
-} // namespace
 
 // A request from the command line takes the place of the scene's, with all its choices.
 void SceneReader::read_integrator(RenderSettings& settings) const {
@@ -114,15 +101,15 @@ void SceneReader::warn_about_steps(const Scene& scene, const Method& method) con
     old.allow({"min", "max", "multiplier"});
     for (const char* name : {"min", "max", "multiplier"})
         old.attribute_number(name, 0.0, not_negative);
-    const bool takes_steps = marches(method) || marches_shadow_rays(method);
+    const bool takes_steps = method.flights_have(TRAIT_MARCH) || method.shadow_rays_have(TRAIT_MARCH);
     if (old.exists())
         old.warn(takes_steps ? fmt::format("stepSize is without effect: <march> has the steps of {}", method.integrator)
                              : "stepSize is without effect: free flights are sampled exactly, without steps");
 
     const XmlElement march = one("march");
-    const bool shadows = marches_shadow_rays(method);
+    const bool shadows = method.shadow_rays_have(TRAIT_MARCH);
     const bool step = method.free_flight == FREE_FLIGHT_MARCH || (shadows && !march.has("shadowStep"));
-    const bool jitter = marches(method) || (shadows && method.transmittance == TRANSMITTANCE_MARCH);
+    const bool jitter = method.flights_have(TRAIT_MARCH) || (shadows && method.transmittance == TRANSMITTANCE_MARCH);
     for (const auto& [name, used] : {std::pair{"step", step}, std::pair{"shadowStep", shadows},
                                      std::pair{"opticalStep", method.free_flight == FREE_FLIGHT_ADAPTIVE},
                                      std::pair{"jitter", jitter}, std::pair{"unit", takes_steps}})

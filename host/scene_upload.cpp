@@ -7,9 +7,9 @@
 
 #include "camera_rays.h"
 #include "error.h"
-#include "estimator_traits.h"
 #include "light_cache.h"
 #include "noise.h"
+#include "shared/estimators.h"
 #include "shared/items.h"
 
 namespace vkvol {
@@ -148,7 +148,7 @@ shared::VolumeParams make_volume(const Scene& scene, const LoadedVolume& loaded,
         params.cell_dims = loaded.majorants->dims;
         params.cell_size = static_cast<float>(loaded.majorants->cell);
     }
-    fill_density(volume, scene.settings.majorant_scale, flight_has(method.free_flight, TRAIT_CONTROL), params);
+    fill_density(volume, scene.settings.majorant_scale, method.flights_have(TRAIT_CONTROL), params);
     if (volume.noise)
         params.noise = make_noise(*volume.noise, origin);
     params.bvh_nodes = loaded.bvh ? static_cast<std::uint32_t>(loaded.bvh->nodes.size()) : 0;
@@ -262,7 +262,7 @@ shared::MarchParams make_march(const Scene& scene, const LoadedVolume& loaded, c
     const double diagonal = diagonal_of(scene, loaded);
     if (method.free_flight == FREE_FLIGHT_MARCH)
         check_step("step", step, diagonal, unit);
-    if (method.nee != NEE_NONE && transmittance_has(method.transmittance, TRAIT_MARCH))
+    if (method.shadow_rays_have(TRAIT_MARCH))
         check_step("shadowStep", shadow_step, diagonal, unit);
     shared::MarchParams params{};
     params.step = static_cast<float>(step);

@@ -182,7 +182,7 @@ TEST_CASE("a bench that is too short claims nothing", "[gpu][bench]") {
                                              "ratioTracking:flight=delta,ratioTracking:flight=decomposition",
                                              size, seconds));
     CAPTURE(run.text);
-    // If it is much faster it may judge after all; two that are one kernel but for a trait differ by nothing then.
+    // If it is faster just then it may judge after all, but not tell the two apart: their pictures are as good.
     if (run.code != exit_done)
         CHECK_THAT(run.text, Contains("--time is too short for a single render"));
     else if (run.text.find("too short to judge") != std::string::npos)

@@ -43,7 +43,7 @@ class Build:
             libraries = [word for word in words if re.search(r"\.(so[.\d]*|a)$", word) or re.match(r"-l\w", word)]
             for word in words:
                 if word in libraries:
-                    self.use(self.library(word), "library, linked")
+                    self.use(self.linked_file(word), "library, linked")
                 elif word.startswith("/") and os.access(word, os.X_OK) and not os.path.isdir(word) and \
                         os.path.basename(word) not in self.launchers():
                     self.call(word, "the build")
@@ -61,7 +61,7 @@ class Build:
             if name in needed:
                 self.use(path, f"library, loaded by {binary.name}")
 
-    def library(self, word):
+    def linked_file(self, word):
         if not word.startswith("-l"):
             return word
         for ending in (".so", ".a"):
