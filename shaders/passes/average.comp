@@ -1,11 +1,11 @@
 // The medium's density around each node of the lattice: the mean over eight points of the cell about it, one in each octant.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "../include/pass.glsl"
+#include "lib/pass.glsl"
 
-#include "../include/density.glsl"
-#include "../include/lattice.glsl"
-#include "../include/rng.glsl"
+#include "field/density.glsl"
+#include "lights/lattice.glsl"
+#include "lib/rng.glsl"
 
 void main() {
     uint i = gl_GlobalInvocationID.x;

@@ -1,7 +1,7 @@
 // Begin a batch: every slot is free, and no work is listed yet.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "../include/pass.glsl"
+#include "lib/pass.glsl"
 
 void main() {
     uint slot = gl_GlobalInvocationID.x;

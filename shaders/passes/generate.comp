@@ -1,10 +1,10 @@
 // Give each free slot the next pixel on the work list.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "../include/pass.glsl"
+#include "lib/pass.glsl"
 
-#include "../include/camera.glsl"
-#include "../include/queue.glsl"
+#include "sensors/camera.glsl"
+#include "lib/queue.glsl"
 
 // The next pixel of the work list, or NO_PIXEL.
 uint take_pixel() {

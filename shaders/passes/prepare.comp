@@ -1,7 +1,7 @@
 // Fix what the pass that consumes a queue will see, and turn it into that pass's dispatch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "../include/pass.glsl"
+#include "lib/pass.glsl"
 
 void main() {
     if (gl_GlobalInvocationID.x != 0u)

@@ -2,10 +2,10 @@
 // cell. It need not be exact: estimators that use it correct it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "../include/pass.glsl"
+#include "lib/pass.glsl"
 
-#include "../include/lattice.glsl"
-#include "../include/shape.glsl"
+#include "lights/lattice.glsl"
+#include "shapes/shape.glsl"
 
 const float DARK = 20.0; // deeper than this no light is seen, and none is looked for
 

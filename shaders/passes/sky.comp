@@ -2,11 +2,11 @@
 // registers; the others are listed as work for paths. So the empty part of a picture costs no path, no queue and no waiting.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "../include/pass.glsl"
+#include "lib/pass.glsl"
 
-#include "../include/camera.glsl"
-#include "../include/film.glsl"
-#include "../include/interval.glsl"
+#include "sensors/camera.glsl"
+#include "film/film.glsl"
+#include "lib/interval.glsl"
 
 void main() {
     uint pixel = push.pixel_begin + gl_GlobalInvocationID.x;

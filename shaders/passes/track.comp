@@ -11,16 +11,16 @@
 // depends on where that was.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "../include/pass.glsl"
+#include "lib/pass.glsl"
 
-#include "../include/queue.glsl"
-#include "../stages/accumulate.glsl"
-#include "../stages/collide.glsl"
-#include "../stages/depart.glsl"
-#include "../stages/escape.glsl"
-#include "../stages/generate.glsl"
-#include "../stages/shadow.glsl"
-#include "../stages/track.glsl"
+#include "lib/queue.glsl"
+#include "stages/accumulate.glsl"
+#include "stages/collide.glsl"
+#include "stages/depart.glsl"
+#include "stages/escape.glsl"
+#include "stages/generate.glsl"
+#include "stages/shadow.glsl"
+#include "stages/track.glsl"
 
 const uint BURST = 16u; // turns: a lane without a pixel waits for half as many
 

@@ -1,7 +1,7 @@
 // What estimators have in common, a row each: host and kernels ask for traits, never for the order of ids.
 #ifndef SHARED_ESTIMATORS_H
 #define SHARED_ESTIMATORS_H
-#include "bindings.h"
+#include "shared/constants.h"
 
 #define TRAIT_NULL 1     // collisions of the majorant, some of them null
 #define TRAIT_CELLS 2    // goes from majorant cell to majorant cell

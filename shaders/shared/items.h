@@ -1,7 +1,7 @@
 // What lives in device buffers between passes.
 #ifndef SHARED_ITEMS_H
 #define SHARED_ITEMS_H
-#include "prologue.h"
+#include "shared/prologue.h"
 
 SHARED_BEGIN
 

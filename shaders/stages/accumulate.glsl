@@ -1,8 +1,8 @@
 // A path is over: its radiance is a sample of its pixel, and the next sample's turn.
 #ifndef STAGE_ACCUMULATE_GLSL
 #define STAGE_ACCUMULATE_GLSL
-#include "../include/film.glsl"
-#include "../include/trace.glsl"
+#include "film/film.glsl"
+#include "lib/trace.glsl"
 
 void accumulate(inout FilmPixel sums, inout Lane lane, inout Tally tally) {
     trace(TRACE_END, lane, lane.path.position, lane.path.direction);

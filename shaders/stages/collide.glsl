@@ -1,10 +1,10 @@
 // A flight meets matter.
 #ifndef STAGE_COLLIDE_GLSL
 #define STAGE_COLLIDE_GLSL
-#include "../include/emission.glsl"
-#include "../include/light.glsl"
-#include "../include/light_cache.glsl"
-#include "../include/trace.glsl"
+#include "field/emission.glsl"
+#include "lights/light.glsl"
+#include "lights/light_cache.glsl"
+#include "lib/trace.glsl"
 
 // Light at a point that an interaction of throughput `lit` there scatters into the path. Known at once in a homogeneous
 // sphere or box, else the lane goes to look, or, by chance, makes do with the cache; and then does as `next` says.

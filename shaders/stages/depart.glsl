@@ -1,8 +1,8 @@
 // A segment begins: a flight from the camera or from a vertex, where the path scatters first, or a shadow ray.
 #ifndef STAGE_DEPART_GLSL
 #define STAGE_DEPART_GLSL
-#include "../include/light_cache.glsl"
-#include "../include/trace.glsl"
+#include "lights/light_cache.glsl"
+#include "lib/trace.glsl"
 
 // Russian roulette on the throughput: unbiased, survivors are raised to the threshold.
 bool survives(inout Spectrum beta, float u) {

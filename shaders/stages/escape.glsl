@@ -1,7 +1,7 @@
 // A flight leaves the medium, into the background.
 #ifndef STAGE_ESCAPE_GLSL
 #define STAGE_ESCAPE_GLSL
-#include "../include/trace.glsl"
+#include "lib/trace.glsl"
 
 void escape(VolumeParams v, inout Lane lane) {
     Spectrum beta = lane.beta;

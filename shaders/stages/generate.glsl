@@ -1,8 +1,8 @@
 // A path begins, at the camera.
 #ifndef STAGE_GENERATE_GLSL
 #define STAGE_GENERATE_GLSL
-#include "../include/camera.glsl"
-#include "../include/lane.glsl"
+#include "sensors/camera.glsl"
+#include "stages/lane.glsl"
 
 void generate(inout Lane lane, out Rng rng) {
     CameraRay ray = camera_ray(lane.path.place, lane.path.sample_index);

@@ -1,8 +1,8 @@
 // A shadow ray has ended, at the light, at nothing left, or cut.
 #ifndef STAGE_SHADOW_GLSL
 #define STAGE_SHADOW_GLSL
-#include "../include/light.glsl"
-#include "../include/trace.glsl"
+#include "lights/light.glsl"
+#include "lib/trace.glsl"
 
 void end_shadow(VolumeParams v, uint event, inout Lane lane) {
     Spectrum T = event == EVENT_LEFT ? end_transmittance(v, lane.walk, lane.T) : to_spectrum(vec3(0.0));

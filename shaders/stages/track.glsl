@@ -1,9 +1,9 @@
 // A segment goes on: steps of a flight or a shadow ray, until something happens or it is time for another look.
 #ifndef STAGE_TRACK_GLSL
 #define STAGE_TRACK_GLSL
-#include "../include/ahead.glsl"
-#include "../include/emission.glsl"
-#include "../include/lane.glsl"
+#include "estimators/ahead.glsl"
+#include "field/emission.glsl"
+#include "stages/lane.glsl"
 
 // Emission along what was just flown, by one sample: a track-length estimate.
 vec3 emission_along(VolumeParams v, Spectrum beta, float from, Walk w, PathState path, inout Rng rng,

@@ -6,7 +6,7 @@
 #include "method.h"
 #include "scene_hash.h"
 #include "scene_upload.h"
-#include "shared/bindings.h"
+#include "shared/constants.h"
 #include "target.h"
 
 namespace vkvol::fuzz {

@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernel.glsl"
 
-#include "include/ahead.glsl"
+#include "estimators/ahead.glsl"
 TEST_IO(RayInput, AheadOutput)
 
 void main() {

@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernel.glsl"
 
-#include "include/film.glsl"
-#include "include/rng.glsl"
+#include "film/film.glsl"
+#include "lib/rng.glsl"
 TEST_IO(FilmInput, FilmPixel)
 
 void main() {

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernel.glsl"
 
-#include "include/phase.glsl"
+#include "phase/phase.glsl"
 TEST_IO(vec2, float)
 
 void main() {

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernel.glsl"
 
-#include "include/shape.glsl"
+#include "shapes/shape.glsl"
 TEST_IO(ShapeInput, ShapeOutput)
 
 void main() {

@@ -2,7 +2,7 @@
 // of invocations it asked for in push.lanes.
 #ifndef TEST_KERNEL_GLSL
 #define TEST_KERNEL_GLSL
-#include "include/pass.glsl"
+#include "lib/pass.glsl"
 #include "test_items.h"
 
 #define TEST_IO(In, Out)                                                                                               \

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernel.glsl"
 
-#include "include/density.glsl"
+#include "field/density.glsl"
 TEST_IO(DensityInput, DensityOutput)
 
 void main() {

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernel.glsl"
 
-#include "include/mesh.glsl"
+#include "shapes/mesh.glsl"
 TEST_IO(MeshInput, MeshOutput)
 
 void main() {

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernel.glsl"
 
-#include "include/noise.glsl"
+#include "field/noise.glsl"
 TEST_IO(NoiseInput, NoiseOutput)
 
 void main() {

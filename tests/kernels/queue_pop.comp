@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernel.glsl"
 
-#include "include/queue.glsl"
+#include "lib/queue.glsl"
 TEST_IO(uint, uint)
 
 void main() {

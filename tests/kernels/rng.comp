@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernel.glsl"
 
-#include "include/rng.glsl"
+#include "lib/rng.glsl"
 TEST_IO(uvec4, RngOutput)
 
 void main() {

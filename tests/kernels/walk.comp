@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernel.glsl"
 
-#include "include/segment.glsl"
+#include "shapes/segment.glsl"
 TEST_IO(RayInput, WalkStep)
 
 void main() {

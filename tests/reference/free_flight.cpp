@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "shaders/shared/bindings.h"
+#include "shaders/shared/constants.h"
 
 namespace reference {
 

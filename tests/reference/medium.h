@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "emission.h"
-#include "mesh.h"
-#include "noise.h"
+#include "reference_mesh.h"
+#include "reference_noise.h"
 
 namespace reference {
 

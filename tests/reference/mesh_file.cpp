@@ -13,7 +13,7 @@
 
 #include <stdexcept>
 
-#include "mesh.h"
+#include "reference_mesh.h"
 
 namespace reference {
 

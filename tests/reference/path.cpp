@@ -6,9 +6,9 @@
 
 #include "camera.h"
 #include "free_flight.h"
-#include "light_cache.h"
 #include "phase.h"
-#include "shaders/shared/bindings.h"
+#include "reference_light_cache.h"
+#include "shaders/shared/constants.h"
 #include "transmittance.h"
 
 namespace reference {

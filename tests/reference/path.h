@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "medium.h"
-#include "method.h"
+#include "reference_method.h"
 #include "rng.h"
 
 namespace reference {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host/film.h"
+#include "film.h"
 #include "path.h"
 
 namespace reference {

@@ -1,4 +1,4 @@
-// Counter-based random numbers, written from the specification in the comment of shaders/include/rng.glsl:
+// Counter-based random numbers, written from the specification in the comment of shaders/lib/rng.glsl:
 // a hash of (pixel, sample, draw, seed), so that a path can be repeated alone.
 #pragma once
 

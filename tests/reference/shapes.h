@@ -3,7 +3,7 @@
 
 #include <glm/glm.hpp>
 
-#include "host/scene.h"
+#include "scene.h"
 
 namespace reference {
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "reference.h"
-#include "shaders/shared/bindings.h"
+#include "shaders/shared/constants.h"
 #include "tests/support/statistics.h"
 
 namespace reference {

@@ -4,7 +4,7 @@
 
 #include "cells.h"
 #include "path.h"
-#include "shaders/shared/bindings.h"
+#include "shaders/shared/constants.h"
 
 namespace reference {
 

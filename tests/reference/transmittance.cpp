@@ -6,7 +6,7 @@
 
 #include "cells.h"
 #include "quadrature.h"
-#include "shaders/shared/bindings.h"
+#include "shaders/shared/constants.h"
 
 namespace reference {
 

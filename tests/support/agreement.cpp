@@ -9,7 +9,7 @@
 #include "integrators.h"
 #include "method.h"
 #include "scenes.h"
-#include "shared/bindings.h"
+#include "shared/constants.h"
 #include "statistics.h"
 
 namespace vkvol {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "bricks.h"
+#include "fractal.h"
 #include "lobes.h"
-#include "noise.h"
 #include "recipes.h"
 
 namespace vkvol {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "noise.h"
+#include "fractal.h"
 
 namespace vkvol {
 namespace {

@@ -10,9 +10,9 @@
 #include <optional>
 #include <thread>
 
-#include "host/error.h"
-#include "host/image_io.h"
-#include "host/scene_xml.h"
+#include "error.h"
+#include "image_io.h"
+#include "scene_xml.h"
 #include "tests/reference/reference.h"
 
 namespace {

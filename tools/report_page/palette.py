@@ -1,7 +1,7 @@
 """One colour and one shape for each estimator, the same in all plots of a page, and on every page as far as colours go round.
 
 The colours are told apart with every kind of colour vision, stand out from the page by 3 to 1 in light and in dark mode
-(tests/report_test.py computes both), and never stand alone: shapes and names say the same.
+(tests/tools/report_test.py computes both), and never stand alone: shapes and names say the same.
 """
 
 # As `vkvol integrators` lists them; what else is measured takes the next free place.

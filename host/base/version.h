@@ -1,0 +1,7 @@
+#pragma once
+
+namespace vkvol {
+
+inline constexpr const char* version = VKVOL_VERSION;
+
+} // namespace vkvol

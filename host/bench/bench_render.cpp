@@ -1,0 +1,27 @@
+#include "bench_render.h"
+
+#include <fmt/format.h>
+
+#include "error.h"
+#include "interrupt.h"
+
+namespace vkvol {
+
+RenderResult render_whole(const BenchRequest& request, const Estimator& estimator, const Device& device,
+                          std::uint32_t samples, std::uint32_t seed, std::optional<double> time_limit) {
+    Scene scene = estimator.scene;
+    scene.settings.spp = samples;
+    RenderJob job;
+    job.crop = {0, scene.picture.width, 0, scene.picture.height};
+    job.seed = seed;
+    job.time_limit = time_limit;
+    job.disk_cache = !request.render.no_cache;
+    job.interrupted = interrupted;
+    RenderResult result = render(device, scene, job);
+    if (result.counts.queue_overflows > 0)
+        throw RenderError(fmt::format("{} queue items were dropped: this is a defect of vkvol; please report the scene",
+                                      result.counts.queue_overflows));
+    return result;
+}
+
+} // namespace vkvol

@@ -1,0 +1,77 @@
+// The command line as plain data.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench_request.h"
+#include "film.h"
+#include "render_request.h"
+#include "scene.h"
+
+namespace vkvol {
+
+enum class Command { render, devices, info, integrators, compare, merge, develop, bench, print };
+enum class ProgressStyle { automatic, json, none };
+
+struct RenderOptions : RenderRequest {
+    std::vector<std::filesystem::path> outputs; // the scene's stem with .exr and .png if none was asked for
+    std::optional<std::filesystem::path> report;
+    std::optional<double> checkpoint; // seconds between two
+    bool resume = false;              // from the checkpoint, if there is one
+    std::vector<int> frames;          // of a sequence, by -f; empty: one picture
+    bool dry_run = false;             // check everything, render and write nothing
+    bool trace = false;               // print the path's vertices; crop and sample range hold just one
+    ProgressStyle progress = ProgressStyle::automatic;
+    bool quiet = false;  // errors only
+    bool strict = false; // caps hit or non-finite samples: exit code 5
+};
+
+struct CompareOptions {
+    std::filesystem::path a, b; // b is the reference
+    std::optional<double> max_relmse;
+    double significance = 0.01; // chance that two equal renders are called different
+    bool json = false;
+};
+
+struct MergeOptions {
+    std::vector<std::filesystem::path> inputs;
+    std::vector<std::filesystem::path> outputs;
+    ToneRequest tone;
+    bool quiet = false;
+};
+
+struct DevelopOptions {
+    std::filesystem::path input;
+    std::vector<std::filesystem::path> outputs; // 8 bit
+    ToneRequest tone;
+    bool quiet = false;
+};
+
+struct Options {
+    Command command = Command::render;
+    RenderOptions render;
+    CompareOptions compare;
+    MergeOptions merge;
+    DevelopOptions develop;
+    BenchRequest bench;
+    std::filesystem::path info_file;
+    bool info_json = false;
+    bool devices_json = false;
+    bool integrators_json = false;
+    std::string text; // Command::print: help or version, for standard output
+};
+
+// Throws InputError: one line with a hint.
+Options parse_options(int argc, const char* const* argv);
+
+// The window in pixels; the whole picture without a request. Throws InputError if it is empty or leaves the picture.
+Crop resolve_crop(const std::optional<CropRequest>& request, const Picture& picture);
+
+// "30s", "5m", "2h" or plain seconds. Throws InputError.
+double parse_duration(const std::string& text, const char* option = "--time");
+
+} // namespace vkvol

@@ -1,0 +1,83 @@
+// The prose of the command line's help.
+#pragma once
+
+namespace vkvol {
+
+inline constexpr const char* render_description =
+    "Renders participating media: clouds, smoke, fog. Any Vulkan device will do.";
+
+inline constexpr const char* render_footer = R"(Other commands (each has its own --help):
+  vkvol devices               the Vulkan devices of this machine
+  vkvol info FILE.nvdb        what is in a density file, with a camera and coefficients that suit it
+  vkvol integrators           the estimators there are, by name, and which of them are biased
+  vkvol compare A.exr B.exr   are these renders of the same picture?
+  vkvol merge A.exr B.exr -o OUT.exr   one image of all their samples
+  vkvol develop A.exr -o B.png   a PNG of another exposure or tone curve, without rendering
+  vkvol bench SCENE.xml       error against time of the integrators that suit a scene
+
+Examples:
+  vkvol scenes/cumulus.xml                         writes cumulus.exr and cumulus.png here
+  vkvol cloud.nvdb                                 a picture of a density file, and a scene to start from
+  vkvol cloud.xml --width 480 --spp 4 -o look.png  a quick look
+  vkvol cloud.xml --time 5m -o cloud.exr           the best picture of five minutes
+  vkvol cloud.xml --spp 64 --sample-offset 64 -o part2.exr   samples 64 to 127, for merge
+  vkvol sweep.xml -D g=0.8 -o g0.8.exr             fills $g in the scene
+  vkvol turntable.xml -f 1..8 -o turn.####.png     eight frames: $F in the scene is 1, 2, ... 8
+  vkvol cloud.xml --dry-run                        is all well? what would be rendered?
+  vkvol cloud.xml --spp 4096 --checkpoint 60s --resume   may be killed at any time, and started again
+  vkvol cloud.xml --pixel 12,34 --sample 7 --trace       where that path went
+
+Exit codes: 0 done; 1 the render failed; 2 bad command line, scene or asset; 3 no usable device;
+4 compare found a difference; 5 caps hit or non-finite samples under --strict; 130 interrupted
+(what was rendered so far is written).)";
+
+inline constexpr const char* integrators_description =
+    "Lists the integrators: which estimators each combines, whether it is unbiased, and where it comes from.";
+
+inline constexpr const char* compare_description =
+    "Compares two renders: error figures, and whether noise alone explains the difference.";
+
+inline constexpr const char* compare_footer =
+    R"(Images with variance are judged by statistics: no pixel may differ by more standard errors than the
+most extreme of that many equal pixels would, nor may the picture means. Images without variance must
+be equal. The statistics take the images for independent: give each its own --seed. A note on standard
+error says where images share samples, or are of different scenes; identical ones need none.
+Exit codes: 0 the same; 4 different; 2 the images cannot be compared.)";
+
+inline constexpr const char* merge_description =
+    "Merges renders of one picture: disjoint sample ranges or seeds of the same window, weighted by samples per "
+    "pixel, or disjoint windows side by side.";
+
+inline constexpr const char* merge_footer =
+    R"(Images of different scenes or integrators are refused, and images that share samples: each run needs its
+own --seed or --sample-offset. Pixels that no image holds are black, and a warning says how many. The
+merged image adds up what its parts count, is biased if one of them is, and can be merged again.)";
+
+inline constexpr const char* develop_description =
+    "Makes an 8-bit picture of an image's linear radiance, without rendering: with the tone curve and exposure of the "
+    "render that wrote it, or with others.";
+
+inline constexpr const char* develop_footer =
+    R"(Without options the picture has the same bytes as the one that the render wrote, or would have. An image
+that does not tell how it was rendered gets curve srgb and exposure 0.
+
+Curves: srgb keeps values up to 1 as they are and cuts what is brighter, which turns fire yellow and white;
+agx and aces lead bright colours towards white by and by; reinhard, the original renderer's, makes the
+brightest value white.
+
+Example:
+  vkvol develop fire.exr -o fire.png --exposure -1 --tonemap agx)";
+
+inline constexpr const char* bench_description = "Measures integrators on a scene, error against time: relMSE at 1, 2, "
+                                                 "4, ... samples per pixel against a reference.";
+
+inline constexpr const char* bench_footer =
+    R"(Writes NAME.bench.json, NAME.bench.csv and each integrator's last picture, NAME.bench/INTEGRATOR.exr.
+All integrators must estimate the same picture; biased ones are measured when named. A reference is
+rendered first, for half of the time again or more, and kept in the user's cache directory. With that and
+with setting up, a bench takes longer than --time: how long is printed before it begins.
+
+Example:
+  vkvol bench cloud.xml --width 120 --integrators ratioTracking,ratioTracking:flight=weighted --time 2m)";
+
+} // namespace vkvol

@@ -1,0 +1,189 @@
+#include "render_command.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fmt/format.h>
+#include <new>
+
+#include "checkpoint_file.h"
+#include "dry_run.h"
+#include "error.h"
+#include "explain.h"
+#include "file_uses.h"
+#include "image_io.h"
+#include "interrupt.h"
+#include "messages.h"
+#include "progress.h"
+#include "render_notes.h"
+#include "render_outputs.h"
+#include "render_scene.h"
+#include "render_session.h"
+#include "render_summary.h"
+#include "renderer.h"
+#include "sequence.h"
+#include "trace.h"
+
+namespace vkvol {
+
+namespace {
+
+// Before any work is done: a render that cannot be written, or would be written over its own files, is not worth its
+// time.
+void check_files(const RenderOptions& options, const RenderScene& loaded, const CheckpointFile& checkpoint) {
+    FileUses uses;
+    uses.reads("the scene", options.scene);
+    uses.reads_files_of(loaded.scene);
+    for (const std::filesystem::path& output : options.outputs)
+        uses.writes("a picture", output, "-o");
+    if (is_kept(options, loaded))
+        uses.writes("the scene that is made", loaded.xml_file, "-o");
+    if (!checkpoint.path().empty())
+        uses.writes("the checkpoint", checkpoint.path(), "-o");
+    if (options.report)
+        uses.writes("the report", *options.report, "--report");
+    uses.check();
+    for (const std::filesystem::path& output : options.outputs)
+        check_writable(output);
+    if (options.report)
+        check_directory_writable(*options.report, "--report");
+    checkpoint.check();
+}
+
+RenderResult render_with_progress(const RenderOptions& options, const Scene& scene, RenderSession& session,
+                                  CheckpointFile& file) {
+    RenderJob job;
+    job.session = &session;
+    job.dry_run = options.dry_run;
+    const std::optional<Checkpoint>& from = file.find();
+    job.resume = from ? &*from : nullptr;
+    if (options.checkpoint) {
+        job.checkpoint_seconds = *options.checkpoint;
+        job.checkpoint = [&](const Checkpoint& checkpoint) { file.keep(checkpoint); };
+    }
+    job.trace = options.trace;
+    job.crop = resolve_crop(options.crop, scene.picture);
+    job.seed = options.seed;
+    job.sample_offset = options.sample_offset;
+    job.time_limit = options.time_limit;
+    job.disk_cache = !options.no_cache && !options.dry_run;
+    job.interrupted = interrupted;
+    Progress progress(options.progress, options.quiet || options.trace || options.dry_run, scene.settings.spp,
+                      options.time_limit);
+    job.progress = [&](double samples, std::optional<double> noise) {
+        progress.update(static_cast<std::uint32_t>(samples), noise);
+    };
+    try {
+        return render(session.device(options.device), scene, job);
+    } catch (const RenderError& error) {
+        throw RenderError(error.what() + file.advice());
+    }
+}
+
+// Whether a picture is written that is for looking at.
+bool shows(const RenderOptions& options) {
+    return std::any_of(options.outputs.begin(), options.outputs.end(), is_display_file);
+}
+
+bool has_samples(const Film& film) {
+    return std::any_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n > 0; });
+}
+
+void check_result(const Device& device, const RenderResult& result) {
+    for (const std::string& message : device.validation_messages())
+        tell(stderr, "vkvol: validation: {}", message + "\n"); // of several lines
+    if (!device.validation_messages().empty())
+        throw RenderError(fmt::format("the validation layer has {} objections", device.validation_messages().size()));
+    if (result.counts.queue_overflows > 0)
+        throw RenderError(fmt::format("{} queue items were dropped: this is a defect of vkvol; please report the scene",
+                                      result.counts.queue_overflows));
+}
+
+// Once, also where all frames of a sequence have the same.
+void tell_why(const RenderOptions& options, RenderSession& session, const std::optional<Explanation>& explanation) {
+    if (explanation && !session.new_warnings({explanation->text}).empty() && !options.quiet)
+        print_explanation(*explanation);
+}
+
+int render_scene(const RenderOptions& options, const Scene& scene, RenderSession& session, CheckpointFile& checkpoint,
+                 RenderOutputs& outputs) {
+    const std::optional<Explanation> foreseen = options.trace ? std::nullopt : foresee(scene);
+    tell_why(options, session, foreseen);
+    const Device& device = session.device(options.device);
+    outputs.set_device(device.info());
+    const RenderResult result = render_with_progress(options, scene, session, checkpoint);
+    if (!options.quiet)
+        print_warnings(session.new_warnings(result.warnings));
+    check_result(device, result);
+    if (options.dry_run) {
+        if (!options.quiet)
+            print_dry_run(options, scene, device, result);
+        return exit_done;
+    }
+    if (!options.trace && !has_samples(result.film)) {
+        print_caps(options, result);
+        const std::string why = no_samples_text(result);
+        outputs.write_report(device, result, why);
+        tell(stderr, "vkvol: {}: no picture is written\n", why); // which might spoil a good one
+        return result.interrupted ? exit_interrupted : exit_render_failed;
+    }
+    Shown shown;
+    if (shows(options))
+        shown.tone = choose_tone(options.tone, result.film, make_metadata(options, scene, device, result));
+    shown.explanation = foreseen || options.trace ? foreseen : explain(scene, result, shown.tone);
+    outputs.write(device, result, shown);
+    if (result.samples == scene.settings.spp) // it is of no more use
+        checkpoint.remove();
+    if (!foreseen)
+        tell_why(options, session, shown.explanation);
+    if (!options.quiet)
+        print_caps(options, result);
+    if (options.trace)
+        put(stdout, trace_table(result.trace, result.trace_origin, scene.background));
+    else if (!options.quiet)
+        print_summary(options, device, result, shown.tone);
+    if (result.interrupted)
+        return exit_interrupted;
+    return options.strict && result.counts.any_cap() ? exit_caps_hit : exit_done;
+}
+
+} // namespace
+
+void check_picture(const RenderOptions& options, RenderSession& session) {
+    const RenderScene loaded = load_render_scene(options, session.fields());
+    resolve_crop(options.crop, loaded.scene.picture);
+    check_files(options, loaded, CheckpointFile(options));
+}
+
+int render_picture(const RenderOptions& options, RenderSession& session) {
+    const RenderScene loaded = load_render_scene(options, session.fields());
+    const Scene& scene = loaded.scene;
+    print_reading(options);
+    if (!options.quiet)
+        print_warnings(session.new_warnings(scene.warnings));
+    CheckpointFile checkpoint(options);
+    check_files(options, loaded, checkpoint);
+    keep_made_scene(options, loaded);
+    RenderOutputs outputs(options, scene);
+    try {
+        return render_scene(options, scene, session, checkpoint, outputs);
+    } catch (const std::bad_alloc&) {
+        outputs.fail("out of memory");
+        throw;
+    } catch (const std::exception& error) {
+        outputs.fail(error.what());
+        throw;
+    }
+}
+
+int run_render(const RenderOptions& options) {
+    install_interrupt_handler();
+    if (!options.frames.empty())
+        return run_sequence(options);
+    RenderSession session(false);
+    const int code = render_picture(options, session);
+    if (options.dry_run && !options.quiet)
+        tell(stdout, "all is well: nothing is rendered, nothing written\n");
+    return code;
+}
+
+} // namespace vkvol

@@ -1,0 +1,28 @@
+// The cached transmittances that next-event estimation corrects; see shaders/lights/light_cache.glsl.
+#pragma once
+
+#include <memory>
+
+#include "commands.h"
+#include "compute_pass.h"
+#include "loaded_volume.h"
+
+namespace vkvol {
+
+// Nodes over the box from `low` to `high` (medium space), whose edges are `edges` world units long: cubes in world
+// space where they can be, at most 64 along an edge, and at most two for each voxel of `voxels` along it (0: no grid).
+shared::LatticeParams make_lattice(glm::dvec3 low, glm::dvec3 high, glm::dvec3 edges, glm::ivec3 voxels);
+
+class LightCache {
+public:
+    // Makes and fills the cache of a scene whose buffers and frame are on the device.
+    LightCache(const Device& device, Commands& commands, BoundBuffers scene, const shared::LatticeParams& lattice,
+               Specialization specialization, std::optional<std::uint32_t> window_bits, VkPipelineCache cache);
+
+    const Buffer& buffer() const { return buffer_; }
+
+private:
+    Buffer buffer_;
+};
+
+} // namespace vkvol

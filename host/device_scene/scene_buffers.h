@@ -1,0 +1,47 @@
+// The device buffers that hold a scene: its frame parameters, grids, tables and meshes.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "bindings.h"
+#include "commands.h"
+#include "loaded_volume.h"
+#include "shared/frame.h"
+
+namespace vkvol {
+
+class SceneBuffers {
+public:
+    // Uploads what `volume` holds. Grids of more than `most_grid_bytes` together are laid into windows; nothing that
+    // has more than `most_texel_bytes` is read as texels. Throws InputError if grids are too large for the device,
+    // naming the limit and the remedy.
+    SceneBuffers(const Device& device, Commands& commands, const LoadedVolume& volume, std::uint64_t most_grid_bytes,
+                 std::uint64_t most_texel_bytes);
+
+    // The buffers of `frame` that kernels reach by address are put into it.
+    void set_frame(Commands& commands, shared::FrameParams frame);
+
+    // log2 of the words in a window; none: the grids lie in one storage buffer, or there are none.
+    std::optional<std::uint32_t> window_bits() const { return window_bits_; }
+
+    // Whether all that kernels read at every step of a walk can be read as texels.
+    bool texels() const { return texels_; }
+
+    BoundBuffers bound() const;
+    std::uint64_t bytes() const;
+
+private:
+    using Parts = std::array<std::span<const std::byte>, 2>; // one after another
+
+    void make_grids(const Device& device, Commands& commands, const Parts& grids, std::uint64_t most_bytes);
+    void make_windows(const Device& device, Commands& commands, const Parts& grids, std::uint64_t bytes);
+
+    Buffer frame_;
+    std::optional<Buffer> grids_, leaf_table_, majorants_, controls_, blackbody_, triangles_, bvh_;
+    std::vector<Buffer> windows_;
+    bool texels_ = false;
+    std::optional<std::uint32_t> window_bits_;
+};
+
+} // namespace vkvol

@@ -1,0 +1,27 @@
+// From the authored scene to what the kernels see. The only place that fills the shared structs.
+#pragma once
+
+#include "compute_pass.h"
+#include "crop.h"
+#include "loaded_volume.h"
+#include "shared/frame.h"
+
+namespace vkvol {
+
+// What is left of light at a collision; 0 in channels that do not scatter.
+Rgb albedo_of(const Volume& volume);
+
+// Extinction or albedo differs between the colour channels.
+bool is_chromatic(const Scene& scene);
+
+// Value of every specialization constant. What the scene lacks is switched off here and compiles to nothing.
+Specialization specialize(const Scene& scene, const LoadedVolume& volume, const Method& method);
+
+// World position of render space's origin: amid the medium, or the camera where there is none.
+glm::dvec3 render_origin(const Scene& scene, const LoadedVolume& volume);
+
+// All but the fields that change during a render (crop_y) or belong to the queues.
+shared::FrameParams make_frame(const Scene& scene, const LoadedVolume& volume, const Method& method, Crop crop,
+                               std::uint32_t seed);
+
+} // namespace vkvol

@@ -1,0 +1,163 @@
+#include "density_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fmt/format.h>
+#include <nanovdb/NanoVDB.h>
+#include <optional>
+
+#include "error.h"
+#include "file_ending.h"
+#include "grid_tree.h"
+#include "input_file.h"
+#include "missing_field.h"
+#include "nearest_name.h"
+#include "one_line.h"
+#include "shared/constants.h"
+#include "vdb_import.h"
+
+namespace vkvol {
+
+namespace {
+
+std::optional<int> lookup_type(nanovdb::GridType type) {
+    switch (type) {
+    case nanovdb::GridType::Float:
+    case nanovdb::GridType::Half: // NanoVDB 32.x keeps the values of half grids as floats
+        return GRID_FLOAT;
+    case nanovdb::GridType::Fp4:
+        return GRID_FP4;
+    case nanovdb::GridType::Fp8:
+        return GRID_FP8;
+    case nanovdb::GridType::Fp16:
+        return GRID_FP16;
+    case nanovdb::GridType::FpN:
+        return GRID_FPN;
+    default:
+        return std::nullopt;
+    }
+}
+
+std::string list_names(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names)
+        text += (text.empty() ? "\"" : ", \"") + name + "\"";
+    return text.empty() ? "no grid" : text;
+}
+
+[[noreturn]] void no_such_grid(const GridFile& file, const std::vector<std::string>& names) {
+    const std::string nearest = nearest_name(file.grid, names);
+    throw InputError(one_line(fmt::format("{}: has no grid \"{}\"{}; it holds {}", file.path.string(), file.grid,
+                                          nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest),
+                                          list_names(names))));
+}
+
+GridBytes read_grid(const GridFile& file) {
+    const std::vector<std::string> names = grid_names(file.path);
+    if (std::find(names.begin(), names.end(), file.grid) == names.end())
+        no_such_grid(file, names);
+    if (file_ending(file.path) == ".vdb")
+        return read_vdb_grid(file.path, file.grid);
+    const std::vector<GridEntry> entries = read_nvdb_entries(file.path);
+    return read_nvdb_grid(file.path, *std::find_if(entries.begin(), entries.end(),
+                                                   [&](const GridEntry& entry) { return entry.name == file.grid; }));
+}
+
+} // namespace
+
+namespace {
+std::uint32_t block_entry(const DensityField& field, glm::ivec3 ijk) {
+    const glm::ivec3 block = (ijk >> 3) - field.leaf_min;
+    return field.leaf_table[(std::size_t(block.x) * field.leaf_dims.y + block.y) * field.leaf_dims.z + block.z];
+}
+} // namespace
+
+float DensityField::value(glm::ivec3 ijk) const {
+    if (active_voxels == 0 || ijk != glm::clamp(ijk, voxel_min, voxel_max))
+        return 0.0f;
+    const std::uint32_t entry = block_entry(*this, ijk);
+    const std::byte* at = bytes.data() + std::size_t{entry >> 1} * 4;
+    if (!(entry & 1u))
+        return read_float(at);
+    const glm::ivec3 low = ijk & 7;
+    return leaf_value(type, at, static_cast<unsigned>(low.x << 6 | low.y << 3 | low.z));
+}
+
+DensityField::Block DensityField::block(glm::ivec3 block) const {
+    const glm::ivec3 first = (leaf_min + block) * 8;
+    Block result{glm::max(first, voxel_min), glm::min(first + 7, voxel_max), std::nullopt};
+    if (const std::uint32_t entry = block_entry(*this, first); !(entry & 1u))
+        result.constant = read_float(bytes.data() + std::size_t{entry >> 1} * 4);
+    return result;
+}
+
+float DensityField::max_value() const {
+    float largest = 0.0f;
+    glm::ivec3 b;
+    for (b.x = 0; b.x < leaf_dims.x; ++b.x)
+        for (b.y = 0; b.y < leaf_dims.y; ++b.y)
+            for (b.z = 0; b.z < leaf_dims.z; ++b.z) {
+                const Block part = block(b);
+                largest = std::max(largest, part.constant.value_or(0.0f));
+                if (part.constant)
+                    continue;
+                for (int x = part.low.x; x <= part.high.x; ++x)
+                    for (int y = part.low.y; y <= part.high.y; ++y)
+                        for (int z = part.low.z; z <= part.high.z; ++z)
+                            largest = std::max(largest, value({x, y, z}));
+            }
+    return largest;
+}
+
+double DensityField::voxel_size() const {
+    return std::cbrt(std::abs(glm::determinant(glm::dmat3(index_to_world))));
+}
+
+DensityField make_density_field(GridBytes bytes, const std::string& place) {
+    DensityField field;
+    field.bytes = std::move(bytes);
+    if (field.bytes.size() < sizeof(nanovdb::GridData) + sizeof(nanovdb::TreeData<3>))
+        throw InputError(fmt::format("{}: too short for a grid: the file is damaged; copy or convert it again", place));
+    nanovdb::GridData header;
+    std::memcpy(static_cast<void*>(&header), field.bytes.data(), sizeof header);
+    const std::optional<int> type = lookup_type(header.mGridType);
+    if (!type)
+        throw InputError(fmt::format("{}: the grid's type is {}, but Float, Half, Fp4, Fp8, Fp16 and FpN are read; "
+                                     "convert it to one of these",
+                                     place, grid_type_name(static_cast<std::uint32_t>(header.mGridType))));
+    if (header.mGridClass == nanovdb::GridClass::LevelSet)
+        throw InputError(fmt::format("{}: the grid is a level set, distances to a surface, not a density; convert it "
+                                     "to a fog volume (vdb_tool -fog, or sdfToFogVolume in OpenVDB)",
+                                     place));
+    field.type = *type;
+    read_tree(field, place);
+    return field;
+}
+
+std::vector<std::string> grid_names(const std::filesystem::path& file) {
+    check_input_file(file, missing_field_hint(file));
+    std::vector<std::string> names;
+    if (file_ending(file) == ".vdb")
+        for (const VdbEntry& entry : read_vdb_entries(file))
+            names.push_back(entry.name);
+    else
+        for (const GridEntry& entry : read_nvdb_entries(file))
+            names.push_back(entry.name);
+    return names;
+}
+
+bool has_grid(const GridFile& file) {
+    const std::vector<std::string> names = grid_names(file.path);
+    return std::find(names.begin(), names.end(), file.grid) != names.end();
+}
+
+bool is_empty_grid(const GridFile& file) {
+    return load_density_field(file).active_voxels == 0;
+}
+
+DensityField load_density_field(const GridFile& file) {
+    return make_density_field(read_grid(file), one_line(fmt::format("{}: \"{}\"", file.path.string(), file.grid)));
+}
+
+} // namespace vkvol

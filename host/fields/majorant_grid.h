@@ -1,0 +1,45 @@
+// Upper bounds of the density, cell by cell: what null-collision estimators walk over; and control densities.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "density_field.h"
+#include "shared/frame.h"
+
+namespace vkvol {
+
+struct PilotScene;
+
+// Cells are cubes of `cell` voxels from `origin` on (index space, z fastest); together they cover the region where the
+// interpolated density can differ from 0, one voxel beyond the active ones. Each bound is the largest voxel value
+// among the corners that interpolation inside the cell, faces included, can touch: tight for trilinear lookup unless
+// that value stands at a corner shared with a neighbour.
+struct MajorantGrid {
+    int cell = 8;
+    glm::ivec3 origin{0};
+    glm::ivec3 dims{0};
+    std::vector<float> bounds;
+    bool leaps = false;                  // walks pass empty cells together, see empty_space.h
+    std::vector<double> segment_steps{}; // those expected of each of the pilot's flights and shadow rays
+};
+
+// `cell` voxels along an edge, > 0. More than 2^24 cells are never made.
+MajorantGrid make_majorant_grid(const DensityField& field, int cell);
+
+// What a step costs that minds the room around empty cells, to one that does not.
+constexpr double leap_cost = 1.08; // measured on llvmpipe: a thin medium without empty cells
+
+// Of cells of 4, 8 ... 64 voxels, or of `cell` if that is not 0, with leaps or without, those over which paths of this
+// scene take the least time: the fewest steps (after Yue et al., "Toward Optimal Space Partitioning for Unbiased,
+// Adaptive Free Path Sampling", 2011; but along paths, not over the grid's box: they stay where the medium is thin, or
+// near its surface where it is dense).
+MajorantGrid choose_majorant_grid(const DensityField& field, const PilotScene& scene, int cell = 0);
+
+// A control density for each cell of `grid` (whose bounds are the densities' own, not scaled), with the bound of what
+// the density differs from it: the least value in the cell, or, where the rest is optically thin across the cell, the
+// mean (Novak et al., "Residual Ratio Tracking", 2014: in thick cells a control above the density makes weights that
+// grow exponentially). `sigma_t`: extinction at density 1 per voxel; 0: the least value everywhere, a lower bound.
+std::vector<shared::ControlCell> make_controls(const DensityField& field, const MajorantGrid& grid, double sigma_t);
+
+} // namespace vkvol

@@ -1,0 +1,202 @@
+#include "obj_file.h"
+
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <tiny_obj_loader.h>
+
+#include "error.h"
+#include "input_file.h"
+#include "one_line.h"
+
+namespace vkvol {
+
+namespace {
+
+constexpr double largest_coordinate = largest_length;
+
+std::string read_text(const std::filesystem::path& path) {
+    check_input_file(path, "check the path in the scene (it starts from the scene file's directory)");
+    std::ifstream stream(path, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    if (stream.bad())
+        throw InputError(fmt::format("{}: cannot be read; check the disk, or copy the file again", path.string()));
+    return text;
+}
+
+// Three numbers, as many digits as a double holds. tinyobjloader reads floats, and takes what is no number for 0.
+glm::dvec3 parse_vertex(std::string_view line, const std::filesystem::path& path, std::size_t number) {
+    glm::dvec3 vertex;
+    const char* at = line.data();
+    const char* const end = line.data() + line.size();
+    for (int axis = 0; axis < 3; ++axis) {
+        while (at != end && (*at == ' ' || *at == '\t' || *at == '+'))
+            ++at;
+        const auto [next, error] = std::from_chars(at, end, vertex[axis]);
+        if (error != std::errc() || !(std::abs(vertex[axis]) <= largest_coordinate))
+            throw InputError(fmt::format("{}:{}: a vertex needs three finite numbers of at most {:g}, but has \"{}\"; "
+                                         "export the mesh again",
+                                         path.string(), number, largest_coordinate,
+                                         one_line(std::string(line.substr(0, 60)))));
+        at = next;
+    }
+    return vertex;
+}
+
+std::vector<glm::dvec3> parse_vertices(std::string_view text, const std::filesystem::path& path) {
+    std::vector<glm::dvec3> vertices;
+    for (std::size_t begin = 0, number = 1; begin < text.size(); ++number) {
+        const std::size_t end = std::min(text.find_first_of("\r\n", begin), text.size());
+        std::string_view line = text.substr(begin, end - begin);
+        line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+        if (line.size() > 1 && line[0] == 'v' && (line[1] == ' ' || line[1] == '\t'))
+            vertices.push_back(parse_vertex(line.substr(2), path, number));
+        begin = end + (text.substr(end, 2) == "\r\n" ? 2 : 1);
+    }
+    return vertices;
+}
+
+// What the parser's callbacks know of the file so far.
+struct Progress {
+    ObjFile* obj = nullptr;
+    const std::filesystem::path* path = nullptr;
+    std::int64_t vertices = 0; // seen, from which negative indices count back
+    std::size_t faces = 0;
+    std::vector<std::optional<Rgb>> materials;
+    std::optional<Rgb> diffuse; // of the faces that follow
+};
+
+std::uint32_t resolve(const Progress& progress, int index) {
+    const std::int64_t resolved = index > 0 ? std::int64_t{index} - 1 : progress.vertices + index;
+    const auto count = static_cast<std::int64_t>(progress.obj->vertices.size());
+    if (index == 0 || resolved < 0 || resolved >= count)
+        throw InputError(fmt::format("{}: face {} names vertex {}, but there are {} vertices; export the mesh again",
+                                     progress.path->string(), progress.faces, index, count));
+    return static_cast<std::uint32_t>(resolved);
+}
+
+// A polygon becomes a fan. Where it is not convex some triangles of the fan face the other way and cancel what the
+// others cover beyond it: what counts is the sum of signed crossings.
+void add_face(Progress& progress, const tinyobj::index_t* corners, int count) {
+    ++progress.faces;
+    if (count < 3)
+        throw InputError(
+            fmt::format("{}: face {} has fewer than three vertices; delete loose edges (in Blender: Mesh > "
+                        "Clean Up > Delete Loose) and export the mesh again",
+                        progress.path->string(), progress.faces));
+    const std::uint32_t first = resolve(progress, corners[0].vertex_index);
+    for (int i = 2; i < count; ++i)
+        progress.obj->triangles.emplace_back(first, resolve(progress, corners[i - 1].vertex_index),
+                                             resolve(progress, corners[i].vertex_index));
+    if (progress.faces == 1)
+        progress.obj->diffuse = progress.diffuse;
+    progress.obj->several_diffuse = progress.obj->several_diffuse || progress.diffuse != progress.obj->diffuse;
+}
+
+std::optional<Rgb> diffuse_of(const tinyobj::material_t& material, Progress& progress) {
+    constexpr double brightest = 1e12; // as of colours in the scene
+    const Rgb color(material.diffuse[0], material.diffuse[1], material.diffuse[2]);
+    if (glm::all(glm::greaterThanEqual(color, Rgb(0.0))) && glm::all(glm::lessThanEqual(color, Rgb(brightest))))
+        return color;
+    progress.obj->warnings.push_back(
+        one_line(fmt::format("{}: the Kd of material \"{}\" is no colour, and is left out; numbers >= 0 are",
+                             progress.path->string(), material.name)));
+    return std::nullopt;
+}
+
+tinyobj::callback_t make_callbacks() {
+    tinyobj::callback_t callbacks;
+    callbacks.vertex_cb = [](void* user, tinyobj::real_t, tinyobj::real_t, tinyobj::real_t, tinyobj::real_t) {
+        ++static_cast<Progress*>(user)->vertices;
+    };
+    callbacks.index_cb = [](void* user, tinyobj::index_t* corners, int count) {
+        add_face(*static_cast<Progress*>(user), corners, count);
+    };
+    callbacks.mtllib_cb = [](void* user, const tinyobj::material_t* materials, int count) {
+        auto& progress = *static_cast<Progress*>(user);
+        progress.materials.clear();
+        for (int i = 0; i < count; ++i)
+            progress.materials.push_back(diffuse_of(materials[i], progress));
+    };
+    callbacks.usemtl_cb = [](void* user, const char*, int material) {
+        auto& progress = *static_cast<Progress*>(user);
+        const bool known = material >= 0 && static_cast<std::size_t>(material) < progress.materials.size();
+        progress.diffuse = known ? progress.materials[static_cast<std::size_t>(material)] : std::nullopt;
+    };
+    return callbacks;
+}
+
+// Material libraries, beside the .obj file. One that cannot be read is no error: the mesh has its shape without.
+class MaterialReader : public tinyobj::MaterialReader {
+public:
+    MaterialReader(const std::filesystem::path& obj, std::vector<std::string>& warnings)
+        : obj_(obj), warnings_(warnings) {}
+
+    bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
+                    std::map<std::string, int>* indices, std::string*, std::string*) override {
+        const std::filesystem::path file = obj_.parent_path() / name;
+        try {
+            std::istringstream stream(read_text(file));
+            std::string warning, error;
+            tinyobj::LoadMtl(indices, materials, &stream, &warning, &error);
+            return true;
+        } catch (const InputError&) {
+            constexpr std::size_t most_warnings = 10;
+            if (warnings_.size() < most_warnings)
+                warnings_.push_back(
+                    one_line(fmt::format("{}: its material library {} cannot be read, and its colours are "
+                                         "left out; put it beside the mesh",
+                                         obj_.string(), file.string())));
+            return false;
+        }
+    }
+
+private:
+    const std::filesystem::path& obj_;
+    std::vector<std::string>& warnings_;
+};
+
+} // namespace
+
+ObjFile read_obj(const std::filesystem::path& path) {
+    const std::string text = read_text(path);
+    ObjFile obj;
+    obj.vertices = parse_vertices(text, path);
+    Progress progress;
+    progress.obj = &obj;
+    progress.path = &path;
+    std::istringstream stream(text);
+    MaterialReader materials(path, obj.warnings);
+    std::string warnings, errors;
+    if (!tinyobj::LoadObjWithCallback(stream, make_callbacks(), &progress, &materials, &warnings, &errors))
+        throw InputError(fmt::format("{}: not readable as Wavefront .obj: {}; export the mesh again", path.string(),
+                                     one_line(errors.substr(0, errors.find('\n')))));
+    if (obj.triangles.empty())
+        throw InputError(fmt::format("{}: has no faces; it must be a Wavefront .obj file that holds a closed surface",
+                                     path.string()));
+    return obj;
+}
+
+// As tinyobjloader reads it: names between spaces.
+std::vector<std::filesystem::path> material_libraries(const std::filesystem::path& path) {
+    std::vector<std::filesystem::path> files;
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error))
+        return files;
+    std::ifstream stream(path, std::ios::binary);
+    for (std::string line; std::getline(stream, line);) {
+        std::istringstream words(line);
+        std::string name;
+        if (!(words >> name) || name != "mtllib")
+            continue;
+        while (words >> name)
+            files.push_back(path.parent_path() / name);
+    }
+    return files;
+}
+
+} // namespace vkvol

@@ -1,0 +1,49 @@
+// The developed image on the host: what a render returns and what image files hold.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "crop.h"
+
+namespace vkvol {
+
+// Pixels of the crop window, rows top to bottom. A pixel without samples has mean and variance 0.
+struct Film {
+    int picture_width = 0; // the whole picture (EXR display window)
+    int picture_height = 0;
+    Crop crop;                          // the part held here (EXR data window)
+    std::vector<glm::vec3> mean;        // radiance, linear Rec.709
+    std::vector<glm::vec3> variance;    // of the mean: s^2 / n with the unbiased s^2; 0 if n < 2
+    std::vector<std::uint32_t> samples; // per pixel
+
+    int width() const { return crop.x1 - crop.x0; }
+    int height() const { return crop.y1 - crop.y0; }
+    std::size_t pixel_count() const { return mean.size(); }
+};
+
+// The picture's noise: its root mean square error over its root mean square signal, sqrt(sum of the variances / sum of
+// the squared means), over all channels of the pixels that have two samples. One sum over another and not a mean of
+// quotients, which is whatever the darkest pixels make it: a pixel that is nearly black, and of which nobody sees the
+// error, would count for more than all others. A factor on the picture cancels, black pixels change nothing, and it
+// falls as 1 / sqrt(samples). Since squared means hold their own variance it never exceeds 1, unless samples are below
+// 0. Unknown if no pixel has two samples, or none has light.
+std::optional<double> relative_noise(const Film& film);
+
+// Of the picture, over the pixels that have samples. Pixels are independent, so their variances add; of a pixel with a
+// single sample none is known, nor then of the picture.
+struct ImageMean {
+    glm::dvec3 value{0.0};
+    std::optional<glm::dvec3> standard_error;
+};
+ImageMean image_mean(const Film& film);
+
+// Key "vkvol/seed" etc. -> value; written into EXR headers, read back by merge and compare.
+using Metadata = std::map<std::string, std::variant<int, float, std::string>>;
+
+} // namespace vkvol

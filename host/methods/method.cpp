@@ -1,0 +1,304 @@
+#include "method.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "density_field.h"
+#include "error.h"
+#include "estimator_traits.h"
+#include "integrators.h"
+#include "shared/constants.h"
+
+namespace vkvol {
+
+bool Method::flights_have(int traits) const {
+    return flight_has(free_flight, traits);
+}
+
+bool Method::shadow_rays_have(int traits) const {
+    return nee != NEE_NONE && transmittance_has(transmittance, traits);
+}
+
+namespace {
+
+// One method in the making: each rule builds on those before.
+class Resolution {
+public:
+    Resolution(const Scene& scene, int field, bool chromatic_extinction, bool emits)
+        : scene_(scene), choices_(scene.settings.choices), preset_(choose_integrator(scene)), field_(field),
+          chromatic_(chromatic_extinction), emits_(emits) {}
+
+    Method resolve();
+
+private:
+    void choose_scattering();
+    void choose_flight();
+    void choose_nee();
+    void choose_transmittance();
+    void choose_emission();
+    void choose_filter();
+    void find_biases();
+    void warn(const std::string& message) { method_.warnings.push_back(method_.integrator + ": " + message); }
+
+    const Scene& scene_;
+    const AxisChoices& choices_;
+    const Integrator& preset_;
+    const int field_;
+    const bool chromatic_, emits_;
+    Method method_{};
+};
+
+Method Resolution::resolve() {
+    method_.integrator = integrator_text({preset_.name, choices_});
+    method_.jitter = scene_.settings.march.jitter && !(preset_.adjustments & adjust_no_jitter);
+    choose_scattering();
+    choose_flight();
+    choose_nee();
+    choose_transmittance();
+    choose_emission();
+    choose_filter();
+    find_biases();
+    method_.material_colour = (preset_.adjustments & adjust_material_colour) && method_.scattering == SCATTERING_NONE;
+    return method_;
+}
+
+void Resolution::choose_scattering() {
+    method_.scattering = choices_.scattering.value_or(preset_.scattering);
+    // Single scattering is one event, of which maxDepth allows none.
+    if (method_.scattering == SCATTERING_SINGLE && scene_.settings.max_depth == 0u)
+        method_.scattering = SCATTERING_NONE;
+}
+
+void Resolution::choose_flight() {
+    int& flight = method_.free_flight;
+    flight = choices_.free_flight.value_or(preset_.free_flight);
+    if (field_ == FIELD_CONSTANT) {
+        const bool explicitly = choices_.free_flight.has_value();
+        if (flight == FREE_FLIGHT_REGULAR || (flight_has(flight, TRAIT_NULL) && !explicitly))
+            flight = FREE_FLIGHT_ANALYTIC;
+    } else if (flight == FREE_FLIGHT_ANALYTIC) {
+        throw InputError(fmt::format("{}: analytic flights need constant density, and this medium's varies; use "
+                                     "flight delta, or integrator ratioTracking",
+                                     method_.integrator));
+    } else if (flight == FREE_FLIGHT_REGULAR && field_ == FIELD_NOISE) {
+        throw InputError(fmt::format("{}: regular flights go from voxel to voxel, and noise has none; use flight "
+                                     "delta, or integrator ratioTracking",
+                                     method_.integrator));
+    }
+    if (!chromatic_ || !flight_has(flight, TRAIT_GREY))
+        return;
+    if (choices_.free_flight)
+        warn("flights are spectral, since the extinction differs between the colour channels");
+    flight = FREE_FLIGHT_SPECTRAL;
+}
+
+void Resolution::choose_nee() {
+    int& nee = method_.nee;
+    nee = choices_.nee.value_or(preset_.nee);
+    const bool scatters =
+        method_.scattering != SCATTERING_NONE && !scene_.volumes.empty() && scene_.volumes.front().sigma_s != Rgb(0.0);
+    if (scene_.lights.empty() || !scatters) {
+        if (choices_.nee.value_or(NEE_NONE) != NEE_NONE)
+            warn(scene_.lights.empty() ? "nee is without effect: the scene has no light"
+                                       : "nee is without effect: nothing scatters");
+        nee = NEE_NONE;
+    } else if (is_through(method_)) {
+        if (choices_.nee == NEE_COLLISIONS || choices_.nee == NEE_CACHED)
+            warn("a march through the medium has no collisions; shadow rays start at every step");
+        // A march with single scattering that sends no shadow rays would not scatter at all: only if told so.
+        if (!choices_.nee || nee == NEE_COLLISIONS || nee == NEE_CACHED)
+            nee = NEE_TENTATIVE;
+    } else if (nee == NEE_TENTATIVE && !method_.flights_have(TRAIT_NULL)) {
+        if (choices_.nee)
+            warn("these flights have no null collisions; shadow rays start at real ones");
+        nee = NEE_COLLISIONS;
+    } else if (nee == NEE_CACHED && (field_ == FIELD_CONSTANT || !can_cache_light(scene_))) {
+        if (choices_.nee)
+            warn("a cache of transmittances is for grids, and for noise in spheres and boxes; shadow rays start at "
+                 "every collision");
+        nee = NEE_COLLISIONS;
+    }
+}
+
+void Resolution::choose_transmittance() {
+    int& transmittance = method_.transmittance;
+    transmittance = choices_.transmittance.value_or(preset_.transmittance);
+    if (choices_.transmittance && method_.nee == NEE_NONE)
+        warn("transmittance is without effect: there are no shadow rays");
+    if (field_ == FIELD_CONSTANT) {
+        if (!choices_.transmittance || transmittance == TRANSMITTANCE_REGULAR)
+            transmittance = TRANSMITTANCE_ANALYTIC;
+        return;
+    }
+    const bool impossible =
+        transmittance == TRANSMITTANCE_ANALYTIC || (transmittance == TRANSMITTANCE_REGULAR && field_ == FIELD_NOISE);
+    if (!impossible)
+        return;
+    if (method_.nee == NEE_NONE) {
+        transmittance = TRANSMITTANCE_RATIO; // unused
+        return;
+    }
+    const char* why = transmittance == TRANSMITTANCE_ANALYTIC
+                          ? "analytic transmittance needs constant density, and this medium's varies"
+                          : "regular transmittance goes from voxel to voxel, and noise has none";
+    throw InputError(
+        fmt::format("{}: {}; use transmittance ratio, or march with marched flights", method_.integrator, why));
+}
+
+void Resolution::choose_emission() {
+    method_.emission_at = emits_ ? choices_.emission.value_or(EMISSION_AT_COLLISIONS) : EMISSION_AT_COLLISIONS;
+    if (method_.emission_at == EMISSION_AT_COLLISIONS)
+        return;
+    if (is_through(method_)) {
+        method_.emission_at = EMISSION_AT_COLLISIONS; // the march adds it anyway
+    } else if (chromatic_ && !method_.flights_have(TRAIT_NULL)) {
+        warn("emission is added at collisions: along these flights it would be biased, since the extinction differs "
+             "between the colour channels; flight spectral adds it at steps");
+        method_.emission_at = EMISSION_AT_COLLISIONS;
+    }
+}
+
+// The stochastic filter is exact wherever the density enters linearly, which it does in null-collision estimators.
+void Resolution::choose_filter() {
+    const int transmittance = method_.transmittance;
+    const bool linear_shadows = !method_.shadow_rays_have(TRAIT_VOXELS | TRAIT_MARCH);
+    const bool linear = method_.flights_have(TRAIT_NULL) && linear_shadows;
+    if (field_ != FIELD_GRID || linear) {
+        method_.filter = scene_.settings.filter.value_or(Filter::stochastic);
+        return;
+    }
+    method_.filter = scene_.settings.filter.value_or(Filter::trilinear);
+    if (method_.filter != Filter::stochastic)
+        return;
+    const bool flight = !method_.flights_have(TRAIT_NULL);
+    const std::string name = flight ? axes()[1].names[std::size_t(method_.free_flight)] + " flights"
+                                    : axes()[2].names[std::size_t(transmittance)] + " transmittance";
+    warn(fmt::format("the filter is trilinear: {} would be biased by a stochastic one, since the mean of an "
+                     "exponential is not the exponential of the mean",
+                     name));
+    method_.filter = Filter::trilinear;
+}
+
+void Resolution::find_biases() {
+    std::vector<std::string> reasons;
+    const auto add = [&](Bias bias, const char* reason) {
+        method_.biases |= bias;
+        reasons.push_back(reason);
+    };
+    // At constant density a march knows its optical depths exactly, but not the light between its sample points.
+    if (method_.flights_have(TRAIT_MARCH) && field_ != FIELD_CONSTANT)
+        add(bias_flight_steps, "flights take the density of one point for that of a whole step");
+    else if (method_.flights_have(TRAIT_MARCH) && is_through(method_) && method_.nee != NEE_NONE)
+        add(bias_flight_steps, "the march takes the light of one point for that of a whole step");
+    if (method_.shadow_rays_have(TRAIT_MARCH) && method_.transmittance != TRANSMITTANCE_TELESCOPING &&
+        field_ != FIELD_CONSTANT)
+        add(bias_shadow_steps, "shadow rays take the density of one point for that of a whole step");
+    // The other null-collision estimators weight what exceeds the majorant.
+    const bool needs_majorant = method_.flights_have(TRAIT_BOUND) || method_.shadow_rays_have(TRAIT_BOUND);
+    if (needs_majorant && scene_.settings.majorant_scale < 1.0)
+        add(bias_majorant, "the majorant is scaled below the density");
+    method_.biased = fmt::format("{}", fmt::join(reasons, "; "));
+}
+
+} // namespace
+
+bool is_through(const Method& method) {
+    if (method.scattering == SCATTERING_NONE && method.free_flight == FREE_FLIGHT_ANALYTIC)
+        return true;
+    return method.scattering != SCATTERING_MULTIPLE && method.flights_have(TRAIT_MARCH);
+}
+
+int density_kind(const Scene& scene) {
+    if (scene.volumes.empty())
+        return FIELD_CONSTANT;
+    const Volume& volume = scene.volumes.front();
+    return std::holds_alternative<GridFile>(volume.shape) ? FIELD_GRID : volume.noise ? FIELD_NOISE : FIELD_CONSTANT;
+}
+
+bool can_cache_light(const Scene& scene) {
+    return density_kind(scene) != FIELD_CONSTANT && !std::holds_alternative<MeshFiles>(scene.volumes.front().shape);
+}
+
+bool has_chromatic_extinction(const Scene& scene) {
+    if (scene.volumes.empty())
+        return false;
+    const Rgb sigma_t = scene.volumes.front().sigma_a + scene.volumes.front().sigma_s;
+    const double largest = std::max({sigma_t.x, sigma_t.y, sigma_t.z});
+    const double smallest = std::min({sigma_t.x, sigma_t.y, sigma_t.z});
+    return largest - smallest > 1e-9 * largest; // what sums of decimals differ by is rounding
+}
+
+bool emits(const Scene& scene) {
+    if (scene.volumes.empty())
+        return false;
+    const Volume& volume = scene.volumes.front();
+    return volume.sigma_a * (volume.Le + volume.temperature.color) != Rgb(0.0);
+}
+
+Method choose_method(const Scene& scene, int field, bool chromatic_extinction, bool emits) {
+    return Resolution(scene, field, chromatic_extinction, emits).resolve();
+}
+
+namespace {
+
+// Analytic estimators are refused where the density varies. In a grid without voxels it does not; its file is opened
+// in this case alone.
+bool is_analytic_in_nothing(const Scene& scene) {
+    if (density_kind(scene) != FIELD_GRID)
+        return false;
+    const AxisChoices& choices = scene.settings.choices;
+    const Integrator& preset = choose_integrator(scene);
+    const bool analytic = choices.free_flight.value_or(preset.free_flight) == FREE_FLIGHT_ANALYTIC ||
+                          choices.transmittance.value_or(preset.transmittance) == TRANSMITTANCE_ANALYTIC;
+    return analytic && is_empty_grid(std::get<GridFile>(scene.volumes.front().shape));
+}
+
+} // namespace
+
+Method choose_method(const Scene& scene) {
+    int field = density_kind(scene);
+    std::string unread; // why
+    try {
+        field = is_analytic_in_nothing(scene) ? FIELD_CONSTANT : field;
+    } catch (const InputError& error) {
+        unread = error.what();
+    }
+    try {
+        return choose_method(scene, field, has_chromatic_extinction(scene), emits(scene));
+    } catch (const InputError& error) {
+        if (unread.empty())
+            throw;
+        throw InputError(fmt::format("{}; also, {}", error.what(), unread));
+    }
+}
+
+Scene with_preset(Scene scene) {
+    const Integrator& integrator = choose_integrator(scene);
+    if (scene.volumes.empty())
+        return scene;
+    Volume& volume = scene.volumes.front();
+    const auto adjusts = [&](Adjustment adjustment) { return (integrator.adjustments & adjustment) != 0; };
+    const auto warn = [&](const char* message) {
+        scene.warnings.push_back(fmt::format("{}: {}", integrator.name, message));
+    };
+    const int scattering = scene.settings.choices.scattering.value_or(integrator.scattering);
+    if (adjusts(adjust_no_scattering) && scattering == SCATTERING_NONE)
+        volume.sigma_s = Rgb(0.0);
+    if (adjusts(adjust_isotropic) && volume.g != 0.0) {
+        warn("scatters isotropically and leaves heyneygreenstein_g out; homogeneousRayMarcherImproved honours it");
+        volume.g = 0.0;
+    }
+    if (adjusts(adjust_default_noise) && !volume.noise) {
+        if (std::holds_alternative<GridFile>(volume.shape))
+            warn("the density is the grid's, not noise, which fills spheres, boxes and models");
+        else
+            volume.noise = Noise{};
+    }
+    if (adjusts(adjust_no_emission) && emits(scene)) {
+        warn("leaves emission out; nanoVDBEmission renders it");
+        volume.Le = volume.temperature.color = Rgb(0.0);
+    }
+    return scene;
+}
+
+} // namespace vkvol

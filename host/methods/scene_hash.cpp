@@ -1,0 +1,139 @@
+#include "scene_hash.h"
+
+#include <cstdint>
+#include <fmt/format.h>
+#include <iterator>
+
+#include "method.h"
+#include "shared/constants.h"
+
+namespace vkvol {
+
+namespace {
+
+// A canonical text of the scene; numbers in their shortest exact form.
+class Writer {
+public:
+    void add(const char* key, double value) { fmt::format_to(std::back_inserter(text_), "{}={};", key, value); }
+    void add(const char* key, const glm::dvec3& value) {
+        fmt::format_to(std::back_inserter(text_), "{}={},{},{};", key, value.x, value.y, value.z);
+    }
+    void add(const char* key, const std::string& value) {
+        fmt::format_to(std::back_inserter(text_), "{}={}:{};", key, value.size(), value);
+    }
+
+    // FNV-1a, 64 bit.
+    std::string hash() const {
+        std::uint64_t hash = 14695981039346656037ull;
+        for (const char c : text_) {
+            hash ^= static_cast<unsigned char>(c);
+            hash *= 1099511628211ull;
+        }
+        return fmt::format("{:016x}", hash);
+    }
+
+private:
+    std::string text_;
+};
+
+void add_file(Writer& writer, const std::filesystem::path& path) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    writer.add("file", path.filename().string());
+    writer.add("bytes", error ? -1.0 : double(size));
+}
+
+void add_shape(Writer& writer, const Volume& volume) {
+    if (const Sphere* sphere = std::get_if<Sphere>(&volume.shape)) {
+        writer.add("sphere", sphere->center);
+        writer.add("radius", sphere->radius);
+    } else if (const Box* box = std::get_if<Box>(&volume.shape)) {
+        writer.add("box", box->center);
+        writer.add("size", box->size);
+    } else if (const GridFile* grid = std::get_if<GridFile>(&volume.shape)) {
+        add_file(writer, grid->path);
+        writer.add("grid", grid->grid);
+        writer.add("unit", volume.unit == CoefficientUnit::world ? 1 : 0);
+    } else if (const MeshFiles* mesh = std::get_if<MeshFiles>(&volume.shape)) {
+        for (const std::filesystem::path& path : mesh->paths)
+            add_file(writer, path);
+    }
+    if (volume.noise) {
+        writer.add("noise", volume.noise->frequency);
+        writer.add("octaves", volume.noise->octaves);
+        writer.add("gain", volume.noise->gain);
+        writer.add("lacunarity", volume.noise->lacunarity);
+    }
+}
+
+void add_volume(Writer& writer, const Volume& volume) {
+    add_shape(writer, volume);
+    writer.add("sigma_a", volume.sigma_a);
+    writer.add("sigma_s", volume.sigma_s);
+    writer.add("density_scale", volume.density_scale);
+    writer.add("g", volume.g);
+    writer.add("Le", volume.Le);
+    const TemperatureEmission& emission = volume.temperature;
+    writer.add("emission", emission.color);
+    writer.add("model", emission.model == TemperatureEmission::Model::color ? 0 : 1);
+    writer.add("temperature", emission.grid);
+    writer.add("kelvin", glm::dvec3(emission.scale, emission.offset, emission.cutoff));
+    writer.add("reference", emission.reference);
+}
+
+void add_view(Writer& writer, const Camera& camera, const Picture& picture) {
+    writer.add("position", camera.position);
+    writer.add("rotation", glm::dvec3(camera.pitch, camera.yaw, camera.roll));
+    writer.add("fov", camera.fov);
+    writer.add("width", picture.width);
+    writer.add("height", picture.height);
+    writer.add("start", glm::dvec3(picture.start_x, picture.start_y, 0));
+    writer.add("reference", glm::dvec3(picture.reference_width, picture.reference_height, 0));
+}
+
+// Unbiased estimators of the same light have the same expectation, however they get it.
+void add_method(Writer& writer, const RenderSettings& settings, const Method& method) {
+    writer.add("scattering", method.scattering);
+    if (method.scattering == SCATTERING_MULTIPLE)
+        writer.add("max_depth", settings.max_depth ? double(*settings.max_depth) : -1.0);
+    writer.add("material_colour", method.material_colour ? 1 : 0);
+    // Trilinear and stochastic look-ups have the same expectation.
+    writer.add("nearest", method.filter == Filter::nearest ? 1 : 0);
+    if (method.biases & bias_majorant) {
+        writer.add("majorant", glm::dvec3(settings.majorant_scale, settings.majorant_cell, method.nee));
+        writer.add("tracking", glm::dvec3(method.free_flight, method.transmittance, 0));
+    }
+    const March& march = settings.march;
+    if (method.biases & bias_flight_steps) {
+        writer.add("flight", glm::dvec3(method.free_flight, march.step, method.emission_at));
+        if (method.free_flight == FREE_FLIGHT_ADAPTIVE) // its steps end at the faces of majorant cells, too
+            writer.add("steps", glm::dvec3(march.optical_step, settings.majorant_scale, settings.majorant_cell));
+    }
+    if (method.biases & bias_shadow_steps)
+        writer.add("shadow_step", march.shadow_step > 0.0 ? march.shadow_step : march.step);
+    if (method.biases & (bias_flight_steps | bias_shadow_steps)) {
+        writer.add("jitter", method.jitter ? 1 : 0);
+        writer.add("step_unit", march.unit == CoefficientUnit::world ? 1 : 0);
+    }
+}
+
+} // namespace
+
+std::string scene_hash(const Scene& authored) {
+    const Scene scene = with_preset(authored);
+    const Method method = choose_method(scene);
+    Writer writer;
+    add_view(writer, scene.camera, scene.picture);
+    for (const Volume& volume : scene.volumes)
+        add_volume(writer, volume);
+    if (method.nee != NEE_NONE)
+        for (const DirectionalLight& light : scene.lights) {
+            writer.add("direction", light.direction);
+            writer.add("irradiance", light.irradiance);
+        }
+    writer.add("background", scene.background);
+    add_method(writer, scene.settings, method);
+    return writer.hash();
+}
+
+} // namespace vkvol

@@ -1,0 +1,205 @@
+#include "checkpoint.h"
+
+#include <bit>
+#include <cstring>
+#include <fmt/format.h>
+#include <fstream>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <zlib.h>
+
+#include "error.h"
+#include "image_io.h"
+#include "version.h"
+
+namespace vkvol {
+
+static_assert(std::is_trivially_copyable_v<shared::FilmPixel> && std::is_trivially_copyable_v<RenderCounts>);
+static_assert(std::endian::native == std::endian::little, "the file holds words as they lie in memory");
+
+namespace {
+
+using Json = nlohmann::json;
+
+// magic, bytes of the header, header (JSON), film, pixels, CRC-32 of all before.
+constexpr char magic[] = {'v', 'k', 'v', 'o', 'l', 'c', 'h', '2'};
+
+// Two 32-bit checksums of different polynomials: equal by accident once in 10^19.
+class Fingerprint {
+public:
+    void add(std::span<const std::byte> bytes) {
+        if (bytes.empty()) // zlib takes a null pointer for the wish to begin anew
+            return;
+        const auto* data = reinterpret_cast<const Bytef*>(bytes.data());
+        crc_ = crc32_z(crc_, data, bytes.size());
+        adler_ = adler32_z(adler_, data, bytes.size());
+    }
+    template <class T> void add_all(const T& values) { add(std::as_bytes(std::span(values))); }
+    std::string text() const { return fmt::format("{:08x}{:08x}", crc_, adler_); }
+
+private:
+    uLong crc_ = crc32_z(0, nullptr, 0), adler_ = adler32_z(0, nullptr, 0);
+};
+
+void add_field(Fingerprint& fingerprint, const std::optional<DensityField>& field) {
+    if (field)
+        fingerprint.add(field->bytes.span());
+}
+
+template <class T> void append(std::string& text, std::span<const T> values) {
+    text.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+}
+
+Json header_of(const Checkpoint& c) {
+    Json non_finite = Json::array();
+    for (const NonFiniteSample& s : c.non_finite)
+        non_finite.push_back({s.x, s.y, s.sample});
+    const auto counts = std::bit_cast<std::array<std::uint64_t, sizeof(RenderCounts) / 8>>(c.counts);
+    return {{"kernel", c.identity.kernel},
+            {"program", c.identity.program},
+            {"device", c.identity.device},
+            {"bandRows", c.identity.band_rows},
+            {"done", c.done},
+            {"batch", c.batch},
+            {"band", c.band},
+            {"wholeBand", !c.pixels},
+            {"pixels", c.pixels ? c.pixels->size() : 0},
+            {"film", c.film.size()},
+            {"counts", counts},
+            {"nonFinite", non_finite},
+            {"seconds", c.seconds}};
+}
+
+Checkpoint from_header(const Json& header) {
+    Checkpoint c;
+    c.identity = {header.at("kernel"), header.at("program"), header.at("device"),
+                  header.at("bandRows").get<std::vector<std::uint32_t>>()};
+    c.done = header.at("done");
+    c.batch = header.at("batch");
+    c.band = header.at("band");
+    if (!header.at("wholeBand").get<bool>())
+        c.pixels.emplace(header.at("pixels").get<std::size_t>());
+    c.film.resize(header.at("film").get<std::size_t>());
+    c.counts =
+        std::bit_cast<RenderCounts>(header.at("counts").get<std::array<std::uint64_t, sizeof(RenderCounts) / 8>>());
+    for (const Json& s : header.at("nonFinite"))
+        c.non_finite.push_back({s.at(0), s.at(1), s.at(2)});
+    c.seconds = header.at("seconds");
+    return c;
+}
+
+std::string read_file(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+    if (!stream)
+        throw InputError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
+    return bytes;
+}
+
+std::uint32_t checksum(std::string_view bytes) {
+    return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+// What follows the checksum's approval was written by save_checkpoint.
+template <class T> void take(std::string_view& bytes, std::span<T> values) {
+    if (bytes.size() < values.size_bytes())
+        throw std::length_error("it is too short");
+    std::memcpy(values.data(), bytes.data(), values.size_bytes());
+    bytes.remove_prefix(values.size_bytes());
+}
+
+Checkpoint parse(std::string_view bytes) {
+    std::uint32_t crc = 0;
+    if (bytes.size() < sizeof magic + sizeof crc || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
+        throw std::invalid_argument("it is none");
+    std::memcpy(&crc, bytes.data() + bytes.size() - sizeof crc, sizeof crc);
+    bytes.remove_suffix(sizeof crc);
+    if (crc != checksum(bytes))
+        throw std::invalid_argument("its checksum is wrong");
+    bytes.remove_prefix(sizeof magic);
+    std::uint64_t header_size = 0;
+    take(bytes, std::span(&header_size, 1));
+    if (header_size > bytes.size())
+        throw std::length_error("it is too short");
+    Checkpoint checkpoint = from_header(Json::parse(bytes.substr(0, header_size)));
+    bytes.remove_prefix(header_size);
+    take(bytes, std::span(checkpoint.film));
+    if (checkpoint.pixels)
+        take(bytes, std::span(*checkpoint.pixels));
+    return checkpoint;
+}
+
+} // namespace
+
+RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization,
+                        const LoadedVolume& volume, std::uint32_t sample_offset, const std::string& device,
+                        std::vector<std::uint32_t> band_rows) {
+    Fingerprint fingerprint;
+    fingerprint.add(std::as_bytes(std::span(&sample_offset, 1)));
+    fingerprint.add(std::as_bytes(std::span(&frame, 1)));
+    fingerprint.add_all(specialization);
+    add_field(fingerprint, volume.field);
+    add_field(fingerprint, volume.temperature);
+    if (volume.majorants)
+        fingerprint.add_all(volume.majorants->bounds);
+    fingerprint.add_all(volume.controls);
+    fingerprint.add_all(volume.blackbody);
+    if (volume.bvh)
+        fingerprint.add_all(volume.bvh->triangles);
+    return {fingerprint.text(), version, device, std::move(band_rows)};
+}
+
+void save_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint) {
+    const std::string header = header_of(checkpoint).dump();
+    const std::uint64_t header_size = header.size();
+    std::string bytes(magic, sizeof magic);
+    append(bytes, std::span<const std::uint64_t>(&header_size, 1));
+    bytes += header;
+    append(bytes, std::span<const shared::FilmPixel>(checkpoint.film));
+    if (checkpoint.pixels)
+        append(bytes, std::span<const std::uint32_t>(*checkpoint.pixels));
+    const std::uint32_t crc = checksum(bytes);
+    append(bytes, std::span<const std::uint32_t>(&crc, 1));
+    write_text(file, bytes);
+}
+
+bool is_checkpoint(const std::filesystem::path& file) {
+    constexpr std::streamsize common = sizeof magic - 1; // the last character is the version
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error))
+        return false;
+    char begin[common];
+    return std::ifstream(file, std::ios::binary).read(begin, common) && std::memcmp(begin, magic, common) == 0;
+}
+
+Checkpoint load_checkpoint(const std::filesystem::path& file) {
+    if (std::error_code error; std::filesystem::exists(file, error) && !is_checkpoint(file))
+        throw InputError(
+            fmt::format("{}: not a checkpoint of vkvol; rename it, or name another picture with -o", file.string()));
+    try {
+        return parse(read_file(file));
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::bad_alloc&) { // nothing is wrong with the file
+        throw;
+    } catch (const std::exception& error) {
+        throw InputError(
+            fmt::format("{}: not a checkpoint of vkvol: {}; remove it to begin anew", file.string(), error.what()));
+    }
+}
+
+void check_identity(const RenderIdentity& saved, const RenderIdentity& here) {
+    const auto refuse = [](const std::string& what) {
+        throw InputError(fmt::format("--resume: the checkpoint is of {}; give the same arguments as then, or remove it "
+                                     "to begin anew",
+                                     what));
+    };
+    if (saved.program != here.program)
+        refuse(fmt::format("vkvol {}, not {}", saved.program, here.program));
+    if (saved.kernel != here.kernel)
+        refuse("another render: another scene, density field, picture, seed, sample offset or integrator");
+    if (saved.device != here.device || saved.band_rows != here.band_rows)
+        refuse(fmt::format("another device, {}, whose bits differ from those of {}", saved.device, here.device));
+}
+
+} // namespace vkvol

@@ -1,0 +1,385 @@
+#include "explain_causes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "scene_upload.h"
+#include "shared/constants.h"
+
+namespace vkvol {
+
+namespace {
+
+using Answer = std::optional<std::string>;
+
+const Volume* volume_of(const Scene& scene) {
+    return scene.volumes.empty() ? nullptr : &scene.volumes.front();
+}
+
+bool sees_light(const Evidence& e) {
+    return sees_light(e.scene, e.method);
+}
+
+// Before a background that is no darker than night, a picture that is black is so by its exposure.
+bool shows_nothing(const Evidence& e) {
+    constexpr double night = 1e-3;
+    return e.odd == Odd::background || (e.odd == Odd::black && largest(e.scene.background) < night);
+}
+
+double least(const Rgb& color) {
+    return std::min({color.x, color.y, color.z});
+}
+
+std::string text_of(glm::dvec3 v) {
+    const double rounding = 1e-12 * std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    for (int i = 0; i < 3; ++i)
+        v[i] = std::abs(v[i]) > rounding ? v[i] : 0.0;
+    return fmt::format("({:.4g}, {:.4g}, {:.4g})", v.x, v.y, v.z);
+}
+
+std::string box_text(const WorldBox& box) {
+    return fmt::format("{} to {}", text_of(box.low), text_of(box.high));
+}
+
+// The emission that the scene asks for, whether there will be any or not.
+bool wants_glow(const Evidence& e) {
+    const Volume* volume = volume_of(e.authored);
+    return volume && (volume->Le != Rgb(0.0) || volume->temperature.color != Rgb(0.0));
+}
+
+// Nothing but the medium's own glow can be seen.
+bool is_dark_around(const Evidence& e) {
+    return e.scene.background == Rgb(0.0) && !sees_light(e);
+}
+
+Answer unfinished(const Evidence& e) {
+    if (e.odd != Odd::unfinished)
+        return {};
+    if (e.result->interrupted)
+        return "the render was interrupted early; --checkpoint 60s and --resume go on from there";
+    if (e.result->counts.non_finite > 0)
+        return fmt::format(
+            "{} samples were not finite, or too bright to add up, and were dropped; lower the lights, or "
+            "bring heyneygreenstein_g nearer to 0",
+            e.result->counts.non_finite);
+    return "time was up early; give it more --time, or a smaller --width";
+}
+
+// Elements that are there to give light, and are black: a colour without r, g and b is.
+Answer black_source(const Evidence& e) {
+    const bool any = !e.authored.lights.empty() || e.scene.background != Rgb(0.0) || wants_glow(e);
+    if (e.odd != Odd::black || any || e.emits || e.authored.black.empty())
+        return {};
+    const BlackElement& element = e.authored.black.front();
+    return fmt::format("nothing gives light: <{}> at {} is black; r, g and b are 0 unless given, and a multiplier "
+                       "multiplies them",
+                       element.name, element.place);
+}
+
+Answer no_glow(const Evidence& e) {
+    const Volume* volume = volume_of(e.authored);
+    if (e.odd != Odd::black || e.emits || !wants_glow(e) || !is_dark_around(e) || !e.authored.lights.empty())
+        return {};
+    if (volume->sigma_a == Rgb(0.0))
+        return "the medium glows by what it absorbs, and sigma_a is 0; raise sigma_a";
+    if (emits(e.authored) && !emits(e.scene))
+        return fmt::format("{} leaves emission out, and nothing else gives light; use nanoVDBEmission, or no "
+                           "integrator at all",
+                           e.method.integrator);
+    if (volume->Le == Rgb(0.0) && e.result && !e.result->outline.has_temperature)
+        return fmt::format("the only light would come from a grid \"{}\", which the file does not have or which has "
+                           "no voxels; name the one it has with <emission grid=\"...\"> (vkvol info lists them), or "
+                           "add a <light> or a <backgroundColor>",
+                           volume->temperature.grid);
+    return {};
+}
+
+Answer no_light(const Evidence& e) {
+    if (e.odd != Odd::black || e.scene.background != Rgb(0.0) || !e.authored.lights.empty() || e.emits)
+        return {};
+    return "nothing gives light: the scene has no <light>, the background is black and the medium does not glow; add "
+           "e.g. <light x=\"1\" y=\"1\" z=\"1\" r=\"3\" g=\"3\" b=\"3\"/> or <backgroundColor r=\"0.4\" g=\"0.6\" "
+           "b=\"1\"/>";
+}
+
+Answer light_unseen(const Evidence& e) {
+    const Volume* volume = volume_of(e.authored);
+    if (e.odd != Odd::black || !volume || e.authored.lights.empty() || !is_dark_around(e) || e.emits)
+        return {};
+    if (volume->sigma_s == Rgb(0.0))
+        return "a <light> is seen by what the medium scatters of it alone, and sigma_s is 0; raise sigma_s, or add a "
+               "<backgroundColor> to see the medium against";
+    if (e.scene.settings.max_depth == 0u)
+        return "a <light> is seen by what the medium scatters of it alone, and maxDepth is 0; raise maxDepth or leave "
+               "it out";
+    if (e.method.scattering == SCATTERING_NONE)
+        return fmt::format("a <light> is seen by what the medium scatters of it alone, and {} scatters nothing; use "
+                           "--integrator ratioTracking",
+                           e.method.integrator);
+    return fmt::format("nothing gives light but the <light>, a point infinitely far away that no path of {} meets by "
+                       "chance; use --integrator ratioTracking, or add a <backgroundColor>",
+                       e.method.integrator);
+}
+
+Answer no_medium(const Evidence& e) {
+    if (!shows_nothing(e) || !e.result || e.result->outline.exists)
+        return {};
+    const Volume* volume = volume_of(e.authored);
+    if (!volume)
+        return "the scene has no medium; add a <densityField>, <sphere>, <box> or <models>";
+    if (volume->density_scale == 0.0)
+        return "lightRayDensityMultiplier is 0, which leaves no medium; 1 is the density as it is";
+    if (volume->sigma_a + volume->sigma_s == Rgb(0.0))
+        return "sigma_a and sigma_s are 0, which leaves no medium; raise one of them";
+    if (e.scene.volumes.front().sigma_a + e.scene.volumes.front().sigma_s == Rgb(0.0))
+        return fmt::format("{} leaves sigma_s out and sigma_a is 0, which leaves no medium; raise sigma_a",
+                           e.method.integrator);
+    const GridFile* file = std::get_if<GridFile>(&volume->shape);
+    return fmt::format("the grid \"{}\" has no voxels, so there is no medium; vkvol info {} says what the file has",
+                       file ? file->grid : "", file ? file->path.string() : "FILE");
+}
+
+std::string frame_advice(const Sight& sight) {
+    return fmt::format("--frame frames it, or look at {}", text_of(0.5 * (sight.box.low + sight.box.high)));
+}
+
+// No ray of the window meets the medium's box: where it is, and where the camera looks.
+Answer missed(const Evidence& e) {
+    if (!shows_nothing(e) || !e.sight || e.sight->in_window)
+        return {};
+    const Sight& s = *e.sight;
+    if (s.entering_picture > 0.0)
+        return fmt::format("no ray of this crop enters the medium, but {:.2g} % of the whole picture's do; move --crop",
+                           100.0 * s.entering_picture);
+    if (s.entering_frame > 0.0)
+        return fmt::format("no ray enters the medium, but {:.2g} % of the reference frame's do; the picture is another "
+                           "part of it, by startOffset and reference of <width> and <height>",
+                           100.0 * s.entering_frame);
+    const std::string where =
+        s.degrees_off > 90.0 ? "behind the camera" : fmt::format("{:.0f} degrees off the middle", s.degrees_off);
+    return fmt::format("no ray enters the medium, whose box {} is {}: the camera at {} looks along {} with a field of "
+                       "view of {:.3g} degrees; {}",
+                       box_text(s.box), where, text_of(s.eye), text_of(s.forward), e.scene.camera.fov, frame_advice(s));
+}
+
+Answer speck(const Evidence& e) {
+    constexpr double small = 0.002; // of the rays
+    if (!shows_nothing(e) || !e.sight || e.sight->inside || e.sight->entering > small)
+        return {};
+    if (e.sight->pixels > 0.05 * std::min(e.scene.picture.width, e.scene.picture.height))
+        return fmt::format("only an edge of the medium, whose box is {}, is in view: {:.1g} % of the rays enter it; "
+                           "{}{}",
+                           box_text(e.sight->box), 100.0 * e.sight->entering,
+                           e.sight->entering_picture > 2.0 * e.sight->entering ? "move --crop, or " : "",
+                           frame_advice(*e.sight));
+    return fmt::format("the medium, whose box is {}, measures {:.2g} pixels in a picture of {}x{}; go nearer, narrow "
+                       "fov, or --frame it",
+                       box_text(e.sight->box), e.sight->pixels, e.scene.picture.width, e.scene.picture.height);
+}
+
+Answer hollow(const Evidence& e) {
+    if (!shows_nothing(e) || !e.sight || e.sight->most_depth > 0.0)
+        return {};
+    if (e.result->outline.densest == 0.0)
+        return "the density is 0 in every voxel of the grid; vkvol info says what the file holds";
+    return fmt::format("rays enter the medium's box {}, but the density is 0 wherever they go; {}",
+                       box_text(e.sight->box), frame_advice(*e.sight));
+}
+
+Answer too_thin(const Evidence& e) {
+    constexpr double thin = 0.02; // a screen shows half a per cent of contrast
+    if (!shows_nothing(e) || !e.sight || e.sight->most_depth > thin)
+        return {};
+    const Volume& volume = e.scene.volumes.front();
+    const bool by_voxel = e.result->outline.voxel > 0.0 && volume.unit == CoefficientUnit::voxel;
+    const std::string unit =
+        by_voxel ? fmt::format(" (sigma_a and sigma_s are per voxel, of {:.3g} world units)", e.result->outline.voxel)
+                 : "";
+    return fmt::format("the largest optical depth in view is {:.2g}{}; multiply sigma_a and sigma_s, or "
+                       "lightRayDensityMultiplier, by {:.0e} or so",
+                       e.sight->most_depth, unit, 1.0 / e.sight->most_depth);
+}
+
+Answer cold_glow(const Evidence& e) {
+    if (e.odd != Odd::black || !e.result || !e.result->outline.has_temperature || sees_light(e))
+        return {};
+    const TemperatureEmission& emission = e.scene.volumes.front().temperature;
+    const double hottest = e.result->outline.hottest;
+    // Of the luminance at the reference temperature, six tenths of it have 1e-5.
+    const bool faint = hottest < 0.6 * emission.reference;
+    if (emission.model != TemperatureEmission::Model::blackbody || (hottest >= emission.cutoff && !faint))
+        return {};
+    return fmt::format("the medium is too cold to glow: \"{}\" reaches {:.4g} kelvin by temperatureScale and "
+                       "temperatureOffset, {}; raise temperatureScale (flames have 1000 to 3000 kelvin)",
+                       emission.grid, hottest,
+                       hottest < emission.cutoff
+                           ? fmt::format("below the temperatureCutoff of {:g}", emission.cutoff)
+                           : fmt::format("which beside a referenceTemperature of {:g} is black", emission.reference));
+}
+
+Answer depth_limit(const Evidence& e) {
+    if (e.odd != Odd::black || !e.result || 2 * e.result->counts.depth_caps < e.result->counts.paths)
+        return {};
+    return fmt::format("{:.0f} % of the paths ended at maxDepth {}, and those are black; raise maxDepth or leave it "
+                       "out",
+                       100.0 * double(e.result->counts.depth_caps) / double(e.result->counts.paths),
+                       e.scene.settings.max_depth.value_or(1'000'000));
+}
+
+Answer absorbs_all(const Evidence& e) {
+    constexpr double soot = 0.01;
+    const Volume* volume = volume_of(e.scene);
+    if (e.odd != Odd::black || !e.sight || e.emits || e.sight->most_depth < deep / 2.0)
+        return {};
+    const bool scatters = e.method.scattering != SCATTERING_NONE;
+    if (scatters && largest(albedo_of(*volume)) > soot)
+        return {};
+    return fmt::format("the medium absorbs whatever enters it, {}, and its optical depth reaches {:.3g}; lower "
+                       "sigma_a, {}",
+                       scatters ? fmt::format("with an albedo of {:.2g}", largest(albedo_of(*volume)))
+                                : fmt::format("since {} scatters nothing", e.method.integrator),
+                       e.sight->most_depth, scatters ? "or raise sigma_s" : "or use --integrator ratioTracking");
+}
+
+Answer inside(const Evidence& e) {
+    const bool nothing = e.odd == Odd::black || e.odd == Odd::noise;
+    if (!nothing || !e.sight || !e.sight->inside || !e.result->outline.fills || e.sight->least_depth < deep)
+        return {};
+    return fmt::format("the camera at {} stands inside of the medium, whose box is {}, and sees no way out: the "
+                       "optical depth before it is {:.3g} and more; move the camera out (--frame does) or lower "
+                       "sigma_a and sigma_s",
+                       text_of(e.sight->eye), box_text(e.sight->box), e.sight->least_depth);
+}
+
+// What Henyey and Greenstein's phase function makes of light that goes straight from the light to the camera, to that
+// of isotropic scattering.
+double phase_to_camera(const Evidence& e) {
+    const double g = e.scene.volumes.front().g;
+    const double mu = glm::dot(e.scene.lights.front().direction, e.sight->forward); // of the angle of scattering
+    return (1.0 - g * g) / std::pow(1.0 + g * g - 2.0 * g * mu, 1.5);
+}
+
+Answer phase_peak(const Evidence& e) {
+    if (e.odd != Odd::black || !e.sight || !sees_light(e) || e.emits)
+        return {};
+    const double g = e.scene.volumes.front().g;
+    if (std::abs(g) < 0.8 || phase_to_camera(e) > 0.05)
+        return {};
+    return fmt::format("the medium scatters the light past the camera: with heyneygreenstein_g {:g}, {:.1g} of what "
+                       "it would be by even scattering comes this way; lower it, or let the light shine {} the camera",
+                       g, phase_to_camera(e), g > 0.0 ? "towards" : "from behind");
+}
+
+Answer backlit(const Evidence& e) {
+    if (e.odd != Odd::black || !e.sight || !sees_light(e) || e.emits || e.sight->most_depth < deep)
+        return {};
+    const glm::dvec3& direction = e.scene.lights.front().direction;
+    if (glm::dot(direction, e.sight->forward) < 0.3)
+        return {};
+    return fmt::format("the camera sees the far side of the medium: the <light> stands behind it, at {}, and the "
+                       "optical depth reaches {:.3g}; turn the light, or lower sigma_a and sigma_s",
+                       text_of(direction), e.sight->most_depth);
+}
+
+Answer unlike_colours(const Evidence& e) {
+    const Volume* volume = volume_of(e.scene);
+    if (e.odd != Odd::black || !volume || !sees_light(e) || e.emits || e.scene.background != Rgb(0.0))
+        return {};
+    const Rgb& irradiance = e.scene.lights.front().irradiance;
+    if (irradiance * volume->sigma_s != Rgb(0.0))
+        return {};
+    return fmt::format("light and medium have no colour in common: the <light> has {}, of which sigma_s {} scatters "
+                       "nothing; change one of them",
+                       text_of(irradiance), text_of(volume->sigma_s));
+}
+
+std::string exposure_advice(const Evidence& e) {
+    const double suits = suitable_exposure(e.result->film, e.tone->mapping.curve);
+    return fmt::format("--exposure {:g} suits, also of vkvol develop", suits);
+}
+
+Answer dim(const Evidence& e) {
+    if (e.odd != Odd::black || !e.tone || !(e.look->brightest > 0.0))
+        return {};
+    return fmt::format("the brightest radiance is {:.2g}, next to nothing at exposure {:g}; {}, or brighter light",
+                       e.look->brightest, e.tone->mapping.exposure, exposure_advice(e));
+}
+
+Answer unlit(const Evidence& e) {
+    if (e.odd != Odd::black || !e.sight)
+        return {};
+    return fmt::format("none of its {} paths met light; the optical depth in view reaches {:.3g}, the albedo is {:.3g}",
+                       e.result->counts.paths, e.sight->most_depth, largest(albedo_of(e.scene.volumes.front())));
+}
+
+Answer furnace(const Evidence& e) {
+    if (e.odd != Odd::background || !e.sight || e.emits || sees_light(e))
+        return {};
+    if (least(albedo_of(e.scene.volumes.front())) < 0.98 || e.method.scattering != SCATTERING_MULTIPLE)
+        return {};
+    return "a medium that absorbs next to nothing cannot be told from a background that is the same everywhere; add a "
+           "<light>, or raise sigma_a";
+}
+
+Answer equilibrium(const Evidence& e) {
+    if (e.odd != Odd::background || !e.sight || !e.emits || e.result->outline.has_temperature)
+        return {};
+    return "the medium glows just as its background does, and cannot be told from it; change <medium> or "
+           "<backgroundColor>";
+}
+
+Answer indistinct(const Evidence& e) {
+    if (e.odd != Odd::background || !e.sight)
+        return {};
+    return fmt::format("the medium differs from it by less than a screen shows; the optical depth in view reaches "
+                       "{:.3g}; change <backgroundColor>, or add a brighter <light>",
+                       e.sight->most_depth);
+}
+
+Answer overexposed(const Evidence& e) {
+    if (e.odd != Odd::white)
+        return {};
+    const ToneMapping& mapping = e.tone->mapping;
+    const double background = largest(e.scene.background) * std::exp2(mapping.exposure);
+    const std::string sky = background > 1.0 ? fmt::format(", where the background alone is {:.3g}", background) : "";
+    return fmt::format("they are brighter than curve {} shows at exposure {:g}{}; {}", name_of(mapping.curve),
+                       mapping.exposure, sky, exposure_advice(e));
+}
+
+} // namespace
+
+bool sees_light(const Scene& scene, const Method& method) {
+    return !scene.lights.empty() && method.nee != NEE_NONE && scene.settings.max_depth != 0u;
+}
+
+const std::vector<Cause>& causes() {
+    static const std::vector<Cause> table = {
+        {"unfinished", unfinished},
+        {"blackSource", black_source},
+        {"noGlow", no_glow},
+        {"noLight", no_light},
+        {"lightUnseen", light_unseen},
+        {"noMedium", no_medium},
+        {"missed", missed},
+        {"speck", speck},
+        {"hollow", hollow},
+        {"tooThin", too_thin},
+        {"coldGlow", cold_glow},
+        {"inside", inside},
+        {"depthLimit", depth_limit},
+        {"absorbsAll", absorbs_all},
+        {"unlikeColours", unlike_colours},
+        {"phasePeak", phase_peak},
+        {"backlit", backlit},
+        {"dim", dim},
+        {"unlit", unlit},
+        {"furnace", furnace},
+        {"equilibrium", equilibrium},
+        {"indistinct", indistinct},
+        {"overexposed", overexposed},
+    };
+    return table;
+}
+
+} // namespace vkvol

@@ -1,0 +1,22 @@
+// What `vkvol scene.xml` says of a render, besides its progress.
+#pragma once
+
+#include "explain.h"
+#include "render_request.h"
+#include "renderer.h"
+
+namespace vkvol {
+
+void print_warnings(const std::vector<std::string>& warnings);
+
+// Why the picture shows nothing.
+void print_explanation(const Explanation& explanation);
+
+// One line for each kind of thing that makes the picture less than it claims to be; for samples that were not finite
+// also the command that follows their path.
+void print_caps(const RenderRequest& request, const RenderResult& result);
+
+// Why there is no sample, and so no picture.
+std::string no_samples_text(const RenderResult& result);
+
+} // namespace vkvol

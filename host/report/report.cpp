@@ -1,0 +1,216 @@
+#include "report.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include "scene_hash.h"
+#include "version.h"
+
+namespace vkvol {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::uint64_t peak_host_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+Json seconds_json(const RenderResult& r, double write_seconds) {
+    Json passes;
+    for (std::size_t pass = 0; pass < pass_names.size(); ++pass)
+        passes[pass_names[pass]] = r.pass_seconds[pass];
+    return {{"load", r.load_seconds},     {"upload", r.upload_seconds}, {"pipeline", r.pipeline_seconds},
+            {"render", r.render_seconds}, {"write", write_seconds},     {"passes", passes}};
+}
+
+Json counts_json(const RenderResult& r) {
+    const RenderCounts& c = r.counts;
+    return {{"paths", c.paths},
+            {"realCollisions", c.real_collisions},
+            {"nullCollisions", c.null_collisions},
+            {"densityLookups", c.lookups},
+            {"majorantCells", c.cells},
+            {"shadowRays", c.shadow_rays}};
+}
+
+Json caps_json(const RenderResult& r) {
+    const RenderCounts& c = r.counts;
+    Json samples = Json::array();
+    for (const NonFiniteSample& s : r.non_finite)
+        samples.push_back({{"x", s.x}, {"y", s.y}, {"sample", s.sample}});
+    return {{"depth", c.depth_caps},
+            {"steps", c.step_caps},
+            {"majorantViolations", c.majorant_violations},
+            {"queueOverflows", c.queue_overflows},
+            {"abandonedPaths", c.abandoned},
+            {"nonFiniteSamples", c.non_finite},
+            {"nonFiniteExamples", samples},
+            {"cleanedVoxels", c.cleaned_voxels}};
+}
+
+Json device_json(const DeviceInfo& device) {
+    return {{"name", device.name}, {"type", device.type}, {"driver", device.driver}, {"vulkan", device.api}};
+}
+
+// Names of files need not be UTF-8, as JSON must be.
+std::string text_of(const Json& report) {
+    return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json tone_json(const Tone& tone) {
+    if (tone.pixels == 0)
+        return {};
+    return {
+        {"curve", name_of(tone.mapping.curve)}, {"exposure", tone.mapping.exposure}, {"clippedPixels", tone.clipped}};
+}
+
+Json vector_json(const glm::dvec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+Json explanation_json(const std::optional<Explanation>& explanation, const Camera& camera) {
+    if (!explanation)
+        return {};
+    Json json{{"picture", explanation->picture}, {"cause", explanation->cause}, {"text", explanation->text}};
+    if (const auto& look = explanation->look)
+        json.update({{"brightest", look->brightest},
+                     {"pixels", look->pixels},
+                     {"unsampledPixels", look->unsampled},
+                     {"visiblePixels", look->shown},
+                     {"pixelsUnlikeBackground", look->apart}});
+    if (const auto& sight = explanation->sight)
+        json.update({{"mediumBox", {vector_json(sight->box.low), vector_json(sight->box.high)}},
+                     {"camera",
+                      {{"position", vector_json(sight->eye)},
+                       {"direction", vector_json(sight->forward)},
+                       {"fov", camera.fov},
+                       {"insideMediumBox", sight->inside}}},
+                     {"raysEntering", sight->entering},
+                     {"opticalDepth", {{"least", sight->least_depth}, {"most", sight->most_depth}}}});
+    return json;
+}
+
+Json mean_json(const Film& film) {
+    const auto [value, error] = image_mean(film);
+    Json json{{"value", {value.x, value.y, value.z}}, {"standardError", nullptr}};
+    if (error)
+        json["standardError"] = {error->x, error->y, error->z};
+    return json;
+}
+
+} // namespace
+
+namespace {
+
+// Metadata integers have 32 bits.
+int metadata_count(std::uint64_t count) {
+    return static_cast<int>(std::min<std::uint64_t>(count, std::numeric_limits<int>::max()));
+}
+
+// Why the mean is not exact, also where a cap made it so.
+std::string bias_of(const RenderResult& result) {
+    std::string text = result.biased;
+    const auto add = [&text](std::uint64_t count, const char* what) {
+        if (count > 0)
+            text += (text.empty() ? "" : "; ") + fmt::format("{} {}", count, what);
+    };
+    add(result.counts.depth_caps, "paths ended at maxDepth");
+    add(result.counts.step_caps, "segments were cut");
+    add(result.counts.abandoned, "paths were abandoned");
+    add(result.counts.non_finite, "samples were not finite");
+    return text;
+}
+
+} // namespace
+
+Metadata make_metadata(const RenderRequest& request, const Scene& scene, const Device& device,
+                       const RenderResult& result) {
+    const auto most = std::max_element(result.film.samples.begin(), result.film.samples.end());
+    Metadata metadata{{"Software", std::string("vkvol ") + version},
+                      {"samplesPerPixel", static_cast<int>(*most)},
+                      {"renderTimeSeconds", static_cast<float>(result.render_seconds)},
+                      {"vkvol/version", std::string(version)},
+                      {"vkvol/sceneHash", scene_hash(scene)},
+                      {"vkvol/integrator", result.integrator},
+                      {"vkvol/biased", bias_of(result)},
+                      {"vkvol/specialization", result.specialization},
+                      {"vkvol/seed", std::to_string(request.seed)},
+                      {"vkvol/sampleOffset", static_cast<int>(request.sample_offset)},
+                      {"vkvol/device", device.info().name},
+                      {"vkvol/driver", device.info().driver},
+                      {"vkvol/capsHit", result.counts.any_cap() ? 1 : 0},
+                      {"vkvol/depthCaps", metadata_count(result.counts.depth_caps)},
+                      {"vkvol/stepCaps", metadata_count(result.counts.step_caps)},
+                      {"vkvol/majorantViolations", metadata_count(result.counts.majorant_violations)},
+                      {"vkvol/nullCollisions", std::to_string(result.counts.null_collisions)},
+                      {"vkvol/queueOverflows", metadata_count(result.counts.queue_overflows)},
+                      {"vkvol/abandonedPaths", metadata_count(result.counts.abandoned)},
+                      {"vkvol/nonFiniteSamples", metadata_count(result.counts.non_finite)}};
+    record_tone(request.tone, result.glows, metadata);
+    return metadata;
+}
+
+std::string make_report(const RenderRequest& request, const Scene& scene, const Device& device,
+                        const RenderResult& result, const Shown& shown, double write_seconds,
+                        const std::string& error) {
+    const auto [least, most] = std::minmax_element(result.film.samples.begin(), result.film.samples.end());
+    const double seconds = std::max(result.render_seconds, 1e-9);
+    Json report;
+    report["version"] = version;
+    report["error"] = error.empty() ? Json() : Json(error);
+    report["scene"] = request.scene.string();
+    report["sceneHash"] = scene_hash(scene);
+    report["integrator"] = result.integrator;
+    report["biased"] = bias_of(result);
+    report["specialization"] = result.specialization;
+    report["device"] = device_json(device.info());
+    report["picture"] = {
+        {"width", scene.picture.width},
+        {"height", scene.picture.height},
+        {"crop", {result.film.crop.x0, result.film.crop.x1, result.film.crop.y0, result.film.crop.y1}}};
+    report["seed"] = request.seed;
+    report["sampleOffset"] = request.sample_offset;
+    report["samplesPerPixel"] = {{"least", *least}, {"most", *most}};
+    report["interrupted"] = result.interrupted;
+    report["seconds"] = seconds_json(result, write_seconds);
+    report["counts"] = counts_json(result);
+    report["perSecond"] = {
+        {"samples", static_cast<double>(result.counts.paths) / seconds},
+        {"tentativeCollisions",
+         static_cast<double>(result.counts.real_collisions + result.counts.null_collisions) / seconds}};
+    report["laneUse"] = {{"track", result.counts.lane_use()}};
+    report["caps"] = caps_json(result);
+    report["mean"] = mean_json(result.film);
+    const std::optional<double> noise = relative_noise(result.film);
+    report["noise"] = noise ? Json(*noise) : Json();
+    report["tone"] = tone_json(shown.tone);
+    report["explanation"] = explanation_json(shown.explanation, scene.camera);
+    report["memory"] = {{"peakHostBytes", peak_host_bytes()}, {"deviceBytes", result.device_bytes}};
+    report["warnings"] = scene.warnings;
+    for (const std::string& warning : result.warnings)
+        report["warnings"].push_back(warning);
+    return text_of(report);
+}
+
+std::string make_failure_report(const RenderRequest& request, const Scene& scene, const DeviceInfo* device,
+                                const std::string& error) {
+    Json report;
+    report["version"] = version;
+    report["error"] = error;
+    report["scene"] = request.scene.string();
+    report["sceneHash"] = scene_hash(scene);
+    report["device"] = device ? device_json(*device) : Json();
+    report["seed"] = request.seed;
+    report["sampleOffset"] = request.sample_offset;
+    report["memory"] = {{"peakHostBytes", peak_host_bytes()}};
+    report["warnings"] = scene.warnings;
+    return text_of(report);
+}
+
+} // namespace vkvol

@@ -1,0 +1,170 @@
+// The authored scene as plain data: what the XML says, before any grid is opened or any device chosen.
+// World space is right-handed with y up. Lengths are world units, angles degrees, radiance linear Rec.709.
+// The CPU reference reads these structs too, so nothing here may depend on Vulkan.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace vkvol {
+
+using Rgb = glm::dvec3; // linear Rec.709, >= 0
+
+// World units. Far beyond any scene, and small enough that products of three stay finite on the device.
+inline constexpr double largest_length = 1e11;
+
+// What is hotter is no flame but a slip of the unit.
+inline constexpr double hottest_kelvin = 1e9;
+
+// Looks along -z at zero rotation. Direction of a camera-space d: Rz(roll) * Ry(yaw) * Rx(pitch) * d.
+struct Camera {
+    glm::dvec3 position{0.0};
+    double pitch = 0.0; // degrees, + looks up
+    double yaw = 0.0;   // degrees, + turns left
+    double roll = 0.0;  // degrees, + counter-clockwise about world z
+    double fov = 90.0;  // degrees, the full vertical angle of the reference frame, in (0, 180)
+};
+
+// The picture is a window of `width` x `height` pixels at (start_x, start_y) of a virtual reference frame.
+// Pixel (i, j) of the picture, row 0 on top, has its centre at u = (start_x + i + 1/2) / reference_width, likewise v.
+// Starts and references are real numbers so that a picture can be resized without changing its view.
+struct Picture {
+    int width = 400;
+    int height = 400;
+    double start_x = 0.0;
+    double start_y = 0.0;
+    double reference_width = 400.0;
+    double reference_height = 400.0;
+};
+
+struct Sphere {
+    glm::dvec3 center{0.0};
+    double radius = 1.0; // > 0
+};
+
+struct Box {
+    glm::dvec3 center{0.0};
+    glm::dvec3 size{1.0}; // full edge lengths, > 0
+};
+
+// Closed surfaces from .obj files, in world space; the medium fills what any of them encloses.
+struct MeshFiles {
+    std::vector<std::filesystem::path> paths;
+};
+
+struct GridFile {
+    std::filesystem::path path; // .nvdb or .vdb
+    std::string grid = "density";
+};
+
+// What "per length" in sigma_a and sigma_s means: per index-space unit of the grid, or per world unit.
+// For a grid whose transform is M (index -> world) one voxel is |det M|^(1/3) world units long.
+enum class CoefficientUnit { voxel, world };
+
+// How a temperature grid glows: `color` times the grid's value (the original's model), or `color` times a black body's
+// colour at kelvin = scale * value + offset, 0 below the cutoff, relative to luminance 1 at `reference` kelvin.
+struct TemperatureEmission {
+    enum class Model { color, blackbody };
+    Model model = Model::color;
+    Rgb color{0.0};                   // 0: no such emission
+    std::string grid = "temperature"; // in the density field's file; a file without it does not glow
+    double scale = 1.0;
+    double offset = 0.0;       // kelvin
+    double cutoff = 0.0;       // kelvin
+    double reference = 1500.0; // kelvin, > 0
+};
+
+// Procedural density max(0, (1 + fbm(x)) / 2) with fbm(x) = sum over octaves k of gain^k perlin(frequency lacunarity^k
+// x), x in world space, and Perlin's improved noise ("Improving Noise", 2002).
+struct Noise {
+    double frequency = 1.8;  // > 0 [1 / world unit]
+    int octaves = 1;         // 1 to 16
+    double gain = 0.5;       // in [0, 1]
+    double lacunarity = 2.0; // >= 1
+};
+
+// A participating medium filling a shape. Coefficients multiply the density: that of the grid, of the noise, or 1.
+struct Volume {
+    std::variant<Sphere, Box, MeshFiles, GridFile> shape;
+    std::string place;                             // of the shape, "file:line:column", for messages; or empty
+    std::optional<Noise> noise;                    // not for grids
+    Rgb sigma_a{0.5};                              // absorption, >= 0 [1/unit]
+    Rgb sigma_s{0.5};                              // scattering, >= 0 [1/unit]
+    CoefficientUnit unit = CoefficientUnit::voxel; // without meaning but for grids: else always world
+    double density_scale = 1.0;                    // >= 0, multiplies the density
+    double g = 0.0;                                // Henyey-Greenstein mean cosine, in (-1, 1), + is forward
+    Rgb Le{0.0};                                   // radiance emitted per absorption event: emission is sigma_a * Le
+    TemperatureEmission temperature;               // adds to Le
+};
+
+struct DirectionalLight {
+    glm::dvec3 direction{0.0, 1.0, 0.0}; // unit, from the scene towards the light
+    Rgb irradiance{0.0};                 // on a plane perpendicular to `direction`
+};
+
+// How the density between voxel centres is looked up. `stochastic` takes one of the eight corners with the
+// probability of its trilinear weight: exact in expectation wherever the density enters linearly.
+enum class Filter { nearest, trilinear, stochastic };
+
+// Choices along the axes of an integrator, as numbered in shaders/shared/constants.h. Set ones replace the preset's.
+struct AxisChoices {
+    std::optional<int> scattering;    // SCATTERING_...
+    std::optional<int> free_flight;   // FREE_FLIGHT_...
+    std::optional<int> transmittance; // TRANSMITTANCE_...
+    std::optional<int> nee;           // NEE_...
+    std::optional<int> emission;      // EMISSION_AT_...
+};
+
+// Ray marching. Lengths in world units, or in voxels of a grid.
+struct March {
+    double step = 0.0;         // > 0; 0: half a voxel in a grid, 0.2 world units elsewhere, as in the original
+    double shadow_step = 0.0;  // of shadow rays, > 0; 0: as step
+    double optical_step = 0.1; // of adaptive marches: the majorant's optical depth per step, > 0
+    bool jitter = true;        // sample points at random in their step, not in its middle
+    CoefficientUnit unit = CoefficientUnit::voxel; // of the steps; always world but for grids
+};
+
+struct RenderSettings {
+    std::string integrator; // empty: the best unbiased choice for the scene
+    AxisChoices choices;    // beyond what the integrator's name says
+    March march;
+    std::uint32_t spp = 1;                  // samples per pixel, >= 1
+    std::optional<std::uint32_t> max_depth; // scattering events per path; none: a million
+    double roulette_threshold = 0.1;        // path weight below which Russian roulette is played; 0: never
+    std::optional<Filter> filter;           // none: stochastic, or trilinear where that would be biased
+    double majorant_scale = 1.0; // >= 1 leaves every unbiased estimator unbiased; < 1 violates the majorant on purpose
+    int majorant_cell = 0;       // voxels along an edge of a majorant cell; 0: automatic
+};
+
+// What the mean of the picture must be, for scenes that are tests: derived in the scene file, without effect on the
+// picture.
+struct Expected {
+    Rgb mean{0.0};
+    Rgb bias{0.0};      // >= 0, how far the true mean may be from `mean`: truncation and rounding, derived as well
+    bool exact = false; // every sample has this value, so noise is no excuse
+};
+
+// An element that could give light and is black: what it lacks, nobody may have meant to leave out.
+struct BlackElement {
+    std::string name;
+    std::string place; // "file:line:column"
+};
+
+struct Scene {
+    Camera camera;
+    Picture picture;
+    std::vector<Volume> volumes;
+    std::vector<DirectionalLight> lights;
+    Rgb background{0.0}; // constant radiance from every direction
+    RenderSettings settings;
+    std::optional<Expected> expected;
+    std::vector<BlackElement> black;   // without effect on the picture
+    std::vector<std::string> warnings; // "file:line:column: ..." for what was understood but is not honoured
+};
+
+} // namespace vkvol

@@ -1,0 +1,115 @@
+#include "bindings.h"
+
+#include "shared/frame.h"
+#include "vulkan_error.h"
+
+namespace vkvol {
+
+namespace {
+VkDescriptorType descriptor_type(std::uint32_t binding) {
+    return binding == BINDING_FRAME    ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+           : binding < BINDING_BUFFERS ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
+                                       : VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+}
+
+VkFormat texel_format(std::uint32_t binding) {
+    return binding == BINDING_LATTICE_TEXELS    ? VK_FORMAT_R32G32B32A32_SFLOAT
+           : binding == BINDING_MAJORANT_TEXELS ? VK_FORMAT_R32_SFLOAT
+                                                : VK_FORMAT_R32_UINT;
+}
+} // namespace
+
+Bindings::Bindings(const Device& device, const BoundBuffers& buffers)
+    : device_(device), unused_(device, "placeholder", 256,
+                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                                   VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
+                               BufferPlace::device) {
+    try {
+        create();
+        for (std::uint32_t i = 0; i < BINDING_BUFFERS; ++i)
+            bind(i, buffers[i] ? *buffers[i] : unused_);
+        for (std::uint32_t i = BINDING_BUFFERS; i < BINDING_COUNT; ++i)
+            bind_texels(i, buffers[i] ? *buffers[i] : unused_);
+    } catch (...) {
+        release();
+        throw;
+    }
+}
+
+void Bindings::create() {
+    std::array<VkDescriptorSetLayoutBinding, BINDING_COUNT> slots{};
+    for (std::uint32_t i = 0; i < BINDING_COUNT; ++i)
+        slots[i] = {i, descriptor_type(i), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
+    VkDescriptorSetLayoutCreateInfo set_layout{};
+    set_layout.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+    set_layout.bindingCount = BINDING_COUNT;
+    set_layout.pBindings = slots.data();
+    VK_CHECK(vkCreateDescriptorSetLayout(device_.handle(), &set_layout, nullptr, &set_layout_));
+
+    const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(shared::PassPush)};
+    VkPipelineLayoutCreateInfo layout{};
+    layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+    layout.setLayoutCount = 1;
+    layout.pSetLayouts = &set_layout_;
+    layout.pushConstantRangeCount = 1;
+    layout.pPushConstantRanges = &push;
+    VK_CHECK(vkCreatePipelineLayout(device_.handle(), &layout, nullptr, &layout_));
+
+    const std::array<VkDescriptorPoolSize, 3> sizes{
+        {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
+         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BINDING_BUFFERS - 1},
+         {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, BINDING_COUNT - BINDING_BUFFERS}}};
+    VkDescriptorPoolCreateInfo pool{};
+    pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    pool.maxSets = 1;
+    pool.poolSizeCount = sizes.size();
+    pool.pPoolSizes = sizes.data();
+    VK_CHECK(vkCreateDescriptorPool(device_.handle(), &pool, nullptr, &pool_));
+    VkDescriptorSetAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+    allocate.descriptorPool = pool_;
+    allocate.descriptorSetCount = 1;
+    allocate.pSetLayouts = &set_layout_;
+    VK_CHECK(vkAllocateDescriptorSets(device_.handle(), &allocate, &set_));
+}
+
+void Bindings::write(std::uint32_t binding, const VkDescriptorBufferInfo* buffer, const VkBufferView* texels) {
+    VkWriteDescriptorSet write{};
+    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.dstSet = set_;
+    write.dstBinding = binding;
+    write.descriptorCount = 1;
+    write.descriptorType = descriptor_type(binding);
+    write.pBufferInfo = buffer;
+    write.pTexelBufferView = texels;
+    vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
+}
+
+void Bindings::bind(std::uint32_t binding, const Buffer& buffer) {
+    const VkDescriptorBufferInfo info{buffer.handle(), 0, buffer.bytes()};
+    write(binding, &info, nullptr);
+}
+
+void Bindings::bind_texels(std::uint32_t binding, const Buffer& buffer) {
+    VkBufferViewCreateInfo create{};
+    create.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO;
+    create.buffer = buffer.handle();
+    create.format = texel_format(binding);
+    create.range = VK_WHOLE_SIZE;
+    VK_CHECK(vkCreateBufferView(device_.handle(), &create, nullptr, &views_.emplace_back(VK_NULL_HANDLE)));
+    write(binding, nullptr, &views_.back());
+}
+
+Bindings::~Bindings() {
+    release();
+}
+
+void Bindings::release() {
+    for (const VkBufferView view : views_)
+        vkDestroyBufferView(device_.handle(), view, nullptr);
+    vkDestroyDescriptorPool(device_.handle(), pool_, nullptr);
+    vkDestroyPipelineLayout(device_.handle(), layout_, nullptr);
+    vkDestroyDescriptorSetLayout(device_.handle(), set_layout_, nullptr);
+}
+
+} // namespace vkvol

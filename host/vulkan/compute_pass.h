@@ -1,0 +1,34 @@
+// One kernel with its specialization, ready to be recorded.
+#pragma once
+
+#include <span>
+
+#include "bindings.h"
+#include "shared/frame.h"
+#include "specialization.h"
+
+namespace vkvol {
+
+class ComputePass {
+public:
+    ComputePass(const Device& device, const Bindings& bindings, std::span<const std::uint32_t> spirv,
+                const Specialization& specialization, VkPipelineCache cache);
+    ~ComputePass();
+    ComputePass(const ComputePass&) = delete;
+    ComputePass& operator=(const ComputePass&) = delete;
+
+    // At least `threads` invocations, in whole groups.
+    void record(VkCommandBuffer commands, const shared::PassPush& push, std::uint32_t threads) const;
+    // Groups read from `arguments` at `offset`.
+    void record_indirect(VkCommandBuffer commands, const shared::PassPush& push, const Buffer& arguments,
+                         VkDeviceSize offset) const;
+
+private:
+    void bind(VkCommandBuffer commands, const shared::PassPush& push) const;
+
+    const Device& device_;
+    const Bindings& bindings_;
+    VkPipeline pipeline_ = VK_NULL_HANDLE;
+};
+
+} // namespace vkvol

@@ -1,0 +1,28 @@
+// Emission: the medium sends out sigma_a * density * Le per unit length, Le constant, or following a temperature grid.
+// Where density is 0 nothing is emitted, however hot. Estimated at real collisions, whose density is sigma_t * density:
+// each adds beta * (1 - albedo) * Le; or along flights, by one sample per step.
+#ifndef EMISSION_GLSL
+#define EMISSION_GLSL
+#include "field/density.glsl"
+
+// Linear between the table's entries, the last of which is the hottest that the grid holds.
+vec3 blackbody_color(EmissionParams e, float kelvin) {
+    float x = clamp((kelvin - e.table_low) / (e.table_high - e.table_low), 0.0, 1.0) * float(BLACKBODY_ENTRIES - 1);
+    uint i = min(uint(x), uint(BLACKBODY_ENTRIES - 2));
+    return mix(blackbody[i], blackbody[i + 1u], x - float(i));
+}
+
+// (1 - albedo) * Le at a point of render space.
+vec3 emitted_radiance(EmissionParams e, vec3 position) {
+    if (EMISSION == EMISSION_NONE || EMISSION == EMISSION_CONSTANT)
+        return e.constant;
+    vec4 p = vec4(position, 1.0);
+    vec3 index = vec3(dot(e.to_index[0], p), dot(e.to_index[1], p), dot(e.to_index[2], p));
+    float value = lookup_trilinear(e.grid, TEMPERATURE_TYPE, index);
+    if (EMISSION == EMISSION_COLOR)
+        return e.constant + value * e.color;
+    float kelvin = e.kelvin_scale * value + e.kelvin_offset;
+    return kelvin < e.kelvin_cutoff ? e.constant : e.constant + e.color * blackbody_color(e, kelvin);
+}
+
+#endif

@@ -1,0 +1,45 @@
+// Adding samples to a film entry. A lane owns its pixel while it has samples to come, so no atomics; they are added in
+// order, so its sums have the same bits however the work was scheduled.
+#ifndef FILM_GLSL
+#define FILM_GLSL
+#include "lib/tally.glsl"
+
+// high + low += x. The rounding error of high + x (Knuth's TwoSum) goes into low, and what of low has grown into the
+// digits of high goes back there (Dekker's FastTwoSum): else low in its turn would stall. `precise` forbids the compiler
+// to undo it.
+void add_compensated(inout vec3 high, inout vec3 low, vec3 x) {
+    precise vec3 sum = high + x;
+    precise vec3 part = sum - high;
+    precise vec3 rest = low + ((high - (sum - part)) + (x - part));
+    precise vec3 total = sum + rest;
+    precise vec3 left = rest - (total - sum);
+    high = total;
+    low = left;
+}
+
+// Radiance beyond this is as good as infinite: 2^32 squares of it are still a float.
+const float MOST_RADIANCE = 281474976710656.0; // 2^48
+
+// A sample that is not finite is dropped and counted, the first of them with its place in the picture and number.
+void film_add(inout FilmPixel pixel, vec3 radiance, uint place, uint sample_index, inout Tally tally) {
+    tally.paths += 1u;
+    if (any(isnan(radiance)) || any(greaterThan(abs(radiance), vec3(MOST_RADIANCE)))) {
+        if (tally.non_finite == 0u) {
+            tally.dropped_place = place;
+            tally.dropped_sample = sample_index;
+        }
+        tally.non_finite += 1u;
+        return;
+    }
+    add_compensated(pixel.sum, pixel.sum_low, radiance);
+    // x^2 = head^2 + 2 head tail + tail^2, each of them exact with 12 significant bits in the head: so that a variance
+    // far below the mean is not lost in the rounding of squares.
+    vec3 head = uintBitsToFloat(floatBitsToUint(radiance) & 0xfffff000u);
+    vec3 tail = radiance - head;
+    add_compensated(pixel.square, pixel.square_low, head * head);
+    add_compensated(pixel.square, pixel.square_low, 2.0 * head * tail);
+    pixel.square_low += tail * tail;
+    pixel.count += 1u;
+}
+
+#endif

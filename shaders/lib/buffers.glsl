@@ -1,0 +1,72 @@
+// Every buffer, declared once.
+#ifndef BUFFERS_GLSL
+#define BUFFERS_GLSL
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "shared/estimators.h"
+#include "shared/items.h"
+#include "shared/frame.h"
+#include "lib/spectrum.glsl"
+
+layout(constant_id = SPEC_SHAPE) const int SHAPE = SHAPE_NONE;
+layout(constant_id = SPEC_FIELD) const int FIELD = FIELD_CONSTANT;
+layout(constant_id = SPEC_GRID_TYPE) const int GRID_TYPE = GRID_FLOAT;
+layout(constant_id = SPEC_FILTER) const int FILTER = FILTER_TRILINEAR;
+layout(constant_id = SPEC_SCATTERING) const int SCATTERING = SCATTERING_MULTIPLE;
+layout(constant_id = SPEC_NEE) const int NEE = NEE_NONE;
+layout(constant_id = SPEC_EMISSION) const int EMISSION = EMISSION_NONE;
+layout(constant_id = SPEC_EMISSION_AT) const int EMISSION_AT = EMISSION_AT_COLLISIONS;
+layout(constant_id = SPEC_FREE_FLIGHT) const int FREE_FLIGHT = FREE_FLIGHT_DELTA;
+layout(constant_id = SPEC_TRANSMITTANCE) const int TRANSMITTANCE = TRANSMITTANCE_RATIO;
+layout(constant_id = SPEC_TEMPERATURE_TYPE) const int TEMPERATURE_TYPE = GRID_FLOAT;
+layout(constant_id = SPEC_STEPS) const int STEPS = 1;
+layout(constant_id = SPEC_TRACE) const int TRACE = 0;
+layout(constant_id = SPEC_TEXELS) const int TEXELS = 0;
+layout(constant_id = SPEC_LEAPS) const int LEAPS = 0;
+
+const int FLIGHT_TRAITS = FREE_FLIGHT_TRAITS(FREE_FLIGHT);
+const int SHADOW_TRAITS = TRANSMITTANCE_TRAITS(TRANSMITTANCE);
+const bool NULL_FLIGHT = (FLIGHT_TRAITS & TRAIT_NULL) != 0;
+const bool NULL_TRANSMITTANCE = (SHADOW_TRAITS & TRAIT_NULL) != 0;
+const bool MARCHED_TRANSMITTANCE = (SHADOW_TRAITS & TRAIT_MARCH) != 0;
+
+// Where light scatters at most once a march samples no collision: it goes through and gathers along the ray. (A
+// function, with a variable, for the sake of glslang 12: see LOOKS.)
+bool goes_through() {
+    bool marches = (FLIGHT_TRAITS & TRAIT_MARCH) != 0;
+    return (SCATTERING != SCATTERING_MULTIPLE && marches) ||
+           (SCATTERING == SCATTERING_NONE && FREE_FLIGHT == FREE_FLIGHT_ANALYTIC);
+}
+
+layout(scalar, binding = BINDING_FRAME) uniform FrameBlock { FrameParams frame_block; };
+// A copy, read once before any branch or loop: within one, llvmpipe gathers even constants lane by lane, and a quarter of
+// all time went by at it. Tables within, looked up by index, are read from the block all the same.
+FrameParams frame = frame_block;
+layout(scalar, binding = BINDING_GRID) readonly buffer GridBlock { uint grid_words[]; };
+layout(scalar, binding = BINDING_LEAF_TABLE) readonly buffer LeafTableBlock { uint leaf_table[]; };
+layout(scalar, binding = BINDING_MAJORANTS) readonly buffer MajorantBlock { float majorants[]; };
+layout(scalar, binding = BINDING_CONTROLS) readonly buffer ControlBlock { ControlCell controls[]; };
+layout(scalar, binding = BINDING_TRIANGLES) readonly buffer TriangleBlock { vec3 triangles[]; };
+layout(scalar, binding = BINDING_BVH) readonly buffer BvhBlock { BvhNode bvh[]; };
+layout(scalar, binding = BINDING_PATHS) buffer PathBlock { PathState paths[]; };
+layout(scalar, binding = BINDING_BETAS) buffer BetaBlock { Spectrum betas[]; };
+layout(scalar, binding = BINDING_SUSPENDED) buffer SuspendedBlock { Suspended suspended[]; };
+layout(scalar, binding = BINDING_QUEUE_ITEMS) buffer QueueItemBlock { uint queue_items[]; };
+layout(scalar, binding = BINDING_QUEUES) buffer QueueBlock { QueueHeader queues[]; };
+layout(scalar, binding = BINDING_FILM) buffer FilmBlock { FilmPixel film[]; };
+layout(scalar, binding = BINDING_WORK) buffer WorkBlock { uint work[]; };
+layout(scalar, binding = BINDING_BLACKBODY) readonly buffer BlackbodyBlock { vec3 blackbody[]; };
+layout(scalar, binding = BINDING_TRACE) buffer TraceBlock {
+    uint trace_count;
+    TraceRecord trace_records[];
+};
+layout(scalar, binding = BINDING_LATTICE) buffer LatticeBlock { vec4 lattice[]; };
+layout(binding = BINDING_GRID_TEXELS) uniform utextureBuffer grid_texels;
+layout(binding = BINDING_LEAF_TEXELS) uniform utextureBuffer leaf_texels;
+layout(binding = BINDING_MAJORANT_TEXELS) uniform textureBuffer majorant_texels;
+layout(binding = BINDING_LATTICE_TEXELS) uniform textureBuffer lattice_texels;
+layout(scalar, binding = BINDING_COUNTERS) buffer CounterBlock { Counters counters; };
+
+#endif

@@ -1,0 +1,56 @@
+// What a lane has seen, kept in registers and added to the counters once.
+#ifndef TALLY_GLSL
+#define TALLY_GLSL
+#include "lib/buffers.glsl"
+
+struct Tally {
+    uint real_collisions;
+    uint null_collisions;
+    uint lookups;
+    uint cells;
+    uint shadow_rays;
+    uint violations;
+    uint depth_caps;
+    uint step_caps;
+    uint room;
+    uint steps;
+    uint paths;
+    uint non_finite;
+    uint dropped_place; // of the first sample that was not finite
+    uint dropped_sample;
+};
+
+const Tally NOTHING_SEEN = Tally(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+
+// What film_add has seen.
+void add_film_tally(Tally tally) {
+    atomicAdd(counters.paths, tally.paths);
+    if (tally.non_finite != 0u) {
+        atomicAdd(counters.non_finite, tally.non_finite);
+        uint record = atomicAdd(counters.non_finite_records, 1u);
+        if (record < NON_FINITE_RECORDS) {
+            counters.non_finite_place[record] = tally.dropped_place;
+            counters.non_finite_sample[record] = tally.dropped_sample;
+        }
+    }
+}
+
+void add_tally(Tally tally) {
+    add_film_tally(tally);
+    atomicAdd(counters.real_collisions, tally.real_collisions);
+    atomicAdd(counters.null_collisions, tally.null_collisions);
+    atomicAdd(counters.lookups, tally.lookups);
+    atomicAdd(counters.cells, tally.cells);
+    atomicAdd(counters.room, tally.room);
+    atomicAdd(counters.steps, tally.steps);
+    if (NEE != NEE_NONE)
+        atomicAdd(counters.shadow_rays, tally.shadow_rays);
+    if (tally.violations != 0u)
+        atomicAdd(counters.majorant_violations, tally.violations);
+    if (tally.depth_caps != 0u)
+        atomicAdd(counters.depth_caps, tally.depth_caps);
+    if (tally.step_caps != 0u)
+        atomicAdd(counters.step_caps, tally.step_caps);
+}
+
+#endif

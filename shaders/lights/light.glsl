@@ -1,0 +1,12 @@
+// Next-event estimation toward the directional light. Its contribution at a collision is
+// beta * p(direction, towards the light) * irradiance * T, with the collision's albedo already in beta.
+#ifndef LIGHT_GLSL
+#define LIGHT_GLSL
+#include "phase/phase.glsl"
+#include "lib/spectrum.glsl"
+
+vec3 sun_contribution(VolumeParams v, LightParams light, vec3 direction, Spectrum beta) {
+    return beta * hg_eval(v.g, hg_from_peak(v.g, direction, light.direction)) * light.irradiance;
+}
+
+#endif

@@ -1,0 +1,41 @@
+// Next-event estimation from a cache. With T~ a transmittance towards the light that is known beforehand, roughly, and T what
+// a shadow ray estimates, a collision of contribution c per transmittance adds
+//   c T~, and with chance q also c (T - T~) / q,
+// whose expectation is c T whatever T~ and q are: T~ is a control variate, and q decides only how noise and time trade.
+// Worth a shadow ray is a collision that contributes much and about whose T~ there is doubt: where it is neither 0 nor 1.
+#ifndef LIGHT_CACHE_GLSL
+#define LIGHT_CACHE_GLSL
+#include "lights/lattice.glsl"
+#include "phase/phase.glsl"
+#include "shapes/shape.glsl"
+
+const float LOOKING = 4.0; // measured: the chance of a doubtful isotropic collision is 1 then
+const float LEAST_CHANCE = 0.05; // bounds the weight of what the cache has wrong
+const float DOUBT_AT_ENDS = 0.02;
+
+// T~ from a point of render space.
+Spectrum cached_transmittance(VolumeParams v, vec3 position) {
+    float depth = lattice_value(LATTICE_DEPTH, to_medium(v, position, vec3(0.0)).origin);
+    return exp(-to_spectrum(v.sigma_ratio) * depth);
+}
+
+// q. `share`: of the light that an isotropic collision at throughput 1 would scatter into the path.
+float looking_chance(float share, Spectrum T) {
+    float t = largest(T);
+    float doubt = sqrt(t * (1.0 - t)) + DOUBT_AT_ENDS;
+    return clamp(LOOKING * share * doubt, LEAST_CHANCE, 1.0);
+}
+
+// A control variate for the direction in which a path departs: what a collision at its end would scatter towards the path, less
+// what that is on average over directions, per unit of throughput and irradiance. The average is known: phase functions
+// of Henyey and Greenstein are closed under convolution, asymmetries multiply, so p_g(after, light) is p_g^2(before,
+// light) on average. Hence this may be subtracted with any factor that was known before. A good one is the
+// transmittance expected there, which for a flight towards the light, through an optical depth tau, is the integral of
+// exp(-t) exp(-(tau - t)): tau exp(-tau). `T`: of the cache, where the path departs.
+Spectrum foreseen_light(VolumeParams v, Spectrum T, vec3 before, vec3 after) {
+    Spectrum factor = -T * log(max(T, to_spectrum(vec3(1.0e-30)))) * to_spectrum(v.albedo);
+    float average = hg_eval(v.g * v.g, hg_from_peak(v.g * v.g, before, frame.light.direction));
+    return factor * (hg_eval(v.g, hg_from_peak(v.g, after, frame.light.direction)) - average);
+}
+
+#endif

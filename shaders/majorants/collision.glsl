@@ -1,0 +1,48 @@
+// Tentative collisions: the walk, the density where it stops, and the random numbers that decide what happens there.
+#ifndef COLLISION_GLSL
+#define COLLISION_GLSL
+#include "field/density.glsl"
+#include "majorants/majorant.glsl"
+#include "lib/rng.glsl"
+#include "lib/tally.glsl"
+
+struct Collision {
+    float sigma_t;   // filtered as the scene asks; with one stochastic tap only its expectation is the field's. Of the
+                     // channel in which it is largest
+    float sigma_maj; // > 0 at a collision
+    float u;         // [0, 1), for the estimator
+    float sigma_c;   // of the control density
+    float flown;     // in the cell, since the last step
+};
+
+// One step of the walk. EVENT_COLLIDED: a tentative collision, described in `c`; the distance to the next one is drawn.
+// `seeing`: the walk is a shadow ray's.
+uint next_collision(VolumeParams v, bool seeing, inout Walk w, inout Rng rng, inout Tally tally, out Collision c) {
+    bool residual = TRANSMITTANCE == TRANSMITTANCE_RESIDUAL && seeing;
+    c.sigma_maj = w.sigma_maj;
+    c.sigma_c = v.sigma_t * w.control;
+    float from = w.t;
+    uint event = advance(v, residual, w);
+    c.flown = w.t - from;
+    w.at = w.t;
+    if (event != EVENT_COLLIDED) {
+        tally.cells += 1u;
+        return event;
+    }
+    uvec4 words = next_words(rng);
+    vec4 u = to_uniform(words);
+    w.tau = to_exponential(words.x, words);
+    c.u = u.y;
+    c.sigma_t = c.sigma_maj;
+    // Below the control density a collision is real, whatever the density.
+    bool certain = FREE_FLIGHT == FREE_FLIGHT_DECOMPOSITION && !seeing && c.u * c.sigma_maj < c.sigma_c;
+    if (!certain) {
+        c.sigma_t = v.sigma_t * density(v, w.origin + w.t * w.direction, to_tap(words));
+        tally.lookups += 1u;
+        float above = residual ? abs(c.sigma_t - c.sigma_c) : c.sigma_t;
+        tally.violations += above > 1.00001 * c.sigma_maj ? 1u : 0u;
+    }
+    return event;
+}
+
+#endif

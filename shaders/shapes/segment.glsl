@@ -1,0 +1,115 @@
+// Segments: what flights and shadow rays have in common. Both cross the medium part by part; a mesh that is not convex
+// has several, and the optical depth left is carried over from one to the next. Spheres and boxes have one, which is
+// known at once; a mesh's parts are searched for, some nodes of its hierarchy at a time.
+#ifndef SEGMENT_GLSL
+#define SEGMENT_GLSL
+#include "estimators/free_flight.glsl"
+#include "estimators/transmittance.glsl"
+
+// Where a shadow ray is a walk of its own; that of a homogeneous medium of one part is known at once. (In bits,
+// since glslang 12 branches for nested `&&` and `||`, and takes the outcome for a constant nevertheless.)
+const bool LOOKS =
+    (int(NEE != NEE_NONE) & (int(TRANSMITTANCE != TRANSMITTANCE_ANALYTIC) | int(SHAPE == SHAPE_MESH))) != 0;
+
+// What the scene's estimators need of a walk that is laid aside. The rest is dropped, so that nothing computes it.
+Walk kept(Walk w) {
+    int shadow_traits = LOOKS ? SHADOW_TRAITS : 0;
+    int traits = FLIGHT_TRAITS | shadow_traits;
+    bool marches = FREE_FLIGHT == FREE_FLIGHT_MARCH || (shadow_traits & TRAIT_MARCH) != 0;
+    bool adds_depth = !NULL_FLIGHT || (LOOKS && !NULL_TRANSMITTANCE);
+    bool walks = (traits & TRAIT_CELLS) != 0;
+    bool voxels = (traits & TRAIT_VOXELS) != 0;
+    bool controlled = (traits & TRAIT_CONTROL) != 0;
+    bool marches_more = (traits & TRAIT_SETS) != 0;
+    w.at = 0.0; // set by every step
+    if (!adds_depth)
+        w.depth = 0.0;
+    if (!walks)
+        w.sigma_maj = 0.0;
+    if (!controlled)
+        w.control = 0.0;
+    if (!voxels && (!walks || FIELD != FIELD_GRID))
+        w.cell = ivec3(0);
+    if (!marches) {
+        w.dt = 0.0;
+        w.index = 0u;
+    }
+    if (!marches_more) {
+        w.level = 0u;
+        w.residue = 0u;
+        w.offset = 0.0;
+        w.coarse = 0.0;
+        w.base = 0.0;
+    }
+    return w;
+}
+
+// The part of the segment within the medium that begins at t.x.
+void begin_part(VolumeParams v, Ray ray, vec2 t, bool seeing, inout Walk w) {
+    w.origin = ray.origin + t.x * ray.direction;
+    w.direction = ray.direction;
+    w.start = t.x;
+    w.t_end = t.y - t.x;
+    w.t = 0.0;
+    w.at = 0.0;
+    if (LOOKS && seeing)
+        begin_transmittance_part(v, w);
+    else
+        begin_flight_part(v, w);
+}
+
+// A vertex on the boundary, heading out, has no such part, nor a camera ray that misses: then an empty one, which the
+// first step leaves. Of a mesh, the search for it only begins.
+void begin_segment(VolumeParams v, vec3 position, vec3 direction, bool seeing, inout Walk w, inout PartSearch search) {
+    search.stage = SEARCH_OVER;
+    if (SHAPE == SHAPE_MESH) {
+        search = begin_search(SEARCH_FIRST, 0.0);
+    } else {
+        Ray ray = to_medium(v, position, direction);
+        vec2 t;
+        if (!medium_interval(v, ray, t))
+            t = vec2(0.0);
+        begin_part(v, ray, t, seeing, w);
+    }
+}
+
+// What `event` of a step means for the segment: where a part of a mesh has ended there may be a further one.
+uint after_step(uint event, Walk w, inout PartSearch search) {
+    bool searches = SHAPE == SHAPE_MESH && event == EVENT_LEFT && search.stage == SEARCH_OVER;
+    if (searches)
+        search = begin_search(SEARCH_NEXT, w.start + w.t_end);
+    return searches ? EVENT_MOVING : event;
+}
+
+bool is_searching(PartSearch search) {
+    return SHAPE == SHAPE_MESH && (search.stage == SEARCH_FIRST || search.stage == SEARCH_NEXT);
+}
+
+// Goes on with a search for some nodes. Where it ends, the segment is in the next part, or has left the medium.
+uint search_part(VolumeParams v, vec3 position, vec3 direction, bool seeing, inout Walk w, inout PartSearch search) {
+    uint event = EVENT_MOVING;
+    // A loop, since software drivers do both sides of an `if`: a group none of whose lanes searches passes it by.
+    for (bool begins = is_searching(search); begins; begins = false) {
+        Ray ray = to_medium(v, position, direction);
+        MeshRay mesh_ray = make_mesh_ray(v.bvh_nodes, ray);
+        vec2 t;
+        bool over = false;
+        for (int k = 0; k < MESH_NODES_PER_TURN && !over; ++k)
+            over = step_search(v.bvh_nodes, mesh_ray, search, t);
+        bool found = over && t.x < t.y;
+        if (over && (found || search.stage == SEARCH_FIRST))
+            begin_part(v, ray, t, seeing, w);
+        event = over && !found && search.stage == SEARCH_NEXT ? EVENT_LEFT : EVENT_MOVING;
+        search.stage = found ? SEARCH_OVER : over ? SEARCH_EMPTY : search.stage;
+    }
+    return event;
+}
+
+// Transmittance of a homogeneous sphere or box.
+Spectrum analytic_shadow(VolumeParams v, vec3 position, vec3 direction) {
+    vec2 t;
+    float inside = medium_interval(v, to_medium(v, position, direction), t) ? t.y - t.x : 0.0;
+    return analytic_transmittance(v, inside);
+}
+
+#endif

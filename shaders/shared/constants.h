@@ -1,0 +1,140 @@
+// The numbers on which host and kernels must agree: bindings, group size, specialization constants, queues, choices.
+#ifndef SHARED_CONSTANTS_H
+#define SHARED_CONSTANTS_H
+
+// One descriptor set serves every pass and every test kernel.
+#define BINDING_FRAME 0       // uniform FrameParams
+#define BINDING_GRID 1        // NanoVDB grids one after another, 32-bit words, unless they lie in windows
+#define BINDING_LEAF_TABLE 2  // one word per 8^3 block of the grid, see density.glsl
+#define BINDING_MAJORANTS 3   // float per majorant cell, see empty_space.h
+#define BINDING_PATHS 4       // PathState per slot
+#define BINDING_QUEUE_ITEMS 5 // slot numbers, QUEUE_COUNT arrays of the queue capacity
+#define BINDING_QUEUES 6      // QueueHeader per queue
+#define BINDING_FILM 7        // FilmPixel per pixel of the crop
+#define BINDING_COUNTERS 8    // Counters
+#define BINDING_WORK 9        // pixels of the batch that may meet the medium
+#define BINDING_BLACKBODY 10  // vec3, BLACKBODY_ENTRIES colours evenly spaced in temperature
+#define BINDING_BETAS 11      // path throughput per slot: float, or vec3 in a medium of chromatic coefficients
+#define BINDING_CONTROLS 12   // ControlCell per majorant cell
+#define BINDING_TRIANGLES 13  // vec3, three corners per triangle, counterclockwise seen from without; render space
+#define BINDING_BVH 14        // BvhNode
+#define BINDING_SUSPENDED 15  // Suspended per slot
+#define BINDING_TRACE 16      // TraceHeader and TraceRecords, only where one path is followed
+#define BINDING_LATTICE 17    // vec4 per node of two lattices, see lattice.glsl
+#define BINDING_TEST_INPUT 18 // test kernels only
+#define BINDING_TEST_OUTPUT 19
+#define BINDING_BUFFERS 20
+// The same buffers as texels: software drivers gather these, and read storage buffers lane by lane.
+#define BINDING_GRID_TEXELS 20
+#define BINDING_LEAF_TEXELS 21
+#define BINDING_MAJORANT_TEXELS 22
+#define BINDING_LATTICE_TEXELS 23
+#define BINDING_COUNT 24
+
+#define WORKGROUP_SIZE 64
+
+// Specialization constants. What a scene lacks is false here and absent from its kernels.
+#define SPEC_SHAPE 0
+#define SPEC_FIELD 1
+#define SPEC_GRID_TYPE 2
+#define SPEC_FILTER 3
+#define SPEC_SCATTERING 4
+#define SPEC_NEE 5
+#define SPEC_EMISSION 6
+#define SPEC_EMISSION_AT 7
+#define SPEC_FREE_FLIGHT 8
+#define SPEC_TRANSMITTANCE 9
+#define SPEC_TEMPERATURE_TYPE 10 // GRID_...
+#define SPEC_STEPS 11            // tracking steps between two looks at what they led to
+#define SPEC_WINDOW_BITS 12      // log2 of the words in a window, where grids lie in windows
+#define SPEC_TRACE 13            // 1: vertices are recorded, of the one path there is
+#define SPEC_TEXELS 14           // 1: grids, their tables and lattices are read as texels
+#define SPEC_LEAPS 15            // 1: walks pass empty majorant cells together
+#define SPEC_COUNT 16
+
+#define SHAPE_NONE 0 // background only
+#define SHAPE_SPHERE 1
+#define SHAPE_BOX 2 // of a grid too
+#define SHAPE_MESH 3
+
+#define FIELD_CONSTANT 0 // density 1
+#define FIELD_NOISE 1
+#define FIELD_GRID 2
+
+#define GRID_FLOAT 0
+#define GRID_FP4 1
+#define GRID_FP8 2
+#define GRID_FP16 3
+#define GRID_FPN 4
+
+#define FILTER_NEAREST 0
+#define FILTER_TRILINEAR 1
+#define FILTER_STOCHASTIC 2
+
+#define SCATTERING_NONE 0   // absorption and emission only
+#define SCATTERING_SINGLE 1 // of the light, once; the background is seen through the medium but not scattered
+#define SCATTERING_MULTIPLE 2
+
+#define NEE_NONE 0
+#define NEE_COLLISIONS 1 // at real collisions
+#define NEE_TENTATIVE 2  // at every tentative collision, weighted by sigma_t / sigma_maj
+#define NEE_CACHED 3     // at real collisions, by chance: they correct a cached transmittance
+
+#define EMISSION_NONE 0
+#define EMISSION_CONSTANT 1
+#define EMISSION_COLOR 2     // and a colour times temperature
+#define EMISSION_BLACKBODY 3 // and a black body's colour at that temperature
+
+#define EMISSION_AT_COLLISIONS 0 // real ones
+#define EMISSION_AT_STEPS 1      // integrated along the flight, one sample per step
+
+// What these do is in estimators.h.
+#define FREE_FLIGHT_ANALYTIC 0
+#define FREE_FLIGHT_REGULAR 1
+#define FREE_FLIGHT_MARCH 2
+#define FREE_FLIGHT_ADAPTIVE 3
+#define FREE_FLIGHT_DELTA 4
+#define FREE_FLIGHT_WEIGHTED 5
+#define FREE_FLIGHT_DECOMPOSITION 6
+#define FREE_FLIGHT_SPECTRAL 7
+#define FREE_FLIGHT_COUNT 8
+
+#define TRANSMITTANCE_ANALYTIC 0
+#define TRANSMITTANCE_REGULAR 1
+#define TRANSMITTANCE_DELTA 2
+#define TRANSMITTANCE_RATIO 3
+#define TRANSMITTANCE_RESIDUAL 4
+#define TRANSMITTANCE_MARCH 5
+#define TRANSMITTANCE_TELESCOPING 6
+#define TRANSMITTANCE_JACKKNIFE 7
+#define TRANSMITTANCE_COUNT 8
+
+#define SEARCH_OVER 0 // the ray is within a part
+#define SEARCH_FIRST 1
+#define SEARCH_NEXT 2
+#define SEARCH_EMPTY 3 // there is no further part
+
+#define MESH_LEAF 4            // triangles in a leaf of a mesh's hierarchy, at most
+#define MESH_NODES_PER_TURN 64 // of the hierarchy, which a turn of the track pass visits
+
+// A slot is in exactly one queue, or held by a lane.
+#define QUEUE_GENERATE 0 // free
+#define QUEUE_RESUME 1   // paths laid aside, which the lanes of the track pass take first
+#define QUEUE_TRACK 2    // pixels of which no sample has begun
+#define QUEUE_COUNT 3
+
+#define BLACKBODY_ENTRIES 4096
+
+// Grids larger than a storage buffer may be lie in that many buffers, reached by address.
+#define GRID_WINDOWS 16
+
+#define TRACE_RECORDS 65536 // room for
+#define TRACE_DEPART 0      // from the camera, or after scattering
+#define TRACE_COLLISION 1   // a real one; its emission, and light known at once, are in the radiance
+#define TRACE_LIGHT 2       // a shadow ray has ended
+#define TRACE_ESCAPE 3      // into the background
+#define TRACE_END 4
+
+#define NO_PIXEL 0xffffffffu
+
+#endif

@@ -1,0 +1,144 @@
+// The scene as the kernels see it. Render space has the axes and unit of world space and its origin amid the medium,
+// so that single precision is spent on the medium, not on where the world's origin happens to be.
+#ifndef SHARED_FRAME_H
+#define SHARED_FRAME_H
+#include "shared/constants.h"
+#include "shared/prologue.h"
+
+SHARED_BEGIN
+
+// The ray through the picture at (x, y) pixels from its top left corner goes along corner + x * right + y * down. It
+// begins at position + start * (x * right + y * down): at the eye, with start 0; or, for eyes far from the medium, on a
+// plane between the two.
+struct CameraParams {
+    vec3 position; // render space
+    float start;   // distance of that plane from the eye
+    vec3 corner;
+    vec3 right; // per pixel
+    vec3 down;  // per pixel
+};
+
+// A grid within the buffers that hold all grids. Positions are in its index space, voxel centres at integers, counted
+// from near the grid.
+struct GridParams {
+    ivec3 voxel_min; // active voxels, inclusive; 0 outside
+    ivec3 voxel_max;
+    ivec3 leaf_min; // first 8^3 block of the leaf table
+    ivec3 leaf_dims;
+    uint first_word;  // of the grid
+    uint first_entry; // of its leaf table
+};
+
+// Radiance emitted per absorption event; see emission.glsl. All colours include the factor 1 - albedo, the chance that
+// a collision is an absorption.
+struct EmissionParams {
+    vec3 constant;
+    vec3 color;         // times temperature, or times the black body's colour
+    GridParams grid;    // of temperatures
+    vec4 to_index[3];   // rows of the affine map render -> index space of that grid
+    float kelvin_scale; // kelvin = scale * value + offset
+    float kelvin_offset;
+    float kelvin_cutoff; // colder than this does not glow
+    float table_low;     // kelvin of the black-body table's first and last entry
+    float table_high;
+};
+
+// Where the density is procedural; see noise.glsl. Each octave has its own map, so that its offset can be wrapped to
+// the noise's period of 256 in double precision, however far the medium is from the world's origin.
+struct NoiseParams {
+    vec4 to_noise[16]; // per octave: w * position + xyz, render -> where its lattice has spacing 1
+    uint octaves;
+    float gain;
+    uvec4 permutation[16]; // of 0 to 255, as bytes, the first in the lowest
+};
+
+// A node of the bounding volume hierarchy over a mesh's triangles, in depth-first order; see mesh.glsl.
+struct BvhNode {
+    vec3 low;
+    uint skip; // the node to go to when the ray misses this one, or after a leaf; the number of nodes at the end
+    vec3 high;
+    uint leaf; // 0 for inner nodes; else first triangle * 8 + number of triangles, at most MESH_LEAF
+};
+
+// A control density in a majorant cell and the bound of the rest: |density - control| <= residual.
+struct ControlCell {
+    float control;
+    float residual;
+};
+
+// How far a march goes at a time.
+struct MarchParams {
+    float step;         // world units
+    float shadow_step;  // of shadow rays, world units
+    float optical_step; // of adaptive marches: the majorant's optical depth
+    float jitter;       // 1: sample points anywhere in their step; 0: in its middle
+};
+
+// Medium space: index space for a grid, voxel centres at integers; the unit ball or the cube [-1, 1]^3 for shapes.
+struct VolumeParams {
+    vec4 to_medium[3]; // rows of the affine map render -> medium
+    vec3 bounds_min;   // medium space; where the filtered density can differ from 0
+    vec3 bounds_max;
+    vec3 extent; // sphere, box, mesh: a point of medium space times this is one of render space
+    GridParams density;
+    ivec3 cell_dims;  // majorant cells, the first begins at bounds_min
+    float cell_size;  // edge of a cell, voxels
+    float majorant;   // of the density, where there are no cells
+    float control;    // likewise a control density
+    float residual;   // and the bound of what differs from it
+    float sigma_t;    // extinction at density 1, of the channel where it is largest [1 / world unit], > 0
+    vec3 sigma_ratio; // of the channels to that, in [0, 1]
+    vec3 albedo;      // sigma_s / sigma_t
+    float g;
+    EmissionParams emission;
+    NoiseParams noise;
+    uint bvh_nodes; // of a mesh
+};
+
+// Nodes over the medium's box, z fastest. Two lattices of these dimensions lie one after the other: of the density, and
+// of optical depths towards the light. See lattice.glsl.
+struct LatticeParams {
+    vec3 low;     // medium space, the first node
+    vec3 spacing; // medium space
+    ivec3 dims;   // at least 2 along each axis
+};
+
+struct LightParams {
+    vec3 direction; // unit, towards the light
+    vec3 irradiance;
+};
+
+struct FrameParams {
+    CameraParams camera;
+    VolumeParams volume;
+    LightParams light;
+    MarchParams march;
+    LatticeParams lattice; // NEE_CACHED only
+    vec3 background;
+    float roulette_threshold;
+    uint max_depth;
+    uint seed;
+    uint crop_x; // the crop's first pixel within the picture
+    uint crop_y;
+    uint crop_width;
+    uint slots;                       // pixels in work
+    uint queue_capacity;              // a power of two, at least 2 * slots; see queue.glsl
+    uvec2 grid_windows[GRID_WINDOWS]; // device addresses, low and high word; see grid.glsl
+};
+
+// The same for all passes.
+struct PassPush {
+    uint queue;        // prepare: the queue whose consumer comes next
+    uint before;       // prepare: a queue that its invocations take from first, prepared already; or the same
+    uint lanes;        // prepare: how many invocations may share the queue
+    uint sample_begin; // of the batch
+    uint sample_end;
+    uint pixel_begin; // sky: range of film entries
+    uint pixel_end;
+    uint stop;       // generate: hand out no further pixels
+    uint budget;     // loop iterations after which a lane takes no further item
+    uint step_limit; // steps after which a flight is cut, counted as a cap
+};
+
+SHARED_END
+#endif
