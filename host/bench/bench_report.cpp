@@ -79,10 +79,12 @@ Json per_path_json(const RenderCounts& sum) {
 }
 
 Json passes_json(const Measurement& measurement) {
-    Json passes;
-    for (std::size_t pass = 0; pass < pass_names.size(); ++pass)
-        passes[pass_names[pass]] =
-            median_at_largest(measurement, [pass](const RenderResult& r) { return r.pass_seconds[pass]; });
+    Json passes = Json::object();
+    const std::vector<PassFigures>& names = measurement.results.back().passes;
+    for (std::size_t pass = 0; pass < names.size(); ++pass)
+        passes[names[pass].name] = median_at_largest(measurement, [pass](const RenderResult& r) {
+            return pass < r.passes.size() ? r.passes[pass].seconds : 0.0; // interrupted before the first
+        });
     return passes;
 }
 

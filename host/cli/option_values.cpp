@@ -30,6 +30,15 @@ std::vector<std::string> split(const std::string& text, char separator) {
     return parts;
 }
 
+std::uint32_t parse_plan_number(const std::string& text, const char* key, std::uint32_t least, std::uint32_t most) {
+    std::uint32_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size() || number < least || number > most)
+        fail_command_line(
+            fmt::format("--schedule: {}={}: expected a whole number from {} to {}", key, text, least, most));
+    return number;
+}
+
 } // namespace
 
 void fail_command_line(const std::string& message) {
@@ -52,6 +61,33 @@ CropRequest parse_crop(const std::string& text) {
             fail_command_line(
                 fmt::format("--crop: '{}': pixels are whole numbers, and fractions are all at most 1", text));
     return request;
+}
+
+Plan parse_schedule(const std::string& text) {
+    const std::vector<std::string> parts = split(text, ':');
+    const std::map<std::string, Schedule> names = {
+        {"auto", Schedule::automatic}, {"fused", Schedule::fused}, {"staged", Schedule::staged}};
+    const auto name = names.find(parts.front());
+    if (name == names.end())
+        fail_command_line(fmt::format("--schedule: '{}' is none of auto, fused, staged", parts.front()));
+    Plan plan;
+    plan.schedule = name->second;
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+        const std::size_t equals = parts[i].find('=');
+        const std::string key = parts[i].substr(0, equals);
+        const std::string value = equals == std::string::npos ? "" : parts[i].substr(equals + 1);
+        if (key == "slots")
+            plan.slots = parse_plan_number(value, "slots", 64, 1u << 22);
+        else if (key == "steps")
+            plan.steps = parse_plan_number(value, "steps", 1, 8);
+        else if (key == "lanes")
+            plan.lanes = parse_plan_number(value, "lanes", 64, 1u << 22);
+        else if (key == "budget")
+            plan.budget = parse_plan_number(value, "budget", 1, 65535);
+        else
+            fail_command_line(fmt::format("--schedule: '{}' is none of slots=N, lanes=N, budget=N, steps=N", parts[i]));
+    }
+    return plan;
 }
 
 void add_define(std::map<std::string, std::string>& defines, const std::string& text) {

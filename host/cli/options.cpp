@@ -33,7 +33,7 @@ T choose(const char* option, const std::string& name, const std::vector<std::pai
 
 // The options of `render` that need a second look after CLI11 has read them.
 struct RenderTexts {
-    std::string time, crop, checkpoint, pixel, up, progress = "auto";
+    std::string time, crop, checkpoint, pixel, up, schedule, progress = "auto";
     std::vector<std::string> defines;
     std::vector<std::string> outputs;
     ToneTexts tone;
@@ -96,6 +96,12 @@ void add_sampling_options(CLI::App& app, RenderOptions& render, RenderTexts& tex
 void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
     add_device_options(app, render);
     app.add_flag("--no-cache", render.no_cache, "Neither read nor write the pipeline cache")->group("Device");
+    app.add_option("--schedule", texts.schedule,
+                   "fused: one pass takes pixels through all stages; staged: passes of their own over queues of paths; "
+                   "auto: what is faster on the device. slots: pixels, or paths, in work; steps: of tracking between "
+                   "two looks at what they led to")
+        ->option_text("NAME[:slots=N][:steps=N] [auto]")
+        ->group("Device");
 
     app.add_option("--report", render.report, "Write what was done and how long it took, as JSON")
         ->option_text("FILE.json")
@@ -200,6 +206,8 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
         {{"auto", ProgressStyle::automatic}, {"json", ProgressStyle::json}, {"none", ProgressStyle::none}});
     if (!texts.up.empty())
         render.up = choose<Up>("--up", texts.up, {{"y", Up::y}, {"z", Up::z}});
+    if (!texts.schedule.empty())
+        render.plan = parse_schedule(texts.schedule);
     render.tone = texts.tone.request();
     if (render.integrator)
         try {

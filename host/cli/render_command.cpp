@@ -63,6 +63,7 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
     job.trace = options.trace;
     job.crop = resolve_crop(options.crop, scene.picture);
     job.seed = options.seed;
+    job.plan = options.plan;
     job.sample_offset = options.sample_offset;
     job.time_limit = options.time_limit;
     job.disk_cache = !options.no_cache && !options.dry_run;

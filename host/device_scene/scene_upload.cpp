@@ -20,9 +20,7 @@ static_assert(sizeof(shared::GridParams) == 4 * 12 + 2 * 4);
 static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 5 * 4);
 static_assert(sizeof(shared::VolumeParams) == 3 * 16 + 3 * 12 + sizeof(shared::GridParams) + 12 + 5 * 4 + 2 * 12 + 4 +
                                                   sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) + 4);
-static_assert(sizeof(shared::Walk) == 2 * 12 + 8 * 4 + 12 + 7 * 4);
 static_assert(sizeof(shared::LatticeParams) == 3 * 12);
-static_assert(sizeof(shared::Suspended) == 2 * sizeof(shared::Walk) + 4 * 12 + 4 * 4 + sizeof(shared::PartSearch));
 static_assert(sizeof(shared::PassPush) <= 128, "the least push constant space that Vulkan promises");
 
 namespace {

@@ -28,7 +28,12 @@ public:
     }
 
 private:
-    double uniform() { return std::uniform_real_distribution<double>()(engine_); }
+    // In [0, 1). The standard leaves its distributions to each library, and the plan is to be the same with all of
+    // them.
+    double uniform() {
+        const double low = engine_(), high = engine_();
+        return std::min((high * 4294967296.0 + low) / 18446744073709551616.0, 1.0 - 0x1p-53);
+    }
 
     // Distances at which the ray enters and leaves the box, the former 0 from within.
     glm::dvec2 crossing(glm::dvec3 origin, glm::dvec3 direction) const {

@@ -111,15 +111,18 @@ public:
         loops.mesh = volume.bvh.has_value();
         if (density_kind(scene_) == FIELD_NOISE)
             loops.octaves = static_cast<std::uint32_t>(scene_.volumes.front().noise->octaves);
-        Tuning wish = job.tuning;
-        if (wish.steps_per_look == 0)
-            wish.steps_per_look = steps_per_look(specialization, volume);
-        const Tuning tuning = tune(device, loops, wish);
-        buffers_.emplace(device, commands_, volume, tuning.most_grid_bytes, tuning.most_texel_bytes);
+        Plan wish = job.plan;
+        if (wish.steps == 0)
+            wish.steps = steps_per_look(specialization, volume);
+        plan_ = make_plan(device, loops, wish);
+        plan_.majorant_cell = volume.majorants ? volume.majorants->cell : 0;
+        plan_.leaps = volume.majorants && volume.majorants->leaps;
+        result_.plan = plan_;
+        buffers_.emplace(device, commands_, volume, plan_.most_grid_bytes, plan_.most_texel_bytes);
         specialization[SPEC_TEXELS] = buffers_->texels() ? 1 : 0;
         result_.specialization += buffers_->window_bits() ? ", grids in windows" : "";
         frame_ = make_frame(scene_, volume, method, job.crop, job.seed);
-        bands_ = make_bands(device, commands_, job.crop, tuning.most_film_bytes);
+        bands_ = make_bands(device, commands_, job.crop, plan_.most_film_bytes);
         if (job.checkpoint || job.resume)
             begin_identity(device, specialization, volume);
         result_.trace_origin = render_origin(scene_, volume);
@@ -130,9 +133,9 @@ public:
         result_.upload_seconds = watch.lap();
         // Counters of the sky, which are read once a batch, have 32 bits.
         const std::uint64_t pixels = std::uint64_t{bands_.front().rows} * width_;
-        most_batch_ = std::min<std::uint32_t>(tuning.most_batch, std::max<std::uint64_t>((1ull << 31) / pixels, 1));
-        frame_.slots = tuning.slots;
-        frame_.queue_capacity = queue_capacity(tuning);
+        most_batch_ = std::min<std::uint32_t>(plan_.most_batch, std::max<std::uint64_t>((1ull << 31) / pixels, 1));
+        frame_.slots = plan_.slots;
+        frame_.queue_capacity = queue_capacity(plan_);
         std::optional<PipelineCache> own_cache;
         const PipelineCache& cache =
             job.session ? job.session->pipelines(job.disk_cache) : own_cache.emplace(device, job.disk_cache);
@@ -151,7 +154,7 @@ public:
                 bound[BINDING_LATTICE_TEXELS] = &light_cache_->buffer();
         }
         wavefront_.emplace(device, bound, bands_.front().rows * width_, specialization,
-                           TrackVariant{chromatic, buffers_->window_bits()}, tuning, cache.handle());
+                           TrackVariant{chromatic, buffers_->window_bits()}, plan_, cache.handle());
         cache.save();
         result_.device_bytes = buffers_->bytes() + wavefront_->bytes();
         result_.device_bytes += light_cache_ ? light_cache_->buffer().bytes() : 0;
@@ -167,7 +170,7 @@ public:
         if (job_.resume)
             resume(*job_.resume);
         const std::uint32_t spp = scene_.settings.spp;
-        std::uint32_t next = 1;
+        std::uint32_t next = first_batch();
         while (done_ < spp && !stopping()) {
             if (batch_ == 0)
                 batch_ = std::min(next, spp - done_);
@@ -192,6 +195,13 @@ public:
     }
 
 private:
+    // A staged render has a path in each slot from the beginning.
+    std::uint32_t first_batch() const {
+        const std::uint64_t pixels = std::uint64_t{bands_.front().rows} * width_;
+        const std::uint64_t wanted = plan_.schedule == Schedule::staged ? 8 * plan_.slots / pixels : 1;
+        return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, 1, most_batch_));
+    }
+
     // Long enough that its tail, when few paths are left in flight, matters little, and that lanes have many samples of
     // a pixel; short enough for the user.
     std::uint32_t next_batch(std::uint32_t batch, double seconds) const {
@@ -310,18 +320,21 @@ private:
     }
 
     double progress_of(const Band& band) const {
-        const shared::Counters& counters = wavefront_->counters();
-        const double handed_out = std::min(counters.next_work, counters.work_count);
-        const double done_part = counters.work_count > 0 ? handed_out / counters.work_count : 1.0;
-        const double rows = band.first_row + band.rows * done_part;
+        const double rows = band.first_row + band.rows * wavefront_->handed_out();
         return done_ + batch_ * rows / (job_.crop.y1 - job_.crop.y0);
     }
 
     void gather() {
         const shared::Counters& counters = wavefront_->counters();
         add_counts(result_.counts, counters);
-        for (std::size_t pass = 0; pass < pass_names.size(); ++pass)
-            result_.pass_seconds[pass] += wavefront_->pass_seconds()[pass];
+        const auto passes = wavefront_->passes();
+        result_.passes.resize(passes.size());
+        for (std::size_t pass = 0; pass < passes.size(); ++pass) {
+            result_.passes[pass].name = passes[pass].name;
+            result_.passes[pass].seconds += passes[pass].seconds;
+            result_.passes[pass].queued += passes[pass].queued;
+        }
+        result_.rounds += wavefront_->rounds();
         for (std::uint32_t i = 0; i < std::min<std::uint32_t>(counters.non_finite_records, NON_FINITE_RECORDS); ++i) {
             const std::uint32_t place = counters.non_finite_place[i];
             if (result_.non_finite.size() < 16)
@@ -342,6 +355,7 @@ private:
     const RenderJob& job_;
     Commands commands_;
     std::uint32_t width_, most_batch_ = 1;
+    Plan plan_;
     std::optional<SceneBuffers> buffers_;
     shared::FrameParams frame_{};
     std::vector<Band> bands_;

@@ -21,7 +21,7 @@ struct RenderJob {
     std::uint32_t sample_offset = 0;   // number of the first sample
     std::optional<double> time_limit;  // seconds of rendering; the batch then under way is cut short
     bool disk_cache = true;            // keep compiled pipelines between runs
-    Tuning tuning;                     // 0: what suits the device
+    Plan plan;                         // what of it is chosen wins
     std::function<bool()> interrupted; // asked between submits; true ends the render early
     // After each submit: samples per pixel finished, as a real number; and, now and then, the picture's relative
     // standard error.
@@ -44,7 +44,9 @@ struct RenderResult {
     bool glows = false;         // the medium does, by <medium> or <emission>
     std::string biased;         // why its mean is not exact; empty: it is
     std::string specialization; // in words: what the kernels were compiled for
-    PassSeconds pass_seconds{};
+    Plan plan;
+    std::vector<PassFigures> passes;
+    std::uint64_t rounds = 0; // of all passes but the sky
     double load_seconds = 0, upload_seconds = 0, pipeline_seconds = 0, render_seconds = 0;
     std::uint64_t device_bytes = 0;         // of all buffers
     MediumOutline outline;                  // to explain the picture by

@@ -1,15 +1,25 @@
 #include "wavefront.h"
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cstring>
 #include <future>
 #include <utility>
 
+#include "accumulate.spv.h"
 #include "begin.spv.h"
+#include "fused.spv.h"
+#include "fused_chromatic.spv.h"
+#include "fused_chromatic_windows.spv.h"
+#include "fused_windows.spv.h"
 #include "generate.spv.h"
+#include "generate_chromatic.spv.h"
+#include "hand_out.spv.h"
 #include "prepare.spv.h"
+#include "shadow.spv.h"
+#include "shadow_chromatic.spv.h"
+#include "shadow_chromatic_windows.spv.h"
+#include "shadow_windows.spv.h"
 #include "sky.spv.h"
 #include "track.spv.h"
 #include "track_chromatic.spv.h"
@@ -21,127 +31,89 @@ namespace vkvol {
 
 namespace {
 
-constexpr std::uint32_t most_rounds = 64;          // per submit
-constexpr std::uint32_t marks = pass_names.size(); // timestamps per round: before and after each pass but sky
+using Words = std::span<const std::uint32_t>;
+
+constexpr std::uint32_t most_rounds = 64; // per submit
 constexpr VkDeviceSize queue_bytes = QUEUE_COUNT * sizeof(shared::QueueHeader);
 constexpr std::uint64_t sky_samples = 1u << 22; // per submit: some 70 ms on two cores of a software driver
 constexpr std::uint32_t first_budget = 64;      // on a device of unknown speed
-
-BoundBuffers with_queues(BoundBuffers buffers, const Buffer& paths, const Buffer& betas, const Buffer& suspended,
-                         const Buffer& items, const Buffer& queues, const Buffer& work, const Buffer& counters) {
-    buffers[BINDING_PATHS] = &paths;
-    buffers[BINDING_BETAS] = &betas;
-    buffers[BINDING_SUSPENDED] = &suspended;
-    buffers[BINDING_QUEUE_ITEMS] = &items;
-    buffers[BINDING_QUEUES] = &queues;
-    buffers[BINDING_WORK] = &work;
-    buffers[BINDING_COUNTERS] = &counters;
-    return buffers;
-}
+constexpr std::uint32_t no_end = 0xffffffffu;   // of the work handed out
+constexpr std::uint32_t no_queue = QUEUE_COUNT;
 
 // Nothing left of what the last pass saw, and nothing pushed since.
 bool is_empty(const shared::QueueHeader& header) {
     return header.tail == header.limit && static_cast<std::int32_t>(header.limit - header.head) <= 0;
 }
 
-// llvmpipe leaves every loop of an invocation after so many iterations in all, the one that ends a loop included, and
-// without a word.
-constexpr std::uint32_t most_iterations = 65535;
+// A kernel in its four forms.
+struct Forms {
+    Words usual, chromatic, windows, chromatic_windows;
 
-// Of all loops in a turn of the track pass that are not unrolled, at most. Every step has up to four places for a sum
-// over octaves, which all lanes of a group pass under a mask: a flight's look-up, emission along it, and two of a
-// shadow ray that marches in several sets of samples.
-std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
-    constexpr std::uint32_t triangle = 2, node = 1 + (MESH_LEAF + 1) + MESH_LEAF * triangle;
-    std::uint32_t iterations = 2 + (steps + 1);
-    if (loops.mesh)
-        iterations += 2 + 1 + MESH_NODES_PER_TURN * node;
-    if (loops.octaves > 0)
-        iterations += 4 * steps * (loops.octaves + 1);
-    return iterations;
-}
+    Words of(const TrackVariant& variant) const {
+        if (variant.window_bits)
+            return variant.chromatic ? chromatic_windows : windows;
+        return variant.chromatic ? chromatic : usual;
+    }
+};
 
-// Turns of the track pass, and samples of a pixel that the sky pass loops over, whose loops stay below the limit.
-std::uint32_t longest_budget(const LoopSizes& loops, std::uint32_t steps) {
-    return std::clamp(most_iterations / turn_iterations(loops, steps), 1u, 1024u);
-}
-constexpr std::uint32_t longest_batch = most_iterations / 2;
+const Forms fused_kernel{fused_spv, fused_chromatic_spv, fused_windows_spv, fused_chromatic_windows_spv};
+const Forms track_kernel{track_spv, track_chromatic_spv, track_windows_spv, track_chromatic_windows_spv};
+const Forms shadow_kernel{shadow_spv, shadow_chromatic_spv, shadow_windows_spv, shadow_chromatic_windows_spv};
+const Forms generate_kernel{generate_spv, generate_chromatic_spv, generate_spv, generate_chromatic_spv};
 
-std::span<const std::uint32_t> track_kernel(const TrackVariant& variant) {
-    if (variant.window_bits)
-        return variant.chromatic ? std::span<const std::uint32_t>(track_chromatic_windows_spv) : track_windows_spv;
-    return variant.chromatic ? std::span<const std::uint32_t>(track_chromatic_spv) : track_spv;
+// A pass of every round, as a schedule lists it. Without a queue it looks at all places of samples, and seldom, since
+// they can wait.
+struct PassRow {
+    const char* name;
+    Words kernel;
+    std::uint32_t lanes, queue = no_queue, before = no_queue;
+};
+constexpr std::uint32_t seldom_rounds = 4;
+
+// What a pass pushes to an earlier queue, or to its own, waits for the next round.
+std::vector<PassRow> passes_of(const Plan& plan, const TrackVariant& variant, bool has_shadow_rays) {
+    if (plan.schedule == Schedule::fused)
+        return {{"generate", hand_out_spv, plan.slots, QUEUE_GENERATE, QUEUE_GENERATE},
+                {"track", fused_kernel.of(variant), plan.lanes, QUEUE_TRACK, QUEUE_RESUME}};
+    std::vector<PassRow> rows{{"generate", generate_kernel.of(variant), plan.slots, QUEUE_GENERATE, QUEUE_GENERATE},
+                              {"track", track_kernel.of(variant), plan.lanes, QUEUE_TRACK, QUEUE_RESUME}};
+    if (has_shadow_rays)
+        rows.push_back({"shadow", shadow_kernel.of(variant), plan.lanes, QUEUE_SHADOW, QUEUE_LOOK});
+    rows.push_back({"accumulate", accumulate_spv, 0});
+    return rows;
 }
 
 } // namespace
 
-Tuning tune(const Device& device, const LoopSizes& loops, const Tuning& wish) {
-    const auto pick = [](auto wanted, auto usual) { return wanted != 0 ? wanted : usual; };
-    Tuning tuning = wish;
-    // A software driver wants its state in cache and few lanes that each do much; a GPU wants to be full.
-    tuning.slots = pick(wish.slots, device.is_cpu() ? 8192u : 1u << 18);
-    tuning.lanes = pick(wish.lanes, device.is_cpu() ? 512u : 1u << 17);
-    tuning.steps_per_look = pick(wish.steps_per_look, 4u);
-    const std::uint32_t longest = longest_budget(loops, tuning.steps_per_look);
-    tuning.budget = std::min(pick(wish.budget, longest), longest);
-    tuning.step_limit = pick(wish.step_limit, 1u << 26);
-    tuning.most_batch = pick(wish.most_batch, longest_batch);
-    tuning.most_film_bytes =
-        pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
-    tuning.most_grid_bytes = pick(wish.most_grid_bytes, std::uint64_t{device.limits().maxStorageBufferRange});
-    // GPUs read storage as fast as texels; software drivers gather only these.
-    const std::uint64_t texels = device.is_cpu() ? 4ull * device.limits().maxTexelBufferElements : 1u;
-    tuning.most_texel_bytes = pick(wish.most_texel_bytes, texels);
-    return tuning;
-}
-
-std::uint32_t queue_capacity(const Tuning& tuning) {
-    return std::bit_ceil(2 * tuning.slots);
-}
-
 Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, std::uint32_t most_pixels,
-                     const Specialization& specialization, const TrackVariant& variant, const Tuning& tuning,
+                     const Specialization& specialization, const TrackVariant& variant, const Plan& plan,
                      VkPipelineCache cache)
-    : device_(device), tuning_(tuning), commands_(device),
-      paths_(device, "path states", tuning.slots * sizeof(shared::PathState), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-             BufferPlace::device),
-      betas_(device, "path throughputs", tuning.slots * (variant.chromatic ? sizeof(glm::vec3) : sizeof(float)),
-             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device),
-      suspended_(device, "suspended paths", tuning.slots * sizeof(shared::Suspended),
-                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device),
-      queue_items_(device, "queues", std::uint64_t{QUEUE_COUNT} * queue_capacity(tuning) * sizeof(std::uint32_t),
-                   VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device),
-      queues_(device, "queue headers", queue_bytes,
-              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, BufferPlace::device),
-      work_(device, "work list", std::uint64_t{most_pixels} * sizeof(std::uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-            BufferPlace::device),
-      counter_buffer_(device, "counters", sizeof(shared::Counters), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                      BufferPlace::device),
-      readback_(device, "readback", queue_bytes + sizeof(shared::Counters), 0, BufferPlace::host),
-      bindings_(device,
-                with_queues(scene_buffers, paths_, betas_, suspended_, queue_items_, queues_, work_, counter_buffer_)) {
-    Specialization constants = specialization;
-    constants[SPEC_STEPS] = static_cast<std::int32_t>(tuning.steps_per_look);
-    push_.budget = std::min(tuning.budget, first_budget);
-    constants[SPEC_WINDOW_BITS] = static_cast<std::int32_t>(variant.window_bits.value_or(0));
-    const auto make = [&](std::span<const std::uint32_t> spirv) {
-        return std::make_unique<ComputePass>(device, bindings_, spirv, constants, cache);
-    };
-    // The one large kernel compiles beside the others.
-    auto track = std::async(std::launch::async, make, track_kernel(variant));
-    begin_ = make(begin_spv);
-    sky_ = make(sky_spv);
-    prepare_ = make(prepare_spv);
-    generate_ = make(generate_spv);
-    track_ = track.get();
-
-    commands_.fill(queues_, 0);
-    commands_.fill(counter_buffer_, 0);
+    : device_(device), plan_(plan), commands_(device),
+      readback_(device, "readback", queue_bytes + sizeof(shared::Counters), 0, BufferPlace::host) {
+    const std::uint64_t slots = plan.slots;
+    add_buffer(BINDING_PATHS, "path states", slots * sizeof(shared::PathState));
+    add_buffer(BINDING_BETAS, "path throughputs", slots * (variant.chromatic ? sizeof(glm::vec3) : sizeof(float)));
+    add_buffer(BINDING_SUSPENDED, "suspended paths", slots * sizeof(shared::Suspended));
+    add_buffer(BINDING_QUEUE_ITEMS, "queues",
+               std::uint64_t{QUEUE_COUNT} * queue_capacity(plan) * sizeof(std::uint32_t));
+    add_buffer(BINDING_QUEUES, "queue headers", queue_bytes, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+    add_buffer(BINDING_WORK, "work list", std::uint64_t{most_pixels} * sizeof(std::uint32_t));
+    add_buffer(BINDING_COUNTERS, "counters", sizeof(shared::Counters));
+    if (const std::uint64_t waiting = waiting_samples(plan); waiting > 0) {
+        add_buffer(BINDING_SAMPLES, "waiting samples", waiting * sizeof(glm::vec3));
+        add_buffer(BINDING_PLACES, "places of samples", waiting * sizeof(shared::SamplePlace));
+    }
+    bindings_.emplace(device, bound(scene_buffers));
+    make_passes(specialization, variant, cache);
+    push_.budget = std::min(plan.budget, first_budget);
+    push_.step_limit = plan.step_limit;
+    commands_.fill(buffer(BINDING_QUEUES), 0);
+    commands_.fill(buffer(BINDING_COUNTERS), 0);
     if (device.has_timestamps()) {
         VkQueryPoolCreateInfo pool{};
         pool.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
         pool.queryType = VK_QUERY_TYPE_TIMESTAMP;
-        pool.queryCount = most_rounds * marks;
+        pool.queryCount = most_rounds * static_cast<std::uint32_t>(figures_.size());
         VK_CHECK(vkCreateQueryPool(device.handle(), &pool, nullptr, &timestamps_));
     }
 }
@@ -150,13 +122,53 @@ Wavefront::~Wavefront() {
     vkDestroyQueryPool(device_.handle(), timestamps_, nullptr);
 }
 
+void Wavefront::add_buffer(std::uint32_t binding, const char* name, std::uint64_t bytes,
+                           VkBufferUsageFlags more_usage) {
+    buffers_[binding].emplace(device_, name, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | more_usage,
+                              BufferPlace::device);
+}
+
+BoundBuffers Wavefront::bound(BoundBuffers all) const {
+    for (std::size_t i = 0; i < buffers_.size(); ++i)
+        if (buffers_[i])
+            all[i] = &*buffers_[i];
+    return all;
+}
+
+// The large kernels compile beside the others.
+void Wavefront::make_passes(const Specialization& specialization, const TrackVariant& variant, VkPipelineCache cache) {
+    Specialization constants = specialization;
+    constants[SPEC_STEPS] = static_cast<std::int32_t>(plan_.steps);
+    constants[SPEC_WINDOW_BITS] = static_cast<std::int32_t>(variant.window_bits.value_or(0));
+    const auto make = [&](Words spirv) {
+        return std::make_unique<ComputePass>(device_, *bindings_, spirv, constants, cache);
+    };
+    const bool is_known = specialization[SPEC_TRANSMITTANCE] == TRANSMITTANCE_ANALYTIC &&
+                          specialization[SPEC_SHAPE] != SHAPE_MESH; // LOOKS of segment.glsl
+    const bool has_shadow_rays = specialization[SPEC_NEE] != NEE_NONE && !is_known;
+    const std::vector<PassRow> rows = passes_of(plan_, variant, has_shadow_rays);
+    std::vector<std::future<std::unique_ptr<ComputePass>>> compiling;
+    for (const PassRow& row : rows)
+        compiling.push_back(std::async(std::launch::async, make, row.kernel));
+    begin_ = make(begin_spv);
+    sky_ = make(sky_spv);
+    prepare_ = make(prepare_spv);
+    figures_.push_back({"sky"});
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        round_.push_back({compiling[i].get(), rows[i].lanes, rows[i].queue, rows[i].before});
+        figures_.push_back({rows[i].name});
+    }
+}
+
 std::uint64_t Wavefront::bytes() const {
-    return paths_.bytes() + betas_.bytes() + suspended_.bytes() + queue_items_.bytes() + queues_.bytes() +
-           work_.bytes() + counter_buffer_.bytes() + readback_.bytes();
+    std::uint64_t bytes = readback_.bytes();
+    for (const std::optional<Buffer>& own : buffers_)
+        bytes += own ? own->bytes() : 0;
+    return bytes;
 }
 
 void Wavefront::bind_film(const Buffer& film) {
-    bindings_.bind(BINDING_FILM, film);
+    bindings_->bind(BINDING_FILM, film);
 }
 
 void Wavefront::begin_batch(std::uint32_t begin, std::uint32_t end, std::uint32_t pixels) {
@@ -164,34 +176,61 @@ void Wavefront::begin_batch(std::uint32_t begin, std::uint32_t end, std::uint32_
     const auto start = std::chrono::steady_clock::now();
     sort_pixels(pixels);
     sky_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    sorted_ = pixels;
 }
 
 void Wavefront::begin_batch(std::uint32_t begin, std::uint32_t end, std::span<const std::uint32_t> pixels) {
     free_slots(begin, end);
     const auto count = static_cast<std::uint32_t>(pixels.size());
-    commands_.upload(work_, std::as_bytes(pixels));
+    commands_.upload(buffer(BINDING_WORK), std::as_bytes(pixels));
     commands_.run([&](VkCommandBuffer commands) {
-        vkCmdFillBuffer(commands, counter_buffer_.handle(), offsetof(shared::Counters, work_count), sizeof count,
-                        count);
+        vkCmdFillBuffer(commands, buffer(BINDING_COUNTERS).handle(), offsetof(shared::Counters, work_count),
+                        sizeof count, count);
         record_barrier(commands);
     });
 }
 
+// What the work list counts: pixels in a fused render, samples in a staged one.
+std::uint64_t Wavefront::items_per_pixel() const {
+    return plan_.schedule == Schedule::staged ? samples() : 1;
+}
+
+std::uint64_t Wavefront::items_to_hand_out() const {
+    return std::min<std::uint64_t>(push_.work_end, counters_.work_count * items_per_pixel());
+}
+
+std::uint64_t Wavefront::items_handed_out() const {
+    return std::min<std::uint64_t>(counters_.next_work, items_to_hand_out());
+}
+
+// A pixel all of whose samples are to be finished has all of them handed out.
+void Wavefront::stop_handing_out() {
+    const std::uint64_t each = items_per_pixel();
+    push_.work_end = static_cast<std::uint32_t>((items_handed_out() + each - 1) / each * each);
+}
+
+double Wavefront::handed_out() const {
+    const double all = double(items_per_pixel()) * counters_.work_count;
+    return all > 0.0 ? double(items_handed_out()) / all : 1.0;
+}
+
 std::vector<std::uint32_t> Wavefront::pixels_left() {
-    const std::uint32_t first = std::min(counters_.next_work, counters_.work_count);
+    const std::uint64_t each = items_per_pixel();
+    const std::uint64_t first = (items_handed_out() + each - 1) / each;
     std::vector<std::uint32_t> pixels(counters_.work_count - first);
-    commands_.download(work_, std::as_writable_bytes(std::span(pixels)), first * sizeof(std::uint32_t));
+    commands_.download(buffer(BINDING_WORK), std::as_writable_bytes(std::span(pixels)), first * sizeof(std::uint32_t));
     return pixels;
 }
 
 void Wavefront::free_slots(std::uint32_t begin, std::uint32_t end) {
     push_.sample_begin = begin;
     push_.sample_end = end;
-    push_.stop = 0;
-    push_.step_limit = tuning_.step_limit;
+    push_.work_end = no_end;
+    push_.places = waiting_samples(plan_) / samples();
+    finished_ = sorted_ = 0;
     rounds_ = 1; // many came to little at the end of the last batch
     commands_.run([&](VkCommandBuffer commands) {
-        begin_->record(commands, push_, tuning_.slots);
+        begin_->record(commands, push_, std::max(plan_.slots, waiting_samples(plan_)));
         record_barrier(commands);
     });
 }
@@ -215,41 +254,55 @@ bool Wavefront::advance() {
     const auto start = std::chrono::steady_clock::now();
     commands_.run([&](VkCommandBuffer commands) {
         if (timestamps_)
-            vkCmdResetQueryPool(commands, timestamps_, 0, rounds_ * marks);
+            vkCmdResetQueryPool(commands, timestamps_, 0, rounds_ * static_cast<std::uint32_t>(figures_.size()));
         for (std::uint32_t round = 0; round < rounds_; ++round)
             record_round(commands, round);
         record_readback(commands);
     });
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    read_timestamps();
-    adapt(seconds);
     std::memcpy(&counters_, readback_.view<std::byte>().data() + queue_bytes, sizeof counters_);
+    finished_ += counters_.paths;
+    read_figures();
+    adapt(seconds);
+    if (plan_.schedule == Schedule::staged)
+        return in_flight() == 0 && counters_.next_work >= items_to_hand_out();
     const auto headers = std::span(static_cast<const shared::QueueHeader*>(readback_.mapped()), QUEUE_COUNT);
     return std::all_of(headers.begin(), headers.end(), is_empty);
 }
 
-std::uint32_t Wavefront::in_flight() const {
+std::uint64_t Wavefront::in_flight() const {
+    if (plan_.schedule == Schedule::staged) { // or ended, and waiting for one that has not
+        const std::uint64_t at_once = sorted_ > 0 ? std::uint64_t{sorted_ - counters_.work_count} * samples() : 0;
+        return items_handed_out() - (finished_ - at_once);
+    }
     const auto headers = std::span(static_cast<const shared::QueueHeader*>(readback_.mapped()), QUEUE_COUNT);
     const shared::QueueHeader& header = headers[QUEUE_RESUME];
     const bool all_taken = static_cast<std::int32_t>(header.head - header.limit) > 0;
     return header.tail - (all_taken ? header.limit : header.head);
 }
 
-// generate -> track. What a pass pushes to an earlier queue, or to its own, waits for the next round.
 void Wavefront::record_round(VkCommandBuffer commands, std::uint32_t round) {
     record_timestamp(commands, round, 0);
-    record_pass(commands, QUEUE_GENERATE, *generate_, tuning_.slots);
-    record_timestamp(commands, round, 1);
-    record_prepare(commands, QUEUE_RESUME, QUEUE_RESUME, tuning_.lanes);
-    record_prepare(commands, QUEUE_TRACK, QUEUE_RESUME, tuning_.lanes);
-    record_consumer(commands, QUEUE_TRACK, *track_);
-    record_timestamp(commands, round, 2);
+    for (std::size_t i = 0; i < round_.size(); ++i) {
+        const bool rests = round_[i].queue == no_queue && (round + 1) % seldom_rounds != 0 && round + 1 != rounds_;
+        if (!rests)
+            record_step(commands, round_[i]);
+        record_timestamp(commands, round, i + 1);
+    }
 }
 
-void Wavefront::record_pass(VkCommandBuffer commands, std::uint32_t queue, const ComputePass& pass,
-                            std::uint32_t lanes) {
-    record_prepare(commands, queue, queue, lanes);
-    record_consumer(commands, queue, pass);
+void Wavefront::record_step(VkCommandBuffer commands, const Step& step) {
+    if (step.queue == no_queue) {
+        step.pass->record(commands, push_, push_.places);
+    } else {
+        if (step.before != step.queue)
+            record_prepare(commands, step.before, step.before, step.lanes);
+        record_prepare(commands, step.queue, step.before, step.lanes);
+        const VkDeviceSize header = step.queue * sizeof(shared::QueueHeader);
+        step.pass->record_indirect(commands, push_, buffer(BINDING_QUEUES),
+                                   header + offsetof(shared::QueueHeader, groups_x));
+    }
+    record_barrier(commands);
 }
 
 void Wavefront::record_prepare(VkCommandBuffer commands, std::uint32_t queue, std::uint32_t before,
@@ -261,51 +314,55 @@ void Wavefront::record_prepare(VkCommandBuffer commands, std::uint32_t queue, st
     record_barrier(commands);
 }
 
-void Wavefront::record_consumer(VkCommandBuffer commands, std::uint32_t queue, const ComputePass& pass) {
-    const VkDeviceSize header = queue * sizeof(shared::QueueHeader);
-    pass.record_indirect(commands, push_, queues_, header + offsetof(shared::QueueHeader, groups_x));
-    record_barrier(commands);
-}
-
-void Wavefront::record_timestamp(VkCommandBuffer commands, std::uint32_t round, std::uint32_t mark) {
+void Wavefront::record_timestamp(VkCommandBuffer commands, std::uint32_t round, std::size_t mark) {
     if (timestamps_)
-        vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps_, round * marks + mark);
+        vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps_,
+                            static_cast<std::uint32_t>(round * figures_.size() + mark));
 }
 
 // The host reads counters and queue headers from its own copy; the counters then start again from 0.
 void Wavefront::record_readback(VkCommandBuffer commands) {
+    const VkBuffer counters = buffer(BINDING_COUNTERS).handle();
     const VkBufferCopy headers{0, 0, queue_bytes};
-    const VkBufferCopy counters{0, queue_bytes, sizeof(shared::Counters)};
-    vkCmdCopyBuffer(commands, queues_.handle(), readback_.handle(), 1, &headers);
-    vkCmdCopyBuffer(commands, counter_buffer_.handle(), readback_.handle(), 1, &counters);
+    const VkBufferCopy counts{0, queue_bytes, sizeof(shared::Counters)};
+    vkCmdCopyBuffer(commands, buffer(BINDING_QUEUES).handle(), readback_.handle(), 1, &headers);
+    vkCmdCopyBuffer(commands, counters, readback_.handle(), 1, &counts);
     record_barrier(commands);
     constexpr VkDeviceSize kept = offsetof(shared::Counters, paths); // the work list outlives a submit
-    vkCmdFillBuffer(commands, counter_buffer_.handle(), kept, sizeof(shared::Counters) - kept, 0);
+    vkCmdFillBuffer(commands, counters, kept, sizeof(shared::Counters) - kept, 0);
     record_barrier(commands);
 }
 
-void Wavefront::read_timestamps() {
-    pass_seconds_ = {std::exchange(sky_seconds_, 0.0)};
+void Wavefront::read_figures() {
+    rounds_run_ = rounds_;
+    figures_.front().seconds = std::exchange(sky_seconds_, 0.0);
+    for (std::size_t i = 0; i < round_.size(); ++i) {
+        figures_[i + 1].queued = round_[i].queue == no_queue ? counters_.paths : counters_.queued[round_[i].queue];
+        figures_[i + 1].seconds = 0.0;
+    }
     if (!timestamps_)
         return;
-    std::array<std::uint64_t, most_rounds * marks> ticks;
-    VK_CHECK(vkGetQueryPoolResults(device_.handle(), timestamps_, 0, rounds_ * marks, sizeof ticks, ticks.data(),
-                                   sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
-    for (std::uint32_t round = 0; round < rounds_; ++round)
-        for (std::uint32_t pass = 1; pass < pass_names.size(); ++pass)
-            pass_seconds_[pass] += static_cast<double>(ticks[round * marks + pass] - ticks[round * marks + pass - 1]) *
-                                   device_.limits().timestampPeriod * 1e-9;
+    const std::size_t marks = figures_.size();
+    std::vector<std::uint64_t> ticks(rounds_ * marks);
+    VK_CHECK(vkGetQueryPoolResults(device_.handle(), timestamps_, 0, static_cast<std::uint32_t>(ticks.size()),
+                                   ticks.size() * sizeof ticks[0], ticks.data(), sizeof ticks[0],
+                                   VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
+    for (std::size_t round = 0; round < rounds_; ++round)
+        for (std::size_t pass = 1; pass < marks; ++pass)
+            figures_[pass].seconds +=
+                static_cast<double>(ticks[round * marks + pass] - ticks[round * marks + pass - 1]) *
+                device_.limits().timestampPeriod * 1e-9;
 }
 
 // First lanes work for longer at a time, for they are laid aside less often then; after that there are more rounds.
 // Only where a round alone takes far too long, as a slow device's driver would not suffer, lanes work for less long
 // again.
 void Wavefront::adapt(double seconds) {
-    const double factor = std::clamp(tuning_.submit_seconds / std::max(seconds, 1e-6), 0.5, 2.0);
-    if (factor > 1.0 && push_.budget < tuning_.budget)
-        push_.budget = std::min(2 * push_.budget, tuning_.budget);
-    else if (rounds_ == 1 && seconds > 4.0 * tuning_.submit_seconds)
-        push_.budget = std::min(std::max(push_.budget / 2, 16u), tuning_.budget);
+    const double factor = std::clamp(plan_.submit_seconds / std::max(seconds, 1e-6), 0.5, 2.0);
+    if (factor > 1.0 && push_.budget < plan_.budget)
+        push_.budget = std::min(2 * push_.budget, plan_.budget);
+    else if (rounds_ == 1 && seconds > 4.0 * plan_.submit_seconds)
+        push_.budget = std::min(std::max(push_.budget / 2, 16u), plan_.budget);
     else
         rounds_ = std::clamp(static_cast<std::uint32_t>(rounds_ * factor + 0.5), 1u, most_rounds);
 }

@@ -4,45 +4,25 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "commands.h"
 #include "compute_pass.h"
-#include "pipeline_cache.h"
+#include "plan.h"
 #include "shared/items.h"
 
 namespace vkvol {
 
-// Sizes of the machine, none of which changes the picture.
-struct Tuning {
-    std::uint32_t slots = 0;            // pixels in work
-    std::uint32_t lanes = 0;            // invocations that share the track queue
-    std::uint32_t budget = 0;           // iterations after which a lane lays its path aside
-    std::uint32_t step_limit = 0;       // steps after which a flight is cut, and counted
-    std::uint32_t most_batch = 0;       // samples per pixel
-    double submit_seconds = 0.08;       // aimed at; no submit should hold a device much longer
-    std::uint32_t steps_per_look = 0;   // tracking steps between two looks at what they led to
-    std::uint64_t most_film_bytes = 0;  // in one buffer; a larger film lies in several
-    std::uint64_t most_grid_bytes = 0;  // likewise, of all grids together
-    std::uint64_t most_texel_bytes = 0; // what has more is read as storage
+// What a pass came to.
+struct PassFigures {
+    std::string name;
+    double seconds = 0.0;
+    std::uint64_t queued = 0; // items that it found in its queue, over all rounds
 };
 
-// What a turn of the track pass loops over.
-struct LoopSizes {
-    bool mesh = false;
-    std::uint32_t octaves = 0; // of noise; 0 without it
-};
-
-// What suits the device and the scene; fields of `wish` that are not 0 win.
-Tuning tune(const Device& device, const LoopSizes& loops, const Tuning& wish = {});
-
-// Places in each queue.
-std::uint32_t queue_capacity(const Tuning& tuning);
-
-constexpr std::array pass_names = {"sky", "generate", "track"};
-using PassSeconds = std::array<double, pass_names.size()>;
-
-// Which of its compiled forms the track kernel takes.
+// Which of their compiled forms the tracking kernels take.
 struct TrackVariant {
     bool chromatic = false;                   // the throughput has three channels
     std::optional<std::uint32_t> window_bits; // grids lie in windows of 2^bits words
@@ -52,7 +32,7 @@ class Wavefront {
 public:
     // `most_pixels`: of any film that will be bound.
     Wavefront(const Device& device, const BoundBuffers& scene_buffers, std::uint32_t most_pixels,
-              const Specialization& specialization, const TrackVariant& variant, const Tuning& tuning,
+              const Specialization& specialization, const TrackVariant& variant, const Plan& plan,
               VkPipelineCache cache);
     ~Wavefront();
     Wavefront(const Wavefront&) = delete;
@@ -65,44 +45,64 @@ public:
     // The same for these pixels alone.
     void begin_batch(std::uint32_t begin, std::uint32_t end, std::span<const std::uint32_t> pixels);
     // Hands out no further pixels; those begun are finished.
-    void stop_handing_out() { push_.stop = 1; }
+    void stop_handing_out();
     // Pixels of the batch that were not handed out.
     std::vector<std::uint32_t> pixels_left();
+    // Part of the batch's work that was handed out, in [0, 1].
+    double handed_out() const;
     // One submit of as many rounds as fit its time. True when no path is in flight any more.
     bool advance();
-    // Paths that the last submit left amid their way.
-    std::uint32_t in_flight() const;
+    // Samples handed out that the last submit left unfinished.
+    std::uint64_t in_flight() const;
 
     std::uint64_t bytes() const; // of its buffers
 
     // What happened in the last submit.
     const shared::Counters& counters() const { return counters_; }
-    const PassSeconds& pass_seconds() const { return pass_seconds_; }
+    std::span<const PassFigures> passes() const { return figures_; }
+    std::uint32_t rounds() const { return rounds_run_; }
 
 private:
+    // A pass of every round: how many lanes it may have, its queue, and one whose items they take first.
+    struct Step {
+        std::unique_ptr<ComputePass> pass;
+        std::uint32_t lanes, queue, before;
+    };
+
+    void make_passes(const Specialization& specialization, const TrackVariant& variant, VkPipelineCache cache);
+    void add_buffer(std::uint32_t binding, const char* name, std::uint64_t bytes, VkBufferUsageFlags more_usage = 0);
+    BoundBuffers bound(BoundBuffers scene_buffers) const;
+    const Buffer& buffer(std::uint32_t binding) const { return *buffers_[binding]; }
+    std::uint32_t samples() const { return push_.sample_end - push_.sample_begin; }
+    std::uint64_t items_per_pixel() const;
+    std::uint64_t items_to_hand_out() const;
+    std::uint64_t items_handed_out() const;
     void record_round(VkCommandBuffer commands, std::uint32_t round);
     void free_slots(std::uint32_t begin, std::uint32_t end);
     void sort_pixels(std::uint32_t pixels);
-    void record_pass(VkCommandBuffer commands, std::uint32_t queue, const ComputePass& pass, std::uint32_t lanes);
+    void record_step(VkCommandBuffer commands, const Step& step);
     void record_prepare(VkCommandBuffer commands, std::uint32_t queue, std::uint32_t before, std::uint32_t lanes);
-    void record_consumer(VkCommandBuffer commands, std::uint32_t queue, const ComputePass& pass);
-    void record_timestamp(VkCommandBuffer commands, std::uint32_t round, std::uint32_t mark);
+    void record_timestamp(VkCommandBuffer commands, std::uint32_t round, std::size_t mark);
     void record_readback(VkCommandBuffer commands);
-    void read_timestamps();
+    void read_figures();
     void adapt(double seconds);
 
     const Device& device_;
-    Tuning tuning_;
+    Plan plan_;
     Commands commands_;
-    Buffer paths_, betas_, suspended_, queue_items_, queues_, work_, counter_buffer_, readback_;
-    Bindings bindings_;
-    std::unique_ptr<ComputePass> begin_, sky_, prepare_, generate_, track_;
+    std::array<std::optional<Buffer>, BINDING_BUFFERS> buffers_; // its own
+    Buffer readback_;
+    std::optional<Bindings> bindings_;
+    std::unique_ptr<ComputePass> begin_, sky_, prepare_;
+    std::vector<Step> round_;
     VkQueryPool timestamps_ = VK_NULL_HANDLE;
     shared::PassPush push_{};
     shared::Counters counters_{};
-    PassSeconds pass_seconds_{};
-    double sky_seconds_ = 0.0; // of this batch, reported with its first submit
-    std::uint32_t rounds_ = 1;
+    std::vector<PassFigures> figures_; // the sky, and each step of the rounds
+    double sky_seconds_ = 0.0;         // of this batch, told with its first submit
+    std::uint64_t finished_ = 0;       // paths of the batch
+    std::uint32_t sorted_ = 0;         // pixels of which those that miss the medium never were paths
+    std::uint32_t rounds_ = 1, rounds_run_ = 0;
 };
 
 } // namespace vkvol

@@ -11,6 +11,7 @@
 
 #include "device.h"
 #include "file_scene.h"
+#include "plan.h"
 #include "tone_choice.h"
 
 namespace vkvol {
@@ -35,6 +36,7 @@ struct RenderRequest {
     std::uint32_t sample_offset = 0;  // the first sample's number: disjoint ranges of one seed can be merged
     std::optional<double> time_limit; // seconds
     DeviceOptions device;
+    Plan plan;             // what of it is chosen
     bool no_cache = false; // neither read nor write the pipeline cache
     ToneRequest tone;
 };

@@ -22,9 +22,9 @@ std::uint64_t peak_host_bytes() {
 }
 
 Json seconds_json(const RenderResult& r, double write_seconds) {
-    Json passes;
-    for (std::size_t pass = 0; pass < pass_names.size(); ++pass)
-        passes[pass_names[pass]] = r.pass_seconds[pass];
+    Json passes = Json::object();
+    for (const PassFigures& pass : r.passes)
+        passes[pass.name] = pass.seconds;
     return {{"load", r.load_seconds},     {"upload", r.upload_seconds}, {"pipeline", r.pipeline_seconds},
             {"render", r.render_seconds}, {"write", write_seconds},     {"passes", passes}};
 }
@@ -37,6 +37,23 @@ Json counts_json(const RenderResult& r) {
             {"densityLookups", c.lookups},
             {"majorantCells", c.cells},
             {"shadowRays", c.shadow_rays}};
+}
+
+// Of the slots, how many were in each pass's queue when it began, on average.
+Json occupancy_json(const RenderResult& r) {
+    Json json = Json::object();
+    const double slots = double(r.rounds) * r.plan.slots;
+    for (std::size_t pass = 1; pass < r.passes.size(); ++pass) // the sky has no queue
+        json[r.passes[pass].name] = slots > 0.0 ? double(r.passes[pass].queued) / slots : 0.0;
+    return json;
+}
+
+Json plan_json(const Plan& plan) {
+    return {{"schedule", name_of(plan.schedule)},
+            {"slots", plan.slots},
+            {"steps", plan.steps},
+            {"majorantCell", plan.majorant_cell},
+            {"leaps", plan.leaps}};
 }
 
 Json caps_json(const RenderResult& r) {
@@ -140,6 +157,7 @@ Metadata make_metadata(const RenderRequest& request, const Scene& scene, const D
                       {"vkvol/integrator", result.integrator},
                       {"vkvol/biased", bias_of(result)},
                       {"vkvol/specialization", result.specialization},
+                      {"vkvol/plan", describe(result.plan)},
                       {"vkvol/seed", std::to_string(request.seed)},
                       {"vkvol/sampleOffset", static_cast<int>(request.sample_offset)},
                       {"vkvol/device", device.info().name},
@@ -184,6 +202,8 @@ std::string make_report(const RenderRequest& request, const Scene& scene, const 
         {"samples", static_cast<double>(result.counts.paths) / seconds},
         {"tentativeCollisions",
          static_cast<double>(result.counts.real_collisions + result.counts.null_collisions) / seconds}};
+    report["plan"] = plan_json(result.plan);
+    report["occupancy"] = occupancy_json(result);
     report["laneUse"] = {{"track", result.counts.lane_use()}};
     report["caps"] = caps_json(result);
     report["mean"] = mean_json(result.film);

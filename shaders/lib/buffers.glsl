@@ -57,6 +57,8 @@ layout(scalar, binding = BINDING_QUEUE_ITEMS) buffer QueueItemBlock { uint queue
 layout(scalar, binding = BINDING_QUEUES) buffer QueueBlock { QueueHeader queues[]; };
 layout(scalar, binding = BINDING_FILM) buffer FilmBlock { FilmPixel film[]; };
 layout(scalar, binding = BINDING_WORK) buffer WorkBlock { uint work[]; };
+layout(scalar, binding = BINDING_SAMPLES) buffer SampleBlock { uvec3 waiting_samples[]; };
+layout(scalar, binding = BINDING_PLACES) buffer PlaceBlock { SamplePlace sample_places[]; };
 layout(scalar, binding = BINDING_BLACKBODY) readonly buffer BlackbodyBlock { vec3 blackbody[]; };
 layout(scalar, binding = BINDING_TRACE) buffer TraceBlock {
     uint trace_count;

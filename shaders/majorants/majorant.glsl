@@ -38,6 +38,7 @@
 #define EVENT_LEFT 2u    // the end of the part within the medium, or of the whole segment
 #define EVENT_TOUCHED 3u // an interaction that leaves the flight as it is: a null collision, a step of a march
 #define EVENT_OPAQUE 4u  // nothing of the light is left, no need to go on
+#define EVENT_CUT 5u     // by the step limit: its light is lost, and that is counted
 
 // How many cells around the walk's are empty like it, in every direction.
 int empty_reach(Walk w) {

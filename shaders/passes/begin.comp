@@ -5,8 +5,13 @@
 
 void main() {
     uint slot = gl_GlobalInvocationID.x;
+    if (slot < push.places)
+        sample_places[slot] = SamplePlace(0u, 0u);
+    if (slot < push.places * (push.sample_end - push.sample_begin))
+        waiting_samples[slot].x = NO_SAMPLE;
     if (slot >= frame.slots)
         return;
+    paths[slot].todo = TODO_TAKE;
     queue_items[QUEUE_GENERATE * frame.queue_capacity + slot] = slot;
     if (slot == 0u) {
         for (uint queue = 0u; queue < QUEUE_COUNT; ++queue)

@@ -1,27 +1,42 @@
-// Give each free slot the next pixel on the work list.
+// The staged schedule: free slots get the next samples of the work list, and their paths begin, at the camera. All samples
+// of a pixel have consecutive numbers in that list, and a place among those that wait to be added to the film; while
+// another pixel has it, they wait. The earliest sample under way never does, so neither do all.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/pass.glsl"
 
-#include "sensors/camera.glsl"
 #include "lib/queue.glsl"
+#include "stages/generate.glsl"
 
-// The next pixel of the work list, or NO_PIXEL.
-uint take_pixel() {
-    if (push.stop != 0u)
-        return NO_PIXEL;
-    uint index = atomicAdd(counters.next_work, 1u);
-    return index < counters.work_count ? work[index] : NO_PIXEL;
+// The slot's next sample: one it had been given before, or the next of the work list. False if none is left.
+bool has_sample(uint slot) {
+    if (paths[slot].todo == TODO_BEGIN)
+        return true;
+    uint number = atomicAdd(counters.next_work, 1u);
+    uint samples = push.sample_end - push.sample_begin;
+    uint index = number / samples;
+    if (number >= push.work_end || index >= counters.work_count)
+        return false;
+    paths[slot].todo = TODO_BEGIN;
+    paths[slot].pixel = index;
+    paths[slot].sample_index = push.sample_begin + number % samples;
+    return true;
 }
 
 void main() {
     uint slot;
-    if (!pop_item(QUEUE_GENERATE, slot))
-        return;
-    uint pixel = take_pixel();
-    if (pixel == NO_PIXEL)
+    if (!pop_item(QUEUE_GENERATE, slot) || !has_sample(slot))
         return; // no work left: the slot rests until the next batch
-    paths[slot].pixel = pixel;
-    paths[slot].place = place_of(pixel);
+    uint index = paths[slot].pixel;
+    if (sample_places[index % push.places].tenants != index / push.places) {
+        push_item(QUEUE_GENERATE, slot);
+        return;
+    }
+    Lane lane;
+    Rng rng;
+    lane.path.place = place_of(work[index]);
+    lane.path.sample_index = paths[slot].sample_index;
+    generate(lane, rng);
+    lay_aside(slot, index, rng, lane, false);
     push_item(QUEUE_TRACK, slot);
 }

@@ -14,6 +14,7 @@ void main() {
     uint items = header.limit - header.head;
     if (push.before != push.queue)
         items += queues[push.before].limit - queues[push.before].head;
+    counters.queued[push.queue] += items;
     uint lanes = min(items, push.lanes);
     header.groups_x = (lanes + WORKGROUP_SIZE - 1u) / WORKGROUP_SIZE;
     queues[push.queue] = header;

@@ -18,29 +18,14 @@ Walk kept(Walk w) {
     bool marches = FREE_FLIGHT == FREE_FLIGHT_MARCH || (shadow_traits & TRAIT_MARCH) != 0;
     bool adds_depth = !NULL_FLIGHT || (LOOKS && !NULL_TRANSMITTANCE);
     bool walks = (traits & TRAIT_CELLS) != 0;
-    bool voxels = (traits & TRAIT_VOXELS) != 0;
+    bool cells = (traits & TRAIT_VOXELS) != 0 || (walks && FIELD == FIELD_GRID);
     bool controlled = (traits & TRAIT_CONTROL) != 0;
-    bool marches_more = (traits & TRAIT_SETS) != 0;
-    w.at = 0.0; // set by every step
-    if (!adds_depth)
-        w.depth = 0.0;
-    if (!walks)
-        w.sigma_maj = 0.0;
-    if (!controlled)
-        w.control = 0.0;
-    if (!voxels && (!walks || FIELD != FIELD_GRID))
-        w.cell = ivec3(0);
-    if (!marches) {
-        w.dt = 0.0;
-        w.index = 0u;
-    }
-    if (!marches_more) {
-        w.level = 0u;
-        w.residue = 0u;
-        w.offset = 0.0;
-        w.coarse = 0.0;
-        w.base = 0.0;
-    }
+    bool sets = (traits & TRAIT_SETS) != 0;
+#define KEEP(type, name, when)                                                                                        \
+    if (!(when))                                                                                                      \
+        w.name = type(0);
+    WALK_STATE(KEEP)
+#undef KEEP
     return w;
 }
 

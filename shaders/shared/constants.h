@@ -21,15 +21,17 @@
 #define BINDING_SUSPENDED 15  // Suspended per slot
 #define BINDING_TRACE 16      // TraceHeader and TraceRecords, only where one path is followed
 #define BINDING_LATTICE 17    // vec4 per node of two lattices, see lattice.glsl
-#define BINDING_TEST_INPUT 18 // test kernels only
-#define BINDING_TEST_OUTPUT 19
-#define BINDING_BUFFERS 20
+#define BINDING_SAMPLES 18    // staged: vec3 radiance per sample that waits to be added to the film
+#define BINDING_PLACES 19     // staged: SamplePlace
+#define BINDING_TEST_INPUT 20 // test kernels only
+#define BINDING_TEST_OUTPUT 21
+#define BINDING_BUFFERS 22
 // The same buffers as texels: software drivers gather these, and read storage buffers lane by lane.
-#define BINDING_GRID_TEXELS 20
-#define BINDING_LEAF_TEXELS 21
-#define BINDING_MAJORANT_TEXELS 22
-#define BINDING_LATTICE_TEXELS 23
-#define BINDING_COUNT 24
+#define BINDING_GRID_TEXELS 22
+#define BINDING_LEAF_TEXELS 23
+#define BINDING_MAJORANT_TEXELS 24
+#define BINDING_LATTICE_TEXELS 25
+#define BINDING_COUNT 26
 
 #define WORKGROUP_SIZE 64
 
@@ -117,11 +119,16 @@
 #define MESH_LEAF 4            // triangles in a leaf of a mesh's hierarchy, at most
 #define MESH_NODES_PER_TURN 64 // of the hierarchy, which a turn of the track pass visits
 
-// A slot is in exactly one queue, or held by a lane.
-#define QUEUE_GENERATE 0 // free
-#define QUEUE_RESUME 1   // paths laid aside, which the lanes of the track pass take first
-#define QUEUE_TRACK 2    // pixels of which no sample has begun
-#define QUEUE_COUNT 3
+// A slot is in one queue, or held by a lane, or at rest when nothing is left to do.
+#define QUEUE_GENERATE 0 // free slots
+#define QUEUE_RESUME 1   // paths laid aside where a lane's budget was spent, which lanes take first
+#define QUEUE_TRACK 2    // fused: pixels of which no sample has begun; staged: flights
+#define QUEUE_LOOK 3     // staged: like QUEUE_RESUME, amid shadow rays
+#define QUEUE_SHADOW 4   // staged: shadow rays
+#define QUEUE_COUNT 5
+
+// In place of the radiance of a sample that is not there yet: a NaN that no arithmetic makes.
+#define NO_SAMPLE 0xffffffffu
 
 #define BLACKBODY_ENTRIES 4096
 

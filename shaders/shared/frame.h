@@ -121,7 +121,7 @@ struct FrameParams {
     uint crop_x; // the crop's first pixel within the picture
     uint crop_y;
     uint crop_width;
-    uint slots;                       // pixels in work
+    uint slots;                       // fused: pixels in work; staged: paths
     uint queue_capacity;              // a power of two, at least 2 * slots; see queue.glsl
     uvec2 grid_windows[GRID_WINDOWS]; // device addresses, low and high word; see grid.glsl
 };
@@ -135,7 +135,8 @@ struct PassPush {
     uint sample_end;
     uint pixel_begin; // sky: range of film entries
     uint pixel_end;
-    uint stop;       // generate: hand out no further pixels
+    uint work_end;   // hand out nothing of the work list from here on, counted as counters.next_work
+    uint places;     // staged: pixels whose samples may wait to be added to the film
     uint budget;     // loop iterations after which a lane takes no further item
     uint step_limit; // steps after which a flight is cut, counted as a cap
 };

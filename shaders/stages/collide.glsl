@@ -30,7 +30,6 @@ void gather_light(VolumeParams v, vec3 position, Spectrum lit, uint next, inout 
 
 // At a real collision: emission, absorption, light. Then the path departs, or ends.
 void collide(VolumeParams v, Spectrum deposit, inout Lane lane, inout Rng rng, inout Tally tally) {
-    lane.path.position += (lane.walk.start + lane.walk.t) * lane.path.direction;
     if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_COLLISIONS)
         lane.path.radiance += lane.beta * emitted_radiance(v.emission, lane.path.position);
     lane.beta *= to_spectrum(v.albedo);

@@ -34,7 +34,7 @@ void scatter(VolumeParams v, vec4 u, inout Lane lane) {
 }
 
 void depart(VolumeParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
-    bool looks = LOOKS && lane.todo == TODO_LOOK;
+    bool looks = at_shadow_ray(lane.todo == TODO_LOOK);
     bool at_camera = !looks && lane.path.depth == 0u;
     uvec4 words = first_words(looks, rng);
     lane.todo = looks ? TODO_SEE : TODO_FLY;

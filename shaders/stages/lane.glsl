@@ -1,34 +1,50 @@
-// A path as a lane of the track pass holds it, and how it is laid aside and taken up again.
+// A path as a lane holds it, and how it is laid aside and taken up again.
 #ifndef LANE_GLSL
 #define LANE_GLSL
+#include "sensors/camera.glsl"
 #include "shapes/segment.glsl"
 
-// What a lane does next.
-#define TODO_TAKE 0u   // take a pixel from the queue
-#define TODO_DEPART 1u // from a vertex: scatter, unless it is the camera, and fly
-#define TODO_LOOK 2u   // toward the light
-#define TODO_FLY 3u    // go on along the flight
-#define TODO_SEE 4u    // go on along the shadow ray
-#define TODO_END 5u    // the path is over
-#define TODO_DONE 6u   // the pixel has its samples
-#define TODO_BEGIN 7u  // a path, at the camera
-
-// A path as a lane holds it.
 struct Lane {
     PathState path;
     Spectrum beta;
-    Walk walk;     // the present segment's
-    Walk flight;   // to come back to, from a shadow ray sent amid it
-    Spectrum T;    // of the shadow ray so far
-    Spectrum lit;  // throughput of what it lights,
-    vec3 position; // and where that is
     uint todo;
-    uint resume;       // what to do after the shadow ray
-    uint steps;        // of the segment
-    Spectrum cached;   // transmittance that the shadow ray corrects
-    float chance;      // with which it was sent
-    PartSearch search; // of the present segment, in a mesh
+#define LANE_FIELD(type, name, when) type name;
+#define LANE_SPECTRUM(name, when) Spectrum name;
+#define LANE_WALK(name, when) Walk name;
+    SEGMENT_STATE(LANE_FIELD, LANE_SPECTRUM, LANE_WALK)
 };
+
+// The fused schedule's one pass has flights and shadow rays; of the staged ones each has its own, and what only the other
+// would do is not compiled. `is`: whether a lane of the fused one is at a shadow ray.
+bool at_shadow_ray(bool is) {
+#if defined(FLIGHTS_ONLY)
+    return false;
+#elif defined(SHADOW_RAYS_ONLY)
+    return LOOKS;
+#else
+    return LOOKS && is;
+#endif
+}
+
+// Whether a lane begins a segment, or goes on along one, of a kind that its pass has.
+bool departs(uint todo) {
+#if defined(FLIGHTS_ONLY)
+    return todo == TODO_DEPART;
+#elif defined(SHADOW_RAYS_ONLY)
+    return todo == TODO_LOOK;
+#else
+    return todo == TODO_DEPART || todo == TODO_LOOK;
+#endif
+}
+bool is_under_way(uint todo) {
+#if defined(FLIGHTS_ONLY)
+    return todo == TODO_FLY;
+#elif defined(SHADOW_RAYS_ONLY)
+    return todo == TODO_SEE;
+#else
+    return todo == TODO_FLY || todo == TODO_SEE;
+#endif
+}
 
 // What the shadow ray lights, and from where. At collisions that is the path's own vertex, and need not be kept.
 Spectrum lit_beta(Lane lane) {
@@ -41,56 +57,54 @@ uint after_looking(Lane lane) {
     return NEE == NEE_TENTATIVE ? lane.resume : SCATTERING == SCATTERING_SINGLE ? TODO_END : TODO_DEPART;
 }
 
-void lay_aside(uint slot, Rng rng, Lane lane) {
+// What the rows of path_state.h ask for.
+#define STATE_CONDITIONS(next, amid)                                                                                  \
+    bool seeing = LOOKS && amid && next == TODO_SEE;                                                                  \
+    bool looking = seeing || (LOOKS && next == TODO_LOOK);                                                            \
+    bool flight_rests = NEE == NEE_TENTATIVE;                                                                         \
+    bool has_cache = LOOKS && NEE == NEE_CACHED;                                                                      \
+    bool under_way = (amid && next == TODO_FLY) || seeing || (looking && flight_rests);
+
+// Of `pixel` see PathState. `amid`, a constant: it may be amid a segment; else that is not compiled.
+void lay_aside(uint slot, uint pixel, Rng rng, Lane lane, const bool amid) {
     lane.path.draw = rng.draw;
-    lane.path.suspended = lane.todo == TODO_DEPART && NEE != NEE_CACHED ? 0u : 1u;
-    lane.path.pixel = paths[slot].pixel;
+    lane.path.todo = lane.todo;
+    lane.path.pixel = pixel;
     paths[slot] = lane.path;
     betas[slot] = lane.beta;
-    if (lane.path.suspended == 0u)
+    STATE_CONDITIONS(lane.todo, amid)
+    if (!under_way && !looking && !has_cache)
         return;
-    suspended[slot].walk = kept(lane.walk);
-    suspended[slot].todo = lane.todo;
-    suspended[slot].steps = lane.steps;
-    if (SHAPE == SHAPE_MESH)
-        suspended[slot].search = lane.search;
-    if (LOOKS)
-        suspended[slot].T = vec3(lane.T);
-    if (LOOKS && NEE == NEE_CACHED) {
-        suspended[slot].cached = vec3(lane.cached);
-        suspended[slot].chance = lane.chance;
-    }
-    if (LOOKS && NEE == NEE_TENTATIVE) {
-        suspended[slot].flight = kept(lane.flight);
-        suspended[slot].lit = vec3(lane.lit);
-        suspended[slot].position = lane.position;
-        suspended[slot].resume = lane.resume;
-    }
+#define LAY_ASIDE(type, name, when)                                                                                   \
+    if (when)                                                                                                         \
+        suspended[slot].name = lane.name;
+#define LAY_ASIDE_SPECTRUM(name, when)                                                                                \
+    if (when)                                                                                                         \
+        suspended[slot].name = vec3(lane.name);
+#define LAY_ASIDE_WALK(name, when)                                                                                    \
+    if (when)                                                                                                         \
+        suspended[slot].name = kept(lane.name);
+    SEGMENT_STATE(LAY_ASIDE, LAY_ASIDE_SPECTRUM, LAY_ASIDE_WALK)
 }
 
-void take_up(uint slot, inout Lane lane) {
+void take_up(uint slot, inout Lane lane, out Rng rng, const bool amid) {
     lane.path = paths[slot];
     lane.beta = betas[slot];
-    lane.todo = TODO_DEPART;
-    if (lane.path.suspended == 0u)
+    lane.todo = lane.path.todo;
+    rng = pixel_rng(lane.path.place, lane.path.sample_index, lane.path.draw);
+    STATE_CONDITIONS(lane.todo, amid)
+    if (!under_way && !looking && !has_cache)
         return;
-    lane.walk = kept(suspended[slot].walk);
-    lane.todo = suspended[slot].todo;
-    lane.steps = suspended[slot].steps;
-    if (SHAPE == SHAPE_MESH)
-        lane.search = suspended[slot].search;
-    if (LOOKS)
-        lane.T = to_spectrum(suspended[slot].T);
-    if (LOOKS && NEE == NEE_CACHED) {
-        lane.cached = to_spectrum(suspended[slot].cached);
-        lane.chance = suspended[slot].chance;
-    }
-    if (LOOKS && NEE == NEE_TENTATIVE) {
-        lane.flight = kept(suspended[slot].flight);
-        lane.lit = to_spectrum(suspended[slot].lit);
-        lane.position = suspended[slot].position;
-        lane.resume = suspended[slot].resume;
-    }
+#define TAKE_UP(type, name, when)                                                                                     \
+    if (when)                                                                                                         \
+        lane.name = suspended[slot].name;
+#define TAKE_UP_SPECTRUM(name, when)                                                                                  \
+    if (when)                                                                                                         \
+        lane.name = to_spectrum(suspended[slot].name);
+#define TAKE_UP_WALK(name, when)                                                                                      \
+    if (when)                                                                                                         \
+        lane.name = kept(suspended[slot].name);
+    SEGMENT_STATE(TAKE_UP, TAKE_UP_SPECTRUM, TAKE_UP_WALK)
 }
 
 #endif

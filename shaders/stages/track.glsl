@@ -18,7 +18,7 @@ vec3 emission_along(VolumeParams v, Spectrum beta, float from, Walk w, PathState
 
 // One step of the lane's segment, flight or shadow ray.
 uint step_segment(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum deposit, inout Tally tally) {
-    bool seeing = LOOKS && lane.todo == TODO_SEE;
+    bool seeing = at_shadow_ray(lane.todo == TODO_SEE);
     uint event = EVENT_MOVING;
     deposit = to_spectrum(vec3(0.0));
     Collision c = Collision(0.0, 1.0, 0.0, 0.0, 0.0);
@@ -39,11 +39,13 @@ uint step_segment(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum d
     return after_step(event, lane.walk, lane.search);
 }
 
-// EVENT_MOVING: nothing has happened yet. `deposit`: see free_flight.glsl.
+// EVENT_MOVING: nothing has happened yet. After EVENT_COLLIDED the path is where it collided. `deposit`: see
+// free_flight.glsl.
 uint track(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum deposit, inout Tally tally) {
     deposit = to_spectrum(vec3(0.0));
     uint event = EVENT_MOVING;
-    bool seeing = LOOKS && lane.todo == TODO_SEE;
+    uint steps = tally.steps;
+    bool seeing = at_shadow_ray(lane.todo == TODO_SEE);
     if (SHAPE == SHAPE_MESH)
         event = search_part(v, seeing ? looking_from(lane) : lane.path.position,
                             seeing ? frame.light.direction : lane.path.direction, seeing, lane.walk, lane.search);
@@ -55,6 +57,13 @@ uint track(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum deposit,
             tally.steps += 1u;
         }
     }
+    lane.steps += tally.steps - steps;
+    if (event == EVENT_MOVING && lane.steps >= push.step_limit) {
+        event = EVENT_CUT;
+        tally.step_caps += 1u;
+    }
+    if (event == EVENT_COLLIDED)
+        lane.path.position += (lane.walk.start + lane.walk.t) * lane.path.direction;
     return event;
 }
 

@@ -76,7 +76,7 @@ TEST_CASE("a picture of grids in windows has the same bits", "[gpu][windows][det
         scene.volumes.front().temperature.color = Rgb(1.0);
     RenderJob job;
     const Film one = render_here(scene, 3, job).film;
-    job.tuning.most_grid_bytes = 1;
+    job.plan.most_grid_bytes = 1;
     CHECK(same_bits(one, render_here(scene, 3, job).film));
     CHECK(mean_of(one) > 0.01);
 }

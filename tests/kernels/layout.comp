@@ -45,6 +45,7 @@ void put(uvec4 v) {
 
 #define path paths[1]
 #define laid_aside suspended[1]
+#define waiting sample_places[1]
 #define control_cell controls[1]
 #define bvh_node bvh[1]
 #define header queues[1]

@@ -1,4 +1,4 @@
-// Each invocation takes up to push.budget items and notes them; with push.stop it puts each back into the same queue.
+// Each invocation takes up to push.budget items and notes them; with push.places it puts each back into the same queue.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "kernel.glsl"
@@ -14,7 +14,7 @@ void main() {
         if (!found)
             continue; // asking again past the end must find nothing either
         outputs[i * push.budget + k] = slot;
-        if (push.stop != 0u)
+        if (push.places != 0u)
             push_item(push.queue, slot);
     }
 }

@@ -210,8 +210,8 @@ TEST_CASE("where a path is laid aside changes nothing", "[gpu][determinism]") {
     const auto check = [](Scene scene, const std::string& name) {
         scene.settings.spp = 2;
         RenderJob often, seldom;
-        often.tuning.budget = 3;
-        seldom.tuning.budget = 500;
+        often.plan.budget = 3;
+        seldom.plan.budget = 500;
         CAPTURE(name);
         CHECK(same_bits(render_here(scene, 9, often).film, render_here(scene, 9, seldom).film));
     };

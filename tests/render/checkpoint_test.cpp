@@ -50,9 +50,9 @@ TEST_CASE("a render resumed from any of its checkpoints has the same bits", "[gp
     const std::size_t band_rows = GENERATE(0u, 10u); // the film in one buffer, or in several
     const Scene scene = cloud(9);
     RenderJob job;
-    job.tuning.slots = 64; // few, so that every checkpoint finds pixels left
-    job.tuning.submit_seconds = 1e-4;
-    job.tuning.most_film_bytes = band_rows * 32 * sizeof(shared::FilmPixel);
+    job.plan.slots = 64; // few, so that every checkpoint finds pixels left
+    job.plan.submit_seconds = 1e-4;
+    job.plan.most_film_bytes = band_rows * 32 * sizeof(shared::FilmPixel);
     const RenderResult whole = render_part(scene, job);
 
     std::vector<Checkpoint> checkpoints;
@@ -71,7 +71,7 @@ TEST_CASE("a render resumed from any of its checkpoints has the same bits", "[gp
         RenderJob rest = job;
         rest.checkpoint = nullptr;
         rest.resume = &loaded;
-        rest.tuning.slots = 512;
+        rest.plan.slots = 512;
         const RenderResult resumed = render_part(scene, rest);
         CHECK(same_bits(resumed.film, whole.film));
         CHECK(equal(with_no_place(resumed.counts), with_no_place(whole.counts)));
@@ -82,8 +82,8 @@ TEST_CASE("a render resumed from any of its checkpoints has the same bits", "[gp
 TEST_CASE("an interrupted render keeps a checkpoint of all that is in the picture", "[gpu][checkpoint]") {
     const Scene scene = cloud(9);
     RenderJob job;
-    job.tuning.slots = 64;
-    job.tuning.submit_seconds = 1e-4;
+    job.plan.slots = 64;
+    job.plan.submit_seconds = 1e-4;
     const RenderResult whole = render_part(scene, job);
     int asked = 0;
     std::optional<Checkpoint> last;

@@ -26,10 +26,10 @@ Scene cloud(std::uint32_t samples = 11) {
 
 RenderJob with_tuning(std::uint32_t slots, std::uint32_t lanes, std::uint32_t budget, std::uint32_t steps_per_look) {
     RenderJob job;
-    job.tuning.slots = slots;
-    job.tuning.lanes = lanes;
-    job.tuning.budget = budget;
-    job.tuning.steps_per_look = steps_per_look;
+    job.plan.slots = slots;
+    job.plan.lanes = lanes;
+    job.plan.budget = budget;
+    job.plan.steps = steps_per_look;
     return job;
 }
 
@@ -121,7 +121,7 @@ TEST_CASE("noise of many octaves has them all, however long a lane works", "[gpu
     RenderJob job;
     job.crop = {17, 31, 9, 40}; // other lanes go other ways together
     CHECK(same_bits(render_here(scene, 38, job).film, cut(whole, job.crop)));
-    job.tuning.budget = 16;
+    job.plan.budget = 16;
     CHECK(same_bits(render_here(scene, 38, job).film, cut(whole, job.crop)));
 }
 
@@ -144,7 +144,7 @@ TEST_CASE("a film in several storage buffers has the same bits", "[gpu][determin
     for (const std::uint64_t rows : {7, 17, 39}) {
         CAPTURE(rows);
         RenderJob job;
-        job.tuning.most_film_bytes = rows * 40 * sizeof(shared::FilmPixel);
+        job.plan.most_film_bytes = rows * 40 * sizeof(shared::FilmPixel);
         CHECK(same_bits(render_here(scene, 34, job).film, whole));
     }
 }
@@ -207,7 +207,7 @@ TEST_CASE("an interrupted render keeps true sample counts", "[gpu][determinism]"
     for (const int patience : {0, 3, 20, 60}) {
         CAPTURE(patience);
         RenderJob job = with_tuning(256, 64, 16, 1);
-        job.tuning.submit_seconds = 1e-6; // one round per submit
+        job.plan.submit_seconds = 1e-6; // one round per submit
         int asked = 0;
         job.interrupted = [&] { return asked++ >= patience; };
         const RenderResult result = render_here(scene, 37, job);
@@ -237,7 +237,7 @@ TEST_CASE("all samples are taken, though a driver's loops end after 65535 iterat
     RenderJob job;
     SECTION("of a background") {
         scene.picture.width = scene.picture.height = 2;
-        job.tuning.most_batch = GENERATE(0u, 1u << 20); // as it is chosen, and longer than any such loop
+        job.plan.most_batch = GENERATE(0u, 1u << 20); // as it is chosen, and longer than any such loop
     }
     SECTION("beside a mesh, whose hierarchy each of them looks through") {
         const MeshFiles ball{{VKVOL_SOURCE_DIR "/scenes/thesis/models/SphereOnly.obj"}};

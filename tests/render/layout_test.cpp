@@ -14,6 +14,7 @@ namespace {
 struct Structs {
     shared::PathState path;
     shared::Suspended laid_aside;
+    shared::SamplePlace waiting;
     shared::ControlCell control_cell;
     shared::BvhNode bvh_node;
     shared::QueueHeader header;
@@ -41,7 +42,7 @@ std::vector<std::uint32_t> list_words(const Structs& all) {
         words.resize(first + sizeof field / 4);
         std::memcpy(&words[first], &field, sizeof field);
     };
-    const auto& [path, laid_aside, control_cell, bvh_node, header, entry, counters, frame, push] = all;
+    const auto& [path, laid_aside, waiting, control_cell, bvh_node, header, entry, counters, frame, push] = all;
 #define PUT(field) put(field);
 #include "kernels/layout_fields.h"
 #undef PUT
@@ -67,6 +68,7 @@ TEST_CASE("shared structs have one layout on host and device", "[gpu][layout]") 
     Commands commands(test_device());
     const Buffer paths = second_of_two(commands, all.path, storage);
     const Buffer laid_aside = second_of_two(commands, all.laid_aside, storage);
+    const Buffer places = second_of_two(commands, all.waiting, storage);
     const Buffer controls = second_of_two(commands, all.control_cell, storage);
     const Buffer nodes = second_of_two(commands, all.bvh_node, storage);
     const Buffer headers = second_of_two(commands, all.header, storage);
@@ -81,6 +83,7 @@ TEST_CASE("shared structs have one layout on host and device", "[gpu][layout]") 
     BoundBuffers bound{};
     bound[BINDING_PATHS] = &paths;
     bound[BINDING_SUSPENDED] = &laid_aside;
+    bound[BINDING_PLACES] = &places;
     bound[BINDING_CONTROLS] = &controls;
     bound[BINDING_BVH] = &nodes;
     bound[BINDING_QUEUES] = &headers;

@@ -92,9 +92,9 @@ TEST_CASE("few collisions look at the light, and the picture is the same whateve
     const RenderResult result = render_here(scene, 3, job);
     CHECK(result.counts.shadow_rays > 0);
     CHECK(result.counts.shadow_rays < result.counts.real_collisions);
-    job.tuning.most_texel_bytes = 1; // storage buffers
+    job.plan.most_texel_bytes = 1; // storage buffers
     CHECK(same_bits(result.film, render_here(scene, 3, job).film));
-    job.tuning.budget = 3; // laid aside amid shadow rays
+    job.plan.budget = 3; // laid aside amid shadow rays
     CHECK(same_bits(result.film, render_here(scene, 3, job).film));
 }
 

@@ -50,7 +50,7 @@ public:
     std::vector<std::uint32_t> pop(std::uint32_t each = 1, bool put_back = false) {
         commands_.fill(output_, NO_PIXEL);
         shared::PassPush push = make_push(most_lanes);
-        push.stop = put_back;
+        push.places = put_back;
         push.budget = each;
         commands_.run([&](VkCommandBuffer c) {
             pop_.record_indirect(c, push, headers_,

@@ -1,0 +1,86 @@
+#include "plan.h"
+
+#include <algorithm>
+#include <bit>
+#include <fmt/format.h>
+
+#include "shared/constants.h"
+
+namespace vkvol {
+
+namespace {
+
+// llvmpipe leaves every loop of an invocation after so many iterations in all, the one that ends a loop included, and
+// without a word.
+constexpr std::uint32_t most_iterations = 65535;
+
+// Of all loops in a turn that are not unrolled, at most. Every step has up to four places for a sum over octaves, which
+// all lanes of a group pass under a mask: a flight's look-up, emission along it, and two of a shadow ray that marches
+// in several sets of samples.
+std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
+    constexpr std::uint32_t triangle = 2, node = 1 + (MESH_LEAF + 1) + MESH_LEAF * triangle;
+    std::uint32_t iterations = 2 + (steps + 1);
+    if (loops.mesh)
+        iterations += 2 + 1 + MESH_NODES_PER_TURN * node;
+    if (loops.octaves > 0)
+        iterations += 4 * steps * (loops.octaves + 1);
+    return iterations;
+}
+
+// Turns whose loops stay below the limit.
+std::uint32_t longest_budget(const LoopSizes& loops, std::uint32_t steps) {
+    return std::clamp(most_iterations / turn_iterations(loops, steps), 1u, 1024u);
+}
+
+// Samples of a pixel that one lane loops over: the sky's, and those added to the film.
+constexpr std::uint32_t longest_batch = most_iterations / 2;
+
+} // namespace
+
+Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish) {
+    const auto pick = [](auto wanted, auto usual) { return wanted != 0 ? wanted : usual; };
+    Plan plan = wish;
+    if (plan.schedule == Schedule::automatic)
+        plan.schedule = Schedule::fused;
+    const bool staged = plan.schedule == Schedule::staged;
+    // A software driver wants its state in cache and few lanes that each do much; a GPU wants to be full.
+    plan.slots = pick(wish.slots, device.is_cpu() ? (staged ? 32768u : 8192u) : 1u << 18);
+    plan.lanes = pick(wish.lanes, device.is_cpu() ? 512u : 1u << 17);
+    plan.steps = pick(wish.steps, 4u);
+    const std::uint32_t longest = longest_budget(loops, plan.steps);
+    plan.budget = std::min(pick(wish.budget, longest), longest);
+    plan.step_limit = pick(wish.step_limit, 1u << 26);
+    plan.most_batch = pick(wish.most_batch, longest_batch);
+    if (staged) // so that two pixels and more have a place
+        plan.most_batch = std::min(plan.most_batch, waiting_samples(plan) / 2);
+    plan.most_film_bytes =
+        pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
+    plan.most_grid_bytes = pick(wish.most_grid_bytes, std::uint64_t{device.limits().maxStorageBufferRange});
+    // GPUs read storage as fast as texels; software drivers gather only these.
+    const std::uint64_t texels = device.is_cpu() ? 4ull * device.limits().maxTexelBufferElements : 1u;
+    plan.most_texel_bytes = pick(wish.most_texel_bytes, texels);
+    return plan;
+}
+
+std::uint32_t waiting_samples(const Plan& plan) {
+    return plan.schedule == Schedule::staged ? 4 * std::max(plan.slots, 64u) : 0;
+}
+
+std::uint32_t queue_capacity(const Plan& plan) {
+    return std::bit_ceil(2 * plan.slots);
+}
+
+const char* name_of(Schedule schedule) {
+    return schedule == Schedule::staged ? "staged" : schedule == Schedule::fused ? "fused" : "auto";
+}
+
+std::string describe(const Plan& plan) {
+    std::string text = fmt::format("{}, {} {}, {} steps a look", name_of(plan.schedule), plan.slots,
+                                   plan.schedule == Schedule::staged ? "paths" : "pixels", plan.steps);
+    if (plan.majorant_cell > 0)
+        text +=
+            fmt::format(", majorant cells of {} voxels{}", plan.majorant_cell, plan.leaps ? ", empty ones leapt" : "");
+    return text;
+}
+
+} // namespace vkvol

@@ -1,0 +1,53 @@
+// How a render is carried out: sizes, and the order of its work. The picture's bits depend on none but the majorant
+// cells.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "device.h"
+
+namespace vkvol {
+
+// fused: one pass takes its lanes' pixels through all stages. staged: passes of their own over queues of paths, so that
+// a small picture fills a large device. See shaders/passes.
+enum class Schedule { automatic, fused, staged };
+
+// 0, automatic: what suits device and scene.
+struct Plan {
+    Schedule schedule = Schedule::automatic;
+    std::uint32_t slots = 0;            // fused: pixels in work; staged: paths
+    std::uint32_t lanes = 0;            // invocations that share a queue of paths
+    std::uint32_t budget = 0;           // turns after which a lane lays its path aside
+    std::uint32_t steps = 0;            // of tracking between two looks at what they led to
+    std::uint32_t step_limit = 0;       // steps after which a flight is cut, and counted
+    std::uint32_t most_batch = 0;       // samples per pixel
+    double submit_seconds = 0.08;       // aimed at; no submit should hold a device much longer
+    std::uint64_t most_film_bytes = 0;  // in one buffer; a larger film lies in several
+    std::uint64_t most_grid_bytes = 0;  // likewise, of all grids together
+    std::uint64_t most_texel_bytes = 0; // what has more is read as storage
+    int majorant_cell = 0;              // voxels along an edge of a majorant cell; 0 as well where there are none
+    bool leaps = false;                 // walks pass empty ones together
+};
+
+// What a turn of the tracking passes loops over.
+struct LoopSizes {
+    bool mesh = false;
+    std::uint32_t octaves = 0; // of noise; 0 without it
+};
+
+// Completes `wish`, of which what is chosen wins.
+Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish = {});
+
+// Samples that wait to be added to the film, in a staged render.
+std::uint32_t waiting_samples(const Plan& plan);
+
+// Places in each queue.
+std::uint32_t queue_capacity(const Plan& plan);
+
+const char* name_of(Schedule schedule);
+
+// "staged, 65536 paths, 4 steps a look, majorant cells of 8 voxels, empty ones leapt"
+std::string describe(const Plan& plan);
+
+} // namespace vkvol

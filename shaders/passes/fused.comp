@@ -1,0 +1,69 @@
+// The fused schedule. Render pixels: all samples of one, path after path, from vertex to vertex: free flights, shadow rays, scattering.
+//
+// One flat loop: a lane has a pixel and steps along its path's present segment, free flight or shadow ray alike, since
+// most are walks over majorant cells with tentative collisions. When a segment ends it begins the next, when the path
+// ends the next sample's; sums stay in registers. So lanes with short and long paths, looking or flying, share every
+// iteration. (The staged schedule has a pass for each: tools/results/README.md compares them.)
+//
+// Pixels change hands between bursts of turns only: every turn of every lane pays for what a turn might do, and a queue
+// is dear. When a lane's budget is spent its path is laid aside as it stands, amid a segment or not, and nothing
+// depends on where that was.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/pass.glsl"
+
+#include "lib/queue.glsl"
+#include "stages/accumulate.glsl"
+#include "stages/generate.glsl"
+#include "stages/turn.glsl"
+
+const uint BURST = 16u; // turns: a lane without a pixel waits for half as many
+
+// A path's turns, from its beginning to its sample in the sums.
+void turn_of_pixel(VolumeParams v, inout Lane lane, inout Rng rng, inout FilmPixel sums, inout Tally tally) {
+    if (lane.todo == TODO_BEGIN)
+        generate(lane, rng);
+    turn(v, lane, rng, tally);
+    if (lane.todo == TODO_END)
+        accumulate(sums, lane, tally);
+}
+
+void main() {
+    VolumeParams v = frame.volume;
+    Tally tally = NOTHING_SEEN;
+    uint slot = 0u;
+    Rng rng;
+    Lane lane;
+    FilmPixel sums;
+    lane.todo = TODO_TAKE;
+    // What was laid aside is taken up here, once, and not in the loop: there every iteration would pay for it.
+    if (pop_item(QUEUE_RESUME, slot)) {
+        take_up(slot, lane, rng, true);
+        sums = film[lane.path.pixel];
+    }
+    for (uint i = 0u; i < push.budget; i += BURST) {
+        if (lane.todo == TODO_TAKE) {
+            if (!pop_item(QUEUE_TRACK, slot))
+                break;
+            lane.path.place = paths[slot].place;
+            lane.path.sample_index = push.sample_begin;
+            sums = film[paths[slot].pixel];
+            lane.todo = TODO_BEGIN;
+        }
+        uint turns = min(BURST, push.budget - i);
+        tally.room += turns * uint(STEPS);
+        for (uint k = 0u; k < turns; ++k)
+            turn_of_pixel(v, lane, rng, sums, tally);
+        if (lane.todo == TODO_DONE) {
+            film[paths[slot].pixel] = sums;
+            push_item(QUEUE_GENERATE, slot);
+            lane.todo = TODO_TAKE;
+        }
+    }
+    if (lane.todo != TODO_TAKE) {
+        film[paths[slot].pixel] = sums;
+        lay_aside(slot, paths[slot].pixel, rng, lane, true);
+        push_item(QUEUE_RESUME, slot);
+    }
+    add_tally(tally);
+}

@@ -1,0 +1,35 @@
+// A turn: what befalls a lane between two looks at where it stands, of all stages that its pass has.
+#ifndef STAGE_TURN_GLSL
+#define STAGE_TURN_GLSL
+#include "stages/collide.glsl"
+#include "stages/depart.glsl"
+#include "stages/escape.glsl"
+#include "stages/shadow.glsl"
+#include "stages/track.glsl"
+
+// What the present segment met, if anything, and what follows.
+void arrive(VolumeParams v, uint event, Spectrum deposit, inout Lane lane, inout Rng rng, inout Tally tally) {
+    bool seeing = at_shadow_ray(lane.todo == TODO_SEE);
+    if (seeing && event != EVENT_MOVING)
+        end_shadow(v, event, lane);
+    else if (event == EVENT_CUT)
+        lane.todo = TODO_END;
+    else if (event == EVENT_LEFT)
+        escape(v, lane);
+    else if (event == EVENT_COLLIDED)
+        collide(v, deposit, lane, rng, tally);
+    else if (event == EVENT_TOUCHED)
+        touch(v, deposit, lane, rng);
+}
+
+void turn(VolumeParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
+    if (departs(lane.todo))
+        depart(v, lane, rng, tally);
+    Spectrum deposit = to_spectrum(vec3(0.0));
+    uint event = EVENT_MOVING;
+    if (is_under_way(lane.todo))
+        event = track(v, lane, rng, deposit, tally);
+    arrive(v, event, deposit, lane, rng, tally);
+}
+
+#endif
