@@ -122,6 +122,8 @@ class Run:
 
     def __init__(self, lab, name, arguments, env=None, signals=(), wrap=(), stdout=subprocess.PIPE, stderr=subprocess.PIPE):
         self.lab, self.name, self.arguments = lab, name, [str(a) for a in arguments]
+        if "--grid" in self.arguments and "--schedule" not in self.arguments:  # a render: faults meet both schedules
+            self.arguments += ["--schedule", ("fused", "staged")[lab.count % 2]]
         self.env, self.signals, self.wrap = env or {}, signals, list(wrap)
         self.stdout, self.stderr = stdout, stderr
         self.code, self.text, self.seconds, self.losses = None, "", 0.0, []

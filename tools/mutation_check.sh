@@ -33,7 +33,7 @@ last cell left out ~ shaders/majorants/majorant.glsl ~ inside != next; ~ inside 
 leap a cell too far ~ host/fields/empty_space.cpp ~ std::max<std::uint8_t>(nearest, 1) - 1; ~ nearest; ~ [majorant]
 leap beyond the point at its end ~ shaders/majorants/majorant.glsl ~ next = clamp(there, ~ next = clamp(there + side, ~ [majorant]
 film variance / n for / (n - 1) ~ host/render/film_bands.cpp ~ / (n - 1.0) ~ / n ~ [determinism]
-voxel length inverted ~ host/assets/loaded_volume.cpp ~ sigma_t / field->voxel_size() ~ sigma_t * field->voxel_size() ~ [invariance]
+voxel length inverted ~ host/assets/loaded_medium.cpp ~ sigma_t / field->voxel_size() ~ sigma_t * field->voxel_size() ~ [invariance]
 camera rows flipped ~ host/assets/camera_rays.cpp ~ dy = -2.0 * s ^ dx, s + picture.start_y ~ dy = 2.0 * s ^ dx, -s + picture.start_y ~ [image]
 nearest lookup truncates ~ shaders/field/density.glsl ~ floor(p + 0.5) ~ floor(p) ~ [image]
 stochastic corner reversed ~ shaders/field/density.glsl ~ lessThan(tap, p - base) ~ greaterThan(tap, p - base) ~ [density]

@@ -5,7 +5,8 @@
 
 #include "camera_view.h"
 #include "error.h"
-#include "loaded_volume.h"
+#include "loaded_medium.h"
+#include "supported.h"
 
 namespace vkvol {
 
@@ -47,21 +48,42 @@ Corners corners_of(const DensityField& field) {
     return corners;
 }
 
-std::optional<Corners> medium_corners(const Scene& scene, FieldCache& fields) {
-    const Volume* volume = find_volume(scene);
-    if (!volume)
-        return std::nullopt;
-    if (const auto* sphere = std::get_if<Sphere>(&volume->shape))
+namespace {
+
+std::optional<Corners> corners_of(const Volume& volume, FieldCache& fields) {
+    if (const auto* sphere = std::get_if<Sphere>(&volume.shape))
         return corners_between(sphere->center - sphere->radius, sphere->center + sphere->radius);
-    if (const auto* box = std::get_if<Box>(&volume->shape))
+    if (const auto* box = std::get_if<Box>(&volume.shape))
         return corners_between(box->center - 0.5 * box->size, box->center + 0.5 * box->size);
-    if (const auto* files = std::get_if<MeshFiles>(&volume->shape))
+    if (const auto* files = std::get_if<MeshFiles>(&volume.shape))
         return corners_of(load_mesh(*files));
-    const GridFile& file = std::get<GridFile>(volume->shape);
+    const GridFile& file = std::get<GridFile>(volume.shape);
     DensityField field = fields.take(file);
     const std::optional<Corners> corners = field.active_voxels > 0 ? std::optional(corners_of(field)) : std::nullopt;
     fields.keep(file, std::move(field));
     return corners;
+}
+
+// Of the box along the axes that holds both.
+Corners corners_around(const Corners& a, const Corners& b) {
+    glm::dvec3 low = a.front(), high = a.front();
+    for (const Corners& corners : {a, b})
+        for (const glm::dvec3& corner : corners) {
+            low = glm::min(low, corner);
+            high = glm::max(high, corner);
+        }
+    return corners_between(low, high);
+}
+
+} // namespace
+
+std::optional<Corners> medium_corners(const Scene& scene, FieldCache& fields) {
+    check_supported(scene);
+    std::optional<Corners> all;
+    for (const Volume& volume : scene.volumes)
+        if (const std::optional<Corners> corners = corners_of(volume, fields))
+            all = all ? corners_around(*all, *corners) : *corners;
+    return all;
 }
 
 glm::dvec3 middle_of(const Corners& corners) {

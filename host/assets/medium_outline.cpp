@@ -51,22 +51,19 @@ glm::dvec2 crossing_of_box(glm::dvec3 low, glm::dvec3 high, glm::dvec3 o, glm::d
 
 } // namespace
 
-MediumOutline make_outline(const Scene& scene, LoadedVolume& loaded, bool emits) {
+MediumOutline make_outline(const Scene& scene, const Volume& volume, LoadedMedium& loaded, bool emits) {
     MediumOutline outline;
-    const Volume* volume = find_volume(scene);
-    if (!volume)
-        return outline;
-    const bool is_grid = std::holds_alternative<GridFile>(volume->shape);
-    outline.sigma_t = largest(world_sigma_t(*volume, loaded.field ? &*loaded.field : nullptr));
+    const bool is_grid = std::holds_alternative<GridFile>(volume.shape);
+    outline.sigma_t = largest(world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr));
     outline.exists = outline.sigma_t > 0.0 && (loaded.field || !is_grid);
-    outline.densest = volume->noise ? noise_bound(*volume->noise) : 1.0;
+    outline.densest = volume.noise ? noise_bound(*volume.noise) : 1.0;
     outline.emits = emits;
     outline.has_temperature = loaded.temperature.has_value();
     outline.hottest = loaded.hottest;
-    if (const auto* sphere = std::get_if<Sphere>(&volume->shape)) {
+    if (const auto* sphere = std::get_if<Sphere>(&volume.shape)) {
         outline.is_ball = true;
         outline.to_world = placed(sphere->center, glm::dvec3(sphere->radius));
-    } else if (const auto* box = std::get_if<Box>(&volume->shape)) {
+    } else if (const auto* box = std::get_if<Box>(&volume.shape)) {
         outline.to_world = placed(box->center, box->size / 2.0);
     } else if (loaded.mesh) {
         outline.fills = false;

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "loaded_volume.h"
+#include "loaded_medium.h"
 
 namespace vkvol {
 
@@ -25,7 +25,7 @@ struct MediumOutline {
 };
 
 // Takes the majorants with it.
-MediumOutline make_outline(const Scene& scene, LoadedVolume& loaded, bool emits);
+MediumOutline make_outline(const Scene& scene, const Volume& volume, LoadedMedium& loaded, bool emits);
 
 struct WorldBox {
     glm::dvec3 low, high;

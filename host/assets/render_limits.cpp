@@ -28,7 +28,7 @@ struct Extent {
     double diagonal = 0.0;
 };
 
-Extent extent_of(const Volume& volume, const LoadedVolume& loaded) {
+Extent extent_of(const Volume& volume, const LoadedMedium& loaded) {
     if (const auto* sphere = std::get_if<Sphere>(&volume.shape))
         return {sphere->center, 2.0 * sphere->radius};
     if (const auto* box = std::get_if<Box>(&volume.shape))
@@ -43,8 +43,8 @@ Extent extent_of(const Volume& volume, const LoadedVolume& loaded) {
 
 // The majorant's optical depth along a ray through the whole medium at its mean, and through the densest cell. A sum
 // over all cells at the largest bound would refuse media for a single spike.
-double majorant_depth(const Scene& scene, const LoadedVolume& loaded, double diagonal, double sigma_t) {
-    const Volume& volume = scene.volumes.front();
+double majorant_depth(const Scene& scene, const Volume& volume, const LoadedMedium& loaded, double diagonal,
+                      double sigma_t) {
     if (!loaded.majorants) {
         const double bound = volume.noise ? noise_bound(*volume.noise) : 1.0;
         return sigma_t * bound * scene.settings.majorant_scale * diagonal;
@@ -71,7 +71,7 @@ void check_patience(const Scene& scene, const Method& method, double depth) {
                                      optical_step, depth / optical_step, depth / 1000.0));
 }
 
-void check_extinction(const Volume& volume, const LoadedVolume& loaded) {
+void check_extinction(const Volume& volume, const LoadedMedium& loaded) {
     const double sigma_t = largest(world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr));
     double densest = 1.0;
     if (loaded.majorants)
@@ -95,7 +95,7 @@ void check_distance(const Scene& scene, const Extent& extent) {
                                      extent.diagonal, glm::length(scene.camera.position - extent.center), farthest));
 }
 
-void check_glow(const Volume& volume, const LoadedVolume& loaded) {
+void check_glow(const Volume& volume, const LoadedMedium& loaded) {
     if (!loaded.temperature)
         return;
     double most = 0.0;
@@ -115,17 +115,16 @@ void check_glow(const Volume& volume, const LoadedVolume& loaded) {
 
 } // namespace
 
-void check_limits(const Scene& scene, const LoadedVolume& loaded, const Method& method) {
-    const Volume* volume = find_volume(scene);
-    const bool empty_grid = volume && std::holds_alternative<GridFile>(volume->shape) && !loaded.field;
-    if (!volume || empty_grid)
+void check_limits(const Scene& scene, const Volume& volume, const LoadedMedium& loaded, const Method& method) {
+    const bool empty_grid = std::holds_alternative<GridFile>(volume.shape) && !loaded.field;
+    if (empty_grid)
         return;
-    check_extinction(*volume, loaded);
-    const Extent extent = extent_of(*volume, loaded);
+    check_extinction(volume, loaded);
+    const Extent extent = extent_of(volume, loaded);
     check_distance(scene, extent);
-    const double sigma_t = largest(world_sigma_t(*volume, loaded.field ? &*loaded.field : nullptr));
-    check_patience(scene, method, majorant_depth(scene, loaded, extent.diagonal, sigma_t));
-    check_glow(*volume, loaded);
+    const double sigma_t = largest(world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr));
+    check_patience(scene, method, majorant_depth(scene, volume, loaded, extent.diagonal, sigma_t));
+    check_glow(volume, loaded);
 }
 
 } // namespace vkvol

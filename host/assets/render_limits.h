@@ -1,11 +1,11 @@
 // What can be read but not rendered: media that no patience suffices for, and figures beyond single precision.
 #pragma once
 
-#include "loaded_volume.h"
+#include "loaded_medium.h"
 
 namespace vkvol {
 
 // Throws InputError with the figure and the remedy.
-void check_limits(const Scene& scene, const LoadedVolume& loaded, const Method& method);
+void check_limits(const Scene& scene, const Volume& volume, const LoadedMedium& loaded, const Method& method);
 
 } // namespace vkvol

@@ -7,7 +7,7 @@
 #include "bench_estimators.h"
 #include "bench_reference.h"
 #include "bench_statistics.h"
-#include "renderer.h"
+#include "session.h"
 
 namespace vkvol {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench_estimators.h"
-#include "renderer.h"
+#include "session.h"
 
 namespace vkvol {
 

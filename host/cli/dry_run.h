@@ -2,7 +2,7 @@
 #pragma once
 
 #include "options.h"
-#include "renderer.h"
+#include "session.h"
 
 namespace vkvol {
 

@@ -17,11 +17,11 @@
 #include "render_notes.h"
 #include "render_outputs.h"
 #include "render_scene.h"
-#include "render_session.h"
 #include "render_summary.h"
-#include "renderer.h"
 #include "sequence.h"
+#include "session.h"
 #include "trace.h"
+#include "workshop.h"
 
 namespace vkvol {
 
@@ -49,10 +49,10 @@ void check_files(const RenderOptions& options, const RenderScene& loaded, const 
     checkpoint.check();
 }
 
-RenderResult render_with_progress(const RenderOptions& options, const Scene& scene, RenderSession& session,
+RenderResult render_with_progress(const RenderOptions& options, const Scene& scene, Workshop& workshop,
                                   CheckpointFile& file) {
     RenderJob job;
-    job.session = &session;
+    job.workshop = &workshop;
     job.dry_run = options.dry_run;
     const std::optional<Checkpoint>& from = file.find();
     job.resume = from ? &*from : nullptr;
@@ -74,7 +74,7 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
         progress.update(static_cast<std::uint32_t>(samples), noise);
     };
     try {
-        return render(session.device(options.device), scene, job);
+        return render(workshop.device(options.device), scene, job);
     } catch (const RenderError& error) {
         throw RenderError(error.what() + file.advice());
     }
@@ -100,20 +100,20 @@ void check_result(const Device& device, const RenderResult& result) {
 }
 
 // Once, also where all frames of a sequence have the same.
-void tell_why(const RenderOptions& options, RenderSession& session, const std::optional<Explanation>& explanation) {
-    if (explanation && !session.new_warnings({explanation->text}).empty() && !options.quiet)
+void tell_why(const RenderOptions& options, Workshop& workshop, const std::optional<Explanation>& explanation) {
+    if (explanation && !workshop.new_warnings({explanation->text}).empty() && !options.quiet)
         print_explanation(*explanation);
 }
 
-int render_scene(const RenderOptions& options, const Scene& scene, RenderSession& session, CheckpointFile& checkpoint,
+int render_scene(const RenderOptions& options, const Scene& scene, Workshop& workshop, CheckpointFile& checkpoint,
                  RenderOutputs& outputs) {
     const std::optional<Explanation> foreseen = options.trace ? std::nullopt : foresee(scene);
-    tell_why(options, session, foreseen);
-    const Device& device = session.device(options.device);
+    tell_why(options, workshop, foreseen);
+    const Device& device = workshop.device(options.device);
     outputs.set_device(device.info());
-    const RenderResult result = render_with_progress(options, scene, session, checkpoint);
+    const RenderResult result = render_with_progress(options, scene, workshop, checkpoint);
     if (!options.quiet)
-        print_warnings(session.new_warnings(result.warnings));
+        print_warnings(workshop.new_warnings(result.warnings));
     check_result(device, result);
     if (options.dry_run) {
         if (!options.quiet)
@@ -135,7 +135,7 @@ int render_scene(const RenderOptions& options, const Scene& scene, RenderSession
     if (result.samples == scene.settings.spp) // it is of no more use
         checkpoint.remove();
     if (!foreseen)
-        tell_why(options, session, shown.explanation);
+        tell_why(options, workshop, shown.explanation);
     if (!options.quiet)
         print_caps(options, result);
     if (options.trace)
@@ -149,24 +149,24 @@ int render_scene(const RenderOptions& options, const Scene& scene, RenderSession
 
 } // namespace
 
-void check_picture(const RenderOptions& options, RenderSession& session) {
-    const RenderScene loaded = load_render_scene(options, session.fields());
+void check_picture(const RenderOptions& options, Workshop& workshop) {
+    const RenderScene loaded = load_render_scene(options, workshop.fields());
     resolve_crop(options.crop, loaded.scene.picture);
     check_files(options, loaded, CheckpointFile(options));
 }
 
-int render_picture(const RenderOptions& options, RenderSession& session) {
-    const RenderScene loaded = load_render_scene(options, session.fields());
+int render_picture(const RenderOptions& options, Workshop& workshop) {
+    const RenderScene loaded = load_render_scene(options, workshop.fields());
     const Scene& scene = loaded.scene;
     print_reading(options);
     if (!options.quiet)
-        print_warnings(session.new_warnings(scene.warnings));
+        print_warnings(workshop.new_warnings(scene.warnings));
     CheckpointFile checkpoint(options);
     check_files(options, loaded, checkpoint);
     keep_made_scene(options, loaded);
     RenderOutputs outputs(options, scene);
     try {
-        return render_scene(options, scene, session, checkpoint, outputs);
+        return render_scene(options, scene, workshop, checkpoint, outputs);
     } catch (const std::bad_alloc&) {
         outputs.fail("out of memory");
         throw;
@@ -180,8 +180,8 @@ int run_render(const RenderOptions& options) {
     install_interrupt_handler();
     if (!options.frames.empty())
         return run_sequence(options);
-    RenderSession session(false);
-    const int code = render_picture(options, session);
+    Workshop workshop(false);
+    const int code = render_picture(options, workshop);
     if (options.dry_run && !options.quiet)
         tell(stdout, "all is well: nothing is rendered, nothing written\n");
     return code;

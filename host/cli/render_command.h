@@ -5,16 +5,16 @@
 
 namespace vkvol {
 
-class RenderSession;
+class Workshop;
 
 // Returns the exit code; throws InputError, DeviceError or RenderError.
 int run_render(const RenderOptions& options);
 
 // The same of one picture, or one frame of a sequence.
-int render_picture(const RenderOptions& options, RenderSession& session);
+int render_picture(const RenderOptions& options, Workshop& workshop);
 
 // What can be told without a device: the command line, the scene, and whether the outputs can be written. Throws
 // InputError.
-void check_picture(const RenderOptions& options, RenderSession& session);
+void check_picture(const RenderOptions& options, Workshop& workshop);
 
 } // namespace vkvol

@@ -11,7 +11,7 @@
 #include "interrupt.h"
 #include "messages.h"
 #include "render_command.h"
-#include "render_session.h"
+#include "workshop.h"
 
 namespace vkvol {
 
@@ -86,21 +86,21 @@ int run_sequence(const RenderOptions& options) {
         throw InputError(
             fmt::format("{}: a pipe is read once, but -f reads the scene for each frame; write it to a file",
                         options.scene.string()));
-    RenderSession session(true);
+    Workshop workshop(true);
     std::vector<int> done;
     FrameFiles files;
     for (const int frame : options.frames)
         of_frame(frame, done, [&] {
             const RenderOptions one = frame_options(options, frame);
             files.add(frame, one);
-            check_picture(one, session);
+            check_picture(one, workshop);
         });
     int code = exit_done;
     for (std::size_t i = 0; i < options.frames.size() && code != exit_interrupted && code != exit_render_failed; ++i) {
         const int frame = options.frames[i];
         announce(options, i);
         const int result = interrupted() ? int(exit_interrupted) : of_frame(frame, done, [&] {
-            return render_picture(frame_options(options, frame), session);
+            return render_picture(frame_options(options, frame), workshop);
         });
         code = result == exit_done ? code : result; // caps of any frame
         if (result == exit_done || result == exit_caps_hit)

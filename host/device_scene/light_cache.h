@@ -5,7 +5,7 @@
 
 #include "commands.h"
 #include "compute_pass.h"
-#include "loaded_volume.h"
+#include "loaded_medium.h"
 
 namespace vkvol {
 

@@ -35,10 +35,16 @@ void upload_range(Commands& commands, const Buffer& buffer, const Parts& parts, 
 
 } // namespace
 
-SceneBuffers::SceneBuffers(const Device& device, Commands& commands, const LoadedVolume& volume,
-                           std::uint64_t most_grid_bytes, std::uint64_t most_texel_bytes)
+SceneBuffers::SceneBuffers(const Device& device, Commands& commands, Media media, std::uint64_t most_grid_bytes,
+                           std::uint64_t most_texel_bytes)
     : frame_(device, "frame parameters", sizeof(shared::FrameParams), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
              BufferPlace::host) {
+    for (const LoadedMedium& medium : media) // there is one at most, see supported.h
+        upload(device, commands, medium, most_grid_bytes, most_texel_bytes);
+}
+
+void SceneBuffers::upload(const Device& device, Commands& commands, const LoadedMedium& medium,
+                          std::uint64_t most_grid_bytes, std::uint64_t most_texel_bytes) {
     const auto make = [&](std::optional<Buffer>& buffer, const char* name, std::span<const std::byte> first,
                           std::span<const std::byte> second = {}) {
         if (first.empty())
@@ -46,19 +52,19 @@ SceneBuffers::SceneBuffers(const Device& device, Commands& commands, const Loade
         buffer.emplace(device, name, first.size() + second.size(), storage_and_texels, BufferPlace::device);
         upload_range(commands, *buffer, std::array{first, second}, 0, buffer->bytes());
     };
-    if (volume.bvh) {
-        make(triangles_, "triangles", bytes_of(volume.bvh->triangles));
-        make(bvh_, "bounding volume hierarchy", bytes_of(volume.bvh->nodes));
+    if (medium.bvh) {
+        make(triangles_, "triangles", bytes_of(medium.bvh->triangles));
+        make(bvh_, "bounding volume hierarchy", bytes_of(medium.bvh->nodes));
     }
-    if (!volume.field)
+    if (!medium.field)
         return;
     const DensityField nothing;
-    const DensityField& temperature = volume.temperature ? *volume.temperature : nothing;
-    make_grids(device, commands, {volume.field->bytes.span(), temperature.bytes.span()}, most_grid_bytes);
-    make(leaf_table_, "leaf table", bytes_of(volume.field->leaf_table), bytes_of(temperature.leaf_table));
-    make(majorants_, "majorant grid", bytes_of(walked_cells(*volume.majorants)));
-    make(controls_, "control grid", bytes_of(volume.controls));
-    make(blackbody_, "black-body table", bytes_of(volume.blackbody));
+    const DensityField& temperature = medium.temperature ? *medium.temperature : nothing;
+    make_grids(device, commands, {medium.field->bytes.span(), temperature.bytes.span()}, most_grid_bytes);
+    make(leaf_table_, "leaf table", bytes_of(medium.field->leaf_table), bytes_of(temperature.leaf_table));
+    make(majorants_, "majorant grid", bytes_of(walked_cells(*medium.majorants)));
+    make(controls_, "control grid", bytes_of(medium.controls));
+    make(blackbody_, "black-body table", bytes_of(medium.blackbody));
     texels_ = grids_ && std::max({grids_->bytes(), leaf_table_->bytes(), majorants_->bytes()}) <= most_texel_bytes;
 }
 

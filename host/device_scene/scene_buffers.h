@@ -6,17 +6,17 @@
 
 #include "bindings.h"
 #include "commands.h"
-#include "loaded_volume.h"
+#include "loaded_medium.h"
 #include "shared/frame.h"
 
 namespace vkvol {
 
 class SceneBuffers {
 public:
-    // Uploads what `volume` holds. Grids of more than `most_grid_bytes` together are laid into windows; nothing that
+    // Uploads what `media` hold. Grids of more than `most_grid_bytes` together are laid into windows; nothing that
     // has more than `most_texel_bytes` is read as texels. Throws InputError if grids are too large for the device,
     // naming the limit and the remedy.
-    SceneBuffers(const Device& device, Commands& commands, const LoadedVolume& volume, std::uint64_t most_grid_bytes,
+    SceneBuffers(const Device& device, Commands& commands, Media media, std::uint64_t most_grid_bytes,
                  std::uint64_t most_texel_bytes);
 
     // The buffers of `frame` that kernels reach by address are put into it.
@@ -34,6 +34,8 @@ public:
 private:
     using Parts = std::array<std::span<const std::byte>, 2>; // one after another
 
+    void upload(const Device& device, Commands& commands, const LoadedMedium& medium, std::uint64_t most_grid_bytes,
+                std::uint64_t most_texel_bytes);
     void make_grids(const Device& device, Commands& commands, const Parts& grids, std::uint64_t most_bytes);
     void make_windows(const Device& device, Commands& commands, const Parts& grids, std::uint64_t bytes);
 

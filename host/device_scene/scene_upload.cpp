@@ -15,25 +15,24 @@
 namespace vkvol {
 
 static_assert(std::is_standard_layout_v<shared::FrameParams>);
-static_assert(sizeof(shared::CameraParams) == 4 * 12 + 4);
+static_assert(sizeof(shared::SensorParams) == 4 * 12 + 4);
 static_assert(sizeof(shared::GridParams) == 4 * 12 + 2 * 4);
 static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 5 * 4);
-static_assert(sizeof(shared::VolumeParams) == 3 * 16 + 3 * 12 + sizeof(shared::GridParams) + 12 + 5 * 4 + 2 * 12 + 4 +
+static_assert(sizeof(shared::MediumParams) == 3 * 16 + 3 * 12 + sizeof(shared::GridParams) + 12 + 5 * 4 + 2 * 12 + 4 +
                                                   sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) + 4);
 static_assert(sizeof(shared::LatticeParams) == 3 * 12);
 static_assert(sizeof(shared::PassPush) <= 128, "the least push constant space that Vulkan promises");
 
 namespace {
 
-int shape_kind(const Scene& scene, const LoadedVolume& loaded) {
-    const Volume* volume = find_volume(scene);
-    if (!volume || (volume->sigma_a + volume->sigma_s) * volume->density_scale == Rgb(0.0))
+int shape_kind(const Volume& volume, const LoadedMedium& loaded) {
+    if ((volume.sigma_a + volume.sigma_s) * volume.density_scale == Rgb(0.0))
         return SHAPE_NONE;
-    if (std::holds_alternative<Sphere>(volume->shape))
+    if (std::holds_alternative<Sphere>(volume.shape))
         return SHAPE_SPHERE;
-    if (std::holds_alternative<MeshFiles>(volume->shape))
+    if (std::holds_alternative<MeshFiles>(volume.shape))
         return SHAPE_MESH;
-    return loaded.field || std::holds_alternative<Box>(volume->shape) ? SHAPE_BOX : SHAPE_NONE;
+    return loaded.field || std::holds_alternative<Box>(volume.shape) ? SHAPE_BOX : SHAPE_NONE;
 }
 
 // Where the device counts a grid's voxels from. Some tools give grids far from the world's origin indices in the
@@ -51,7 +50,7 @@ glm::dmat4 index_to_world(const DensityField& field) {
 }
 
 // Medium space -> world: a ball, a cube, the grid's own index space, or a mesh about its middle.
-glm::dmat4 medium_to_world(const Volume& volume, const LoadedVolume& loaded) {
+glm::dmat4 medium_to_world(const Volume& volume, const LoadedMedium& loaded) {
     const auto placed = [](glm::dvec3 center, glm::dvec3 half) {
         return glm::scale(glm::translate(glm::dmat4(1.0), center), half);
     };
@@ -69,7 +68,7 @@ struct Bounds {
 };
 
 // Medium space, where the density can differ from 0: one voxel around the active ones, for interpolation.
-Bounds medium_bounds(const LoadedVolume& loaded) {
+Bounds medium_bounds(const LoadedMedium& loaded) {
     if (!loaded.field)
         return {};
     const glm::ivec3 base = index_base(*loaded.field);
@@ -97,11 +96,11 @@ void fill_rows(glm::vec4 (&rows)[3], const glm::dmat4& space_to_world, glm::dvec
 }
 
 // Radiance per absorption event: the medium's own, or its model's diffuse colour.
-Rgb constant_emission(const Volume& volume, const LoadedVolume& loaded, const Method& method) {
+Rgb constant_emission(const Volume& volume, const LoadedMedium& loaded, const Method& method) {
     return method.material_colour && loaded.mesh && loaded.mesh->diffuse ? *loaded.mesh->diffuse : volume.Le;
 }
 
-shared::EmissionParams make_emission(const Volume& volume, const LoadedVolume& loaded, const Method& method,
+shared::EmissionParams make_emission(const Volume& volume, const LoadedMedium& loaded, const Method& method,
                                      glm::dvec3 origin) {
     const Rgb albedo = albedo_of(volume);
     shared::EmissionParams params{};
@@ -121,7 +120,7 @@ shared::EmissionParams make_emission(const Volume& volume, const LoadedVolume& l
 }
 
 // The density where there are no majorant cells: bounds of it, and a control density with what differs from it.
-void fill_density(const Volume& volume, double majorant_scale, bool decomposes, shared::VolumeParams& params) {
+void fill_density(const Volume& volume, double majorant_scale, bool decomposes, shared::MediumParams& params) {
     const double bound = volume.noise ? noise_bound(*volume.noise) : 1.0;
     const double control = volume.noise ? (decomposes ? 0.0 : 0.5 * bound) : 1.0; // decomposition: a lower bound
     params.majorant = static_cast<float>(bound * majorant_scale);
@@ -131,10 +130,9 @@ void fill_density(const Volume& volume, double majorant_scale, bool decomposes, 
 }
 
 // `origin`: of render space, in world coordinates.
-shared::VolumeParams make_volume(const Scene& scene, const LoadedVolume& loaded, const Method& method,
-                                 glm::dvec3 origin) {
-    const Volume& volume = scene.volumes.front();
-    shared::VolumeParams params{};
+shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const LoadedMedium& loaded,
+                                 const Method& method, glm::dvec3 origin) {
+    shared::MediumParams params{};
     const glm::dmat4 to_world = medium_to_world(volume, loaded);
     fill_rows(params.to_medium, to_world, origin);
     params.extent = glm::vec3(to_world[0][0], to_world[1][1], to_world[2][2]);
@@ -159,14 +157,19 @@ shared::VolumeParams make_volume(const Scene& scene, const LoadedVolume& loaded,
     return params;
 }
 
-// Of the medium, in world units.
-double diagonal_of(const Scene& scene, const LoadedVolume& loaded) {
-    if (scene.volumes.empty())
-        return 0.0;
+// Of the medium's box, in world units.
+double diagonal_of(const Volume& volume, const LoadedMedium& loaded) {
     if (loaded.mesh)
         return 2.0 * glm::length(box_center(*loaded.mesh) - lowest_corner(*loaded.mesh));
     const Bounds bounds = medium_bounds(loaded);
-    return glm::length(glm::dmat3(medium_to_world(scene.volumes.front(), loaded)) * (bounds.high - bounds.low));
+    return glm::length(glm::dmat3(medium_to_world(volume, loaded)) * (bounds.high - bounds.low));
+}
+
+double longest_diagonal(const Scene& scene, Media media) {
+    double longest = 0.0;
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+        longest = std::max(longest, diagonal_of(scene.volumes[i], media[i]));
+    return longest;
 }
 
 // How far before the eye rays begin. In single precision a point at distance D is known to D * 6e-8, and so is where a
@@ -178,10 +181,10 @@ double ray_start(const Scene& scene, glm::dvec3 forward, glm::dvec3 center, doub
 }
 
 // `origin`: of render space, the middle of the medium. `radius`: of a ball about it that holds the medium.
-shared::CameraParams make_camera(const Scene& scene, glm::dvec3 origin, double radius) {
+shared::SensorParams make_pinhole(const Scene& scene, glm::dvec3 origin, double radius) {
     const CameraRays rays = camera_rays(scene.camera, scene.picture);
     const double start = ray_start(scene, rays.forward, origin, radius);
-    shared::CameraParams params{};
+    shared::SensorParams params{};
     params.position = rays.position - origin + start * rays.corner;
     params.start = static_cast<float>(start);
     params.corner = rays.corner;
@@ -190,7 +193,7 @@ shared::CameraParams make_camera(const Scene& scene, glm::dvec3 origin, double r
     return params;
 }
 
-int emission_kind(const Volume& volume, const LoadedVolume& loaded, const Method& method) {
+int emission_kind(const Volume& volume, const LoadedMedium& loaded, const Method& method) {
     if (loaded.temperature)
         return volume.temperature.model == TemperatureEmission::Model::color ? EMISSION_COLOR : EMISSION_BLACKBODY;
     return volume.sigma_a * constant_emission(volume, loaded, method) != Rgb(0.0) ? EMISSION_CONSTANT : EMISSION_NONE;
@@ -207,34 +210,43 @@ Rgb albedo_of(const Volume& volume) {
 }
 
 bool is_chromatic(const Scene& scene) {
-    if (scene.volumes.empty())
-        return false;
-    const Rgb albedo = albedo_of(scene.volumes.front());
-    const double most = largest(albedo);
-    return has_chromatic_extinction(scene) || glm::any(glm::greaterThan(Rgb(most) - albedo, Rgb(1e-9 * most)));
+    return has_chromatic_extinction(scene) || any_medium(scene, [](const Volume& volume) {
+               const Rgb albedo = albedo_of(volume);
+               const double most = largest(albedo);
+               return glm::any(glm::greaterThan(Rgb(most) - albedo, Rgb(1e-9 * most)));
+           });
 }
 
-Specialization specialize(const Scene& scene, const LoadedVolume& loaded, const Method& method) {
-    if (scene.lights.size() > 1)
-        throw InputError("a scene with several lights is not rendered by this version; keep one");
-    Specialization constants{};
-    constants[SPEC_SHAPE] = shape_kind(scene, loaded);
-    constants[SPEC_FIELD] = density_kind(scene);
+namespace {
+
+// What the kernels know of a medium; each of the scene's adds to it, and so far there is one.
+void specialize_medium(const Volume& volume, const LoadedMedium& loaded, const Method& method,
+                       Specialization& constants) {
+    constants[SPEC_SHAPE] = shape_kind(volume, loaded);
     constants[SPEC_GRID_TYPE] = loaded.field ? loaded.field->type : GRID_FLOAT;
+    constants[SPEC_TEMPERATURE_TYPE] = loaded.temperature ? loaded.temperature->type : GRID_FLOAT;
+    if (constants[SPEC_SHAPE] != SHAPE_NONE)
+        constants[SPEC_EMISSION] = emission_kind(volume, loaded, method);
+    constants[SPEC_LEAPS] = loaded.majorants && loaded.majorants->leaps ? 1 : 0;
+}
+
+} // namespace
+
+Specialization specialize(const Scene& scene, Media media, const Method& method) {
+    Specialization constants{}; // no medium, no emission
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+        specialize_medium(scene.volumes[i], media[i], method, constants);
+    constants[SPEC_FIELD] = density_kind(scene);
     constants[SPEC_FILTER] = method.filter == Filter::nearest     ? FILTER_NEAREST
                              : method.filter == Filter::trilinear ? FILTER_TRILINEAR
                                                                   : FILTER_STOCHASTIC;
     constants[SPEC_SCATTERING] = method.scattering;
     constants[SPEC_NEE] = method.nee;
-    constants[SPEC_EMISSION] =
-        constants[SPEC_SHAPE] != SHAPE_NONE ? emission_kind(scene.volumes.front(), loaded, method) : EMISSION_NONE;
     constants[SPEC_EMISSION_AT] = method.emission_at;
-    constants[SPEC_TEMPERATURE_TYPE] = loaded.temperature ? loaded.temperature->type : GRID_FLOAT;
     constants[SPEC_FREE_FLIGHT] = method.free_flight;
     // Without shadow rays the choice is to leave no trace in the kernel.
     constants[SPEC_TRANSMITTANCE] = method.nee != NEE_NONE ? method.transmittance : TRANSMITTANCE_ANALYTIC;
     constants[SPEC_STEPS] = 1;
-    constants[SPEC_LEAPS] = loaded.majorants && loaded.majorants->leaps ? 1 : 0;
     return constants;
 }
 
@@ -249,15 +261,24 @@ void check_step(const char* name, double step, double diagonal, double unit) {
                                      name, step / unit, diagonal / unit / 1000.0));
 }
 
-shared::MarchParams make_march(const Scene& scene, const LoadedVolume& loaded, const Method& method) {
+// World units: of the finest of the scene's grids; 0 without one.
+double least_voxel(Media media) {
+    double least = 0.0;
+    for (const LoadedMedium& medium : media)
+        if (medium.field && (least == 0.0 || medium.field->voxel_size() < least))
+            least = medium.field->voxel_size();
+    return least;
+}
+
+shared::MarchParams make_march(const Scene& scene, Media media, const Method& method) {
     const March& march = scene.settings.march;
-    const double voxel = loaded.field ? loaded.field->voxel_size() : 1.0;
-    const double unit = march.unit == CoefficientUnit::voxel ? voxel : 1.0;
-    const double step = march.step > 0.0 ? march.step * unit : loaded.field ? 0.5 * voxel : 0.2;
+    const double voxel = least_voxel(media);
+    const double unit = march.unit == CoefficientUnit::voxel && voxel > 0.0 ? voxel : 1.0;
+    const double step = march.step > 0.0 ? march.step * unit : voxel > 0.0 ? 0.5 * voxel : 0.2;
     // A series that ends unbiased does best from a coarse beginning.
     const double usual_shadow_step = method.transmittance == TRANSMITTANCE_TELESCOPING ? 16.0 * step : step;
     const double shadow_step = march.shadow_step > 0.0 ? march.shadow_step * unit : usual_shadow_step;
-    const double diagonal = diagonal_of(scene, loaded);
+    const double diagonal = longest_diagonal(scene, media);
     if (method.free_flight == FREE_FLIGHT_MARCH)
         check_step("step", step, diagonal, unit);
     if (method.shadow_rays_have(TRAIT_MARCH))
@@ -270,9 +291,9 @@ shared::MarchParams make_march(const Scene& scene, const LoadedVolume& loaded, c
     return params;
 }
 
-shared::LatticeParams make_lattice_of(const Scene& scene, const LoadedVolume& loaded) {
+shared::LatticeParams make_lattice_of(const Volume& volume, const LoadedMedium& loaded) {
     const Bounds bounds = medium_bounds(loaded);
-    const glm::dmat3 to_world(medium_to_world(scene.volumes.front(), loaded));
+    const glm::dmat3 to_world(medium_to_world(volume, loaded));
     glm::dvec3 edges;
     for (int axis = 0; axis < 3; ++axis)
         edges[axis] = glm::length(to_world[axis]) * (bounds.high[axis] - bounds.low[axis]);
@@ -280,29 +301,33 @@ shared::LatticeParams make_lattice_of(const Scene& scene, const LoadedVolume& lo
     return make_lattice(bounds.low, bounds.high, edges, voxels);
 }
 
-} // namespace
-
-glm::dvec3 render_origin(const Scene& scene, const LoadedVolume& loaded) {
-    const Volume* volume = find_volume(scene);
-    if (!volume)
-        return scene.camera.position;
+glm::dvec3 middle_of(const Volume& volume, const LoadedMedium& loaded) {
     const Bounds bounds = medium_bounds(loaded);
-    return glm::dvec3(medium_to_world(*volume, loaded) * glm::dvec4((bounds.low + bounds.high) / 2.0, 1.0));
+    return glm::dvec3(medium_to_world(volume, loaded) * glm::dvec4((bounds.low + bounds.high) / 2.0, 1.0));
 }
 
-shared::FrameParams make_frame(const Scene& scene, const LoadedVolume& loaded, const Method& method, Crop crop,
-                               std::uint32_t seed) {
+} // namespace
+
+glm::dvec3 render_origin(const Scene& scene, Media media) {
+    glm::dvec3 sum(0.0);
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+        sum += middle_of(scene.volumes[i], media[i]);
+    return scene.volumes.empty() ? scene.camera.position : sum / static_cast<double>(scene.volumes.size());
+}
+
+shared::FrameParams make_frame(const Scene& scene, Media media, const Method& method, Crop crop, std::uint32_t seed) {
     shared::FrameParams frame{};
-    const glm::dvec3 origin = render_origin(scene, loaded);
-    if (find_volume(scene))
-        frame.volume = make_volume(scene, loaded, method, origin);
-    frame.camera = make_camera(scene, origin, 0.5 * diagonal_of(scene, loaded));
-    if (!scene.lights.empty())
-        frame.light = {scene.lights.front().direction, scene.lights.front().irradiance};
-    frame.march = make_march(scene, loaded, method);
-    if (method.nee == NEE_CACHED)
-        frame.lattice = make_lattice_of(scene, loaded);
-    frame.background = scene.background;
+    const glm::dvec3 origin = render_origin(scene, media);
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+        frame.media[i] = make_medium(scene, scene.volumes[i], media[i], method, origin);
+        if (method.nee == NEE_CACHED)
+            frame.lattice = make_lattice_of(scene.volumes[i], media[i]);
+    }
+    frame.sensors[0] = make_pinhole(scene, origin, 0.5 * longest_diagonal(scene, media));
+    frame.lights[LIGHT_BACKGROUND].radiance = scene.background;
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        frame.lights[LIGHT_SUN + i] = {scene.lights[i].direction, scene.lights[i].irradiance};
+    frame.march = make_march(scene, media, method);
     frame.roulette_threshold = static_cast<float>(scene.settings.roulette_threshold);
     // Beyond a million scatterings a path of any albedo that scenes have is worth nothing; the bound is counted.
     frame.max_depth = scene.settings.max_depth.value_or(1'000'000);

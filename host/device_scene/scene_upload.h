@@ -3,7 +3,7 @@
 
 #include "compute_pass.h"
 #include "crop.h"
-#include "loaded_volume.h"
+#include "loaded_medium.h"
 #include "shared/frame.h"
 
 namespace vkvol {
@@ -15,13 +15,12 @@ Rgb albedo_of(const Volume& volume);
 bool is_chromatic(const Scene& scene);
 
 // Value of every specialization constant. What the scene lacks is switched off here and compiles to nothing.
-Specialization specialize(const Scene& scene, const LoadedVolume& volume, const Method& method);
+Specialization specialize(const Scene& scene, Media media, const Method& method);
 
-// World position of render space's origin: amid the medium, or the camera where there is none.
-glm::dvec3 render_origin(const Scene& scene, const LoadedVolume& volume);
+// World position of render space's origin: amid the media, or the camera where there is none.
+glm::dvec3 render_origin(const Scene& scene, Media media);
 
 // All but the fields that change during a render (crop_y) or belong to the queues.
-shared::FrameParams make_frame(const Scene& scene, const LoadedVolume& volume, const Method& method, Crop crop,
-                               std::uint32_t seed);
+shared::FrameParams make_frame(const Scene& scene, Media media, const Method& method, Crop crop, std::uint32_t seed);
 
 } // namespace vkvol

@@ -95,8 +95,8 @@ void Resolution::choose_flight() {
 void Resolution::choose_nee() {
     int& nee = method_.nee;
     nee = choices_.nee.value_or(preset_.nee);
-    const bool scatters =
-        method_.scattering != SCATTERING_NONE && !scene_.volumes.empty() && scene_.volumes.front().sigma_s != Rgb(0.0);
+    const bool scatters = method_.scattering != SCATTERING_NONE &&
+                          any_medium(scene_, [](const Volume& volume) { return volume.sigma_s != Rgb(0.0); });
     if (scene_.lights.empty() || !scatters) {
         if (choices_.nee.value_or(NEE_NONE) != NEE_NONE)
             warn(scene_.lights.empty() ? "nee is without effect: the scene has no light"
@@ -208,31 +208,34 @@ bool is_through(const Method& method) {
     return method.scattering != SCATTERING_MULTIPLE && method.flights_have(TRAIT_MARCH);
 }
 
+// That of the medium whose density varies most.
 int density_kind(const Scene& scene) {
-    if (scene.volumes.empty())
-        return FIELD_CONSTANT;
-    const Volume& volume = scene.volumes.front();
-    return std::holds_alternative<GridFile>(volume.shape) ? FIELD_GRID : volume.noise ? FIELD_NOISE : FIELD_CONSTANT;
+    int kind = FIELD_CONSTANT;
+    for (const Volume& volume : scene.volumes) {
+        const bool is_grid = std::holds_alternative<GridFile>(volume.shape);
+        kind = std::max(kind, is_grid ? FIELD_GRID : volume.noise ? FIELD_NOISE : FIELD_CONSTANT);
+    }
+    return kind;
 }
 
 bool can_cache_light(const Scene& scene) {
-    return density_kind(scene) != FIELD_CONSTANT && !std::holds_alternative<MeshFiles>(scene.volumes.front().shape);
+    const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
+    return density_kind(scene) != FIELD_CONSTANT && !any_medium(scene, is_mesh);
 }
 
 bool has_chromatic_extinction(const Scene& scene) {
-    if (scene.volumes.empty())
-        return false;
-    const Rgb sigma_t = scene.volumes.front().sigma_a + scene.volumes.front().sigma_s;
-    const double largest = std::max({sigma_t.x, sigma_t.y, sigma_t.z});
-    const double smallest = std::min({sigma_t.x, sigma_t.y, sigma_t.z});
-    return largest - smallest > 1e-9 * largest; // what sums of decimals differ by is rounding
+    return any_medium(scene, [](const Volume& volume) {
+        const Rgb sigma_t = volume.sigma_a + volume.sigma_s;
+        const double largest = std::max({sigma_t.x, sigma_t.y, sigma_t.z});
+        const double smallest = std::min({sigma_t.x, sigma_t.y, sigma_t.z});
+        return largest - smallest > 1e-9 * largest; // what sums of decimals differ by is rounding
+    });
 }
 
 bool emits(const Scene& scene) {
-    if (scene.volumes.empty())
-        return false;
-    const Volume& volume = scene.volumes.front();
-    return volume.sigma_a * (volume.Le + volume.temperature.color) != Rgb(0.0);
+    return any_medium(scene, [](const Volume& volume) {
+        return volume.sigma_a * (volume.Le + volume.temperature.color) != Rgb(0.0);
+    });
 }
 
 Method choose_method(const Scene& scene, int field, bool chromatic_extinction, bool emits) {
@@ -250,7 +253,10 @@ bool is_analytic_in_nothing(const Scene& scene) {
     const Integrator& preset = choose_integrator(scene);
     const bool analytic = choices.free_flight.value_or(preset.free_flight) == FREE_FLIGHT_ANALYTIC ||
                           choices.transmittance.value_or(preset.transmittance) == TRANSMITTANCE_ANALYTIC;
-    return analytic && is_empty_grid(std::get<GridFile>(scene.volumes.front().shape));
+    return analytic && !any_medium(scene, [](const Volume& volume) {
+               const auto* file = std::get_if<GridFile>(&volume.shape);
+               return !file || !is_empty_grid(*file);
+           });
 }
 
 } // namespace
@@ -274,30 +280,30 @@ Method choose_method(const Scene& scene) {
 
 Scene with_preset(Scene scene) {
     const Integrator& integrator = choose_integrator(scene);
-    if (scene.volumes.empty())
-        return scene;
-    Volume& volume = scene.volumes.front();
     const auto adjusts = [&](Adjustment adjustment) { return (integrator.adjustments & adjustment) != 0; };
     const auto warn = [&](const char* message) {
         scene.warnings.push_back(fmt::format("{}: {}", integrator.name, message));
     };
     const int scattering = scene.settings.choices.scattering.value_or(integrator.scattering);
-    if (adjusts(adjust_no_scattering) && scattering == SCATTERING_NONE)
-        volume.sigma_s = Rgb(0.0);
-    if (adjusts(adjust_isotropic) && volume.g != 0.0) {
-        warn("scatters isotropically and leaves heyneygreenstein_g out; homogeneousRayMarcherImproved honours it");
-        volume.g = 0.0;
+    const bool glows = emits(scene);
+    for (Volume& volume : scene.volumes) {
+        if (adjusts(adjust_no_scattering) && scattering == SCATTERING_NONE)
+            volume.sigma_s = Rgb(0.0);
+        if (adjusts(adjust_isotropic) && volume.g != 0.0) {
+            warn("scatters isotropically and leaves heyneygreenstein_g out; homogeneousRayMarcherImproved honours it");
+            volume.g = 0.0;
+        }
+        if (adjusts(adjust_default_noise) && !volume.noise) {
+            if (std::holds_alternative<GridFile>(volume.shape))
+                warn("the density is the grid's, not noise, which fills spheres, boxes and models");
+            else
+                volume.noise = Noise{};
+        }
+        if (adjusts(adjust_no_emission))
+            volume.Le = volume.temperature.color = Rgb(0.0);
     }
-    if (adjusts(adjust_default_noise) && !volume.noise) {
-        if (std::holds_alternative<GridFile>(volume.shape))
-            warn("the density is the grid's, not noise, which fills spheres, boxes and models");
-        else
-            volume.noise = Noise{};
-    }
-    if (adjusts(adjust_no_emission) && emits(scene)) {
+    if (adjusts(adjust_no_emission) && glows)
         warn("leaves emission out; nanoVDBEmission renders it");
-        volume.Le = volume.temperature.color = Rgb(0.0);
-    }
     return scene;
 }
 

@@ -131,21 +131,22 @@ Checkpoint parse(std::string_view bytes) {
 
 } // namespace
 
-RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization,
-                        const LoadedVolume& volume, std::uint32_t sample_offset, const std::string& device,
-                        std::vector<std::uint32_t> band_rows) {
+RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization, const Assets& assets,
+                        std::uint32_t sample_offset, const std::string& device, std::vector<std::uint32_t> band_rows) {
     Fingerprint fingerprint;
     fingerprint.add(std::as_bytes(std::span(&sample_offset, 1)));
     fingerprint.add(std::as_bytes(std::span(&frame, 1)));
     fingerprint.add_all(specialization);
-    add_field(fingerprint, volume.field);
-    add_field(fingerprint, volume.temperature);
-    if (volume.majorants)
-        fingerprint.add_all(volume.majorants->bounds);
-    fingerprint.add_all(volume.controls);
-    fingerprint.add_all(volume.blackbody);
-    if (volume.bvh)
-        fingerprint.add_all(volume.bvh->triangles);
+    for (const LoadedMedium& medium : assets.media) {
+        add_field(fingerprint, medium.field);
+        add_field(fingerprint, medium.temperature);
+        if (medium.majorants)
+            fingerprint.add_all(medium.majorants->bounds);
+        fingerprint.add_all(medium.controls);
+        fingerprint.add_all(medium.blackbody);
+        if (medium.bvh)
+            fingerprint.add_all(medium.bvh->triangles);
+    }
     return {fingerprint.text(), version, device, std::move(band_rows)};
 }
 

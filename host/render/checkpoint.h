@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "compute_pass.h"
-#include "loaded_volume.h"
+#include "loaded_medium.h"
 #include "render_counts.h"
 #include "shared/items.h"
 
@@ -38,9 +38,8 @@ struct Checkpoint {
     double seconds = 0.0; // of rendering
 };
 
-RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization,
-                        const LoadedVolume& volume, std::uint32_t sample_offset, const std::string& device,
-                        std::vector<std::uint32_t> band_rows);
+RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization, const Assets& assets,
+                        std::uint32_t sample_offset, const std::string& device, std::vector<std::uint32_t> band_rows);
 
 // Atomically: the file is the last checkpoint or this one. Throws RenderError.
 void save_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);

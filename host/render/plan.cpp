@@ -51,8 +51,9 @@ Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish) {
     plan.budget = std::min(pick(wish.budget, longest), longest);
     plan.step_limit = pick(wish.step_limit, 1u << 26);
     plan.most_batch = pick(wish.most_batch, longest_batch);
+    plan.waiting = staged ? std::max(wish.waiting, 4 * plan.slots) : 0;
     if (staged) // so that two pixels and more have a place
-        plan.most_batch = std::min(plan.most_batch, waiting_samples(plan) / 2);
+        plan.most_batch = std::min(plan.most_batch, plan.waiting / 2);
     plan.most_film_bytes =
         pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
     plan.most_grid_bytes = pick(wish.most_grid_bytes, std::uint64_t{device.limits().maxStorageBufferRange});
@@ -60,10 +61,6 @@ Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish) {
     const std::uint64_t texels = device.is_cpu() ? 4ull * device.limits().maxTexelBufferElements : 1u;
     plan.most_texel_bytes = pick(wish.most_texel_bytes, texels);
     return plan;
-}
-
-std::uint32_t waiting_samples(const Plan& plan) {
-    return plan.schedule == Schedule::staged ? 4 * std::max(plan.slots, 64u) : 0;
 }
 
 std::uint32_t queue_capacity(const Plan& plan) {

@@ -17,6 +17,7 @@ enum class Schedule { automatic, fused, staged };
 struct Plan {
     Schedule schedule = Schedule::automatic;
     std::uint32_t slots = 0;            // fused: pixels in work; staged: paths
+    std::uint32_t waiting = 0;          // staged: room for samples that wait to be added to the film, or at least this
     std::uint32_t lanes = 0;            // invocations that share a queue of paths
     std::uint32_t budget = 0;           // turns after which a lane lays its path aside
     std::uint32_t steps = 0;            // of tracking between two looks at what they led to
@@ -38,9 +39,6 @@ struct LoopSizes {
 
 // Completes `wish`, of which what is chosen wins.
 Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish = {});
-
-// Samples that wait to be added to the film, in a staged render.
-std::uint32_t waiting_samples(const Plan& plan);
 
 // Places in each queue.
 std::uint32_t queue_capacity(const Plan& plan);

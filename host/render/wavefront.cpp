@@ -99,7 +99,7 @@ Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, st
     add_buffer(BINDING_QUEUES, "queue headers", queue_bytes, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
     add_buffer(BINDING_WORK, "work list", std::uint64_t{most_pixels} * sizeof(std::uint32_t));
     add_buffer(BINDING_COUNTERS, "counters", sizeof(shared::Counters));
-    if (const std::uint64_t waiting = waiting_samples(plan); waiting > 0) {
+    if (const std::uint64_t waiting = plan.waiting; waiting > 0) {
         add_buffer(BINDING_SAMPLES, "waiting samples", waiting * sizeof(glm::vec3));
         add_buffer(BINDING_PLACES, "places of samples", waiting * sizeof(shared::SamplePlace));
     }
@@ -226,11 +226,11 @@ void Wavefront::free_slots(std::uint32_t begin, std::uint32_t end) {
     push_.sample_begin = begin;
     push_.sample_end = end;
     push_.work_end = no_end;
-    push_.places = waiting_samples(plan_) / samples();
+    push_.places = plan_.waiting / samples();
     finished_ = sorted_ = 0;
     rounds_ = 1; // many came to little at the end of the last batch
     commands_.run([&](VkCommandBuffer commands) {
-        begin_->record(commands, push_, std::max(plan_.slots, waiting_samples(plan_)));
+        begin_->record(commands, push_, std::max(plan_.slots, plan_.waiting));
         record_barrier(commands);
     });
 }

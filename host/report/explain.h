@@ -5,7 +5,7 @@
 #include <string>
 
 #include "film_look.h"
-#include "renderer.h"
+#include "session.h"
 #include "sight.h"
 #include "tone_choice.h"
 

@@ -13,8 +13,9 @@ namespace {
 
 using Answer = std::optional<std::string>;
 
+// Whichever: a picture of several is none that this explains.
 const Volume* volume_of(const Scene& scene) {
-    return scene.volumes.empty() ? nullptr : &scene.volumes.front();
+    return scene.volumes.empty() ? nullptr : &scene.volumes.back();
 }
 
 bool sees_light(const Evidence& e) {
@@ -132,7 +133,7 @@ Answer no_medium(const Evidence& e) {
         return "lightRayDensityMultiplier is 0, which leaves no medium; 1 is the density as it is";
     if (volume->sigma_a + volume->sigma_s == Rgb(0.0))
         return "sigma_a and sigma_s are 0, which leaves no medium; raise one of them";
-    if (e.scene.volumes.front().sigma_a + e.scene.volumes.front().sigma_s == Rgb(0.0))
+    if (volume_of(e.scene)->sigma_a + volume_of(e.scene)->sigma_s == Rgb(0.0))
         return fmt::format("{} leaves sigma_s out and sigma_a is 0, which leaves no medium; raise sigma_a",
                            e.method.integrator);
     const GridFile* file = std::get_if<GridFile>(&volume->shape);
@@ -191,7 +192,7 @@ Answer too_thin(const Evidence& e) {
     constexpr double thin = 0.02; // a screen shows half a per cent of contrast
     if (!shows_nothing(e) || !e.sight || e.sight->most_depth > thin)
         return {};
-    const Volume& volume = e.scene.volumes.front();
+    const Volume& volume = *volume_of(e.scene);
     const bool by_voxel = e.result->outline.voxel > 0.0 && volume.unit == CoefficientUnit::voxel;
     const std::string unit =
         by_voxel ? fmt::format(" (sigma_a and sigma_s are per voxel, of {:.3g} world units)", e.result->outline.voxel)
@@ -204,7 +205,7 @@ Answer too_thin(const Evidence& e) {
 Answer cold_glow(const Evidence& e) {
     if (e.odd != Odd::black || !e.result || !e.result->outline.has_temperature || sees_light(e))
         return {};
-    const TemperatureEmission& emission = e.scene.volumes.front().temperature;
+    const TemperatureEmission& emission = volume_of(e.scene)->temperature;
     const double hottest = e.result->outline.hottest;
     // Of the luminance at the reference temperature, six tenths of it have 1e-5.
     const bool faint = hottest < 0.6 * emission.reference;
@@ -255,15 +256,15 @@ Answer inside(const Evidence& e) {
 // What Henyey and Greenstein's phase function makes of light that goes straight from the light to the camera, to that
 // of isotropic scattering.
 double phase_to_camera(const Evidence& e) {
-    const double g = e.scene.volumes.front().g;
-    const double mu = glm::dot(e.scene.lights.front().direction, e.sight->forward); // of the angle of scattering
+    const double g = volume_of(e.scene)->g;
+    const double mu = glm::dot(e.scene.lights.back().direction, e.sight->forward); // of the angle of scattering
     return (1.0 - g * g) / std::pow(1.0 + g * g - 2.0 * g * mu, 1.5);
 }
 
 Answer phase_peak(const Evidence& e) {
     if (e.odd != Odd::black || !e.sight || !sees_light(e) || e.emits)
         return {};
-    const double g = e.scene.volumes.front().g;
+    const double g = volume_of(e.scene)->g;
     if (std::abs(g) < 0.8 || phase_to_camera(e) > 0.05)
         return {};
     return fmt::format("the medium scatters the light past the camera: with heyneygreenstein_g {:g}, {:.1g} of what "
@@ -274,7 +275,7 @@ Answer phase_peak(const Evidence& e) {
 Answer backlit(const Evidence& e) {
     if (e.odd != Odd::black || !e.sight || !sees_light(e) || e.emits || e.sight->most_depth < deep)
         return {};
-    const glm::dvec3& direction = e.scene.lights.front().direction;
+    const glm::dvec3& direction = e.scene.lights.back().direction;
     if (glm::dot(direction, e.sight->forward) < 0.3)
         return {};
     return fmt::format("the camera sees the far side of the medium: the <light> stands behind it, at {}, and the "
@@ -286,7 +287,7 @@ Answer unlike_colours(const Evidence& e) {
     const Volume* volume = volume_of(e.scene);
     if (e.odd != Odd::black || !volume || !sees_light(e) || e.emits || e.scene.background != Rgb(0.0))
         return {};
-    const Rgb& irradiance = e.scene.lights.front().irradiance;
+    const Rgb& irradiance = e.scene.lights.back().irradiance;
     if (irradiance * volume->sigma_s != Rgb(0.0))
         return {};
     return fmt::format("light and medium have no colour in common: the <light> has {}, of which sigma_s {} scatters "
@@ -310,13 +311,13 @@ Answer unlit(const Evidence& e) {
     if (e.odd != Odd::black || !e.sight)
         return {};
     return fmt::format("none of its {} paths met light; the optical depth in view reaches {:.3g}, the albedo is {:.3g}",
-                       e.result->counts.paths, e.sight->most_depth, largest(albedo_of(e.scene.volumes.front())));
+                       e.result->counts.paths, e.sight->most_depth, largest(albedo_of(*volume_of(e.scene))));
 }
 
 Answer furnace(const Evidence& e) {
     if (e.odd != Odd::background || !e.sight || e.emits || sees_light(e))
         return {};
-    if (least(albedo_of(e.scene.volumes.front())) < 0.98 || e.method.scattering != SCATTERING_MULTIPLE)
+    if (least(albedo_of(*volume_of(e.scene))) < 0.98 || e.method.scattering != SCATTERING_MULTIPLE)
         return {};
     return "a medium that absorbs next to nothing cannot be told from a background that is the same everywhere; add a "
            "<light>, or raise sigma_a";

@@ -3,7 +3,7 @@
 
 #include "explain.h"
 #include "render_request.h"
-#include "renderer.h"
+#include "session.h"
 
 namespace vkvol {
 

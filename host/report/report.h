@@ -7,7 +7,7 @@
 #include "explain.h"
 #include "film.h"
 #include "render_request.h"
-#include "renderer.h"
+#include "session.h"
 
 namespace vkvol {
 

@@ -3,6 +3,7 @@
 // The CPU reference reads these structs too, so nothing here may depend on Vulkan.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
@@ -158,7 +159,7 @@ struct BlackElement {
 struct Scene {
     Camera camera;
     Picture picture;
-    std::vector<Volume> volumes;
+    std::vector<Volume> volumes; // the media
     std::vector<DirectionalLight> lights;
     Rgb background{0.0}; // constant radiance from every direction
     RenderSettings settings;
@@ -166,5 +167,10 @@ struct Scene {
     std::vector<BlackElement> black;   // without effect on the picture
     std::vector<std::string> warnings; // "file:line:column: ..." for what was understood but is not honoured
 };
+
+// Whether one of its media is such.
+template <class Is> bool any_medium(const Scene& scene, const Is& is) {
+    return std::any_of(scene.volumes.begin(), scene.volumes.end(), is);
+}
 
 } // namespace vkvol

@@ -75,7 +75,7 @@ void SceneReader::check_method(const Scene& scene) const {
     }
     const Integrator& integrator = choose_integrator(scene);
     const XmlElement sigma_s = one("sigma_s");
-    const bool scatters = !scene.volumes.empty() && scene.volumes.front().sigma_s != Rgb(0.0);
+    const bool scatters = any_medium(scene, [](const Volume& volume) { return volume.sigma_s != Rgb(0.0); });
     if (sigma_s.exists() && scatters && method.scattering == SCATTERING_NONE &&
         (integrator.adjustments & adjust_no_scattering))
         sigma_s.warn(fmt::format("{} scatters nothing and leaves sigma_s out; homogeneousRayMarcherImproved scatters "

@@ -34,7 +34,7 @@ Scene SceneReader::read() {
     read_light(scene);
     if (const std::optional<Volume> medium = volume(scene.settings.integrator))
         scene.volumes.push_back(*medium);
-    if (scene.volumes.empty() || !std::holds_alternative<GridFile>(scene.volumes.front().shape))
+    if (!any_medium(scene, [](const Volume& each) { return std::holds_alternative<GridFile>(each.shape); }))
         scene.settings.march.unit = CoefficientUnit::world;
     scene.expected = expected();
     check_method(scene);

@@ -14,7 +14,7 @@ bool looks_ahead() {
     return FIELD == FIELD_GRID && walks && NEE != NEE_TENTATIVE && !gathers && (!LOOKS || shadows_walk);
 }
 
-void look_up(VolumeParams v, Walk w, float t[STEPS], vec3 tap[STEPS], out float sigma_t[STEPS]) {
+void look_up(MediumParams v, Walk w, float t[STEPS], vec3 tap[STEPS], out float sigma_t[STEPS]) {
     if (FILTER == FILTER_TRILINEAR) {
         [[unroll]] for (int k = 0; k < STEPS; ++k)
             sigma_t[k] = v.sigma_t * density(v, w.origin + t[k] * w.direction, tap[k]);
@@ -33,7 +33,7 @@ void look_up(VolumeParams v, Walk w, float t[STEPS], vec3 tap[STEPS], out float 
 }
 
 // Up to STEPS steps of a flight or, `seeing`, of a shadow ray of transmittance T. The walk is left at the event.
-uint step_ahead(VolumeParams v, bool seeing, inout Walk walk, inout Rng rng, inout Spectrum beta, inout Spectrum T,
+uint step_ahead(MediumParams v, bool seeing, inout Walk walk, inout Rng rng, inout Spectrum beta, inout Spectrum T,
                 inout Tally tally) {
     uint step[STEPS]; // what the walk met
     float t[STEPS];

@@ -8,7 +8,7 @@
 
 // Optical depth of the next collision, in terms of the largest channel's extinction. `e`: unit exponential; `select` in
 // [0, 1) chooses the channel.
-float sample_depth(VolumeParams v, Spectrum beta, float e, float select) {
+float sample_depth(MediumParams v, Spectrum beta, float e, float select) {
 #ifdef CHROMATIC
     vec3 p = abs(beta);
     float at = select * total(p);
@@ -21,7 +21,7 @@ float sample_depth(VolumeParams v, Spectrum beta, float e, float select) {
 
 // Weight of a flight that collided after passing the density integral `depth`, or that got so far. Exponentials are
 // relative to the least extinct channel's, which cannot vanish all.
-Spectrum depth_weight(VolumeParams v, Spectrum beta, float depth, bool collided) {
+Spectrum depth_weight(MediumParams v, Spectrum beta, float depth, bool collided) {
 #ifdef CHROMATIC
     vec3 T = exp(-v.sigma_t * (v.sigma_ratio - smallest(v.sigma_ratio)) * depth);
     vec3 density = collided ? v.sigma_ratio * T : T;

@@ -15,12 +15,12 @@
 #include "estimators/flight/weighted_flight.glsl"
 
 // The optical depth to fly. `e`: unit exponential; `select` in [0, 1).
-float begin_flight(VolumeParams v, Spectrum beta, float e, float select) {
+float begin_flight(MediumParams v, Spectrum beta, float e, float select) {
     return NULL_FLIGHT ? e : sample_depth(v, beta, e, select);
 }
 
 // Called for each part of the ray within the medium.
-void begin_flight_part(VolumeParams v, inout Walk w) {
+void begin_flight_part(MediumParams v, inout Walk w) {
     if ((FLIGHT_TRAITS & TRAIT_CELLS) != 0)
         begin_cells(v, false, w);
     if (FREE_FLIGHT == FREE_FLIGHT_REGULAR)
@@ -32,7 +32,7 @@ void begin_flight_part(VolumeParams v, inout Walk w) {
 // One step of a flight. For flights with null collisions `event` is what the walk met, and `c` its tentative collision.
 // `deposit`: at EVENT_TOUCHED and EVENT_COLLIDED, how much throughput meets matter at w.at: beta sigma_t / sigma_maj, or
 // what a march's step takes away.
-uint fly(VolumeParams v, Collision c, uint event, inout Walk w, inout Rng rng, inout Spectrum beta,
+uint fly(MediumParams v, Collision c, uint event, inout Walk w, inout Rng rng, inout Spectrum beta,
          out Spectrum deposit, inout Tally tally) {
     deposit = to_spectrum(vec3(0.0));
     if (NULL_FLIGHT && event == EVENT_COLLIDED) {

@@ -20,14 +20,14 @@ bool march_is_over(Walk w) {
     return w.t >= w.t_end - 0.5 * w.dt;
 }
 
-float march_density(VolumeParams v, float t, vec3 tap, inout Walk w, inout Tally tally) {
+float march_density(MediumParams v, float t, vec3 tap, inout Walk w, inout Tally tally) {
     w.at = t;
     tally.lookups += 1u;
     return density(v, w.origin + t * w.direction, tap);
 }
 
 // A step of length `dt` from w.t, in which the density is taken to be `rho`.
-uint march_step(VolumeParams v, float rho, float dt, inout Walk w, inout Spectrum beta, out Spectrum deposit) {
+uint march_step(MediumParams v, float rho, float dt, inout Walk w, inout Spectrum beta, out Spectrum deposit) {
     deposit = to_spectrum(vec3(0.0));
     if (goes_through()) {
         Spectrum tau = v.sigma_t * rho * dt * to_spectrum(v.sigma_ratio);

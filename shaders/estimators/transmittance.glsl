@@ -27,7 +27,7 @@ void begin_transmittance(uvec4 words, inout Walk w) {
 }
 
 // Called for each part of the ray within the medium.
-void begin_transmittance_part(VolumeParams v, inout Walk w) {
+void begin_transmittance_part(MediumParams v, inout Walk w) {
     if (NULL_TRANSMITTANCE)
         begin_cells(v, TRANSMITTANCE == TRANSMITTANCE_RESIDUAL, w);
     if (TRANSMITTANCE == TRANSMITTANCE_REGULAR)
@@ -41,7 +41,7 @@ void begin_transmittance_part(VolumeParams v, inout Walk w) {
 // One step of a shadow ray. Estimators with null collisions update T, 1 at the start; `event` is what the walk met, and
 // `c` its tentative collision. The others know T when the segment has ended: see end_transmittance.
 // `opaque`: T is 0, no need to go on.
-uint see(VolumeParams v, Collision c, uint event, inout Walk w, inout Rng rng, inout Spectrum T, out bool opaque,
+uint see(MediumParams v, Collision c, uint event, inout Walk w, inout Rng rng, inout Spectrum T, out bool opaque,
          inout Tally tally) {
     switch (TRANSMITTANCE) {
     case TRANSMITTANCE_ANALYTIC:
@@ -80,7 +80,7 @@ uint see(VolumeParams v, Collision c, uint event, inout Walk w, inout Rng rng, i
 }
 
 // When the ray has left the medium.
-Spectrum end_transmittance(VolumeParams v, Walk w, Spectrum T) {
+Spectrum end_transmittance(MediumParams v, Walk w, Spectrum T) {
     switch (TRANSMITTANCE) {
     case TRANSMITTANCE_ANALYTIC:
     case TRANSMITTANCE_REGULAR:

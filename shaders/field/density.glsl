@@ -86,7 +86,7 @@ ivec3 random_corner(vec3 p, vec3 tap) {
 }
 
 // At a point of medium space, >= 0. `tap` in [0, 1)^3 is for the stochastic filter.
-float density(VolumeParams v, vec3 p, vec3 tap) {
+float density(MediumParams v, vec3 p, vec3 tap) {
     if (FIELD == FIELD_CONSTANT)
         return 1.0;
     if (FIELD == FIELD_NOISE)

@@ -5,7 +5,7 @@
 
 // Entry i modulo 256. From the uniform block itself: a table in a copy would lie in memory of every lane's own.
 uint permuted(uint i) {
-    uint word = frame_block.volume.noise.permutation[(i >> 4) & 15u][(i >> 2) & 3u];
+    uint word = frame_block.media[0].noise.permutation[(i >> 4) & 15u][(i >> 2) & 3u];
     return (word >> (8u * (i & 3u))) & 255u;
 }
 
@@ -42,7 +42,7 @@ float noise_density(NoiseParams n, vec3 position) {
     float sum = 0.0;
     float amplitude = 1.0;
     for (uint k = 0u; k < n.octaves; ++k) {
-        vec4 to_noise = frame_block.volume.noise.to_noise[k];
+        vec4 to_noise = frame_block.media[0].noise.to_noise[k];
         sum += amplitude * perlin(to_noise.w * position + to_noise.xyz);
         amplitude *= n.gain;
     }

@@ -12,12 +12,12 @@ float voxel_shift() {
     return FILTER == FILTER_NEAREST ? 0.5 : 0.0;
 }
 
-void begin_voxels(VolumeParams v, inout Walk w) {
+void begin_voxels(MediumParams v, inout Walk w) {
     w.cell = clamp(ivec3(floor(w.origin + voxel_shift())), v.density.voxel_min - 1, v.density.voxel_max + 1);
 }
 
 // Density along the piece as a polynomial in s in [0, 1].
-vec4 voxel_polynomial(VolumeParams v, Walk w, float t_exit) {
+vec4 voxel_polynomial(MediumParams v, Walk w, float t_exit) {
     if (FILTER == FILTER_NEAREST)
         return vec4(voxel(v.density, GRID_TYPE, w.cell), 0.0, 0.0, 0.0);
     float corner[8];
@@ -61,7 +61,7 @@ struct Block {
     bool empty;
 };
 
-Block block_of(VolumeParams v, Walk w) {
+Block block_of(MediumParams v, Walk w) {
     ivec3 origin = v.density.voxel_min - 1;
     int size = int(v.cell_size);
     ivec3 cell = clamp((w.cell - origin) / size, ivec3(0), v.cell_dims - 1);
@@ -70,7 +70,7 @@ Block block_of(VolumeParams v, Walk w) {
 }
 
 // From [w.t, t_exit] into the next voxel.
-uint next_voxel(VolumeParams v, Block block, float t_exit, vec3 t_face, inout Walk w) {
+uint next_voxel(MediumParams v, Block block, float t_exit, vec3 t_face, inout Walk w) {
     w.t = t_exit;
     ivec3 axis = first_axis(t_face);
     ivec3 inside = clamp(ivec3(floor(w.origin + t_exit * w.direction + voxel_shift())), block.low,
@@ -84,7 +84,7 @@ uint next_voxel(VolumeParams v, Block block, float t_exit, vec3 t_face, inout Wa
 }
 
 // One step, adding what the voxel holds to w.depth. EVENT_COLLIDED: the optical depth w.tau was reached in it.
-uint voxel_step(VolumeParams v, bool seeing, inout Walk w, inout Tally tally) {
+uint voxel_step(MediumParams v, bool seeing, inout Walk w, inout Tally tally) {
     Block block = block_of(v, w);
     vec3 t_face = far_faces(w, vec3(block.low) - voxel_shift(), float(block.size));
     float t_exit = max(w.t, min(min(t_face.x, t_face.y), min(t_face.z, w.t_end)));

@@ -5,8 +5,8 @@
 #include "phase/phase.glsl"
 #include "lib/spectrum.glsl"
 
-vec3 sun_contribution(VolumeParams v, LightParams light, vec3 direction, Spectrum beta) {
-    return beta * hg_eval(v.g, hg_from_peak(v.g, direction, light.direction)) * light.irradiance;
+vec3 sun_contribution(MediumParams v, LightParams light, vec3 direction, Spectrum beta) {
+    return beta * hg_eval(v.g, hg_from_peak(v.g, direction, light.direction)) * light.radiance;
 }
 
 #endif

@@ -14,7 +14,7 @@ const float LEAST_CHANCE = 0.05; // bounds the weight of what the cache has wron
 const float DOUBT_AT_ENDS = 0.02;
 
 // T~ from a point of render space.
-Spectrum cached_transmittance(VolumeParams v, vec3 position) {
+Spectrum cached_transmittance(MediumParams v, vec3 position) {
     float depth = lattice_value(LATTICE_DEPTH, to_medium(v, position, vec3(0.0)).origin);
     return exp(-to_spectrum(v.sigma_ratio) * depth);
 }
@@ -32,10 +32,10 @@ float looking_chance(float share, Spectrum T) {
 // light) on average. Hence this may be subtracted with any factor that was known before. A good one is the
 // transmittance expected there, which for a flight towards the light, through an optical depth tau, is the integral of
 // exp(-t) exp(-(tau - t)): tau exp(-tau). `T`: of the cache, where the path departs.
-Spectrum foreseen_light(VolumeParams v, Spectrum T, vec3 before, vec3 after) {
+Spectrum foreseen_light(MediumParams v, Spectrum T, vec3 before, vec3 after) {
     Spectrum factor = -T * log(max(T, to_spectrum(vec3(1.0e-30)))) * to_spectrum(v.albedo);
-    float average = hg_eval(v.g * v.g, hg_from_peak(v.g * v.g, before, frame.light.direction));
-    return factor * (hg_eval(v.g, hg_from_peak(v.g, after, frame.light.direction)) - average);
+    float average = hg_eval(v.g * v.g, hg_from_peak(v.g * v.g, before, frame.lights[LIGHT_SUN].direction));
+    return factor * (hg_eval(v.g, hg_from_peak(v.g, after, frame.lights[LIGHT_SUN].direction)) - average);
 }
 
 #endif

@@ -17,7 +17,7 @@ struct Collision {
 
 // One step of the walk. EVENT_COLLIDED: a tentative collision, described in `c`; the distance to the next one is drawn.
 // `seeing`: the walk is a shadow ray's.
-uint next_collision(VolumeParams v, bool seeing, inout Walk w, inout Rng rng, inout Tally tally, out Collision c) {
+uint next_collision(MediumParams v, bool seeing, inout Walk w, inout Rng rng, inout Tally tally, out Collision c) {
     bool residual = TRANSMITTANCE == TRANSMITTANCE_RESIDUAL && seeing;
     c.sigma_maj = w.sigma_maj;
     c.sigma_c = v.sigma_t * w.control;

@@ -26,7 +26,7 @@
 // counted.
 //
 // What comes before the walk: the host composes render -> medium space in double precision about the medium's middle,
-// counts voxels from near it, and lets rays begin at the eye only if that is near (CameraParams). So offsets of the
+// counts voxels from near it, and lets rays begin at the eye only if that is near (SensorParams). So offsets of the
 // world's origin, of indices and of the camera are gone before anything is rounded.
 #ifndef MAJORANT_GLSL
 #define MAJORANT_GLSL
@@ -47,7 +47,7 @@ int empty_reach(Walk w) {
 
 // What the walk needs of its cell. With `residual` the bound of |density - control|, else that of the density; where that
 // is 0, minus the reach of a walk that leaps.
-void load_cell(VolumeParams v, bool residual, inout Walk w) {
+void load_cell(MediumParams v, bool residual, inout Walk w) {
     bool cells = FIELD == FIELD_GRID;
     uint i = uint((w.cell.x * v.cell_dims.y + w.cell.y) * v.cell_dims.z + w.cell.z);
     if (residual || FREE_FLIGHT == FREE_FLIGHT_DECOMPOSITION)
@@ -60,7 +60,7 @@ void load_cell(VolumeParams v, bool residual, inout Walk w) {
     }
 }
 
-void begin_cells(VolumeParams v, bool residual, inout Walk w) {
+void begin_cells(MediumParams v, bool residual, inout Walk w) {
     w.cell = ivec3(0);
     if (FIELD == FIELD_GRID)
         w.cell = clamp(ivec3(floor((w.origin - v.bounds_min) / v.cell_size)), ivec3(0), v.cell_dims - 1);
@@ -81,7 +81,7 @@ ivec3 first_axis(vec3 t_face) {
 }
 
 // Where the walk leaves its cell and the empty ones around it, at most t_end.
-float cell_exit(VolumeParams v, Walk w, out vec3 t_face) {
+float cell_exit(MediumParams v, Walk w, out vec3 t_face) {
     t_face = vec3(FAR);
     if (FIELD == FIELD_GRID) {
         int reach = empty_reach(w);
@@ -91,7 +91,7 @@ float cell_exit(VolumeParams v, Walk w, out vec3 t_face) {
 }
 
 // Into the cell beyond: one step along the axis of the face, and never back along the others. EVENT_LEFT: there is none.
-uint next_cell(VolumeParams v, bool residual, float t_exit, vec3 t_face, inout Walk w) {
+uint next_cell(MediumParams v, bool residual, float t_exit, vec3 t_face, inout Walk w) {
     w.t = t_exit;
     if (FIELD != FIELD_GRID)
         return EVENT_LEFT;
@@ -113,7 +113,7 @@ uint next_cell(VolumeParams v, bool residual, float t_exit, vec3 t_face, inout W
 }
 
 // One step: to the face of the cell, or to a tentative collision before it (EVENT_COLLIDED).
-uint advance(VolumeParams v, bool residual, inout Walk w) {
+uint advance(MediumParams v, bool residual, inout Walk w) {
     vec3 t_face;
     float t_exit = cell_exit(v, w, t_face);
     float tau_cell = (LEAPS != 0 ? max(w.sigma_maj, 0.0) : w.sigma_maj) * (t_exit - w.t);

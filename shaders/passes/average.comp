@@ -19,7 +19,7 @@ void main() {
         vec3 corner = vec3(octant & 1u, octant >> 1u & 1u, octant >> 2u);
         vec3 p = node_position(node) + (0.5 * (corner + to_uniform(words).xyz) - 0.5) * l.spacing;
         bool inside = SHAPE != SHAPE_SPHERE || dot(p, p) < 1.0;
-        float found = density(frame.volume, p, to_tap(pcg4d(words)));
+        float found = density(frame.media[0], p, to_tap(pcg4d(words)));
         sum += inside ? found : 0.0;
     }
     store_node(LATTICE_DENSITY, node, 0.125 * sum);

@@ -20,7 +20,7 @@
 const uint BURST = 16u; // turns: a lane without a pixel waits for half as many
 
 // A path's turns, from its beginning to its sample in the sums.
-void turn_of_pixel(VolumeParams v, inout Lane lane, inout Rng rng, inout FilmPixel sums, inout Tally tally) {
+void turn_of_pixel(MediumParams v, inout Lane lane, inout Rng rng, inout FilmPixel sums, inout Tally tally) {
     if (lane.todo == TODO_BEGIN)
         generate(lane, rng);
     turn(v, lane, rng, tally);
@@ -29,7 +29,7 @@ void turn_of_pixel(VolumeParams v, inout Lane lane, inout Rng rng, inout FilmPix
 }
 
 void main() {
-    VolumeParams v = frame.volume;
+    MediumParams v = frame.media[0];
     Tally tally = NOTHING_SEEN;
     uint slot = 0u;
     Rng rng;

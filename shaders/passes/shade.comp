@@ -15,8 +15,8 @@ void main() {
     if (i >= uint(l.dims.x * l.dims.y * l.dims.z))
         return;
     ivec3 node = lattice_node(i);
-    VolumeParams v = frame.volume;
-    Ray ray = Ray(node_position(node), to_medium(v, vec3(0.0), frame.light.direction).direction);
+    MediumParams v = frame.media[0];
+    Ray ray = Ray(node_position(node), to_medium(v, vec3(0.0), frame.lights[LIGHT_SUN].direction).direction);
     vec3 cells = abs(ray.direction) / l.spacing; // per world unit
     float dt = 1.0 / max(cells.x, max(cells.y, cells.z));
     vec3 high = l.low + vec3(l.dims - 1) * l.spacing;

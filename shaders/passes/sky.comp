@@ -18,8 +18,8 @@ void main() {
     bool hit = false;
     for (uint i = push.sample_begin; i < push.sample_end && !hit; ++i) {
         CameraRay ray = camera_ray(place, i);
-        hit = may_meet_medium(frame.volume, to_medium(frame.volume, ray.origin, ray.direction));
-        film_add(entry, frame.background, place, i, tally);
+        hit = may_meet_medium(frame.media[0], to_medium(frame.media[0], ray.origin, ray.direction));
+        film_add(entry, frame.lights[LIGHT_BACKGROUND].radiance, place, i, tally);
     }
     // llvmpipe leaves loops early, see most_iterations in wavefront.cpp: what it did not look at is for paths to see.
     // So they are counted, for a condition on `i` would be optimized away.

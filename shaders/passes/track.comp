@@ -11,7 +11,7 @@
 const uint BURST = 4u; // turns: a lane without a path waits for half as many
 
 void main() {
-    VolumeParams v = frame.volume;
+    MediumParams v = frame.media[0];
     Tally tally = NOTHING_SEEN;
     uint slot = 0u;
     Rng rng;

@@ -25,7 +25,7 @@ CameraRay camera_ray(uint place, uint sample_index) {
     Rng rng = pixel_rng(place, sample_index, 0u);
     vec2 corner = vec2(place & 0xffffu, place >> 16u);
     vec2 p = corner + to_uniform(next_words(rng)).xy;
-    CameraParams camera = frame.camera;
+    SensorParams camera = frame.sensors[0];
     vec3 aside = p.x * camera.right + p.y * camera.down;
     return CameraRay(camera.position + camera.start * aside,
                      normalize(camera.corner + p.x * camera.right + p.y * camera.down));

@@ -30,7 +30,7 @@ Walk kept(Walk w) {
 }
 
 // The part of the segment within the medium that begins at t.x.
-void begin_part(VolumeParams v, Ray ray, vec2 t, bool seeing, inout Walk w) {
+void begin_part(MediumParams v, Ray ray, vec2 t, bool seeing, inout Walk w) {
     w.origin = ray.origin + t.x * ray.direction;
     w.direction = ray.direction;
     w.start = t.x;
@@ -45,7 +45,7 @@ void begin_part(VolumeParams v, Ray ray, vec2 t, bool seeing, inout Walk w) {
 
 // A vertex on the boundary, heading out, has no such part, nor a camera ray that misses: then an empty one, which the
 // first step leaves. Of a mesh, the search for it only begins.
-void begin_segment(VolumeParams v, vec3 position, vec3 direction, bool seeing, inout Walk w, inout PartSearch search) {
+void begin_segment(MediumParams v, vec3 position, vec3 direction, bool seeing, inout Walk w, inout PartSearch search) {
     search.stage = SEARCH_OVER;
     if (SHAPE == SHAPE_MESH) {
         search = begin_search(SEARCH_FIRST, 0.0);
@@ -71,7 +71,7 @@ bool is_searching(PartSearch search) {
 }
 
 // Goes on with a search for some nodes. Where it ends, the segment is in the next part, or has left the medium.
-uint search_part(VolumeParams v, vec3 position, vec3 direction, bool seeing, inout Walk w, inout PartSearch search) {
+uint search_part(MediumParams v, vec3 position, vec3 direction, bool seeing, inout Walk w, inout PartSearch search) {
     uint event = EVENT_MOVING;
     // A loop, since software drivers do both sides of an `if`: a group none of whose lanes searches passes it by.
     for (bool begins = is_searching(search); begins; begins = false) {
@@ -91,7 +91,7 @@ uint search_part(VolumeParams v, vec3 position, vec3 direction, bool seeing, ino
 }
 
 // Transmittance of a homogeneous sphere or box.
-Spectrum analytic_shadow(VolumeParams v, vec3 position, vec3 direction) {
+Spectrum analytic_shadow(MediumParams v, vec3 position, vec3 direction) {
     vec2 t;
     float inside = medium_interval(v, to_medium(v, position, direction), t) ? t.y - t.x : 0.0;
     return analytic_transmittance(v, inside);

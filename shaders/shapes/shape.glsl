@@ -11,7 +11,7 @@ struct Ray {
     vec3 direction;
 };
 
-Ray to_medium(VolumeParams v, vec3 position, vec3 direction) {
+Ray to_medium(MediumParams v, vec3 position, vec3 direction) {
     vec4 p = vec4(position, 1.0);
     return Ray(vec3(dot(v.to_medium[0], p), dot(v.to_medium[1], p), dot(v.to_medium[2], p)),
                vec3(dot(v.to_medium[0].xyz, direction), dot(v.to_medium[1].xyz, direction),

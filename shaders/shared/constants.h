@@ -35,6 +35,13 @@
 
 #define WORKGROUP_SIZE 64
 
+// Rows of the tables that a frame has. A scene that asks for more is refused, in host/assets/supported.cpp.
+#define MOST_SENSORS 1
+#define MOST_MEDIA 1
+#define MOST_LIGHTS 2
+#define LIGHT_BACKGROUND 0
+#define LIGHT_SUN 1
+
 // Specialization constants. What a scene lacks is false here and absent from its kernels.
 #define SPEC_SHAPE 0
 #define SPEC_FIELD 1

@@ -10,7 +10,7 @@ SHARED_BEGIN
 // The ray through the picture at (x, y) pixels from its top left corner goes along corner + x * right + y * down. It
 // begins at position + start * (x * right + y * down): at the eye, with start 0; or, for eyes far from the medium, on a
 // plane between the two.
-struct CameraParams {
+struct SensorParams {
     vec3 position; // render space
     float start;   // distance of that plane from the eye
     vec3 corner;
@@ -75,7 +75,7 @@ struct MarchParams {
 };
 
 // Medium space: index space for a grid, voxel centres at integers; the unit ball or the cube [-1, 1]^3 for shapes.
-struct VolumeParams {
+struct MediumParams {
     vec4 to_medium[3]; // rows of the affine map render -> medium
     vec3 bounds_min;   // medium space; where the filtered density can differ from 0
     vec3 bounds_max;
@@ -103,18 +103,18 @@ struct LatticeParams {
     ivec3 dims;   // at least 2 along each axis
 };
 
+// A row of the table of lights.
 struct LightParams {
-    vec3 direction; // unit, towards the light
-    vec3 irradiance;
+    vec3 direction; // unit, towards the light; none of the background
+    vec3 radiance;  // of the background, from everywhere; of the sun its irradiance across `direction`
 };
 
 struct FrameParams {
-    CameraParams camera;
-    VolumeParams volume;
-    LightParams light;
+    SensorParams sensors[MOST_SENSORS];
+    MediumParams media[MOST_MEDIA];
+    LightParams lights[MOST_LIGHTS]; // LIGHT_...
     MarchParams march;
     LatticeParams lattice; // NEE_CACHED only
-    vec3 background;
     float roulette_threshold;
     uint max_depth;
     uint seed;

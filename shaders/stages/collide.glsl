@@ -8,7 +8,7 @@
 
 // Light at a point that an interaction of throughput `lit` there scatters into the path. Known at once in a homogeneous
 // sphere or box, else the lane goes to look, or, by chance, makes do with the cache; and then does as `next` says.
-void gather_light(VolumeParams v, vec3 position, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
+void gather_light(MediumParams v, vec3 position, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
     if (LOOKS) {
         lane.position = position;
         lane.lit = lit;
@@ -16,20 +16,20 @@ void gather_light(VolumeParams v, vec3 position, Spectrum lit, uint next, inout 
         lane.todo = TODO_LOOK;
         if (NEE == NEE_CACHED) {
             lane.cached = cached_transmittance(v, position);
-            Spectrum scattered = lit * hg_eval(v.g, hg_from_peak(v.g, lane.path.direction, frame.light.direction));
-            lane.path.radiance += scattered * lane.cached * frame.light.irradiance;
+            Spectrum scattered = lit * hg_eval(v.g, hg_from_peak(v.g, lane.path.direction, frame.lights[LIGHT_SUN].direction));
+            lane.path.radiance += scattered * lane.cached * frame.lights[LIGHT_SUN].radiance;
             lane.chance = looking_chance(largest(scattered) / INV_4PI, lane.cached);
             lane.todo = to_uniform(next_words(rng)).x < lane.chance ? TODO_LOOK : next;
         }
     } else {
-        Spectrum T = analytic_shadow(v, position, frame.light.direction);
-        lane.path.radiance += sun_contribution(v, frame.light, lane.path.direction, lit * T);
+        Spectrum T = analytic_shadow(v, position, frame.lights[LIGHT_SUN].direction);
+        lane.path.radiance += sun_contribution(v, frame.lights[LIGHT_SUN], lane.path.direction, lit * T);
         lane.todo = next;
     }
 }
 
 // At a real collision: emission, absorption, light. Then the path departs, or ends.
-void collide(VolumeParams v, Spectrum deposit, inout Lane lane, inout Rng rng, inout Tally tally) {
+void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, inout Tally tally) {
     if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_COLLISIONS)
         lane.path.radiance += lane.beta * emitted_radiance(v.emission, lane.path.position);
     lane.beta *= to_spectrum(v.albedo);
@@ -46,7 +46,7 @@ void collide(VolumeParams v, Spectrum deposit, inout Lane lane, inout Rng rng, i
 }
 
 // Amid a flight: a null collision, or a step of a march through.
-void touch(VolumeParams v, Spectrum deposit, inout Lane lane, inout Rng rng) {
+void touch(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng) {
     vec3 position = lane.path.position + (lane.walk.start + lane.walk.at) * lane.path.direction;
     uint next = TODO_FLY;
     if (goes_through()) {

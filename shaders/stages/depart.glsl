@@ -24,16 +24,16 @@ uvec4 first_words(bool looks, inout Rng rng) {
 }
 
 // Scatters, or ends by roulette.
-void scatter(VolumeParams v, vec4 u, inout Lane lane) {
+void scatter(MediumParams v, vec4 u, inout Lane lane) {
     vec3 before = lane.path.direction;
     lane.path.direction = hg_sample(v.g, before, u.yz);
     lane.todo = survives(lane.beta, u.w) ? TODO_FLY : TODO_END;
     if (LOOKS && NEE == NEE_CACHED && lane.path.depth < frame.max_depth)
-        lane.path.radiance -= lane.beta * frame.light.irradiance *
+        lane.path.radiance -= lane.beta * frame.lights[LIGHT_SUN].radiance *
                               foreseen_light(v, lane.cached, before, lane.path.direction);
 }
 
-void depart(VolumeParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
+void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     bool looks = at_shadow_ray(lane.todo == TODO_LOOK);
     bool at_camera = !looks && lane.path.depth == 0u;
     uvec4 words = first_words(looks, rng);
@@ -48,7 +48,7 @@ void depart(VolumeParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     if (LOOKS && looks)
         begin_transmittance(words, lane.walk);
     begin_segment(v, looks ? looking_from(lane) : lane.path.position,
-                  looks ? frame.light.direction : lane.path.direction, looks, lane.walk, lane.search);
+                  looks ? frame.lights[LIGHT_SUN].direction : lane.path.direction, looks, lane.walk, lane.search);
     tally.shadow_rays += looks ? 1u : 0u;
     lane.T = to_spectrum(vec3(1.0));
     lane.steps = 0u;

@@ -3,11 +3,11 @@
 #define STAGE_ESCAPE_GLSL
 #include "lib/trace.glsl"
 
-void escape(VolumeParams v, inout Lane lane) {
+void escape(MediumParams v, inout Lane lane) {
     Spectrum beta = lane.beta;
     if (!NULL_FLIGHT && !goes_through())
         beta *= depth_weight(v, beta, lane.walk.depth, false);
-    lane.path.radiance += beta * frame.background;
+    lane.path.radiance += beta * frame.lights[LIGHT_BACKGROUND].radiance;
     trace(TRACE_ESCAPE, lane, lane.path.position, lane.path.direction);
     lane.todo = TODO_END;
 }

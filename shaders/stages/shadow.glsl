@@ -4,12 +4,12 @@
 #include "lights/light.glsl"
 #include "lib/trace.glsl"
 
-void end_shadow(VolumeParams v, uint event, inout Lane lane) {
+void end_shadow(MediumParams v, uint event, inout Lane lane) {
     Spectrum T = event == EVENT_LEFT ? end_transmittance(v, lane.walk, lane.T) : to_spectrum(vec3(0.0));
     Spectrum more = NEE == NEE_CACHED ? (T - lane.cached) / lane.chance : T;
-    lane.path.radiance += sun_contribution(v, frame.light, lane.path.direction, lit_beta(lane) * more);
+    lane.path.radiance += sun_contribution(v, frame.lights[LIGHT_SUN], lane.path.direction, lit_beta(lane) * more);
     lane.T = T;
-    trace(TRACE_LIGHT, lane, looking_from(lane), frame.light.direction);
+    trace(TRACE_LIGHT, lane, looking_from(lane), frame.lights[LIGHT_SUN].direction);
     lane.todo = after_looking(lane);
     if (NEE == NEE_TENTATIVE) {
         lane.walk = lane.flight;

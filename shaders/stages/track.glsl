@@ -6,7 +6,7 @@
 #include "stages/lane.glsl"
 
 // Emission along what was just flown, by one sample: a track-length estimate.
-vec3 emission_along(VolumeParams v, Spectrum beta, float from, Walk w, PathState path, inout Rng rng,
+vec3 emission_along(MediumParams v, Spectrum beta, float from, Walk w, PathState path, inout Rng rng,
                     inout Tally tally) {
     uvec4 words = next_words(rng);
     float t = mix(from, w.t, to_uniform(words).x);
@@ -17,7 +17,7 @@ vec3 emission_along(VolumeParams v, Spectrum beta, float from, Walk w, PathState
 }
 
 // One step of the lane's segment, flight or shadow ray.
-uint step_segment(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum deposit, inout Tally tally) {
+uint step_segment(MediumParams v, inout Lane lane, inout Rng rng, out Spectrum deposit, inout Tally tally) {
     bool seeing = at_shadow_ray(lane.todo == TODO_SEE);
     uint event = EVENT_MOVING;
     deposit = to_spectrum(vec3(0.0));
@@ -41,14 +41,14 @@ uint step_segment(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum d
 
 // EVENT_MOVING: nothing has happened yet. After EVENT_COLLIDED the path is where it collided. `deposit`: see
 // free_flight.glsl.
-uint track(VolumeParams v, inout Lane lane, inout Rng rng, out Spectrum deposit, inout Tally tally) {
+uint track(MediumParams v, inout Lane lane, inout Rng rng, out Spectrum deposit, inout Tally tally) {
     deposit = to_spectrum(vec3(0.0));
     uint event = EVENT_MOVING;
     uint steps = tally.steps;
     bool seeing = at_shadow_ray(lane.todo == TODO_SEE);
     if (SHAPE == SHAPE_MESH)
         event = search_part(v, seeing ? looking_from(lane) : lane.path.position,
-                            seeing ? frame.light.direction : lane.path.direction, seeing, lane.walk, lane.search);
+                            seeing ? frame.lights[LIGHT_SUN].direction : lane.path.direction, seeing, lane.walk, lane.search);
     if (looks_ahead()) {
         event = step_ahead(v, seeing, lane.walk, rng, lane.beta, lane.T, tally);
     } else {

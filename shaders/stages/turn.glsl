@@ -8,7 +8,7 @@
 #include "stages/track.glsl"
 
 // What the present segment met, if anything, and what follows.
-void arrive(VolumeParams v, uint event, Spectrum deposit, inout Lane lane, inout Rng rng, inout Tally tally) {
+void arrive(MediumParams v, uint event, Spectrum deposit, inout Lane lane, inout Rng rng, inout Tally tally) {
     bool seeing = at_shadow_ray(lane.todo == TODO_SEE);
     if (seeing && event != EVENT_MOVING)
         end_shadow(v, event, lane);
@@ -22,7 +22,7 @@ void arrive(VolumeParams v, uint event, Spectrum deposit, inout Lane lane, inout
         touch(v, deposit, lane, rng);
 }
 
-void turn(VolumeParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
+void turn(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     if (departs(lane.todo))
         depart(v, lane, rng, tally);
     Spectrum deposit = to_spectrum(vec3(0.0));

@@ -68,11 +68,11 @@ struct Row {
     double z = 0.0; // the mean error in standard errors
 };
 
-Row measure(const LoadedVolume& loaded, const Volume& volume, const Segments& segments, const Estimator& estimator) {
+Row measure(const LoadedMedium& loaded, const Volume& volume, const Segments& segments, const Estimator& estimator) {
     TestEstimators chosen;
     chosen.transmittance = estimator.id;
     chosen.settings.march.shadow_step = estimator.shadow_step;
-    LoadedVolume with_controls = loaded;
+    LoadedMedium with_controls = loaded;
     add_controls(with_controls, volume, chosen);
     const TestScene scene = make_test_scene(with_controls, volume, Filter::trilinear, chosen);
     std::vector<RayInput> inputs;
@@ -120,7 +120,7 @@ TEST_CASE("table of transmittance estimators", "[.transmittance_table]") {
         WARN("make " << file.path.string() << " first: build/make_field cumulus --output FILE");
         return;
     }
-    LoadedVolume loaded;
+    LoadedMedium loaded;
     loaded.field = load_density_field(file);
     Volume volume;
     volume.unit = CoefficientUnit::world;

@@ -25,11 +25,11 @@ Line to_line(const MeshInput& ray) {
 }
 
 std::vector<MeshOutput> run_mesh(const Bvh& bvh, const std::vector<MeshInput>& inputs) {
-    LoadedVolume volume;
+    LoadedMedium volume;
     volume.bvh = bvh;
     KernelScene scene;
     scene.volume = &volume;
-    scene.frame.volume.bvh_nodes = static_cast<std::uint32_t>(bvh.nodes.size());
+    scene.frame.media[0].bvh_nodes = static_cast<std::uint32_t>(bvh.nodes.size());
     return KernelRunner(mesh_spv, {}, scene).run<MeshOutput>(inputs);
 }
 

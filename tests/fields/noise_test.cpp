@@ -41,7 +41,7 @@ double fbm(const Noise& noise, glm::dvec3 world) {
 
 std::vector<NoiseOutput> run_noise(const Noise& noise, glm::dvec3 origin, const std::vector<NoiseInput>& inputs) {
     KernelScene scene;
-    scene.frame.volume.noise = make_noise(noise, origin);
+    scene.frame.media[0].noise = make_noise(noise, origin);
     return KernelRunner(noise_spv, {}, scene).run<NoiseOutput>(inputs);
 }
 

@@ -9,7 +9,7 @@
 
 #include "density_field.h"
 #include "error.h"
-#include "loaded_volume.h"
+#include "loaded_medium.h"
 #include "method.h"
 #include "support/shell.h"
 #include "test_paths.h"
@@ -147,7 +147,8 @@ TEST_CASE("a background other than 0 counts in the box of active voxels, and is 
     Scene scene;
     scene.volumes.emplace_back();
     scene.volumes.front().shape = GridFile{file.path(), "density"};
-    const LoadedVolume loaded = load_volume(scene, choose_method(scene));
+    const Assets assets = load_assets(scene, choose_method(scene));
+    const LoadedMedium& loaded = assets.media.front();
     REQUIRE(loaded.warnings.size() == 1);
     CHECK_THAT(loaded.warnings.front(), Contains("background of 0.25"));
 }

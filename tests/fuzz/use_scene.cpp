@@ -34,7 +34,7 @@ void expect_radiance(const glm::vec3& v, const char* what) {
         expect(v[i] >= 0.0f && v[i] * v[i] < std::numeric_limits<float>::max() * 0x1p-31f, what);
 }
 
-void check_camera(const shared::CameraParams& camera) {
+void check_camera(const shared::SensorParams& camera) {
     expect_finite(camera.position, "the camera's position is not finite");
     expect_finite(camera.corner, "the picture's corner is not finite");
     expect_finite(camera.right, "the width of a pixel is not finite");
@@ -44,7 +44,7 @@ void check_camera(const shared::CameraParams& camera) {
     expect(std::isfinite(squared) && squared > 0.0f, "the picture's corner has no direction");
 }
 
-void check_volume(const shared::VolumeParams& v) {
+void check_volume(const shared::MediumParams& v) {
     expect_finite(v.to_medium, "the map to the medium is not finite");
     expect_finite(v.bounds_min, "the medium's bounds are not finite");
     expect_finite(v.bounds_max, "the medium's bounds are not finite");
@@ -69,12 +69,12 @@ void check_volume(const shared::VolumeParams& v) {
 }
 
 void check_frame(const shared::FrameParams& frame, int shape) {
-    check_camera(frame.camera);
+    check_camera(frame.sensors[0]);
     if (shape != SHAPE_NONE)
-        check_volume(frame.volume);
-    expect_radiance(frame.light.irradiance, "the light is out of range");
-    expect_finite(frame.light.direction, "the light's direction is not finite");
-    expect_radiance(frame.background, "the background is out of range");
+        check_volume(frame.media[0]);
+    expect_radiance(frame.lights[LIGHT_SUN].radiance, "the light is out of range");
+    expect_finite(frame.lights[LIGHT_SUN].direction, "the light's direction is not finite");
+    expect_radiance(frame.lights[LIGHT_BACKGROUND].radiance, "the background is out of range");
     expect(std::isfinite(frame.march.step) && frame.march.step > 0.0f, "the step is not a positive float");
     expect(std::isfinite(frame.march.shadow_step) && frame.march.shadow_step > 0.0f,
            "the step of shadow rays is not a positive float");
@@ -82,7 +82,7 @@ void check_frame(const shared::FrameParams& frame, int shape) {
            "the optical step is not a positive float");
 }
 
-void check_loaded(const LoadedVolume& loaded) {
+void check_loaded(const LoadedMedium& loaded) {
     if (loaded.field)
         check_field(*loaded.field);
     if (loaded.temperature)
@@ -142,12 +142,13 @@ void use_scene(const Scene& authored) {
     const Scene scene = with_preset(authored);
     const Method method = choose_method(scene);
     expect(scene_hash(scene).size() == 16, "a scene hash has 16 digits");
-    const LoadedVolume loaded = load_volume(scene, method);
-    check_loaded(loaded);
-    const Specialization constants = specialize(scene, loaded, method);
+    const Assets assets = load_assets(scene, method);
+    for (const LoadedMedium& medium : assets.media)
+        check_loaded(medium);
+    const Specialization constants = specialize(scene, assets.media, method);
     is_chromatic(scene);
     const Crop crop{0, scene.picture.width, 0, scene.picture.height};
-    check_frame(make_frame(scene, loaded, method, crop, 1), static_cast<int>(constants[SPEC_SHAPE]));
+    check_frame(make_frame(scene, assets.media, method, crop, 1), static_cast<int>(constants[SPEC_SHAPE]));
 }
 
 } // namespace vkvol::fuzz

@@ -11,7 +11,7 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.lanes)
         return;
-    VolumeParams v = frame.volume;
+    MediumParams v = frame.media[0];
     bool ahead = push.sample_begin != 0u;
     bool seeing = push.sample_end != 0u;
     RayInput ray = inputs[i];

@@ -10,7 +10,7 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.lanes)
         return;
-    VolumeParams v = frame.volume;
+    MediumParams v = frame.media[0];
     Tally tally = NOTHING_SEEN;
     Rng rng = Rng(inputs[i].key, 0u, 0u, frame.seed);
     Spectrum beta = to_spectrum(inputs[i].beta);

@@ -9,7 +9,7 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.lanes)
         return;
-    VolumeParams v = frame.volume;
+    MediumParams v = frame.media[0];
     DensityInput input_ = inputs[i];
     DensityOutput o;
     o.filtered = density(v, input_.p, input_.tap);

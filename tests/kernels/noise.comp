@@ -10,7 +10,7 @@ void main() {
     if (i >= push.lanes)
         return;
     vec3 position = inputs[i].position;
-    vec4 to_noise = frame.volume.noise.to_noise[0];
-    outputs[i].density = noise_density(frame.volume.noise, position);
+    vec4 to_noise = frame.media[0].noise.to_noise[0];
+    outputs[i].density = noise_density(frame.media[0].noise, position);
     outputs[i].octave = perlin(to_noise.w * position + to_noise.xyz);
 }

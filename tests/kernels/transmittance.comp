@@ -11,7 +11,7 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.lanes)
         return;
-    VolumeParams v = frame.volume;
+    MediumParams v = frame.media[0];
     Tally tally = NOTHING_SEEN;
     RayInput ray = inputs[i / push.sample_end];
     Rng rng = Rng(ray.key, i % push.sample_end, 0u, frame.seed);

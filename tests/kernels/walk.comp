@@ -10,7 +10,7 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.lanes)
         return;
-    VolumeParams v = frame.volume;
+    MediumParams v = frame.media[0];
     Ray ray = Ray(inputs[i].origin, inputs[i].direction);
     vec2 t;
     uint event = medium_interval(v, ray, t) ? EVENT_MOVING : EVENT_LEFT;

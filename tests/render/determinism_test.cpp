@@ -207,6 +207,7 @@ TEST_CASE("an interrupted render keeps true sample counts", "[gpu][determinism]"
     for (const int patience : {0, 3, 20, 60}) {
         CAPTURE(patience);
         RenderJob job = with_tuning(256, 64, 16, 1);
+        job.plan.schedule = GENERATE(Schedule::fused, Schedule::staged);
         job.plan.submit_seconds = 1e-6; // one round per submit
         int asked = 0;
         job.interrupted = [&] { return asked++ >= patience; };
@@ -226,6 +227,7 @@ TEST_CASE("a render stopped by its time limit keeps true sample counts", "[gpu][
     const Scene scene = cloud(1u << 20);
     RenderJob job;
     job.time_limit = 0.3;
+    job.plan.schedule = GENERATE(Schedule::fused, Schedule::staged);
     const RenderResult result = render_here(scene, 38, job);
     CHECK_FALSE(result.interrupted);
     CHECK(result.samples < scene.settings.spp);

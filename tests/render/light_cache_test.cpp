@@ -16,7 +16,7 @@ namespace {
 // Optical depths towards the light at the nodes, as the device finds them.
 std::vector<float> depths_at_nodes(const TestScene& scene, const shared::LatticeParams& lattice, bool texels) {
     Commands commands(test_device());
-    SceneBuffers buffers(test_device(), commands, *scene.kernel.volume, std::uint64_t{1} << 27,
+    SceneBuffers buffers(test_device(), commands, Media(scene.kernel.volume, 1), std::uint64_t{1} << 27,
                          texels ? std::uint64_t{4} * test_device().limits().maxTexelBufferElements : 1);
     shared::FrameParams frame = scene.kernel.frame;
     frame.lattice = lattice;
@@ -58,13 +58,13 @@ TEST_CASE("the cache knows the depth of a uniform block to a cell of the lattice
     volume.unit = CoefficientUnit::world;
     TestScene scene = make_test_scene(grid.volume, volume, Filter::trilinear);
     const glm::dvec3 light = glm::normalize(glm::dvec3(0.3, 1.0, -0.2));
-    scene.kernel.frame.light.direction = light;
+    scene.kernel.frame.lights[LIGHT_SUN].direction = light;
     const glm::dvec3 low(-1.0), high(40.0, 30.0, 20.0);
     const auto lattice = make_lattice(low, high, high - low, {12, 9, 6});
     const double spacing = lattice.spacing.x;
     const bool texels = GENERATE(false, true);
     const std::vector<float> depths = depths_at_nodes(scene, lattice, texels);
-    const double per_voxel = double(scene.kernel.frame.volume.sigma_t) *
+    const double per_voxel = double(scene.kernel.frame.media[0].sigma_t) *
                              glm::length(glm::dmat3(grid.field().index_to_world) * glm::dvec3(1.0, 0.0, 0.0));
     std::size_t i = 0;
     for (int x = 0; x < lattice.dims.x; ++x)

@@ -7,8 +7,8 @@
 
 #include "shared/items.h"
 #include "specialization.h"
-#include "track.spv.h"
-#include "track_chromatic.spv.h"
+#include "fused.spv.h"
+#include "fused_chromatic.spv.h"
 
 using namespace vkvol;
 
@@ -113,9 +113,9 @@ TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "
                                   BINDING_FILM,  BINDING_QUEUE_ITEMS, BINDING_QUEUES, BINDING_COUNTERS};
     const auto touches = [&](std::initializer_list<std::pair<int, int>> changes, std::set<int> more) {
         more.insert(always.begin(), always.end());
-        CHECK(specialise(track_spv, with(changes)).bindings == more);
+        CHECK(specialise(fused_spv, with(changes)).bindings == more);
         if (changes.size() == 0)
-            CHECK(specialise(track_chromatic_spv, with(changes)).bindings == more);
+            CHECK(specialise(fused_chromatic_spv, with(changes)).bindings == more);
     };
     const std::set<int> grid = {BINDING_GRID, BINDING_LEAF_TABLE, BINDING_MAJORANTS};
     const auto grid_and = [&](int binding) {
@@ -143,7 +143,7 @@ TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "
 
 TEST_CASE("every feature costs instructions only where a scene has it", "[gpu][specialization]") {
     const auto count = [](std::initializer_list<std::pair<int, int>> changes) {
-        return specialise(track_spv, with(changes)).instructions;
+        return specialise(fused_spv, with(changes)).instructions;
     };
     const int none = count({});
     REQUIRE(none > 300); // a path tracer's, no empty shell
@@ -156,7 +156,7 @@ TEST_CASE("every feature costs instructions only where a scene has it", "[gpu][s
     CHECK(constant < color); // a second grid
     CHECK(color < count({{SPEC_EMISSION, EMISSION_BLACKBODY}}));
     CHECK(constant < count({{SPEC_EMISSION, EMISSION_CONSTANT}, {SPEC_EMISSION_AT, EMISSION_AT_STEPS}}));
-    CHECK(none < specialise(track_chromatic_spv, plain()).instructions);
+    CHECK(none < specialise(fused_chromatic_spv, plain()).instructions);
     CHECK(none < count({{SPEC_FILTER, FILTER_TRILINEAR}}));
     CHECK(none < count({{SPEC_LEAPS, 1}}));
     // What is switched off leaves nothing behind, whatever the constants that describe it say.
@@ -176,9 +176,9 @@ TEST_CASE("every feature costs instructions only where a scene has it", "[gpu][s
 
 TEST_CASE("a grey path's throughput is one number, and its state holds nothing of other features",
           "[gpu][specialization]") {
-    CHECK(read_kernel(Words(std::begin(track_spv), std::end(track_spv))).elements.at(BINDING_BETAS) == 1);
+    CHECK(read_kernel(Words(std::begin(fused_spv), std::end(fused_spv))).elements.at(BINDING_BETAS) == 1);
     CHECK(
-        read_kernel(Words(std::begin(track_chromatic_spv), std::end(track_chromatic_spv))).elements.at(BINDING_BETAS) ==
+        read_kernel(Words(std::begin(fused_chromatic_spv), std::end(fused_chromatic_spv))).elements.at(BINDING_BETAS) ==
         3);
     // Position, direction, radiance; pixel, place, sample, draw, depth, and whether a segment was laid aside. No
     // throughput, no shadow ray, no temperature.

@@ -24,13 +24,15 @@ Scene looking_away() {
     return scene;
 }
 
-RenderResult one_sample(Scene scene, int x, int y, std::uint32_t sample, bool trace) {
+RenderResult one_sample(Scene scene, int x, int y, std::uint32_t sample, bool trace,
+                        Schedule schedule = Schedule::automatic) {
     scene.settings.spp = 1;
     RenderJob job;
     job.crop = {x, x + 1, y, y + 1};
     job.seed = 3;
     job.sample_offset = sample;
     job.trace = trace;
+    job.plan.schedule = schedule;
     return render(test_device(), scene, job);
 }
 
@@ -40,6 +42,7 @@ TEST_CASE("a followed path gathers the radiance of its sample, bit by bit", "[gp
     const std::string integrator = GENERATE("ratioTracking", "cachedRatioTracking", "ratioNEE", "deltaTracking",
                                             "weightedTracking", "regularTracking");
     const bool chromatic = GENERATE(false, true);
+    const Schedule schedule = GENERATE(Schedule::fused, Schedule::staged);
     Scene scene = cloud();
     scene.settings.integrator = integrator;
     if (chromatic)
@@ -47,8 +50,8 @@ TEST_CASE("a followed path gathers the radiance of its sample, bit by bit", "[gp
     CAPTURE(integrator, chromatic);
     std::size_t collisions = 0;
     for (std::uint32_t sample = 0; sample < 4; ++sample) {
-        const RenderResult plain = one_sample(scene, 12, 11, sample, false);
-        const RenderResult traced = one_sample(scene, 12, 11, sample, true);
+        const RenderResult plain = one_sample(scene, 12, 11, sample, false, schedule);
+        const RenderResult traced = one_sample(scene, 12, 11, sample, true, schedule);
         CHECK(plain.trace.empty());
         REQUIRE(traced.trace.size() >= 2);
         CHECK(traced.trace.front().kind == TRACE_DEPART);

@@ -37,7 +37,7 @@ std::string render_error_of(const std::string& elements) {
     return message_of([&] {
         const Scene scene = with_preset(parse(elements));
         const Method method = choose_method(scene);
-        make_frame(scene, load_volume(scene, method), method, {0, 1, 0, 1}, 1);
+        make_frame(scene, load_assets(scene, method).media, method, {0, 1, 0, 1}, 1);
     });
 }
 

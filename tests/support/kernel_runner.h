@@ -15,7 +15,7 @@ namespace vkvol {
 // What a kernel finds in the buffers besides its inputs.
 struct KernelScene {
     shared::FrameParams frame{};
-    const LoadedVolume* volume = nullptr; // its grids, mesh and tables; null where the kernel looks up none
+    const LoadedMedium* volume = nullptr; // its grids, mesh and tables; null where the kernel looks up none
     std::uint64_t most_grid_bytes = 0;    // in one buffer; 0: as the device allows. More lie in windows
 };
 

@@ -27,7 +27,7 @@ struct GridRecipe {
 };
 
 struct TestGrid {
-    LoadedVolume volume; // as the renderer loads it
+    LoadedMedium volume; // as the renderer loads it
     // As NanoVDB sees it, through the accessor and the trilinear sampler of its C++ library.
     std::function<float(glm::ivec3)> accessor;
     std::function<float(glm::vec3)> sampler;

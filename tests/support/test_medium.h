@@ -58,7 +58,7 @@ public:
 
 private:
     std::optional<TestGrid> grid_;
-    LoadedVolume loaded_;
+    LoadedMedium loaded_;
     std::optional<TestScene> scene_;
     reference::Medium reference_;
 };

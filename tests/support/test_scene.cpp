@@ -6,7 +6,7 @@ namespace vkvol {
 
 namespace {
 
-TestScene make(const Volume& volume, const LoadedVolume& loaded, Filter filter, const TestEstimators& estimators) {
+TestScene make(const Volume& volume, const LoadedMedium& loaded, Filter filter, const TestEstimators& estimators) {
     Scene scene;
     scene.volumes = {volume};
     scene.settings = estimators.settings;
@@ -24,22 +24,22 @@ TestScene make(const Volume& volume, const LoadedVolume& loaded, Filter filter, 
     method.filter = filter;
     method.jitter = scene.settings.march.jitter;
     TestScene result;
-    result.kernel.frame = make_frame(scene, loaded, method, Crop{0, 1, 0, 1}, 1);
-    result.specialization = specialize(scene, loaded, method);
+    result.kernel.frame = make_frame(scene, Media(&loaded, 1), method, Crop{0, 1, 0, 1}, 1);
+    result.specialization = specialize(scene, Media(&loaded, 1), method);
     result.chromatic = is_chromatic(scene);
     return result;
 }
 
 } // namespace
 
-void add_controls(LoadedVolume& loaded, const Volume& volume, const TestEstimators& estimators) {
+void add_controls(LoadedMedium& loaded, const Volume& volume, const TestEstimators& estimators) {
     const Rgb sigma_t = volume.sigma_a + volume.sigma_s;
     const double largest = std::max({sigma_t.x, sigma_t.y, sigma_t.z}) * loaded.field->voxel_size();
     const bool decomposes = estimators.free_flight == FREE_FLIGHT_DECOMPOSITION;
     loaded.controls = make_controls(*loaded.field, *loaded.majorants, decomposes ? 0.0 : largest);
 }
 
-TestScene make_test_scene(const LoadedVolume& loaded, Volume volume, Filter filter, const TestEstimators& estimators) {
+TestScene make_test_scene(const LoadedMedium& loaded, Volume volume, Filter filter, const TestEstimators& estimators) {
     volume.shape = GridFile{};
     TestScene scene = make(volume, loaded, filter, estimators);
     scene.kernel.volume = &loaded;
@@ -48,7 +48,7 @@ TestScene make_test_scene(const LoadedVolume& loaded, Volume volume, Filter filt
     return scene;
 }
 
-TestScene make_test_scene(const Volume& volume, const LoadedVolume& loaded, const TestEstimators& estimators) {
+TestScene make_test_scene(const Volume& volume, const LoadedMedium& loaded, const TestEstimators& estimators) {
     TestScene scene = make(volume, loaded, Filter::trilinear, estimators);
     if (loaded.mesh) {
         scene.kernel.volume = &loaded;

@@ -24,13 +24,13 @@ struct TestEstimators {
 
 // Control densities, for the estimators that use them; before the majorants are scaled. `volume`: coefficients per
 // world unit.
-void add_controls(LoadedVolume& loaded, const Volume& volume, const TestEstimators& estimators);
+void add_controls(LoadedMedium& loaded, const Volume& volume, const TestEstimators& estimators);
 
 // `loaded`, kept by the caller, takes the place of the volume's shape.
-TestScene make_test_scene(const LoadedVolume& loaded, Volume volume = {}, Filter filter = Filter::trilinear,
+TestScene make_test_scene(const LoadedMedium& loaded, Volume volume = {}, Filter filter = Filter::trilinear,
                           const TestEstimators& estimators = {});
 
 // A sphere, box or mesh; `loaded` holds the mesh.
-TestScene make_test_scene(const Volume& volume, const LoadedVolume& loaded = {}, const TestEstimators& estimators = {});
+TestScene make_test_scene(const Volume& volume, const LoadedMedium& loaded = {}, const TestEstimators& estimators = {});
 
 } // namespace vkvol

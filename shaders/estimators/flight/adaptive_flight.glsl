@@ -1,6 +1,6 @@
 // Ray marching with steps of equal majorant optical depth: short where it may be dense, one step across a cell that is
 // empty. Biased, see march.glsl.
-uint adaptive_flight(VolumeParams v, inout Walk w, inout Rng rng, inout Spectrum beta, out Spectrum deposit,
+uint adaptive_flight(MediumParams v, inout Walk w, inout Rng rng, inout Spectrum beta, out Spectrum deposit,
                      inout Tally tally) {
     deposit = to_spectrum(vec3(0.0));
     if (w.t >= w.t_end)

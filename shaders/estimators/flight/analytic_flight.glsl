@@ -1,5 +1,5 @@
 // Homogeneous: the next collision is -log(1 - u) / sigma_t away.
-uint analytic_flight(VolumeParams v, inout Walk w, inout Spectrum beta, out Spectrum deposit) {
+uint analytic_flight(MediumParams v, inout Walk w, inout Spectrum beta, out Spectrum deposit) {
     deposit = to_spectrum(vec3(0.0));
     if (w.t >= w.t_end)
         return EVENT_LEFT;

@@ -1,5 +1,5 @@
 // Ray marching with steps of equal length, each sampled at one point. Biased, see march.glsl.
-uint march_flight(VolumeParams v, inout Walk w, inout Rng rng, inout Spectrum beta, out Spectrum deposit,
+uint march_flight(MediumParams v, inout Walk w, inout Rng rng, inout Spectrum beta, out Spectrum deposit,
                   inout Tally tally) {
     deposit = to_spectrum(vec3(0.0));
     if (march_is_over(w))

@@ -1,7 +1,7 @@
 // Two jittered marches D_1, D_2 over the same steps, combined by the jackknife (Quenouille 1956; for transmittance Peters,
 // "Jackknife Transmittance and MIS Weight Estimation", 2025): 2 exp(-mean) - (exp(-D_1) + exp(-D_2)) / 2. What the
 // variance of one march adds to exp(-D) is taken away; of the bias only terms of higher order are left. May be above 1.
-uint jackknife_transmittance(VolumeParams v, inout Walk w, inout Rng rng, inout Tally tally) {
+uint jackknife_transmittance(MediumParams v, inout Walk w, inout Rng rng, inout Tally tally) {
     if (march_is_over(w))
         return EVENT_LEFT;
     uvec4 words = next_words(rng);
@@ -15,7 +15,7 @@ uint jackknife_transmittance(VolumeParams v, inout Walk w, inout Rng rng, inout 
     return EVENT_MOVING;
 }
 
-Spectrum end_jackknife(VolumeParams v, Walk w) {
+Spectrum end_jackknife(MediumParams v, Walk w) {
     Spectrum first = analytic_transmittance(v, w.coarse);
     Spectrum second = analytic_transmittance(v, 2.0 * w.depth - w.coarse);
     return 2.0 * analytic_transmittance(v, w.depth) - 0.5 * (first + second);

@@ -1,5 +1,5 @@
 // Ray marching. Biased: exp of a sum that is only an estimate, too high by half its variance (Jensen).
-uint march_transmittance(VolumeParams v, inout Walk w, inout Rng rng, inout Tally tally) {
+uint march_transmittance(MediumParams v, inout Walk w, inout Rng rng, inout Tally tally) {
     if (march_is_over(w))
         return EVENT_LEFT;
     uvec4 words = next_words(rng);

@@ -1,4 +1,4 @@
 // Voxel by voxel: exact.
-uint regular_transmittance(VolumeParams v, inout Walk w, inout Tally tally) {
+uint regular_transmittance(MediumParams v, inout Walk w, inout Tally tally) {
     return voxel_step(v, true, w, tally);
 }

@@ -21,7 +21,7 @@ void refine_march(inout Walk w) {
     w.dt /= float(2u << w.level);
 }
 
-uint telescoping_transmittance(VolumeParams v, inout Walk w, inout Tally tally) {
+uint telescoping_transmittance(MediumParams v, inout Walk w, inout Tally tally) {
     if (march_is_over(w))
         return EVENT_LEFT;
     float sampled = w.dt * march_density(v, (float(w.index) + w.offset) * w.dt, vec3(0.5), w, tally);
@@ -34,7 +34,7 @@ uint telescoping_transmittance(VolumeParams v, inout Walk w, inout Tally tally) 
     return EVENT_MOVING;
 }
 
-Spectrum end_telescoping(VolumeParams v, Walk w) {
+Spectrum end_telescoping(MediumParams v, Walk w) {
     Spectrum sigma_t = v.sigma_t * to_spectrum(v.sigma_ratio);
     Spectrum difference = exp(-sigma_t * w.depth) - exp(-sigma_t * w.coarse);
     return exp(-sigma_t * w.base) + difference / telescoping_probability(w.level);

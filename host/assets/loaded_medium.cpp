@@ -1,4 +1,4 @@
-#include "loaded_volume.h"
+#include "loaded_medium.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -8,14 +8,9 @@
 #include "pilot_paths.h"
 #include "render_limits.h"
 #include "shared/estimators.h"
+#include "supported.h"
 
 namespace vkvol {
-
-const Volume* find_volume(const Scene& scene) {
-    if (scene.volumes.size() > 1)
-        throw InputError("a scene with several volumes is not rendered by this version; keep one");
-    return scene.volumes.empty() ? nullptr : &scene.volumes.front();
-}
 
 Rgb world_sigma_t(const Volume& volume, const DensityField* field) {
     const Rgb sigma_t = (volume.sigma_a + volume.sigma_s) * volume.density_scale;
@@ -48,7 +43,7 @@ DensityField load_field(const GridFile& file, FieldCache* kept) {
 }
 
 // A file without that grid, or one that holds no heat, does not glow: a warning, no error.
-void load_temperature(const Volume& volume, const GridFile& file, FieldCache* kept, LoadedVolume& loaded) {
+void load_temperature(const Volume& volume, const GridFile& file, FieldCache* kept, LoadedMedium& loaded) {
     const TemperatureEmission& emission = volume.temperature;
     if (emission.color * volume.sigma_a == Rgb(0.0))
         return;
@@ -83,13 +78,14 @@ bool leaps(const Method& method) {
     return method.flights_have(TRAIT_CELLS) && !method.shadow_rays_have(TRAIT_VOXELS | TRAIT_CONTROL);
 }
 
-PilotScene pilot_scene(const Scene& scene, const Method& method, const DensityField& field, double sigma_t) {
-    const Volume& volume = scene.volumes.front();
+PilotScene pilot_scene(const Scene& scene, const Volume& volume, const Method& method, const DensityField& field,
+                       double sigma_t) {
     const glm::dmat4 to_index = glm::inverse(field.index_to_world);
     PilotScene pilot;
     pilot.eye = to_index * glm::dvec4(scene.camera.position, 1.0);
     if (method.nee == NEE_COLLISIONS || method.nee == NEE_TENTATIVE)
-        pilot.light = glm::normalize(glm::dvec3(to_index * glm::dvec4(scene.lights.front().direction, 0.0)));
+        for (const DirectionalLight& light : scene.lights) // any of them will do
+            pilot.light = glm::normalize(glm::dvec3(to_index * glm::dvec4(light.direction, 0.0)));
     pilot.sigma_t = sigma_t;
     pilot.albedo = largest(volume.sigma_s) / std::max(largest(volume.sigma_a + volume.sigma_s), 1e-300);
     pilot.g = volume.g;
@@ -99,7 +95,7 @@ PilotScene pilot_scene(const Scene& scene, const Method& method, const DensityFi
 
 // The cells' bounds are scaled after the controls are made: these bound the density itself.
 void load_grid(const Scene& scene, const Volume& volume, const Method& method, const GridFile& file, FieldCache* kept,
-               LoadedVolume& loaded) {
+               LoadedMedium& loaded) {
     DensityField field = load_field(file, kept);
     if (field.active_voxels == 0)
         return;
@@ -109,7 +105,7 @@ void load_grid(const Scene& scene, const Volume& volume, const Method& method, c
                                               file.path.string(), file.grid, field.background));
     const double scale = scene.settings.majorant_scale;
     const double voxel_sigma_t = largest(world_sigma_t(volume, &field)) * field.voxel_size();
-    loaded.majorants = choose_majorant_grid(field, pilot_scene(scene, method, field, voxel_sigma_t * scale),
+    loaded.majorants = choose_majorant_grid(field, pilot_scene(scene, volume, method, field, voxel_sigma_t * scale),
                                             scene.settings.majorant_cell);
     const bool decomposes = method.flights_have(TRAIT_CONTROL);
     if (decomposes || method.shadow_rays_have(TRAIT_CONTROL))
@@ -123,7 +119,7 @@ void load_grid(const Scene& scene, const Volume& volume, const Method& method, c
 }
 
 void load_files(const Scene& scene, const Volume& volume, const Method& method, FieldCache* kept,
-                LoadedVolume& loaded) {
+                LoadedMedium& loaded) {
     if (const auto* file = std::get_if<GridFile>(&volume.shape))
         load_grid(scene, volume, method, *file, kept, loaded);
     if (const auto* files = std::get_if<MeshFiles>(&volume.shape)) {
@@ -139,30 +135,32 @@ void load_files(const Scene& scene, const Volume& volume, const Method& method, 
 
 } // namespace
 
-LoadedVolume load_volume(const Scene& scene, const Method& method, FieldCache* kept) {
-    LoadedVolume loaded;
-    const Volume* volume = find_volume(scene);
-    if (!volume)
-        return loaded;
-    try {
-        load_files(scene, *volume, method, kept, loaded);
-        check_limits(scene, loaded, method);
-    } catch (const InputError& error) { // of the file, say; the scene says who asked for it
-        if (volume->place.empty())
-            throw;
-        throw InputError(fmt::format("{}: {}", volume->place, error.what()));
+Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
+    check_supported(scene);
+    Assets assets;
+    for (const Volume& volume : scene.volumes) {
+        LoadedMedium& loaded = assets.media.emplace_back();
+        try {
+            load_files(scene, volume, method, kept, loaded);
+            check_limits(scene, volume, loaded, method);
+        } catch (const InputError& error) { // of the file, say; the scene says who asked for it
+            if (volume.place.empty())
+                throw;
+            throw InputError(fmt::format("{}: {}", volume.place, error.what()));
+        }
     }
-    return loaded;
+    return assets;
 }
 
-void keep_fields(FieldCache& kept, const Scene& scene, LoadedVolume volume) {
-    if (scene.volumes.empty() || !std::holds_alternative<GridFile>(scene.volumes.front().shape))
-        return;
-    const GridFile& file = std::get<GridFile>(scene.volumes.front().shape);
-    if (volume.field)
-        kept.keep(file, std::move(*volume.field));
-    if (volume.temperature)
-        kept.keep({file.path, scene.volumes.front().temperature.grid}, std::move(*volume.temperature));
+void keep_fields(FieldCache& kept, const Scene& scene, Assets assets) {
+    for (std::size_t i = 0; i < assets.media.size(); ++i) {
+        LoadedMedium& medium = assets.media[i];
+        const auto* file = std::get_if<GridFile>(&scene.volumes[i].shape);
+        if (file && medium.field)
+            kept.keep(*file, std::move(*medium.field));
+        if (file && medium.temperature)
+            kept.keep({file->path, scene.volumes[i].temperature.grid}, std::move(*medium.temperature));
+    }
 }
 
 } // namespace vkvol

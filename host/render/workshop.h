@@ -13,9 +13,9 @@
 
 namespace vkvol {
 
-class RenderSession {
+class Workshop {
 public:
-    explicit RenderSession(bool has_frames) : has_frames_(has_frames) {}
+    explicit Workshop(bool has_frames) : has_frames_(has_frames) {}
 
     // Whether what is read is worth its memory once a frame has it on the device.
     bool has_frames() const { return has_frames_; }

@@ -1,7 +1,8 @@
-// What a scene's medium is made of, read from its files.
+// What a scene's media are made of, read from their files.
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace vkvol {
 
 // A grid with its majorants, or a mesh. Empty for spheres, boxes, no
 // volume, or a grid without voxels.
-struct LoadedVolume {
+struct LoadedMedium {
     std::optional<DensityField> field;
     std::optional<MajorantGrid> majorants;
     std::vector<shared::ControlCell> controls; // per majorant cell, for the estimators that use them
@@ -27,14 +28,18 @@ struct LoadedVolume {
     std::vector<std::string> warnings; // what the scene asks for and its files do not hold
 };
 
-// Opens the files, if the scene has any. Throws InputError. `kept`: grids that need not be read again.
-LoadedVolume load_volume(const Scene& scene, const Method& method, FieldCache* kept = nullptr);
+// Of each of the scene's volumes, in their order.
+using Media = std::span<const LoadedMedium>;
+struct Assets {
+    std::vector<LoadedMedium> media;
+};
 
-// For the next load_volume, of what is on the device now.
-void keep_fields(FieldCache& kept, const Scene& scene, LoadedVolume volume);
+// Opens the files, if the scene has any. Throws InputError, also for what is not supported. `kept`: grids that need not
+// be read again.
+Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept = nullptr);
 
-// The scene's one volume, or null. Throws InputError for several.
-const Volume* find_volume(const Scene& scene);
+// For the next load_assets, of what is on the device now.
+void keep_fields(FieldCache& kept, const Scene& scene, Assets assets);
 
 // Extinction at density 1 [1 / world unit]. `field`: null but for grids.
 Rgb world_sigma_t(const Volume& volume, const DensityField* field);

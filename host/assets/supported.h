@@ -1,0 +1,11 @@
+// What can be read but not rendered by this version: decided here, and nowhere else.
+#pragma once
+
+#include "scene.h"
+
+namespace vkvol {
+
+// Throws InputError, in one line, for a scene of more media or lights than the kernels' tables have rows.
+void check_supported(const Scene& scene);
+
+} // namespace vkvol

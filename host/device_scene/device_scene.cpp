@@ -1,0 +1,52 @@
+#include "device_scene.h"
+
+#include "kernel_text.h"
+#include "scene_upload.h"
+
+namespace vkvol {
+
+DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& scene, const Method& method,
+                         const Assets& assets, Crop crop, std::uint32_t seed, std::uint64_t most_grid_bytes,
+                         std::uint64_t most_texel_bytes)
+    : device_(device), commands_(commands), specialization_(specialize(scene, assets.media, method)),
+      frame_(make_frame(scene, assets.media, method, crop, seed)),
+      buffers_(device, commands, assets.media, most_grid_bytes, most_texel_bytes),
+      chromatic_(vkvol::is_chromatic(scene)), text_(kernel_text(specialization_, assets.media, chromatic_)),
+      origin_(render_origin(scene, assets.media)) {
+    specialization_[SPEC_TEXELS] = buffers_.texels() ? 1 : 0;
+    text_ += buffers_.window_bits() ? ", grids in windows" : "";
+}
+
+void DeviceScene::set_queues(std::uint32_t slots, std::uint32_t queue_capacity) {
+    frame_.slots = slots;
+    frame_.queue_capacity = queue_capacity;
+}
+
+void DeviceScene::fill_light_cache(VkPipelineCache cache) {
+    if (specialization_[SPEC_NEE] != NEE_CACHED || specialization_[SPEC_SHAPE] == SHAPE_NONE)
+        return;
+    buffers_.set_frame(commands_, frame_);
+    light_cache_.emplace(device_, commands_, buffers_.bound(), frame_.lattice, specialization_, buffers_.window_bits(),
+                         cache);
+}
+
+void DeviceScene::set_first_row(std::uint32_t row) {
+    frame_.crop_y = row;
+    buffers_.set_frame(commands_, frame_);
+}
+
+BoundBuffers DeviceScene::bound() const {
+    BoundBuffers bound = buffers_.bound();
+    if (light_cache_) {
+        bound[BINDING_LATTICE] = &light_cache_->buffer();
+        if (buffers_.texels())
+            bound[BINDING_LATTICE_TEXELS] = &light_cache_->buffer();
+    }
+    return bound;
+}
+
+std::uint64_t DeviceScene::bytes() const {
+    return buffers_.bytes() + (light_cache_ ? light_cache_->buffer().bytes() : 0);
+}
+
+} // namespace vkvol

@@ -1,0 +1,50 @@
+// A scene on the device: its buffers, what its kernels are compiled for, and what is kept of it on the host.
+#pragma once
+
+#include <memory>
+
+#include "crop.h"
+#include "light_cache.h"
+#include "medium_outline.h"
+#include "scene_buffers.h"
+#include "specialization.h"
+
+namespace vkvol {
+
+class DeviceScene {
+public:
+    // Uploads `assets`. `most_grid_bytes`, `most_texel_bytes`: see SceneBuffers. Throws InputError for what cannot be
+    // rendered, and RenderError where the device is too small.
+    DeviceScene(const Device& device, Commands& commands, const Scene& scene, const Method& method,
+                const Assets& assets, Crop crop, std::uint32_t seed, std::uint64_t most_grid_bytes,
+                std::uint64_t most_texel_bytes);
+
+    // Before the frame goes to the device for the first time; fills the cache of light, if the method has one.
+    void set_queues(std::uint32_t slots, std::uint32_t queue_capacity);
+    void fill_light_cache(VkPipelineCache cache);
+    // The first row of the part of the picture that is rendered next.
+    void set_first_row(std::uint32_t row);
+
+    const shared::FrameParams& frame() const { return frame_; }
+    const Specialization& specialization() const { return specialization_; }
+    std::optional<std::uint32_t> window_bits() const { return buffers_.window_bits(); }
+    bool is_chromatic() const { return chromatic_; }
+    bool emits() const { return specialization_[SPEC_EMISSION] != EMISSION_NONE; }
+    const std::string& text() const { return text_; } // of its kernels
+    glm::dvec3 origin() const { return origin_; }     // of render space, in world space
+    BoundBuffers bound() const;
+    std::uint64_t bytes() const;
+
+private:
+    const Device& device_;
+    Commands& commands_;
+    Specialization specialization_;
+    shared::FrameParams frame_;
+    SceneBuffers buffers_;
+    std::optional<LightCache> light_cache_;
+    bool chromatic_;
+    std::string text_;
+    glm::dvec3 origin_;
+};
+
+} // namespace vkvol

@@ -1,0 +1,38 @@
+#include "kernel_text.h"
+
+#include <array>
+#include <fmt/format.h>
+
+#include "integrators.h"
+
+namespace vkvol {
+
+std::string kernel_text(const Specialization& s, Media media, bool chromatic) {
+    constexpr std::array shapes = {"no medium", "sphere", "box", "mesh"};
+    constexpr std::array types = {"float", "Fp4", "Fp8", "Fp16", "FpN"};
+    constexpr std::array filters = {"nearest", "trilinear", "stochastic"};
+    constexpr std::array scatterings = {", no scattering", ", single scattering", ""};
+    constexpr std::array emissions = {"", ", uniform emission", ", emission by temperature", ", black-body emission"};
+    const auto choice = [&](int axis, int id) { return axes()[std::size_t(axis)].names[std::size_t(id)]; };
+    if (s[SPEC_SHAPE] == SHAPE_NONE)
+        return shapes[SHAPE_NONE];
+    std::string text = shapes[s[SPEC_SHAPE]];
+    if (s[SPEC_FIELD] == FIELD_GRID)
+        text = fmt::format("grid {}, {} filter, majorant cells of {} voxels{}", types[s[SPEC_GRID_TYPE]],
+                           filters[s[SPEC_FILTER]], media.front().majorants->cell,
+                           s[SPEC_LEAPS] ? ", empty ones leapt" : "");
+    else
+        text = (s[SPEC_FIELD] == FIELD_NOISE ? "noise in a " : "homogeneous ") + text;
+    text += fmt::format("{}, {} flight", chromatic ? ", chromatic" : "", choice(1, s[SPEC_FREE_FLIGHT]));
+    text += scatterings[s[SPEC_SCATTERING]];
+    if (s[SPEC_NEE] != NEE_NONE)
+        text += fmt::format(", light at {} by {} transmittance",
+                            s[SPEC_NEE] == NEE_COLLISIONS ? "collisions"
+                            : s[SPEC_NEE] == NEE_CACHED   ? "collisions from a cache corrected"
+                                                          : "every step",
+                            choice(2, s[SPEC_TRANSMITTANCE]));
+    text += emissions[s[SPEC_EMISSION]];
+    return text + (s[SPEC_EMISSION_AT] == EMISSION_AT_STEPS ? " along flights" : "");
+}
+
+} // namespace vkvol

@@ -1,0 +1,338 @@
+#include "session.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <utility>
+
+#include "error.h"
+#include "estimator_traits.h"
+#include "pilot_paths.h"
+#include "scene_upload.h"
+#include "workshop.h"
+
+namespace vkvol {
+
+namespace {
+
+constexpr double patience = 5.0; // seconds, for paths that will not end
+
+void add_counts(RenderCounts& total, const shared::Counters& c) {
+    total.paths += c.paths;
+    total.real_collisions += c.real_collisions;
+    total.null_collisions += c.null_collisions;
+    total.lookups += c.lookups;
+    total.cells += c.cells;
+    total.shadow_rays += c.shadow_rays;
+    total.room += c.room;
+    total.steps += c.steps;
+    total.depth_caps += c.depth_caps;
+    total.step_caps += c.step_caps;
+    total.majorant_violations += c.majorant_violations;
+    total.non_finite += c.non_finite;
+    total.queue_overflows += c.queue_overflows;
+}
+
+// Tracking steps between two looks at what they led to, as suits the scene; 0: not known.
+std::uint32_t steps_per_look(const Specialization& s, const LoadedMedium& medium) {
+    const bool at_once = s[SPEC_FREE_FLIGHT] == FREE_FLIGHT_ANALYTIC && s[SPEC_TRANSMITTANCE] == TRANSMITTANCE_ANALYTIC;
+    if (at_once && s[SPEC_SHAPE] != SHAPE_MESH)
+        return 1;
+    const bool walks = flight_has(s[SPEC_FREE_FLIGHT], TRAIT_NULL) &&
+                       !transmittance_has(s[SPEC_TRANSMITTANCE], TRAIT_VOXELS | TRAIT_MARCH);
+    return walks && medium.majorants ? best_steps_per_look(medium.majorants->segment_steps) : 0;
+}
+
+} // namespace
+
+Session::Session(const Device& device, const Scene& scene, const RenderJob& job)
+    : scene_(with_preset(scene)), job_(job), method_(choose_method(scene_)), commands_(device) {
+    load(device, scene.warnings);
+    compile(device);
+    watch_.lap();
+}
+
+// Files, and all of them on the device.
+void Session::load(const Device& device, const std::vector<std::string>& authored_warnings) {
+    Stopwatch watch;
+    Assets assets = load_assets(scene_, method_, job_.workshop ? &job_.workshop->fields() : nullptr);
+    result_.load_seconds = watch.lap();
+    result_.warnings.assign(scene_.warnings.begin() + std::ptrdiff_t(authored_warnings.size()), scene_.warnings.end());
+    result_.warnings.insert(result_.warnings.end(), method_.warnings.begin(), method_.warnings.end());
+    bool has_colour = false; // fog, not fire
+    for (const LoadedMedium& medium : assets.media) {
+        result_.warnings.insert(result_.warnings.end(), medium.warnings.begin(), medium.warnings.end());
+        result_.counts.cleaned_voxels += medium.field ? medium.field->cleaned : 0;
+        has_colour = has_colour || (method_.material_colour && medium.mesh && medium.mesh->diffuse);
+    }
+    const Specialization specialization = specialize(scene_, assets.media, method_);
+    result_.plan = choose_plan(device, assets, specialization);
+    device_scene_.emplace(device, commands_, scene_, method_, assets, job_.crop, job_.seed,
+                          result_.plan.most_grid_bytes, result_.plan.most_texel_bytes);
+    bands_ = make_bands(device, commands_, job_.crop, result_.plan.most_film_bytes);
+    begin_identity(device, assets);
+    result_.glows = device_scene_->emits() && !has_colour;
+    result_.integrator = method_.integrator;
+    result_.biased = method_.biased;
+    result_.specialization = device_scene_->text();
+    result_.trace_origin = device_scene_->origin();
+    keep(std::move(assets));
+    result_.upload_seconds = watch.lap();
+}
+
+Plan Session::choose_plan(const Device& device, const Assets& assets, const Specialization& specialization) const {
+    LoopSizes loops;
+    Plan wish = job_.plan;
+    for (std::size_t i = 0; i < assets.media.size(); ++i) {
+        const Volume& volume = scene_.volumes[i];
+        loops.mesh = loops.mesh || assets.media[i].bvh;
+        loops.octaves = std::max(loops.octaves, volume.noise ? static_cast<std::uint32_t>(volume.noise->octaves) : 0u);
+        if (wish.steps == 0)
+            wish.steps = steps_per_look(specialization, assets.media[i]);
+    }
+    if (job_.resume) // its batch is gone on with, whatever this schedule would have made of it
+        wish.waiting = std::max(wish.waiting, job_.resume->batch);
+    Plan plan = make_plan(device, loops, wish);
+    for (const LoadedMedium& medium : assets.media)
+        if (medium.majorants) {
+            plan.majorant_cell = medium.majorants->cell;
+            plan.leaps = medium.majorants->leaps;
+        }
+    return plan;
+}
+
+// What the picture is explained by, and what further frames need.
+void Session::keep(Assets assets) {
+    for (std::size_t i = 0; i < assets.media.size(); ++i)
+        result_.outline = make_outline(scene_, scene_.volumes[i], assets.media[i], device_scene_->emits());
+    if (job_.workshop && job_.workshop->has_frames())
+        keep_fields(job_.workshop->fields(), scene_, std::move(assets));
+}
+
+void Session::compile(const Device& device) {
+    Stopwatch watch;
+    const Plan& plan = result_.plan;
+    // Counters of the sky, which are read once a batch, have 32 bits.
+    const std::uint64_t pixels = std::uint64_t{bands_.front().rows} * width();
+    most_batch_ = std::min<std::uint32_t>(plan.most_batch, std::max<std::uint64_t>((1ull << 31) / pixels, 1));
+    device_scene_->set_queues(plan.slots, queue_capacity(plan));
+    std::optional<PipelineCache> own_cache;
+    const PipelineCache& cache =
+        job_.workshop ? job_.workshop->pipelines(job_.disk_cache) : own_cache.emplace(device, job_.disk_cache);
+    device_scene_->fill_light_cache(cache.handle());
+    BoundBuffers bound = device_scene_->bound();
+    Specialization specialization = device_scene_->specialization();
+    if (job_.trace) {
+        trace_.emplace(device, commands_);
+        specialization[SPEC_TRACE] = 1;
+        bound[BINDING_TRACE] = &trace_->buffer();
+    }
+    wavefront_.emplace(device, bound, bands_.front().rows * width(), specialization,
+                       TrackVariant{device_scene_->is_chromatic(), device_scene_->window_bits()}, plan, cache.handle());
+    cache.save();
+    result_.device_bytes = device_scene_->bytes() + wavefront_->bytes();
+    for (const Band& band : bands_)
+        result_.device_bytes += band.film.bytes();
+    result_.pipeline_seconds = watch.lap();
+}
+
+// Runs batches of samples over all bands until the samples, the time or the user's patience is used up.
+void Session::render(std::uint32_t samples) {
+    wanted_ = samples;
+    if (next_ == 0) { // nothing was rendered yet
+        next_ = first_batch();
+        if (job_.resume)
+            resume(*job_.resume);
+    }
+    watch_.lap();
+    while (done_ < wanted_ && !stopping()) {
+        if (batch_ == 0)
+            batch_ = std::min(next_, wanted_ - done_);
+        const double begun = watch_.seconds();
+        while (band_ < bands_.size() && !stopped_)
+            run_band(bands_[band_]);
+        if (band_ == bands_.size()) {
+            next_ = next_batch(batch_, watch_.seconds() - begun);
+            done_ += std::exchange(batch_, 0);
+            band_ = 0;
+        }
+        report_noise();
+    }
+    if (job_.checkpoint && done_ < wanted_ && !gave_up_)
+        save_checkpoint();
+    result_.render_seconds += watch_.lap();
+    result_.samples = done_;
+}
+
+RenderResult& Session::result() {
+    if (!job_.dry_run)
+        develop_film();
+    if (trace_)
+        result_.trace = trace_->records(commands_);
+    return result_;
+}
+
+// A staged render has a path in each slot from the beginning.
+std::uint32_t Session::first_batch() const {
+    const std::uint64_t pixels = std::uint64_t{bands_.front().rows} * width();
+    const std::uint64_t wanted = result_.plan.schedule == Schedule::staged ? 8 * result_.plan.slots / pixels : 1;
+    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, 1, most_batch_));
+}
+
+// Long enough that its tail, when few paths are left in flight, matters little, and that lanes have many samples of
+// a pixel; short enough for the user.
+std::uint32_t Session::next_batch(std::uint32_t batch, double seconds) const {
+    if (seconds > 4.0)
+        return std::max(batch / 2, 1u);
+    return std::min(batch * (seconds < 0.1 ? 8 : seconds < 1.0 ? 2 : 1), most_batch_);
+}
+
+void Session::begin_identity(const Device& device, const Assets& assets) {
+    if (!job_.checkpoint && !job_.resume)
+        return;
+    std::vector<std::uint32_t> rows;
+    for (const Band& band : bands_)
+        rows.push_back(band.rows);
+    identity_ = identify(device_scene_->frame(), device_scene_->specialization(), assets, job_.sample_offset,
+                         fmt::format("{}, {}", device.info().name, device.info().driver), rows);
+    if (job_.resume)
+        check_identity(job_.resume->identity, identity_);
+}
+
+void Session::resume(const Checkpoint& from) {
+    if (from.done + from.batch > wanted_)
+        throw InputError(fmt::format("--resume: the checkpoint has {} samples per pixel already, more than the {} "
+                                     "asked for; ask for more with --spp",
+                                     from.done + from.batch, wanted_));
+    write_bands(commands_, bands_, width(), from.film);
+    done_ = from.done;
+    batch_ = from.batch;
+    band_ = from.band;
+    pixels_ = from.pixels;
+    result_.counts = from.counts;
+    result_.non_finite = from.non_finite;
+    result_.render_seconds = from.seconds;
+}
+
+void Session::save_checkpoint() {
+    Checkpoint checkpoint{identity_,
+                          done_,
+                          batch_,
+                          band_,
+                          pixels_,
+                          read_bands(commands_, bands_, width()),
+                          result_.counts,
+                          result_.non_finite,
+                          result_.render_seconds + watch_.seconds()};
+    job_.checkpoint(checkpoint);
+    checkpoint_at_ = watch_.seconds();
+}
+
+bool Session::checkpoint_due() const {
+    return job_.checkpoint && watch_.seconds() - checkpoint_at_ >= job_.checkpoint_seconds;
+}
+
+// Developing the film takes a while, so not more often than every few seconds.
+void Session::report_noise() {
+    if (!job_.progress || watch_.seconds() < next_noise_)
+        return;
+    next_noise_ = watch_.seconds() + 3.0;
+    develop_film();
+    job_.progress(done_, relative_noise(result_.film));
+}
+
+bool Session::stopping() {
+    if (job_.interrupted && job_.interrupted())
+        result_.interrupted = stopped_ = true;
+    else if (job_.time_limit && watch_.seconds() >= *job_.time_limit)
+        stopped_ = true;
+    return stopped_;
+}
+
+// Paths begun are finished, as a rule in no time; not if that takes a user's patience. What is missing from the
+// picture then is what is long.
+bool Session::out_of_patience() {
+    const double now = watch_.seconds();
+    stopped_at_ = stopped_at_.value_or(now);
+    if (now - *stopped_at_ < patience)
+        return false;
+    result_.counts.abandoned += wavefront_->in_flight();
+    return true;
+}
+
+void Session::begin_band(const Band& band) {
+    device_scene_->set_first_row(static_cast<std::uint32_t>(job_.crop.y0) + band.first_row);
+    wavefront_->bind_film(band.film);
+    const std::uint32_t begin = job_.sample_offset + done_;
+    if (pixels_)
+        wavefront_->begin_batch(begin, begin + batch_, *pixels_);
+    else
+        wavefront_->begin_batch(begin, begin + batch_, band.rows * width());
+}
+
+// The batch under way in one band, or what is left of it. Ends early if the render does, with what is then left in
+// pixels_. For a checkpoint it comes to rest in between: a path in flight is nothing that could be kept.
+void Session::run_band(const Band& band) {
+    if (stopping())
+        return;
+    if (checkpoint_due())
+        save_checkpoint();
+    begin_band(band);
+    for (bool resting = false; !resting;) {
+        resting = wavefront_->advance();
+        gather();
+        if (job_.progress)
+            job_.progress(progress_of(band), std::nullopt);
+        if (!resting && stopping()) {
+            wavefront_->stop_handing_out();
+            gave_up_ = resting = out_of_patience();
+        } else if (!resting && checkpoint_due()) {
+            wavefront_->stop_handing_out();
+        }
+    }
+    pixels_ = wavefront_->pixels_left();
+    if (pixels_->empty() && !gave_up_) {
+        pixels_.reset();
+        ++band_;
+    }
+}
+
+double Session::progress_of(const Band& band) const {
+    const double rows = band.first_row + band.rows * wavefront_->handed_out();
+    return done_ + batch_ * rows / (job_.crop.y1 - job_.crop.y0);
+}
+
+void Session::gather() {
+    const shared::Counters& counters = wavefront_->counters();
+    add_counts(result_.counts, counters);
+    const auto passes = wavefront_->passes();
+    result_.passes.resize(passes.size());
+    for (std::size_t pass = 0; pass < passes.size(); ++pass) {
+        result_.passes[pass].name = passes[pass].name;
+        result_.passes[pass].seconds += passes[pass].seconds;
+        result_.passes[pass].queued += passes[pass].queued;
+    }
+    result_.rounds += wavefront_->rounds();
+    for (std::uint32_t i = 0; i < std::min<std::uint32_t>(counters.non_finite_records, NON_FINITE_RECORDS); ++i) {
+        const std::uint32_t place = counters.non_finite_place[i];
+        if (result_.non_finite.size() < 16)
+            result_.non_finite.push_back(
+                {static_cast<int>(place & 0xffffu), static_cast<int>(place >> 16u), counters.non_finite_sample[i]});
+    }
+}
+
+void Session::develop_film() {
+    Film& film = result_.film;
+    film.picture_width = scene_.picture.width;
+    film.picture_height = scene_.picture.height;
+    film.crop = job_.crop;
+    develop(read_bands(commands_, bands_, width()), film);
+}
+
+RenderResult render(const Device& device, const Scene& scene, const RenderJob& job) {
+    Session session(device, scene, job);
+    if (!job.dry_run)
+        session.render(scene.settings.spp);
+    return std::move(session.result());
+}
+
+} // namespace vkvol

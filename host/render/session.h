@@ -1,0 +1,124 @@
+// From a scene to a film, samples as wanted: what the command line, the bench, a sequence and the tests hold. Nothing
+// is printed; what is wrong is thrown.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "checkpoint.h"
+#include "device.h"
+#include "device_scene.h"
+#include "film.h"
+#include "film_bands.h"
+#include "medium_outline.h"
+#include "scene.h"
+#include "stopwatch.h"
+#include "trace.h"
+#include "wavefront.h"
+
+namespace vkvol {
+
+class Workshop;
+
+struct RenderJob {
+    Crop crop; // the part of the picture to render
+    std::uint32_t seed = 0;
+    std::uint32_t sample_offset = 0;   // number of the first sample
+    std::optional<double> time_limit;  // seconds of rendering; the batch then under way is cut short
+    bool disk_cache = true;            // keep compiled pipelines between runs
+    Plan plan;                         // what of it is chosen wins
+    std::function<bool()> interrupted; // asked between submits; true ends the render early
+    // After each submit: samples per pixel finished, as a real number; and, now and then, the picture's relative
+    // standard error.
+    std::function<void(double, std::optional<double>)> progress;
+    // Called every so many seconds, and at the end of a render that was ended early.
+    double checkpoint_seconds = 0.0;
+    std::function<void(const Checkpoint&)> checkpoint;
+    const Checkpoint* resume = nullptr; // goes on from there
+    bool trace = false;                 // record the vertices of the path; crop and samples leave just one
+    Workshop* workshop = nullptr;       // whose grids and pipelines are used, and kept for further frames
+    bool dry_run = false;               // set up everything, and render nothing
+};
+
+struct RenderResult {
+    Film film;
+    RenderCounts counts;
+    std::vector<NonFiniteSample> non_finite; // the first few
+    std::vector<std::string> warnings;       // what the scene asks for and its files do not hold
+    std::string integrator;
+    bool glows = false;         // the medium does, by <medium> or <emission>
+    std::string biased;         // why its mean is not exact; empty: it is
+    std::string specialization; // in words: what the kernels were compiled for
+    Plan plan;
+    std::vector<PassFigures> passes;
+    std::uint64_t rounds = 0; // of all passes but the sky
+    double load_seconds = 0, upload_seconds = 0, pipeline_seconds = 0, render_seconds = 0;
+    std::uint64_t device_bytes = 0;         // of all buffers
+    MediumOutline outline;                  // to explain the picture by
+    std::vector<shared::TraceRecord> trace; // positions relative to trace_origin
+    glm::dvec3 trace_origin{0.0};           // world space
+    std::uint32_t samples = 0;              // per pixel, finished for every pixel
+    bool interrupted = false;               // ended before the samples asked for, by a signal
+};
+
+class Session {
+public:
+    // Reads the scene's files, uploads them and compiles the kernels. `job` outlives the session. Throws InputError for
+    // what cannot be rendered, and RenderError where the device fails.
+    Session(const Device& device, const Scene& scene, const RenderJob& job);
+
+    // Until every pixel has `samples` in all, or the job ends it before. May be called again, for more.
+    void render(std::uint32_t samples);
+
+    // With the film as it is now. May be moved from by who renders no more.
+    RenderResult& result();
+
+private:
+    std::uint32_t width() const { return static_cast<std::uint32_t>(job_.crop.x1 - job_.crop.x0); }
+    void load(const Device& device, const std::vector<std::string>& authored_warnings);
+    Plan choose_plan(const Device& device, const Assets& assets, const Specialization& specialization) const;
+    void keep(Assets assets);
+    void compile(const Device& device);
+    std::uint32_t first_batch() const;
+    std::uint32_t next_batch(std::uint32_t batch, double seconds) const;
+    void begin_identity(const Device& device, const Assets& assets);
+    void resume(const Checkpoint& from);
+    void save_checkpoint();
+    bool checkpoint_due() const;
+    void report_noise();
+    bool stopping();
+    bool out_of_patience();
+    void begin_band(const Band& band);
+    void run_band(const Band& band);
+    double progress_of(const Band& band) const;
+    void gather();
+    void develop_film();
+
+    const Scene scene_; // as its integrator sees it
+    const RenderJob& job_;
+    const Method method_;
+    Commands commands_;
+    std::optional<DeviceScene> device_scene_;
+    std::vector<Band> bands_;
+    std::optional<TraceBuffer> trace_;
+    std::optional<Wavefront> wavefront_;
+    RenderIdentity identity_; // only for checkpoints
+    RenderResult result_;
+
+    // Where the render is; see Checkpoint.
+    std::uint32_t wanted_ = 0, done_ = 0, batch_ = 0, band_ = 0, next_ = 0;
+    std::optional<std::vector<std::uint32_t>> pixels_;
+
+    std::uint32_t most_batch_ = 1;
+    Stopwatch watch_;
+    double next_noise_ = 3.0;
+    double checkpoint_at_ = 0.0; // the last one
+    bool stopped_ = false;
+    bool gave_up_ = false; // paths were left in flight
+    std::optional<double> stopped_at_;
+};
+
+// All of the scene's samples.
+RenderResult render(const Device& device, const Scene& scene, const RenderJob& job);
+
+} // namespace vkvol
