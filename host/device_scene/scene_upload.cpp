@@ -223,6 +223,7 @@ namespace {
 void specialize_medium(const Volume& volume, const LoadedMedium& loaded, const Method& method,
                        Specialization& constants) {
     constants[SPEC_SHAPE] = shape_kind(volume, loaded);
+    constants[SPEC_PHASE] = static_cast<int>(volume.phase);
     constants[SPEC_GRID_TYPE] = loaded.field ? loaded.field->type : GRID_FLOAT;
     constants[SPEC_TEMPERATURE_TYPE] = loaded.temperature ? loaded.temperature->type : GRID_FLOAT;
     if (constants[SPEC_SHAPE] != SHAPE_NONE)

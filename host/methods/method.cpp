@@ -289,9 +289,11 @@ Scene with_preset(Scene scene) {
     for (Volume& volume : scene.volumes) {
         if (adjusts(adjust_no_scattering) && scattering == SCATTERING_NONE)
             volume.sigma_s = Rgb(0.0);
-        if (adjusts(adjust_isotropic) && volume.g != 0.0) {
-            warn("scatters isotropically and leaves heyneygreenstein_g out; homogeneousRayMarcherImproved honours it");
+        if (adjusts(adjust_isotropic) && (volume.g != 0.0 || volume.phase != PhaseFunction::henyey_greenstein)) {
+            warn("scatters isotropically and leaves heyneygreenstein_g and phase out; homogeneousRayMarcherImproved "
+                 "honours them");
             volume.g = 0.0;
+            volume.phase = PhaseFunction::henyey_greenstein;
         }
         if (adjusts(adjust_default_noise) && !volume.noise) {
             if (std::holds_alternative<GridFile>(volume.shape))

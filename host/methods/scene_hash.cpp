@@ -72,6 +72,8 @@ void add_volume(Writer& writer, const Volume& volume) {
     writer.add("sigma_s", volume.sigma_s);
     writer.add("density_scale", volume.density_scale);
     writer.add("g", volume.g);
+    if (volume.phase != PhaseFunction::henyey_greenstein)
+        writer.add("phase", static_cast<int>(volume.phase));
     writer.add("Le", volume.Le);
     const TemperatureEmission& emission = volume.temperature;
     writer.add("emission", emission.color);

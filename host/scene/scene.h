@@ -89,6 +89,9 @@ struct Noise {
     double lacunarity = 2.0; // >= 1
 };
 
+// As PHASE_... of shaders/shared/constants.h.
+enum class PhaseFunction { henyey_greenstein, rayleigh };
+
 // A participating medium filling a shape. Coefficients multiply the density: that of the grid, of the noise, or 1.
 struct Volume {
     std::variant<Sphere, Box, MeshFiles, GridFile> shape;
@@ -98,9 +101,10 @@ struct Volume {
     Rgb sigma_s{0.5};                              // scattering, >= 0 [1/unit]
     CoefficientUnit unit = CoefficientUnit::voxel; // without meaning but for grids: else always world
     double density_scale = 1.0;                    // >= 0, multiplies the density
-    double g = 0.0;                                // Henyey-Greenstein mean cosine, in (-1, 1), + is forward
-    Rgb Le{0.0};                                   // radiance emitted per absorption event: emission is sigma_a * Le
-    TemperatureEmission temperature;               // adds to Le
+    PhaseFunction phase = PhaseFunction::henyey_greenstein;
+    double g = 0.0;                  // Henyey-Greenstein mean cosine, in (-1, 1), + is forward
+    Rgb Le{0.0};                     // radiance emitted per absorption event: emission is sigma_a * Le
+    TemperatureEmission temperature; // adds to Le
 };
 
 struct DirectionalLight {

@@ -12,7 +12,7 @@ namespace vkvol {
 namespace {
 
 const std::vector<std::string> vocabulary = {
-    "densityField", "sphere", "box", "models", "noise", "sigma_a", "sigma_s", "heyneygreenstein_g", "medium",
+    "densityField", "sphere", "box", "models", "noise", "sigma_a", "sigma_s", "heyneygreenstein_g", "phase", "medium",
     "emission", "light", "backgroundColor", "camera", "width", "height", "rayPerPixelCount", "maxDepth", "integrator",
     "march", "filter", "russianRoulette", "majorant", "lightRayDensityMultiplier", "shadowRayDensityMultiplier",
     "stepSize", "importanceSampling", "fileName", "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds",

@@ -51,6 +51,7 @@ private:
     std::optional<Noise> noise(bool is_grid) const;
     Rgb coefficient(const char* name, const Rgb& fallback) const;
     void read_coefficients(Volume& volume) const;
+    void read_phase(Volume& volume, const XmlElement& g) const;
     void check_extinction(const Volume& volume) const;
     TemperatureEmission temperature_emission(bool is_grid) const;
     CoefficientUnit unit(const XmlElement& sigma_a, const XmlElement& sigma_s, bool is_grid) const;

@@ -25,6 +25,7 @@ layout(constant_id = SPEC_STEPS) const int STEPS = 1;
 layout(constant_id = SPEC_TRACE) const int TRACE = 0;
 layout(constant_id = SPEC_TEXELS) const int TEXELS = 0;
 layout(constant_id = SPEC_LEAPS) const int LEAPS = 0;
+layout(constant_id = SPEC_PHASE) const int PHASE = PHASE_HENYEY_GREENSTEIN;
 
 const int FLIGHT_TRAITS = FREE_FLIGHT_TRAITS(FREE_FLIGHT);
 const int SHADOW_TRAITS = TRANSMITTANCE_TRAITS(TRANSMITTANCE);

@@ -6,7 +6,7 @@
 #include "lib/spectrum.glsl"
 
 vec3 sun_contribution(MediumParams v, LightParams light, vec3 direction, Spectrum beta) {
-    return beta * hg_eval(v.g, hg_from_peak(v.g, direction, light.direction)) * light.radiance;
+    return beta * phase_eval(v, direction, light.direction) * light.radiance;
 }
 
 #endif

@@ -27,15 +27,14 @@ float looking_chance(float share, Spectrum T) {
 }
 
 // A control variate for the direction in which a path departs: what a collision at its end would scatter towards the path, less
-// what that is on average over directions, per unit of throughput and irradiance. The average is known: phase functions
-// of Henyey and Greenstein are closed under convolution, asymmetries multiply, so p_g(after, light) is p_g^2(before,
-// light) on average. Hence this may be subtracted with any factor that was known before. A good one is the
+// what that is on average over directions, per unit of throughput and irradiance. The average is known: see
+// phase_eval_twice. Hence this may be subtracted with any factor that was known before. A good one is the
 // transmittance expected there, which for a flight towards the light, through an optical depth tau, is the integral of
 // exp(-t) exp(-(tau - t)): tau exp(-tau). `T`: of the cache, where the path departs.
 Spectrum foreseen_light(MediumParams v, Spectrum T, vec3 before, vec3 after) {
     Spectrum factor = -T * log(max(T, to_spectrum(vec3(1.0e-30)))) * to_spectrum(v.albedo);
-    float average = hg_eval(v.g * v.g, hg_from_peak(v.g * v.g, before, frame.lights[LIGHT_SUN].direction));
-    return factor * (hg_eval(v.g, hg_from_peak(v.g, after, frame.lights[LIGHT_SUN].direction)) - average);
+    float average = phase_eval_twice(v, before, frame.lights[LIGHT_SUN].direction);
+    return factor * (phase_eval(v, after, frame.lights[LIGHT_SUN].direction) - average);
 }
 
 #endif

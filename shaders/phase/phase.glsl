@@ -1,59 +1,39 @@
-// Henyey-Greenstein phase function. mu is the cosine between *propagation* directions, before and after:
-// g > 0 scatters forward, mu near 1. All functions work with the distance from the peak, 1 - mu for g >= 0 and 1 + mu
-// for g < 0, which keeps its digits where the function is steep.
+// Phase functions: one file each, one switch. `before` and `after`: directions of propagation, unit.
 #ifndef PHASE_GLSL
 #define PHASE_GLSL
+#include "lib/buffers.glsl"
+#include "phase/henyey_greenstein.glsl"
+#include "phase/rayleigh.glsl"
 
-const float INV_4PI = 0.07957747154594767;
-
-// The distance from the peak. |a - b|^2 / 2 is 1 - a.b for unit vectors, with all digits where they nearly agree.
-float hg_from_peak(float g, vec3 before, vec3 after) {
-    vec3 apart = g < 0.0 ? before + after : before - after;
-    return 0.5 * dot(apart, apart);
+// Per steradian; integrates to 1 over `after`.
+float phase_eval(MediumParams v, vec3 before, vec3 after) {
+    switch (PHASE) {
+    case PHASE_RAYLEIGH:
+        return rayleigh_eval(dot(before, after));
+    default:
+        return hg_eval(v.g, hg_from_peak(v.g, before, after));
+    }
 }
 
-// Per steradian; integrates to 1 over the sphere. (1 - |g|)^2 + 2 |g| x is 1 + g^2 - 2 g mu without cancellation.
-float hg_eval(float g, float from_peak) {
-    float a = abs(g);
-    float d = (1.0 - a) * (1.0 - a) + 2.0 * a * from_peak;
-    return INV_4PI * (1.0 - a) * (1.0 + a) / (d * sqrt(d));
+// After two scatterings: the mean of phase_eval(drawn, after) over what phase_sample draws from `before`. Henyey and
+// Greenstein's functions are closed under convolution, asymmetries multiply.
+float phase_eval_twice(MediumParams v, vec3 before, vec3 after) {
+    switch (PHASE) {
+    case PHASE_RAYLEIGH:
+        return rayleigh_eval_twice(dot(before, after));
+    default:
+        return hg_eval(v.g * v.g, hg_from_peak(v.g * v.g, before, after));
+    }
 }
 
-// The distance from the peak, in [0, 2], distributed as hg_eval, for u in [0, 1); mu rises with u. With a = |g|,
-// s = 2u - 1 (1 - 2u for g < 0) and q = 1 + a s the inverse of the cumulative distribution is
-// (1 - a)^2 + 2 a x = (1 - a^2)^2 / q^2. Solved for x, using (1 + a)^2 - q^2 = a (1 - s) (2 + a (1 + s)), the division
-// by a cancels: nothing special happens at g = 0.
-float hg_sample_from_peak(float g, float u) {
-    float a = abs(g);
-    float s_rest = g < 0.0 ? 2.0 * u : 2.0 * (1.0 - u); // 1 - s
-    float q = 1.0 + a * (1.0 - s_rest);
-    float value = (1.0 - a) * (1.0 - a) * s_rest * (2.0 + a * (2.0 - s_rest)) / (2.0 * q * q);
-    return clamp(value, 0.0, 2.0);
-}
-
-// Two unit vectors that complete `n` to a right-handed frame (Duff et al., "Building an Orthonormal Basis,
-// Revisited", 2017); continuous but at one pole, where the sign keeps it finite.
-void build_frame(vec3 n, out vec3 tangent, out vec3 bitangent) {
-    float sign_z = n.z >= 0.0 ? 1.0 : -1.0;
-    float a = -1.0 / (sign_z + n.z);
-    float b = n.x * n.y * a;
-    tangent = vec3(1.0 + sign_z * n.x * n.x * a, sign_z * b, -sign_z * n.x);
-    bitangent = vec3(b, sign_z + n.y * n.y * a, -n.y);
-}
-
-// New unit direction of travel; u in [0, 1)^2.
-vec3 hg_sample(float g, vec3 direction, vec2 u) {
-    float from_peak = hg_sample_from_peak(g, u.x);
-    float sine = sqrt(from_peak * (2.0 - from_peak));
-    // The azimuth 2 pi u.y. Vulkan asks little of cos and sin, 2^-11, and that within [-pi, pi] only: from half a turn
-    // back, and of unit length, so that the polar angle keeps its digits.
-    float phi = 6.283185307179586 * (u.y - 0.5);
-    vec2 around = -normalize(vec2(cos(phi), sin(phi)));
-    vec3 peak = g < 0.0 ? -direction : direction;
-    vec3 tangent, bitangent;
-    build_frame(peak, tangent, bitangent);
-    vec3 turned = peak * (1.0 - from_peak) + (tangent * around.x + bitangent * around.y) * sine;
-    return normalize(turned);
+// A direction distributed as phase_eval; u in [0, 1)^2.
+vec3 phase_sample(MediumParams v, vec3 before, vec2 u) {
+    switch (PHASE) {
+    case PHASE_RAYLEIGH:
+        return turned(before, 1.0 - rayleigh_sample_cosine(u.x), u.y);
+    default:
+        return hg_sample(v.g, before, u);
+    }
 }
 
 #endif

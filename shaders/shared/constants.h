@@ -59,7 +59,8 @@
 #define SPEC_TRACE 13            // 1: vertices are recorded, of the one path there is
 #define SPEC_TEXELS 14           // 1: grids, their tables and lattices are read as texels
 #define SPEC_LEAPS 15            // 1: walks pass empty majorant cells together
-#define SPEC_COUNT 16
+#define SPEC_PHASE 16
+#define SPEC_COUNT 17
 
 #define SHAPE_NONE 0 // background only
 #define SHAPE_SPHERE 1
@@ -88,6 +89,10 @@
 #define NEE_COLLISIONS 1 // at real collisions
 #define NEE_TENTATIVE 2  // at every tentative collision, weighted by sigma_t / sigma_maj
 #define NEE_CACHED 3     // at real collisions, by chance: they correct a cached transmittance
+
+// As numbered in the scene: vkvol::PhaseFunction.
+#define PHASE_HENYEY_GREENSTEIN 0
+#define PHASE_RAYLEIGH 1
 
 #define EMISSION_NONE 0
 #define EMISSION_CONSTANT 1

@@ -16,7 +16,7 @@ void gather_light(MediumParams v, vec3 position, Spectrum lit, uint next, inout 
         lane.todo = TODO_LOOK;
         if (NEE == NEE_CACHED) {
             lane.cached = cached_transmittance(v, position);
-            Spectrum scattered = lit * hg_eval(v.g, hg_from_peak(v.g, lane.path.direction, frame.lights[LIGHT_SUN].direction));
+            Spectrum scattered = lit * phase_eval(v, lane.path.direction, frame.lights[LIGHT_SUN].direction);
             lane.path.radiance += scattered * lane.cached * frame.lights[LIGHT_SUN].radiance;
             lane.chance = looking_chance(largest(scattered) / INV_4PI, lane.cached);
             lane.todo = to_uniform(next_words(rng)).x < lane.chance ? TODO_LOOK : next;

@@ -26,7 +26,7 @@ uvec4 first_words(bool looks, inout Rng rng) {
 // Scatters, or ends by roulette.
 void scatter(MediumParams v, vec4 u, inout Lane lane) {
     vec3 before = lane.path.direction;
-    lane.path.direction = hg_sample(v.g, before, u.yz);
+    lane.path.direction = phase_sample(v, before, u.yz);
     lane.todo = survives(lane.beta, u.w) ? TODO_FLY : TODO_END;
     if (LOOKS && NEE == NEE_CACHED && lane.path.depth < frame.max_depth)
         lane.path.radiance -= lane.beta * frame.lights[LIGHT_SUN].radiance *

@@ -1,5 +1,7 @@
 #include "medium.h"
 
+#include "phase.h"
+
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
@@ -20,6 +22,7 @@ Medium with_shape(Shape shape, const vkvol::Volume& volume, std::optional<vkvol:
     for (int i = 0; i < 3; ++i)
         medium.albedo[i] = sigma_t[i] > 0.0 ? volume.sigma_s[i] / sigma_t[i] : 0.0;
     medium.g = volume.g;
+    medium.phase = volume.phase;
     medium.emission.constant = volume.Le;
     medium.filter = filter.value_or(vkvol::Filter::trilinear);
     if (const Grid* grid = medium.grid()) {
@@ -78,6 +81,19 @@ std::vector<Interval> support(const Medium& medium, const Ray& ray) {
         if (const Interval clipped = clip(part, {0.0, std::numeric_limits<double>::infinity()}); !clipped.empty())
             ahead.push_back(clipped);
     return ahead;
+}
+
+double phase_eval(const Medium& medium, double mu) {
+    return medium.phase == vkvol::PhaseFunction::rayleigh ? rayleigh_eval(mu) : hg_eval(medium.g, mu);
+}
+
+double phase_eval_twice(const Medium& medium, double mu) {
+    return medium.phase == vkvol::PhaseFunction::rayleigh ? rayleigh_eval_twice(mu) : hg_eval(medium.g * medium.g, mu);
+}
+
+glm::dvec3 phase_sample(const Medium& medium, const glm::dvec3& direction, double u, double v) {
+    const bool rayleigh = medium.phase == vkvol::PhaseFunction::rayleigh;
+    return turned(direction, rayleigh ? rayleigh_sample_cosine(u) : hg_sample_cosine(medium.g, u), v);
 }
 
 } // namespace reference

@@ -16,6 +16,7 @@ struct Medium {
     std::optional<vkvol::Noise> noise; // the density, but for grids; none: 1
     vkvol::Rgb sigma_t{0.0};           // extinction at density 1 [1/world unit], density_scale included
     vkvol::Rgb albedo{0.0};
+    vkvol::PhaseFunction phase = vkvol::PhaseFunction::henyey_greenstein;
     double g = 0.0;
     Emission emission;
     vkvol::Filter filter = vkvol::Filter::trilinear;
@@ -28,6 +29,11 @@ struct Medium {
     double largest() const; // of sigma_t's channels
     bool grey() const { return sigma_t == vkvol::Rgb(sigma_t.x); }
 };
+
+// The medium's phase function [1/sr], that of two scatterings, and a direction drawn from it.
+double phase_eval(const Medium& medium, double mu);
+double phase_eval_twice(const Medium& medium, double mu);
+glm::dvec3 phase_sample(const Medium& medium, const glm::dvec3& direction, double u, double v);
 
 // `stochastic` filtering has the expectation of trilinear, and is taken as trilinear, as is none.
 Medium load(const vkvol::Volume& volume, std::optional<vkvol::Filter> filter = {});

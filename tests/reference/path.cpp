@@ -23,7 +23,7 @@ Rgb direct_light(const World& world, const glm::dvec3& p, const glm::dvec3& trav
         const double mu = glm::dot(light.direction, travel);
         const Rgb T =
             estimate_transmittance(medium, world.method.transmittance, {p, light.direction}, world.method.march, rng);
-        Ld += hg_eval(medium.g, mu) * T * light.irradiance;
+        Ld += phase_eval(medium, mu) * T * light.irradiance;
     }
     return Ld;
 }
@@ -113,7 +113,7 @@ Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng
             beta *= settings.roulette_threshold / m;
         }
         const glm::dvec3 before = ray.direction;
-        ray.direction = hg_sample(medium.g, before, draw.y(), draw.z());
+        ray.direction = phase_sample(medium, before, draw.y(), draw.z());
         const bool next_is_lit = !settings.max_depth || depth + 1 < *settings.max_depth;
         if (method.nee == NEE_CACHED && next_is_lit)
             L -= beta * foreseen_light(world, ray.origin, before, ray.direction);

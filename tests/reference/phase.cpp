@@ -27,8 +27,29 @@ double hg_sample_cosine(double g, double u) {
     return std::clamp(numerator / denominator, -1.0, 1.0);
 }
 
+double rayleigh_eval(double mu) {
+    return 3.0 / (16.0 * pi) * (1.0 + mu * mu);
+}
+
+// By the addition theorem, Legendre moments multiply: sum of (2l + 1) f_l^2 P_l / 4 pi with f_0 = 1, f_2 = 1 / 10.
+double rayleigh_eval_twice(double mu) {
+    return (1.0 + 5.0 * 0.1 * 0.1 * (3.0 * mu * mu - 1.0) / 2.0) / (4.0 * pi);
+}
+
+double rayleigh_sample_cosine(double u) {
+    double low = -1.0, high = 1.0;
+    for (int i = 0; i < 60; ++i) {
+        const double mu = 0.5 * (low + high);
+        ((mu * mu * mu + 3.0 * mu + 4.0) / 8.0 < u ? low : high) = mu;
+    }
+    return 0.5 * (low + high);
+}
+
 glm::dvec3 hg_sample(double g, const glm::dvec3& direction, double u, double v) {
-    const double mu = hg_sample_cosine(g, u);
+    return turned(direction, hg_sample_cosine(g, u), v);
+}
+
+glm::dvec3 turned(const glm::dvec3& direction, double mu, double v) {
     const double sine = std::sqrt(std::max(0.0, 1.0 - mu * mu));
     const double phi = 2.0 * pi * v;
 

@@ -1,5 +1,5 @@
-// Henyey-Greenstein phase function. mu is the cosine between the directions of propagation before and after the
-// scattering, so that g > 0 scatters forward and g = E[mu].
+// Phase functions. mu is the cosine between the directions of propagation before and after the
+// scattering, so that Henyey and Greenstein's g > 0 scatters forward and g = E[mu].
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,5 +13,14 @@ double hg_sample_cosine(double g, double u); // inverse of the distribution func
 
 // The new direction of propagation.
 glm::dvec3 hg_sample(double g, const glm::dvec3& direction, double u, double v);
+
+// Rayleigh's, after one and after two scatterings [1/sr]; and the inverse of its distribution function, found by
+// halving.
+double rayleigh_eval(double mu);
+double rayleigh_eval_twice(double mu);
+double rayleigh_sample_cosine(double u);
+
+// The direction of cosine mu to `direction` and azimuth 2 pi v.
+glm::dvec3 turned(const glm::dvec3& direction, double mu, double v);
 
 } // namespace reference

@@ -131,7 +131,7 @@ Rgb single_scattering_quadrature(const Medium& medium, const vkvol::DirectionalL
             return chromatic_transmittance(medium, {ray.at(t), light.direction});
         });
     const double mu = glm::dot(light.direction, ray.direction);
-    return medium.albedo * hg_eval(medium.g, mu) * integral * light.irradiance;
+    return medium.albedo * phase_eval(medium, mu) * integral * light.irradiance;
 }
 
 Rgb unscattered_quadrature(const Medium& medium, const Rgb& background, const Ray& ray, int panels) {

@@ -28,7 +28,7 @@ Rgb cached_light(const World& world, const glm::dvec3& p, const glm::dvec3& trav
     Rgb Ld(0.0);
     for (const vkvol::DirectionalLight& light : world.scene.lights) {
         const Ray ray{p, light.direction};
-        const double phase = hg_eval(medium.g, glm::dot(light.direction, travel));
+        const double phase = phase_eval(medium, glm::dot(light.direction, travel));
         const Rgb known = rough_transmittance(medium, ray);
         Ld += phase * known * light.irradiance;
         const double share = 4.0 * std::numbers::pi * phase * std::max({beta.x, beta.y, beta.z});
@@ -47,8 +47,8 @@ Rgb foreseen_light(const World& world, const glm::dvec3& p, const glm::dvec3& be
     Rgb foreseen(0.0);
     for (const vkvol::DirectionalLight& light : world.scene.lights) {
         const Rgb T = rough_transmittance(medium, {p, light.direction});
-        const double drawn = hg_eval(medium.g, glm::dot(light.direction, after));
-        const double average = hg_eval(medium.g * medium.g, glm::dot(light.direction, before));
+        const double drawn = phase_eval(medium, glm::dot(light.direction, after));
+        const double average = phase_eval_twice(medium, glm::dot(light.direction, before));
         for (int c = 0; c < 3; ++c)
             if (T[c] > 0.0)
                 foreseen[c] -= T[c] * std::log(T[c]) * (drawn - average) * medium.albedo[c] * light.irradiance[c];

@@ -80,8 +80,10 @@ void check(const Method& method, const Medium& medium) {
 } // namespace
 
 vkvol::Volume preset_volume(const std::string& integrator, vkvol::Volume volume) {
-    if (integrator == "homogeneousRayMarcherNEE")
+    if (integrator == "homogeneousRayMarcherNEE") {
         volume.g = 0.0;
+        volume.phase = vkvol::PhaseFunction::henyey_greenstein;
+    }
     if (integrator == "heterogeneousPerlinNoise" && !volume.noise)
         volume.noise = vkvol::Noise{};
     if (integrator == "nanoVDBSimple") {

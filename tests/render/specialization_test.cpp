@@ -5,10 +5,10 @@
 #include <set>
 #include <span>
 
-#include "shared/items.h"
-#include "specialization.h"
 #include "fused.spv.h"
 #include "fused_chromatic.spv.h"
+#include "shared/items.h"
+#include "specialization.h"
 
 using namespace vkvol;
 

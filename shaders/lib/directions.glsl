@@ -1,0 +1,29 @@
+// Directions about others.
+#ifndef DIRECTIONS_GLSL
+#define DIRECTIONS_GLSL
+
+const float INV_4PI = 0.07957747154594767;
+
+// Two unit vectors that complete `n` to a right-handed frame (Duff et al., "Building an Orthonormal Basis,
+// Revisited", 2017); continuous but at one pole, where the sign keeps it finite.
+void build_frame(vec3 n, out vec3 tangent, out vec3 bitangent) {
+    float sign_z = n.z >= 0.0 ? 1.0 : -1.0;
+    float a = -1.0 / (sign_z + n.z);
+    float b = n.x * n.y * a;
+    tangent = vec3(1.0 + sign_z * n.x * n.x * a, sign_z * b, -sign_z * n.x);
+    bitangent = vec3(b, sign_z + n.y * n.y * a, -n.y);
+}
+
+// The unit direction of cosine 1 - from_peak to `peak`, from_peak in [0, 2], and of azimuth 2 pi u, u in [0, 1).
+vec3 turned(vec3 peak, float from_peak, float u) {
+    float sine = sqrt(from_peak * (2.0 - from_peak));
+    // Vulkan asks little of cos and sin, 2^-11, and that within [-pi, pi] only: from half a turn back, and of unit
+    // length, so that the polar angle keeps its digits.
+    float phi = 6.283185307179586 * (u - 0.5);
+    vec2 around = -normalize(vec2(cos(phi), sin(phi)));
+    vec3 tangent, bitangent;
+    build_frame(peak, tangent, bitangent);
+    return normalize(peak * (1.0 - from_peak) + (tangent * around.x + bitangent * around.y) * sine);
+}
+
+#endif
