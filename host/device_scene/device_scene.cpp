@@ -22,12 +22,21 @@ void DeviceScene::set_queues(std::uint32_t slots, std::uint32_t queue_capacity) 
     frame_.queue_capacity = queue_capacity;
 }
 
-void DeviceScene::fill_light_cache(VkPipelineCache cache) {
+void DeviceScene::make_light_cache() {
     if (specialization_[SPEC_NEE] != NEE_CACHED || specialization_[SPEC_SHAPE] == SHAPE_NONE)
         return;
     buffers_.set_frame(commands_, frame_);
-    light_cache_.emplace(device_, commands_, buffers_.bound(), frame_.lattice, specialization_, buffers_.window_bits(),
-                         cache);
+    light_cache_.emplace(device_, buffers_.bound(), frame_.lattice);
+}
+
+void DeviceScene::compile_light_cache(VkPipelineCache cache) {
+    if (light_cache_)
+        light_cache_->compile(specialization_, buffers_.window_bits(), cache);
+}
+
+void DeviceScene::fill_light_cache() {
+    if (light_cache_)
+        light_cache_->fill(commands_);
 }
 
 void DeviceScene::set_first_row(std::uint32_t row) {

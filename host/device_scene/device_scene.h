@@ -19,9 +19,11 @@ public:
                 const Assets& assets, Crop crop, std::uint32_t seed, std::uint64_t most_grid_bytes,
                 std::uint64_t most_texel_bytes);
 
-    // Before the frame goes to the device for the first time; fills the cache of light, if the method has one.
+    // The cache of light, if the method has one: its place, its kernels, and what is in it.
+    void make_light_cache();
+    void compile_light_cache(VkPipelineCache cache);
+    void fill_light_cache();
     void set_queues(std::uint32_t slots, std::uint32_t queue_capacity);
-    void fill_light_cache(VkPipelineCache cache);
     // The first row of the part of the picture that is rendered next.
     void set_first_row(std::uint32_t row);
 

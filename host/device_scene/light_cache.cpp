@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 
 #include "average.spv.h"
 #include "average_windows.spv.h"
@@ -16,6 +15,11 @@ constexpr double most_nodes = 64.0; // along an edge: twice as many were no bett
 
 std::uint64_t count(const shared::LatticeParams& lattice) {
     return std::uint64_t(lattice.dims.x) * std::uint64_t(lattice.dims.y) * std::uint64_t(lattice.dims.z);
+}
+
+BoundBuffers with_lattice(BoundBuffers scene, const Buffer& lattice) {
+    scene[BINDING_LATTICE] = scene[BINDING_LATTICE_TEXELS] = &lattice;
+    return scene;
 }
 
 } // namespace
@@ -33,28 +37,30 @@ shared::LatticeParams make_lattice(glm::dvec3 low, glm::dvec3 high, glm::dvec3 e
     return lattice;
 }
 
-LightCache::LightCache(const Device& device, Commands& commands, BoundBuffers scene,
-                       const shared::LatticeParams& lattice, Specialization specialization,
-                       std::optional<std::uint32_t> window_bits, VkPipelineCache cache)
-    : buffer_(device, "light cache", 2 * count(lattice) * sizeof(glm::vec4),
-              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, BufferPlace::device) {
-    scene[BINDING_LATTICE] = scene[BINDING_LATTICE_TEXELS] = &buffer_;
-    specialization[SPEC_WINDOW_BITS] = static_cast<std::int32_t>(window_bits.value_or(0));
-    const Bindings bindings(device, scene);
-    const auto make = [&](std::span<const std::uint32_t> spirv) {
-        return std::make_unique<ComputePass>(device, bindings, spirv, specialization, cache);
-    };
-    auto shade = std::async(std::launch::async, [&] { return make(shade_spv); });
-    const auto average = make(window_bits ? std::span<const std::uint32_t>(average_windows_spv) : average_spv);
-    const auto nodes = static_cast<std::uint32_t>(count(lattice));
+LightCache::LightCache(const Device& device, const BoundBuffers& scene, const shared::LatticeParams& lattice)
+    : device_(device),
+      buffer_(device, "light cache", 2 * count(lattice) * sizeof(glm::vec4),
+              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, BufferPlace::device),
+      bindings_(device, with_lattice(scene, buffer_)), nodes_(static_cast<std::uint32_t>(count(lattice))) {}
+
+void LightCache::compile(const Specialization& specialization, std::optional<std::uint32_t> window_bits,
+                         VkPipelineCache cache) {
+    Specialization constants = specialization;
+    constants[SPEC_WINDOW_BITS] = static_cast<std::int32_t>(window_bits.value_or(0));
+    const auto average = window_bits ? std::span<const std::uint32_t>(average_windows_spv) : average_spv;
+    for (const std::span<const std::uint32_t> spirv : {average, std::span<const std::uint32_t>(shade_spv)})
+        passes_.push_back(std::make_unique<ComputePass>(device_, bindings_, spirv, constants, cache));
+}
+
+void LightCache::fill(Commands& commands) {
     commands.fill(buffer_, 0); // the corners beyond the border are read, with weight 0
     const shared::PassPush push{};
-    const auto shading = shade.get();
-    for (const ComputePass* pass : {average.get(), shading.get()})
+    for (const std::unique_ptr<ComputePass>& pass : passes_)
         commands.run([&](VkCommandBuffer recorded) {
-            pass->record(recorded, push, nodes);
+            pass->record(recorded, push, nodes_);
             record_barrier(recorded);
         });
+    passes_.clear();
 }
 
 } // namespace vkvol

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "commands.h"
 #include "compute_pass.h"
@@ -15,14 +16,21 @@ shared::LatticeParams make_lattice(glm::dvec3 low, glm::dvec3 high, glm::dvec3 e
 
 class LightCache {
 public:
-    // Makes and fills the cache of a scene whose buffers and frame are on the device.
-    LightCache(const Device& device, Commands& commands, BoundBuffers scene, const shared::LatticeParams& lattice,
-               Specialization specialization, std::optional<std::uint32_t> window_bits, VkPipelineCache cache);
+    // Of a scene whose buffers and frame are on the device.
+    LightCache(const Device& device, const BoundBuffers& scene, const shared::LatticeParams& lattice);
+
+    void compile(const Specialization& specialization, std::optional<std::uint32_t> window_bits, VkPipelineCache cache);
+    // Once compiled, and before it is read. The kernels go.
+    void fill(Commands& commands);
 
     const Buffer& buffer() const { return buffer_; }
 
 private:
+    const Device& device_;
     Buffer buffer_;
+    Bindings bindings_;
+    std::uint32_t nodes_;
+    std::vector<std::unique_ptr<ComputePass>> passes_; // in their order
 };
 
 } // namespace vkvol

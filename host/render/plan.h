@@ -16,6 +16,7 @@ enum class Schedule { automatic, fused, staged };
 // 0, automatic: what suits device and scene.
 struct Plan {
     Schedule schedule = Schedule::automatic;
+    bool tries = false;                 // automatic: try both even where one is known to be faster
     std::uint32_t slots = 0;            // fused: pixels in work; staged: paths
     std::uint32_t waiting = 0;          // staged: room for samples that wait to be added to the film, or at least this
     std::uint32_t lanes = 0;            // invocations that share a queue of paths

@@ -8,6 +8,7 @@
 #include "estimator_traits.h"
 #include "pilot_paths.h"
 #include "scene_upload.h"
+#include "schedule_memory.h"
 #include "workshop.h"
 
 namespace vkvol {
@@ -65,7 +66,8 @@ void Session::load(const Device& device, const std::vector<std::string>& authore
         has_colour = has_colour || (method_.material_colour && medium.mesh && medium.mesh->diffuse);
     }
     const Specialization specialization = specialize(scene_, assets.media, method_);
-    result_.plan = choose_plan(device, assets, specialization);
+    find_wish(assets, specialization);
+    result_.plan = plan_by(device, wish_.schedule);
     device_scene_.emplace(device, commands_, scene_, method_, assets, job_.crop, job_.seed,
                           result_.plan.most_grid_bytes, result_.plan.most_texel_bytes);
     bands_ = make_bands(device, commands_, job_.crop, result_.plan.most_film_bytes);
@@ -79,25 +81,28 @@ void Session::load(const Device& device, const std::vector<std::string>& authore
     result_.upload_seconds = watch.lap();
 }
 
-Plan Session::choose_plan(const Device& device, const Assets& assets, const Specialization& specialization) const {
-    LoopSizes loops;
-    Plan wish = job_.plan;
+void Session::find_wish(const Assets& assets, const Specialization& specialization) {
+    wish_ = job_.plan;
     for (std::size_t i = 0; i < assets.media.size(); ++i) {
         const Volume& volume = scene_.volumes[i];
-        loops.mesh = loops.mesh || assets.media[i].bvh;
-        loops.octaves = std::max(loops.octaves, volume.noise ? static_cast<std::uint32_t>(volume.noise->octaves) : 0u);
-        if (wish.steps == 0)
-            wish.steps = steps_per_look(specialization, assets.media[i]);
+        const LoadedMedium& medium = assets.media[i];
+        loops_.mesh = loops_.mesh || medium.bvh;
+        loops_.octaves = std::max(loops_.octaves, volume.noise ? std::uint32_t(volume.noise->octaves) : 0u);
+        if (wish_.steps == 0)
+            wish_.steps = steps_per_look(specialization, medium);
+        if (medium.majorants) {
+            wish_.majorant_cell = medium.majorants->cell;
+            wish_.leaps = medium.majorants->leaps;
+        }
     }
     if (job_.resume) // its batch is gone on with, whatever this schedule would have made of it
-        wish.waiting = std::max(wish.waiting, job_.resume->batch);
-    Plan plan = make_plan(device, loops, wish);
-    for (const LoadedMedium& medium : assets.media)
-        if (medium.majorants) {
-            plan.majorant_cell = medium.majorants->cell;
-            plan.leaps = medium.majorants->leaps;
-        }
-    return plan;
+        wish_.waiting = std::max(wish_.waiting, job_.resume->batch);
+}
+
+Plan Session::plan_by(const Device& device, Schedule schedule) const {
+    Plan wish = wish_;
+    wish.schedule = schedule;
+    return make_plan(device, loops_, wish);
 }
 
 // What the picture is explained by, and what further frames need.
@@ -110,29 +115,82 @@ void Session::keep(Assets assets) {
 
 void Session::compile(const Device& device) {
     Stopwatch watch;
-    const Plan& plan = result_.plan;
-    // Counters of the sky, which are read once a batch, have 32 bits.
-    const std::uint64_t pixels = std::uint64_t{bands_.front().rows} * width();
-    most_batch_ = std::min<std::uint32_t>(plan.most_batch, std::max<std::uint64_t>((1ull << 31) / pixels, 1));
-    device_scene_->set_queues(plan.slots, queue_capacity(plan));
     std::optional<PipelineCache> own_cache;
     const PipelineCache& cache =
         job_.workshop ? job_.workshop->pipelines(job_.disk_cache) : own_cache.emplace(device, job_.disk_cache);
-    device_scene_->fill_light_cache(cache.handle());
-    BoundBuffers bound = device_scene_->bound();
-    Specialization specialization = device_scene_->specialization();
-    if (job_.trace) {
+    device_scene_->make_light_cache();
+    if (job_.trace)
         trace_.emplace(device, commands_);
-        specialization[SPEC_TRACE] = 1;
-        bound[BINDING_TRACE] = &trace_->buffer();
-    }
-    wavefront_.emplace(device, bound, bands_.front().rows * width(), specialization,
-                       TrackVariant{device_scene_->is_chromatic(), device_scene_->window_bits()}, plan, cache.handle());
+    wavefront_ =
+        make_wavefront(device, result_.plan, cache, [&] { device_scene_->compile_light_cache(cache.handle()); });
+    device_scene_->fill_light_cache();
+    // Every software driver that was measured is two to three times as fast with one pass: no trial is worth its time.
+    const bool is_known = device.is_cpu() && !job_.plan.tries;
+    if (job_.plan.schedule == Schedule::automatic && !is_known && !job_.trace && !job_.dry_run)
+        choose_schedule(device, cache);
     cache.save();
+    device_scene_->set_queues(result_.plan.slots, queue_capacity(result_.plan));
+    // Counters of the sky, which are read once a batch, have 32 bits.
+    const std::uint64_t pixels = std::uint64_t{bands_.front().rows} * width();
+    most_batch_ = std::min<std::uint32_t>(result_.plan.most_batch, std::max<std::uint64_t>((1ull << 31) / pixels, 1));
     result_.device_bytes = device_scene_->bytes() + wavefront_->bytes();
     for (const Band& band : bands_)
         result_.device_bytes += band.film.bytes();
     result_.pipeline_seconds = watch.lap();
+}
+
+std::unique_ptr<Wavefront> Session::make_wavefront(const Device& device, const Plan& plan, const PipelineCache& cache,
+                                                   const std::function<void()>& meanwhile) {
+    BoundBuffers bound = device_scene_->bound();
+    Specialization specialization = device_scene_->specialization();
+    if (trace_) {
+        specialization[SPEC_TRACE] = 1;
+        bound[BINDING_TRACE] = &trace_->buffer();
+    }
+    return std::make_unique<Wavefront>(device, bound, bands_.front().rows * width(), specialization,
+                                       TrackVariant{device_scene_->is_chromatic(), device_scene_->window_bits()}, plan,
+                                       cache.handle(), meanwhile);
+}
+
+// Fused or staged, by a moment of each, unless that was done before.
+void Session::choose_schedule(const Device& device, const PipelineCache& cache) {
+    const std::string kind = fmt::format("{} {}: {}", device.info().uuid, device.info().driver, result_.specialization);
+    std::optional<Schedule> known = job_.disk_cache ? recall_schedule(kind) : std::nullopt;
+    if (known == Schedule::fused)
+        return;
+    const Plan plan = plan_by(device, Schedule::staged);
+    std::unique_ptr<Wavefront> staged = make_wavefront(device, plan, cache, [] {});
+    if (!known) {
+        const bool slower = paths_per_second(*staged, plan) < paths_per_second(*wavefront_, result_.plan);
+        known = slower ? Schedule::fused : Schedule::staged;
+        if (job_.disk_cache)
+            remember_schedule(kind, *known);
+    }
+    if (known == Schedule::staged) {
+        wavefront_ = std::move(staged);
+        result_.plan = plan;
+    }
+}
+
+// Of a batch that is thrown away. Paths that miss the medium count: both have the same.
+double Session::paths_per_second(Wavefront& wavefront, const Plan& plan) {
+    constexpr double enough = 0.2; // seconds
+    const Band& band = bands_.front();
+    const std::uint32_t pixels = band.rows * width();
+    const auto samples = static_cast<std::uint32_t>(std::clamp<std::uint64_t>((1u << 20) / pixels, 1, plan.most_batch));
+    device_scene_->set_queues(plan.slots, queue_capacity(plan));
+    device_scene_->set_first_row(static_cast<std::uint32_t>(job_.crop.y0) + band.first_row);
+    wavefront.bind_film(band.film);
+    wavefront.begin_batch(0, samples, pixels);
+    Stopwatch watch;
+    std::uint64_t paths = 0;
+    for (bool resting = false; !resting && watch.seconds() < enough;) {
+        resting = wavefront.advance();
+        paths += wavefront.counters().paths;
+    }
+    const double seconds = watch.lap();
+    commands_.fill(band.film, 0);
+    return static_cast<double>(paths) / seconds;
 }
 
 // Runs batches of samples over all bands until the samples, the time or the user's patience is used up.

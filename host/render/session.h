@@ -11,6 +11,7 @@
 #include "film.h"
 #include "film_bands.h"
 #include "medium_outline.h"
+#include "pipeline_cache.h"
 #include "scene.h"
 #include "stopwatch.h"
 #include "trace.h"
@@ -76,9 +77,14 @@ public:
 private:
     std::uint32_t width() const { return static_cast<std::uint32_t>(job_.crop.x1 - job_.crop.x0); }
     void load(const Device& device, const std::vector<std::string>& authored_warnings);
-    Plan choose_plan(const Device& device, const Assets& assets, const Specialization& specialization) const;
+    void find_wish(const Assets& assets, const Specialization& specialization);
+    Plan plan_by(const Device& device, Schedule schedule) const;
     void keep(Assets assets);
     void compile(const Device& device);
+    std::unique_ptr<Wavefront> make_wavefront(const Device& device, const Plan& plan, const PipelineCache& cache,
+                                              const std::function<void()>& meanwhile);
+    void choose_schedule(const Device& device, const PipelineCache& cache);
+    double paths_per_second(Wavefront& wavefront, const Plan& plan);
     std::uint32_t first_batch() const;
     std::uint32_t next_batch(std::uint32_t batch, double seconds) const;
     void begin_identity(const Device& device, const Assets& assets);
@@ -97,11 +103,13 @@ private:
     const Scene scene_; // as its integrator sees it
     const RenderJob& job_;
     const Method method_;
+    Plan wish_; // of the job, completed by what suits the scene
+    LoopSizes loops_;
     Commands commands_;
     std::optional<DeviceScene> device_scene_;
     std::vector<Band> bands_;
     std::optional<TraceBuffer> trace_;
-    std::optional<Wavefront> wavefront_;
+    std::unique_ptr<Wavefront> wavefront_;
     RenderIdentity identity_; // only for checkpoints
     RenderResult result_;
 

@@ -67,6 +67,7 @@ struct PassRow {
     const char* name;
     Words kernel;
     std::uint32_t lanes, queue = no_queue, before = no_queue;
+    bool is_large = false;
 };
 constexpr std::uint32_t seldom_rounds = 4;
 
@@ -74,11 +75,11 @@ constexpr std::uint32_t seldom_rounds = 4;
 std::vector<PassRow> passes_of(const Plan& plan, const TrackVariant& variant, bool has_shadow_rays) {
     if (plan.schedule == Schedule::fused)
         return {{"generate", hand_out_spv, plan.slots, QUEUE_GENERATE, QUEUE_GENERATE},
-                {"track", fused_kernel.of(variant), plan.lanes, QUEUE_TRACK, QUEUE_RESUME}};
+                {"track", fused_kernel.of(variant), plan.lanes, QUEUE_TRACK, QUEUE_RESUME, true}};
     std::vector<PassRow> rows{{"generate", generate_kernel.of(variant), plan.slots, QUEUE_GENERATE, QUEUE_GENERATE},
-                              {"track", track_kernel.of(variant), plan.lanes, QUEUE_TRACK, QUEUE_RESUME}};
+                              {"track", track_kernel.of(variant), plan.lanes, QUEUE_TRACK, QUEUE_RESUME, true}};
     if (has_shadow_rays)
-        rows.push_back({"shadow", shadow_kernel.of(variant), plan.lanes, QUEUE_SHADOW, QUEUE_LOOK});
+        rows.push_back({"shadow", shadow_kernel.of(variant), plan.lanes, QUEUE_SHADOW, QUEUE_LOOK, true});
     rows.push_back({"accumulate", accumulate_spv, 0});
     return rows;
 }
@@ -87,7 +88,7 @@ std::vector<PassRow> passes_of(const Plan& plan, const TrackVariant& variant, bo
 
 Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, std::uint32_t most_pixels,
                      const Specialization& specialization, const TrackVariant& variant, const Plan& plan,
-                     VkPipelineCache cache)
+                     VkPipelineCache cache, const std::function<void()>& meanwhile)
     : device_(device), plan_(plan), commands_(device),
       readback_(device, "readback", queue_bytes + sizeof(shared::Counters), 0, BufferPlace::host) {
     const std::uint64_t slots = plan.slots;
@@ -104,7 +105,7 @@ Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, st
         add_buffer(BINDING_PLACES, "places of samples", waiting * sizeof(shared::SamplePlace));
     }
     bindings_.emplace(device, bound(scene_buffers));
-    make_passes(specialization, variant, cache);
+    make_passes(specialization, variant, cache, meanwhile);
     push_.budget = std::min(plan.budget, first_budget);
     push_.step_limit = plan.step_limit;
     commands_.fill(buffer(BINDING_QUEUES), 0);
@@ -135,8 +136,10 @@ BoundBuffers Wavefront::bound(BoundBuffers all) const {
     return all;
 }
 
-// The large kernels compile beside the others.
-void Wavefront::make_passes(const Specialization& specialization, const TrackVariant& variant, VkPipelineCache cache) {
+// The large kernels compile beside the others, and these one after another: with as many threads as kernels the large
+// ones, which are waited for, would have their core to themselves less.
+void Wavefront::make_passes(const Specialization& specialization, const TrackVariant& variant, VkPipelineCache cache,
+                            const std::function<void()>& meanwhile) {
     Specialization constants = specialization;
     constants[SPEC_STEPS] = static_cast<std::int32_t>(plan_.steps);
     constants[SPEC_WINDOW_BITS] = static_cast<std::int32_t>(variant.window_bits.value_or(0));
@@ -149,10 +152,11 @@ void Wavefront::make_passes(const Specialization& specialization, const TrackVar
     const std::vector<PassRow> rows = passes_of(plan_, variant, has_shadow_rays);
     std::vector<std::future<std::unique_ptr<ComputePass>>> compiling;
     for (const PassRow& row : rows)
-        compiling.push_back(std::async(std::launch::async, make, row.kernel));
+        compiling.push_back(std::async(row.is_large ? std::launch::async : std::launch::deferred, make, row.kernel));
     begin_ = make(begin_spv);
     sky_ = make(sky_spv);
     prepare_ = make(prepare_spv);
+    meanwhile();
     figures_.push_back({"sky"});
     for (std::size_t i = 0; i < rows.size(); ++i) {
         round_.push_back({compiling[i].get(), rows[i].lanes, rows[i].queue, rows[i].before});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -30,10 +31,10 @@ struct TrackVariant {
 
 class Wavefront {
 public:
-    // `most_pixels`: of any film that will be bound.
+    // `most_pixels`: of any film that will be bound. `meanwhile`: called while the large kernels compile.
     Wavefront(const Device& device, const BoundBuffers& scene_buffers, std::uint32_t most_pixels,
               const Specialization& specialization, const TrackVariant& variant, const Plan& plan,
-              VkPipelineCache cache);
+              VkPipelineCache cache, const std::function<void()>& meanwhile);
     ~Wavefront();
     Wavefront(const Wavefront&) = delete;
     Wavefront& operator=(const Wavefront&) = delete;
@@ -69,7 +70,8 @@ private:
         std::uint32_t lanes, queue, before;
     };
 
-    void make_passes(const Specialization& specialization, const TrackVariant& variant, VkPipelineCache cache);
+    void make_passes(const Specialization& specialization, const TrackVariant& variant, VkPipelineCache cache,
+                     const std::function<void()>& meanwhile);
     void add_buffer(std::uint32_t binding, const char* name, std::uint64_t bytes, VkBufferUsageFlags more_usage = 0);
     BoundBuffers bound(BoundBuffers scene_buffers) const;
     const Buffer& buffer(std::uint32_t binding) const { return *buffers_[binding]; }

@@ -7,6 +7,7 @@
 #include "merge.h"
 #include "support/images.h"
 #include "support/scenes.h"
+#include "support/test_device.h"
 #include "test_paths.h"
 
 using namespace vkvol;
@@ -89,6 +90,20 @@ TEST_CASE("the sizes of the machine change no bit", "[gpu][determinism]") {
                     CHECK(same_bits(render_here(scene, 30, with_tuning(slots, lanes, budget, steps)).film, usual));
                 }
     }
+}
+
+TEST_CASE("trying both schedules leaves no trace in the picture", "[gpu][determinism]") {
+    const Scene scene = cloud(11);
+    const RenderResult usual = render_here(scene, 39);
+    RenderJob job;
+    job.plan.tries = true;
+    job.seed = 39;
+    job.disk_cache = false;
+    job.crop = {0, scene.picture.width, 0, scene.picture.height};
+    const RenderResult tried = render(test_device(), scene, job);
+    CHECK((tried.plan.schedule == Schedule::fused || tried.plan.schedule == Schedule::staged));
+    CHECK((same_bits(tried.film, usual.film) || !test_device().is_cpu()));
+    CHECK(tried.counts.paths == usual.counts.paths);
 }
 
 TEST_CASE("a homogeneous picture does not depend on the sizes of the machine", "[gpu][determinism]") {

@@ -23,8 +23,9 @@ std::vector<float> depths_at_nodes(const TestScene& scene, const shared::Lattice
     buffers.set_frame(commands, frame);
     Specialization constants = scene.specialization;
     constants[SPEC_TEXELS] = buffers.texels() ? 1 : 0;
-    const LightCache cache(test_device(), commands, buffers.bound(), lattice, constants, buffers.window_bits(),
-                           VK_NULL_HANDLE);
+    LightCache cache(test_device(), buffers.bound(), lattice);
+    cache.compile(constants, buffers.window_bits(), VK_NULL_HANDLE);
+    cache.fill(commands);
     std::vector<glm::vec4> entries(cache.buffer().bytes() / sizeof(glm::vec4));
     commands.download(cache.buffer(), std::as_writable_bytes(std::span(entries)));
     std::vector<float> depths;

@@ -1,0 +1,17 @@
+// Which schedule was found faster, by device and kind of scene: a line each in
+// ${XDG_CACHE_HOME:-~/.cache}/vkvol/schedules.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "plan.h"
+
+namespace vkvol {
+
+std::optional<Schedule> recall_schedule(const std::string& kind);
+
+// Failure to write is no error, only another trial next time.
+void remember_schedule(const std::string& kind, Schedule schedule);
+
+} // namespace vkvol
