@@ -20,10 +20,10 @@ build=$work/build
 mutations() {
     cat <<'END'
 albedo + 2 % ~ host/device_scene/scene_upload.cpp ~ params.albedo = albedo_of(volume); ~ params.albedo = 1.02 * albedo_of(volume); ~ [image]
-g sign in sampling ~ shaders/stages/depart.glsl ~ hg_sample(v.g, ~ hg_sample(-v.g, ~ [image]
-g sign toward the light ~ shaders/lights/light.glsl ~ hg_from_peak(v.g, ~ hg_from_peak(-v.g, ~ [image]
+g sign in sampling ~ shaders/phase/phase.glsl ~ hg_sample(v.g, ~ hg_sample(-v.g, ~ [image]
+g sign toward the light ~ shaders/phase/phase.glsl ~ hg_eval(v.g, hg_from_peak(v.g, ~ hg_eval(-v.g, hg_from_peak(-v.g, ~ [image]
 light direction reversed in phase ~ shaders/lights/light.glsl ~ direction, light.direction) ~ direction, -light.direction) ~ [image]
-1 / 4 pi missing ~ shaders/phase/phase.glsl ~ return INV_4PI * (1.0 - a) ~ return (1.0 - a) ~ [image]
+1 / 4 pi missing ~ shaders/phase/henyey_greenstein.glsl ~ return INV_4PI * (1.0 - a) ~ return (1.0 - a) ~ [image]
 majorant x 0.9 ~ host/fields/majorant_grid.cpp ~ bound = std::max(bound, value); ~ bound = std::max(bound, 0.9f * value); ~ [image]
 majorant not dilated ~ host/fields/majorant_grid.cpp ~ glm::max((first - 1) / grid.cell, glm::ivec3(0)); ~ high; ~ [image]
 lookup half a voxel off ~ shaders/estimators/ahead.glsl ~ vec3 p = w.origin + t[k] * w.direction; ~ vec3 p = w.origin + t[k] * w.direction + 0.5; ~ [image]
@@ -62,18 +62,23 @@ a step ahead judged by the next density ~ shaders/estimators/ahead.glsl ~ Collis
 roulette in closed form ~ shaders/estimators/flight/analytic_flight.glsl ~ w.t = event == ~ beta = march_roulette(0.0, beta);\n    w.t = event == ~ [closed_form]
 march roulette weight missing ~ shaders/estimators/march.glsl ~ MARCH_ROULETTE / m : 0.0 ~ 1.0 : 0.0 ~ [closed_form]
 cache corrected without its chance ~ shaders/stages/shadow.glsl ~ (T - lane.cached) / lane.chance ~ (T - lane.cached) ~ [light_cache]
-foreseen light off its mean ~ shaders/lights/light_cache.glsl ~ hg_eval(v.g * v.g, ~ hg_eval(v.g, ~ [agreement]
+foreseen light off its mean ~ shaders/phase/phase.glsl ~ hg_eval(v.g * v.g, ~ hg_eval(v.g, ~ [agreement]
 lattice a node off ~ shaders/lights/lattice.glsl ~ uint i = lattice_index(which, node); ~ uint i = lattice_index(which, node) + 1u; ~ [light_cache]
 samples lost to a driver's loops ~ shaders/passes/sky.comp ~ if (hit || tally.paths < push.sample_end - push.sample_begin) { ~ if (hit) { ~ [determinism]
 no further part of a mesh ~ shaders/shapes/segment.glsl ~ event == EVENT_LEFT && search.stage == SEARCH_OVER; ~ false; ~ [closed_form]
 a flight stays in its part after a shadow ray ~ shaders/stages/shadow.glsl ~ lane.search.stage = SEARCH_OVER; ~ ; ~ flights go on to the next body*
-a search laid aside forgets its crossings ~ shaders/stages/lane.glsl ~ lane.search = suspended[slot].search; ~ lane.search = suspended[slot].search;\n        lane.search.first = FAR; ~ [closed_form]
-octaves lost to a driver's loops ~ host/render/wavefront.cpp ~ iterations += 4 * steps * (loops.octaves + 1); ~ iterations += 2 * steps * loops.octaves; ~ [determinism]
-an output over an input by a link ~ host/cli/file_uses.cpp ~ if (is_same_file(output.file, input.file)) ~ if (output.file == input.file) ~ no output is an input or another output
+a search laid aside forgets its crossings ~ shaders/shared/path_state.h ~ ROW(PartSearch, search, under_way && SHAPE == SHAPE_MESH) ~ ROW(PartSearch, search, false) ~ [closed_form]
+octaves lost to a driver's loops ~ host/render/plan.cpp ~ iterations += 4 * steps * (loops.octaves + 1); ~ iterations += 2 * steps * loops.octaves; ~ [determinism]
+an output over an input by a link ~ host/scene_files/file_uses.cpp ~ if (is_same_file(output.file, input.file)) ~ if (output.file == input.file) ~ no output is an input or another output
 a checkpoint written over ~ host/cli/checkpoint_file.cpp ~ if (!options_.resume && is_checkpoint(path_)) ~ if (false) ~ [checkpoint]
 azimuth clockwise ~ host/scene/camera_view.cpp ~ camera.yaw = orbit.azimuth; ~ camera.yaw = -orbit.azimuth; ~ [xml]
 noise against no signal ~ host/image/film.cpp ~ signal += glm::dot(mean, mean); ~ signal += 1.0; ~ [film]
 crop forgotten in random numbers ~ shaders/sensors/camera.glsl ~ frame.crop_x + pixel ~ pixel ~ [determinism]
+staged samples out of order ~ shaders/passes/accumulate.comp ~ film_add(sums, radiance, where, push.sample_begin + at.added, tally); ~ if (at.added != 1u) film_add(sums, radiance, where, push.sample_begin + at.added, tally); ~ [determinism]
+a place taken before it is free ~ shaders/passes/generate.comp ~ tenants != index / push.places) { ~ tenants > 99999u) { ~ [determinism]
+staged shadow rays leave flights at rest ~ shaders/shared/path_state.h ~ WALK_ROW(flight, seeing && flight_rests) ~ WALK_ROW(flight, false) ~ [agreement]
+a cached transmittance forgotten between passes ~ shaders/shared/path_state.h ~ SPECTRUM_ROW(cached, has_cache) ~ SPECTRUM_ROW(cached, false) ~ [light_cache]
+rayleigh drawn as it is not ~ shaders/phase/rayleigh.glsl ~ float w = 4.0 * u - 2.0; ~ float w = 4.2 * u - 2.1; ~ [phase]
 END
 }
 

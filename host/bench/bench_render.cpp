@@ -1,8 +1,5 @@
 #include "bench_render.h"
 
-#include <fmt/format.h>
-
-#include "error.h"
 #include "interrupt.h"
 
 namespace vkvol {
@@ -17,11 +14,7 @@ RenderResult render_whole(const BenchRequest& request, const Estimator& estimato
     job.time_limit = time_limit;
     job.disk_cache = !request.render.no_cache;
     job.interrupted = interrupted;
-    RenderResult result = render(device, scene, job);
-    if (result.counts.queue_overflows > 0)
-        throw RenderError(fmt::format("{} queue items were dropped: this is a defect of vkvol; please report the scene",
-                                      result.counts.queue_overflows));
-    return result;
+    return render(device, scene, job);
 }
 
 } // namespace vkvol

@@ -77,11 +77,11 @@ Plan parse_schedule(const std::string& text) {
         const std::string key = parts[i].substr(0, equals);
         const std::string value = equals == std::string::npos ? "" : parts[i].substr(equals + 1);
         if (key == "slots")
-            plan.slots = parse_plan_number(value, "slots", 64, 1u << 22);
+            plan.slots = parse_plan_number(value, "slots", 64, most_slots);
         else if (key == "steps")
             plan.steps = parse_plan_number(value, "steps", 1, 8);
         else if (key == "lanes")
-            plan.lanes = parse_plan_number(value, "lanes", 64, 1u << 22);
+            plan.lanes = parse_plan_number(value, "lanes", 64, most_slots);
         else if (key == "budget")
             plan.budget = parse_plan_number(value, "budget", 1, 65535);
         else

@@ -89,14 +89,11 @@ bool has_samples(const Film& film) {
     return std::any_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n > 0; });
 }
 
-void check_result(const Device& device, const RenderResult& result) {
+void check_result(const Device& device) {
     for (const std::string& message : device.validation_messages())
         tell(stderr, "vkvol: validation: {}", message + "\n"); // of several lines
     if (!device.validation_messages().empty())
         throw RenderError(fmt::format("the validation layer has {} objections", device.validation_messages().size()));
-    if (result.counts.queue_overflows > 0)
-        throw RenderError(fmt::format("{} queue items were dropped: this is a defect of vkvol; please report the scene",
-                                      result.counts.queue_overflows));
 }
 
 // Once, also where all frames of a sequence have the same.
@@ -114,7 +111,7 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
     const RenderResult result = render_with_progress(options, scene, workshop, checkpoint);
     if (!options.quiet)
         print_warnings(workshop.new_warnings(result.warnings));
-    check_result(device, result);
+    check_result(device);
     if (options.dry_run) {
         if (!options.quiet)
             print_dry_run(options, scene, device, result);

@@ -67,7 +67,8 @@ Json header_of(const Checkpoint& c) {
             {"film", c.film.size()},
             {"counts", counts},
             {"nonFinite", non_finite},
-            {"seconds", c.seconds}};
+            {"seconds", c.seconds},
+            {"staged", c.schedule == Schedule::staged}};
 }
 
 Checkpoint from_header(const Json& header) {
@@ -85,6 +86,7 @@ Checkpoint from_header(const Json& header) {
     for (const Json& s : header.at("nonFinite"))
         c.non_finite.push_back({s.at(0), s.at(1), s.at(2)});
     c.seconds = header.at("seconds");
+    c.schedule = header.at("staged").get<bool>() ? Schedule::staged : Schedule::fused;
     return c;
 }
 

@@ -9,6 +9,7 @@
 
 #include "compute_pass.h"
 #include "loaded_medium.h"
+#include "plan.h"
 #include "render_counts.h"
 #include "shared/items.h"
 
@@ -36,6 +37,7 @@ struct Checkpoint {
     RenderCounts counts;
     std::vector<NonFiniteSample> non_finite;
     double seconds = 0.0; // of rendering
+    Schedule schedule = Schedule::fused;
 };
 
 RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization, const Assets& assets,

@@ -32,6 +32,9 @@ struct Plan {
     bool leaps = false;                 // walks pass empty ones together
 };
 
+// Dispatches over slots, and over samples that wait, keep to the 65535 groups that every device allows.
+constexpr std::uint32_t most_slots = 1u << 19;
+
 // What a turn of the tracking passes loops over.
 struct LoopSizes {
     bool mesh = false;

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <mutex>
 #include <sstream>
 #include <system_error>
 
@@ -11,6 +13,9 @@
 namespace vkvol {
 
 namespace {
+
+std::mutex mutex;
+std::map<std::string, Schedule> of_this_process;
 
 std::filesystem::path memory_file() {
     const std::filesystem::path directory = cache_directory();
@@ -23,7 +28,14 @@ std::string line_of(const std::string& kind, Schedule schedule) {
 
 } // namespace
 
-std::optional<Schedule> recall_schedule(const std::string& kind) {
+std::optional<Schedule> recall_schedule(const std::string& kind, bool use_disk) {
+    {
+        const std::scoped_lock lock(mutex);
+        if (const auto found = of_this_process.find(kind); found != of_this_process.end())
+            return found->second;
+    }
+    if (!use_disk)
+        return std::nullopt;
     std::ifstream file(memory_file());
     for (std::string line; std::getline(file, line);)
         for (const Schedule schedule : {Schedule::fused, Schedule::staged})
@@ -32,9 +44,13 @@ std::optional<Schedule> recall_schedule(const std::string& kind) {
     return std::nullopt;
 }
 
-void remember_schedule(const std::string& kind, Schedule schedule) {
+void remember_schedule(const std::string& kind, Schedule schedule, bool use_disk) {
+    {
+        const std::scoped_lock lock(mutex);
+        of_this_process[kind] = schedule;
+    }
     const std::filesystem::path name = memory_file();
-    if (name.empty())
+    if (name.empty() || !use_disk)
         return;
     std::ostringstream text;
     text << std::ifstream(name).rdbuf();

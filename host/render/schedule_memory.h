@@ -1,4 +1,4 @@
-// Which schedule was found faster, by device and kind of scene: a line each in
+// Which schedule was found faster, by device and kind of scene: within the process; and a line each in
 // ${XDG_CACHE_HOME:-~/.cache}/vkvol/schedules.
 #pragma once
 
@@ -9,9 +9,9 @@
 
 namespace vkvol {
 
-std::optional<Schedule> recall_schedule(const std::string& kind);
+std::optional<Schedule> recall_schedule(const std::string& kind, bool use_disk);
 
 // Failure to write is no error, only another trial next time.
-void remember_schedule(const std::string& kind, Schedule schedule);
+void remember_schedule(const std::string& kind, Schedule schedule, bool use_disk);
 
 } // namespace vkvol

@@ -1,6 +1,7 @@
 #include "session.h"
 
 #include <algorithm>
+#include <bit>
 #include <fmt/format.h>
 #include <utility>
 
@@ -15,7 +16,8 @@ namespace vkvol {
 
 namespace {
 
-constexpr double patience = 5.0; // seconds, for paths that will not end
+constexpr double noise_seconds = 3.0; // between two figures of noise
+constexpr double patience = 5.0;      // seconds, for paths that will not end
 
 void add_counts(RenderCounts& total, const shared::Counters& c) {
     total.paths += c.paths;
@@ -95,8 +97,12 @@ void Session::find_wish(const Assets& assets, const Specialization& specializati
             wish_.leaps = medium.majorants->leaps;
         }
     }
-    if (job_.resume) // its batch is gone on with, whatever this schedule would have made of it
-        wish_.waiting = std::max(wish_.waiting, job_.resume->batch);
+    if (!job_.resume)
+        return;
+    if (wish_.schedule == Schedule::automatic) // a GPU may round the two differently
+        wish_.schedule = job_.resume->schedule;
+    // Its batch is gone on with, whatever this schedule would have made of it.
+    wish_.waiting = std::max(wish_.waiting, job_.resume->batch);
 }
 
 Plan Session::plan_by(const Device& device, Schedule schedule) const {
@@ -124,9 +130,10 @@ void Session::compile(const Device& device) {
     wavefront_ =
         make_wavefront(device, result_.plan, cache, [&] { device_scene_->compile_light_cache(cache.handle()); });
     device_scene_->fill_light_cache();
-    // Every software driver that was measured is two to three times as fast with one pass: no trial is worth its time.
+    // Software drivers are 1.6 to 3 times as fast with one pass (tools/results): no trial is worth its time.
     const bool is_known = device.is_cpu() && !job_.plan.tries;
-    if (job_.plan.schedule == Schedule::automatic && !is_known && !job_.trace && !job_.dry_run)
+    const bool has_paths = device_scene_->specialization()[SPEC_SHAPE] != SHAPE_NONE;
+    if (wish_.schedule == Schedule::automatic && !is_known && has_paths && !job_.trace && !job_.dry_run)
         choose_schedule(device, cache);
     cache.save();
     device_scene_->set_queues(result_.plan.slots, queue_capacity(result_.plan));
@@ -152,19 +159,26 @@ std::unique_ptr<Wavefront> Session::make_wavefront(const Device& device, const P
                                        cache.handle(), meanwhile);
 }
 
-// Fused or staged, by a moment of each, unless that was done before.
+// Fused or staged, by a moment of each, unless that was done before with such a scene at such a size.
 void Session::choose_schedule(const Device& device, const PipelineCache& cache) {
-    const std::string kind = fmt::format("{} {}: {}", device.info().uuid, device.info().driver, result_.specialization);
-    std::optional<Schedule> known = job_.disk_cache ? recall_schedule(kind) : std::nullopt;
+    const Plan plan = plan_by(device, Schedule::staged);
+    const std::uint64_t pixels = std::uint64_t{bands_.front().rows} * width();
+    const std::string kind =
+        fmt::format("{} {}: {}, {}, {}, 2^{} pixels", device.info().uuid, device.info().driver, result_.specialization,
+                    describe(result_.plan), describe(plan), std::bit_width(pixels));
+    std::optional<Schedule> known = recall_schedule(kind, job_.disk_cache);
     if (known == Schedule::fused)
         return;
-    const Plan plan = plan_by(device, Schedule::staged);
-    std::unique_ptr<Wavefront> staged = make_wavefront(device, plan, cache, [] {});
+    std::unique_ptr<Wavefront> staged;
+    try {
+        staged = make_wavefront(device, plan, cache, [] {});
+    } catch (const RenderError&) { // no room for both
+        return;
+    }
     if (!known) {
-        const bool slower = paths_per_second(*staged, plan) < paths_per_second(*wavefront_, result_.plan);
-        known = slower ? Schedule::fused : Schedule::staged;
-        if (job_.disk_cache)
-            remember_schedule(kind, *known);
+        const bool faster = paths_per_second(*staged, plan) > paths_per_second(*wavefront_, result_.plan);
+        known = faster ? Schedule::staged : Schedule::fused;
+        remember_schedule(kind, *known, job_.disk_cache);
     }
     if (known == Schedule::staged) {
         wavefront_ = std::move(staged);
@@ -172,23 +186,29 @@ void Session::choose_schedule(const Device& device, const PipelineCache& cache) 
     }
 }
 
-// Of a batch that is thrown away. Paths that miss the medium count: both have the same.
+// Of a batch that is thrown away, once lanes work as long at a time as they may. Paths that miss the medium count: both
+// schedules have the same.
 double Session::paths_per_second(Wavefront& wavefront, const Plan& plan) {
-    constexpr double enough = 0.2; // seconds
+    constexpr double start_up = 0.1, enough = 0.3; // seconds
     const Band& band = bands_.front();
     const std::uint32_t pixels = band.rows * width();
-    const auto samples = static_cast<std::uint32_t>(std::clamp<std::uint64_t>((1u << 20) / pixels, 1, plan.most_batch));
+    const auto samples = static_cast<std::uint32_t>(std::clamp<std::uint64_t>((1u << 22) / pixels, 1, plan.most_batch));
     device_scene_->set_queues(plan.slots, queue_capacity(plan));
     device_scene_->set_first_row(static_cast<std::uint32_t>(job_.crop.y0) + band.first_row);
     wavefront.bind_film(band.film);
     wavefront.begin_batch(0, samples, pixels);
     Stopwatch watch;
+    double counted_from = 0.0;
     std::uint64_t paths = 0;
     for (bool resting = false; !resting && watch.seconds() < enough;) {
         resting = wavefront.advance();
         paths += wavefront.counters().paths;
+        if (!resting && counted_from == 0.0 && watch.seconds() > start_up) {
+            counted_from = watch.seconds();
+            paths = 0;
+        }
     }
-    const double seconds = watch.lap();
+    const double seconds = watch.seconds() - counted_from;
     commands_.fill(band.film, 0);
     return static_cast<double>(paths) / seconds;
 }
@@ -197,11 +217,15 @@ double Session::paths_per_second(Wavefront& wavefront, const Plan& plan) {
 void Session::render(std::uint32_t samples) {
     wanted_ = samples;
     if (next_ == 0) { // nothing was rendered yet
-        next_ = first_batch();
         if (job_.resume)
             resume(*job_.resume);
+        next_ = first_batch();
     }
     watch_.lap();
+    next_noise_ = noise_seconds;
+    checkpoint_at_ = 0.0;
+    stopped_ = false;
+    stopped_at_.reset();
     while (done_ < wanted_ && !stopping()) {
         if (batch_ == 0)
             batch_ = std::min(next_, wanted_ - done_);
@@ -280,7 +304,8 @@ void Session::save_checkpoint() {
                           read_bands(commands_, bands_, width()),
                           result_.counts,
                           result_.non_finite,
-                          result_.render_seconds + watch_.seconds()};
+                          result_.render_seconds + watch_.seconds(),
+                          result_.plan.schedule};
     job_.checkpoint(checkpoint);
     checkpoint_at_ = watch_.seconds();
 }
@@ -293,7 +318,7 @@ bool Session::checkpoint_due() const {
 void Session::report_noise() {
     if (!job_.progress || watch_.seconds() < next_noise_)
         return;
-    next_noise_ = watch_.seconds() + 3.0;
+    next_noise_ = watch_.seconds() + noise_seconds;
     develop_film();
     job_.progress(done_, relative_noise(result_.film));
 }
@@ -362,6 +387,9 @@ double Session::progress_of(const Band& band) const {
 void Session::gather() {
     const shared::Counters& counters = wavefront_->counters();
     add_counts(result_.counts, counters);
+    if (counters.queue_overflows > 0)
+        throw RenderError(fmt::format("{} queue items were dropped: this is a defect of vkvol; please report the scene",
+                                      counters.queue_overflows));
     const auto passes = wavefront_->passes();
     result_.passes.resize(passes.size());
     for (std::size_t pass = 0; pass < passes.size(); ++pass) {

@@ -1,5 +1,5 @@
-// From a scene to a film, samples as wanted: what the command line, the bench, a sequence and the tests hold. Nothing
-// is printed; what is wrong is thrown.
+// From a scene to a film, samples as wanted. Nothing is printed; what is wrong is thrown. The command line, the bench and
+// the tests want all of a scene's samples at once, by render().
 #pragma once
 
 #include <functional>
@@ -68,7 +68,8 @@ public:
     // what cannot be rendered, and RenderError where the device fails.
     Session(const Device& device, const Scene& scene, const RenderJob& job);
 
-    // Until every pixel has `samples` in all, or the job ends it before. May be called again, for more.
+    // Until every pixel has `samples` in all, or the job ends it before. May be called again, for more; time limits
+    // count from each call.
     void render(std::uint32_t samples);
 
     // With the film as it is now. May be moved from by who renders no more.
@@ -119,7 +120,7 @@ private:
 
     std::uint32_t most_batch_ = 1;
     Stopwatch watch_;
-    double next_noise_ = 3.0;
+    double next_noise_ = 0.0;
     double checkpoint_at_ = 0.0; // the last one
     bool stopped_ = false;
     bool gave_up_ = false; // paths were left in flight

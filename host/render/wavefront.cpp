@@ -274,10 +274,14 @@ bool Wavefront::advance() {
     return std::all_of(headers.begin(), headers.end(), is_empty);
 }
 
+// Of pixels that miss the medium.
+std::uint64_t Wavefront::samples_at_once() const {
+    return sorted_ > 0 ? std::uint64_t{sorted_ - counters_.work_count} * samples() : 0;
+}
+
 std::uint64_t Wavefront::in_flight() const {
     if (plan_.schedule == Schedule::staged) { // or ended, and waiting for one that has not
-        const std::uint64_t at_once = sorted_ > 0 ? std::uint64_t{sorted_ - counters_.work_count} * samples() : 0;
-        return items_handed_out() - (finished_ - at_once);
+        return items_handed_out() - (finished_ - samples_at_once());
     }
     const auto headers = std::span(static_cast<const shared::QueueHeader*>(readback_.mapped()), QUEUE_COUNT);
     const shared::QueueHeader& header = headers[QUEUE_RESUME];
@@ -339,9 +343,12 @@ void Wavefront::record_readback(VkCommandBuffer commands) {
 
 void Wavefront::read_figures() {
     rounds_run_ = rounds_;
+    // The sky's samples come with the batch's first submit.
+    const std::uint64_t at_once = finished_ == counters_.paths ? samples_at_once() : 0;
     figures_.front().seconds = std::exchange(sky_seconds_, 0.0);
     for (std::size_t i = 0; i < round_.size(); ++i) {
-        figures_[i + 1].queued = round_[i].queue == no_queue ? counters_.paths : counters_.queued[round_[i].queue];
+        figures_[i + 1].queued =
+            round_[i].queue == no_queue ? counters_.paths - at_once : counters_.queued[round_[i].queue];
         figures_[i + 1].seconds = 0.0;
     }
     if (!timestamps_)

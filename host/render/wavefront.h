@@ -77,6 +77,7 @@ private:
     const Buffer& buffer(std::uint32_t binding) const { return *buffers_[binding]; }
     std::uint32_t samples() const { return push_.sample_end - push_.sample_begin; }
     std::uint64_t items_per_pixel() const;
+    std::uint64_t samples_at_once() const;
     std::uint64_t items_to_hand_out() const;
     std::uint64_t items_handed_out() const;
     void record_round(VkCommandBuffer commands, std::uint32_t round);

@@ -1,4 +1,4 @@
-// Adding samples to a film entry. A lane owns its pixel while it has samples to come, so no atomics; they are added in
+// Adding samples to a film entry. A lane owns its pixel while it adds to it, so no atomics; they are added in
 // order, so its sums have the same bits however the work was scheduled.
 #ifndef FILM_GLSL
 #define FILM_GLSL

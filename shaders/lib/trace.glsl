@@ -1,5 +1,5 @@
-// Following one path: what befalls it is recorded, in order, since one lane has it from beginning to end. Absent from
-// kernels that follow none.
+// Following one path: what befalls it is recorded, in order, since one lane has it at a time. Absent from kernels that follow
+// none.
 #ifndef TRACE_GLSL
 #define TRACE_GLSL
 #include "stages/lane.glsl"

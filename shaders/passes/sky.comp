@@ -21,7 +21,7 @@ void main() {
         hit = may_meet_medium(frame.media[0], to_medium(frame.media[0], ray.origin, ray.direction));
         film_add(entry, frame.lights[LIGHT_BACKGROUND].radiance, place, i, tally);
     }
-    // llvmpipe leaves loops early, see most_iterations in wavefront.cpp: what it did not look at is for paths to see.
+    // llvmpipe leaves loops early, see most_iterations in plan.cpp: what it did not look at is for paths to see.
     // So they are counted, for a condition on `i` would be optimized away.
     if (hit || tally.paths < push.sample_end - push.sample_begin) {
         work[atomicAdd(counters.work_count, 1u)] = pixel;

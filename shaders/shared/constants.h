@@ -139,7 +139,7 @@
 #define QUEUE_SHADOW 4   // staged: shadow rays
 #define QUEUE_COUNT 5
 
-// In place of the radiance of a sample that is not there yet: a NaN that no arithmetic makes.
+// In place of the red of a sample that is not there yet: the bits of a NaN, and of no sample that is.
 #define NO_SAMPLE 0xffffffffu
 
 #define BLACKBODY_ENTRIES 4096

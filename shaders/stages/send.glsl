@@ -10,9 +10,9 @@ void finish(uint slot, Lane lane) {
     uint samples = push.sample_end - push.sample_begin;
     uint place = lane.path.pixel % push.places;
     uint i = place * samples + lane.path.sample_index - push.sample_begin;
-    waiting_samples[i] = floatBitsToUint(lane.path.radiance);
-    if (isnan(lane.path.radiance.x))
-        waiting_samples[i].x = 0x7fc00000u; // whichever it is, it is there
+    uvec3 words = floatBitsToUint(lane.path.radiance);
+    words.x = words.x == NO_SAMPLE ? 0x7fc00000u : words.x; // another NaN: it is there
+    waiting_samples[i] = words;
     paths[slot].todo = TODO_TAKE;
     push_item(QUEUE_GENERATE, slot);
 }

@@ -163,6 +163,7 @@ TEST_CASE("damaged checkpoints are refused", "[cpu][checkpoint]") {
     checkpoint.counts.lookups = 1ull << 40;
     checkpoint.non_finite = {{4, 5, 6}};
     checkpoint.seconds = 1.5;
+    checkpoint.schedule = Schedule::staged;
     const auto file = temporary("vkvol-damaged-checkpoint");
     save_checkpoint(file, checkpoint);
     const Checkpoint same = load_checkpoint(file);
@@ -173,6 +174,7 @@ TEST_CASE("damaged checkpoints are refused", "[cpu][checkpoint]") {
     CHECK(same.counts.lookups == 1ull << 40);
     CHECK((same.non_finite.size() == 1 && same.non_finite[0].sample == 6));
     CHECK(same.seconds == 1.5);
+    CHECK(same.schedule == Schedule::staged);
 
     std::ifstream stream(file, std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());

@@ -92,6 +92,24 @@ TEST_CASE("the sizes of the machine change no bit", "[gpu][determinism]") {
     }
 }
 
+TEST_CASE("samples wanted in several goes are those of one", "[gpu][determinism]") {
+    const Scene scene = cloud(11);
+    const Film whole = render_here(scene, 40).film;
+    RenderJob job;
+    job.plan.schedule = GENERATE(Schedule::fused, Schedule::staged);
+    job.seed = 40;
+    job.disk_cache = false;
+    job.crop = {0, scene.picture.width, 0, scene.picture.height};
+    Session session(test_device(), scene, job);
+    session.render(3);
+    CHECK(session.result().samples == 3);
+    CHECK(*std::max_element(session.result().film.samples.begin(), session.result().film.samples.end()) == 3);
+    session.render(4);
+    session.render(11);
+    CHECK(session.result().samples == 11);
+    CHECK((same_bits(session.result().film, whole) || !test_device().is_cpu()));
+}
+
 TEST_CASE("trying both schedules leaves no trace in the picture", "[gpu][determinism]") {
     const Scene scene = cloud(11);
     const RenderResult usual = render_here(scene, 39);
