@@ -75,7 +75,7 @@ azimuth clockwise ~ host/scene/camera_view.cpp ~ camera.yaw = orbit.azimuth; ~ c
 noise against no signal ~ host/image/film.cpp ~ signal += glm::dot(mean, mean); ~ signal += 1.0; ~ [film]
 crop forgotten in random numbers ~ shaders/sensors/camera.glsl ~ frame.crop_x + pixel ~ pixel ~ [determinism]
 staged samples out of order ~ shaders/passes/accumulate.comp ~ film_add(sums, radiance, where, push.sample_begin + at.added, tally); ~ if (at.added != 1u) film_add(sums, radiance, where, push.sample_begin + at.added, tally); ~ [determinism]
-a place taken before it is free ~ shaders/passes/generate.comp ~ tenants != index / push.places) { ~ tenants > 99999u) { ~ [determinism]
+a place taken before it is free ~ shaders/passes/generate.comp ~ tenants != index / push.places) { ~ tenants > 99999u) { ~ the sizes of the machine*
 staged shadow rays leave flights at rest ~ shaders/shared/path_state.h ~ WALK_ROW(flight, seeing && flight_rests) ~ WALK_ROW(flight, false) ~ [agreement]
 a cached transmittance forgotten between passes ~ shaders/shared/path_state.h ~ SPECTRUM_ROW(cached, has_cache) ~ SPECTRUM_ROW(cached, false) ~ [light_cache]
 rayleigh drawn as it is not ~ shaders/phase/rayleigh.glsl ~ float w = 4.0 * u - 2.0; ~ float w = 4.2 * u - 2.1; ~ [phase]
