@@ -1,16 +1,10 @@
 #include "session.h"
 
 #include <algorithm>
-#include <bit>
 #include <fmt/format.h>
 #include <utility>
 
 #include "error.h"
-#include "estimator_traits.h"
-#include "pilot_paths.h"
-#include "scene_upload.h"
-#include "schedule_memory.h"
-#include "workshop.h"
 
 namespace vkvol {
 
@@ -35,183 +29,7 @@ void add_counts(RenderCounts& total, const shared::Counters& c) {
     total.queue_overflows += c.queue_overflows;
 }
 
-// Tracking steps between two looks at what they led to, as suits the scene; 0: not known.
-std::uint32_t steps_per_look(const Specialization& s, const LoadedMedium& medium) {
-    const bool at_once = s[SPEC_FREE_FLIGHT] == FREE_FLIGHT_ANALYTIC && s[SPEC_TRANSMITTANCE] == TRANSMITTANCE_ANALYTIC;
-    if (at_once && s[SPEC_SHAPE] != SHAPE_MESH)
-        return 1;
-    const bool walks = flight_has(s[SPEC_FREE_FLIGHT], TRAIT_NULL) &&
-                       !transmittance_has(s[SPEC_TRANSMITTANCE], TRAIT_VOXELS | TRAIT_MARCH);
-    return walks && medium.majorants ? best_steps_per_look(medium.majorants->segment_steps) : 0;
-}
-
 } // namespace
-
-Session::Session(const Device& device, const Scene& scene, const RenderJob& job)
-    : scene_(with_preset(scene)), job_(job), method_(choose_method(scene_)), commands_(device) {
-    load(device, scene.warnings);
-    compile(device);
-    watch_.lap();
-}
-
-// Files, and all of them on the device.
-void Session::load(const Device& device, const std::vector<std::string>& authored_warnings) {
-    Stopwatch watch;
-    Assets assets = load_assets(scene_, method_, job_.workshop ? &job_.workshop->fields() : nullptr);
-    result_.load_seconds = watch.lap();
-    result_.warnings.assign(scene_.warnings.begin() + std::ptrdiff_t(authored_warnings.size()), scene_.warnings.end());
-    result_.warnings.insert(result_.warnings.end(), method_.warnings.begin(), method_.warnings.end());
-    bool has_colour = false; // fog, not fire
-    for (const LoadedMedium& medium : assets.media) {
-        result_.warnings.insert(result_.warnings.end(), medium.warnings.begin(), medium.warnings.end());
-        result_.counts.cleaned_voxels += medium.field ? medium.field->cleaned : 0;
-        has_colour = has_colour || (method_.material_colour && medium.mesh && medium.mesh->diffuse);
-    }
-    const Specialization specialization = specialize(scene_, assets.media, method_);
-    find_wish(assets, specialization);
-    result_.plan = plan_by(device, wish_.schedule);
-    device_scene_.emplace(device, commands_, scene_, method_, assets, job_.crop, job_.seed,
-                          result_.plan.most_grid_bytes, result_.plan.most_texel_bytes);
-    bands_ = make_bands(device, commands_, job_.crop, result_.plan.most_film_bytes);
-    begin_identity(device, assets);
-    result_.glows = device_scene_->emits() && !has_colour;
-    result_.integrator = method_.integrator;
-    result_.biased = method_.biased;
-    result_.specialization = device_scene_->text();
-    result_.trace_origin = device_scene_->origin();
-    keep(std::move(assets));
-    result_.upload_seconds = watch.lap();
-}
-
-void Session::find_wish(const Assets& assets, const Specialization& specialization) {
-    wish_ = job_.plan;
-    for (std::size_t i = 0; i < assets.media.size(); ++i) {
-        const Volume& volume = scene_.volumes[i];
-        const LoadedMedium& medium = assets.media[i];
-        loops_.mesh = loops_.mesh || medium.bvh;
-        loops_.octaves = std::max(loops_.octaves, volume.noise ? std::uint32_t(volume.noise->octaves) : 0u);
-        if (wish_.steps == 0)
-            wish_.steps = steps_per_look(specialization, medium);
-        if (medium.majorants) {
-            wish_.majorant_cell = medium.majorants->cell;
-            wish_.leaps = medium.majorants->leaps;
-        }
-    }
-    if (!job_.resume)
-        return;
-    if (wish_.schedule == Schedule::automatic) // a GPU may round the two differently
-        wish_.schedule = job_.resume->schedule;
-    // Its batch is gone on with, whatever this schedule would have made of it.
-    wish_.waiting = std::max(wish_.waiting, job_.resume->batch);
-}
-
-Plan Session::plan_by(const Device& device, Schedule schedule) const {
-    Plan wish = wish_;
-    wish.schedule = schedule;
-    return make_plan(device, loops_, wish);
-}
-
-// What the picture is explained by, and what further frames need.
-void Session::keep(Assets assets) {
-    for (std::size_t i = 0; i < assets.media.size(); ++i)
-        result_.outline = make_outline(scene_, scene_.volumes[i], assets.media[i], device_scene_->emits());
-    if (job_.workshop && job_.workshop->has_frames())
-        keep_fields(job_.workshop->fields(), scene_, std::move(assets));
-}
-
-void Session::compile(const Device& device) {
-    Stopwatch watch;
-    std::optional<PipelineCache> own_cache;
-    const PipelineCache& cache =
-        job_.workshop ? job_.workshop->pipelines(job_.disk_cache) : own_cache.emplace(device, job_.disk_cache);
-    device_scene_->make_light_cache();
-    if (job_.trace)
-        trace_.emplace(device, commands_);
-    wavefront_ =
-        make_wavefront(device, result_.plan, cache, [&] { device_scene_->compile_light_cache(cache.handle()); });
-    device_scene_->fill_light_cache();
-    // Software drivers are 1.6 to 3 times as fast with one pass (tools/results): no trial is worth its time.
-    const bool is_known = device.is_cpu() && !job_.plan.tries;
-    const bool has_paths = device_scene_->specialization()[SPEC_SHAPE] != SHAPE_NONE;
-    if (wish_.schedule == Schedule::automatic && !is_known && has_paths && !job_.trace && !job_.dry_run)
-        choose_schedule(device, cache);
-    cache.save();
-    device_scene_->set_queues(result_.plan.slots, queue_capacity(result_.plan));
-    // Counters of the sky, which are read once a batch, have 32 bits.
-    const std::uint64_t pixels = std::uint64_t{bands_.front().rows} * width();
-    most_batch_ = std::min<std::uint32_t>(result_.plan.most_batch, std::max<std::uint64_t>((1ull << 31) / pixels, 1));
-    result_.device_bytes = device_scene_->bytes() + wavefront_->bytes();
-    for (const Band& band : bands_)
-        result_.device_bytes += band.film.bytes();
-    result_.pipeline_seconds = watch.lap();
-}
-
-std::unique_ptr<Wavefront> Session::make_wavefront(const Device& device, const Plan& plan, const PipelineCache& cache,
-                                                   const std::function<void()>& meanwhile) {
-    BoundBuffers bound = device_scene_->bound();
-    Specialization specialization = device_scene_->specialization();
-    if (trace_) {
-        specialization[SPEC_TRACE] = 1;
-        bound[BINDING_TRACE] = &trace_->buffer();
-    }
-    return std::make_unique<Wavefront>(device, bound, bands_.front().rows * width(), specialization,
-                                       TrackVariant{device_scene_->is_chromatic(), device_scene_->window_bits()}, plan,
-                                       cache.handle(), meanwhile);
-}
-
-// Fused or staged, by a moment of each, unless that was done before with such a scene at such a size.
-void Session::choose_schedule(const Device& device, const PipelineCache& cache) {
-    const Plan plan = plan_by(device, Schedule::staged);
-    const std::uint64_t pixels = std::uint64_t{bands_.front().rows} * width();
-    const std::string kind =
-        fmt::format("{} {}: {}, {}, {}, 2^{} pixels", device.info().uuid, device.info().driver, result_.specialization,
-                    describe(result_.plan), describe(plan), std::bit_width(pixels));
-    std::optional<Schedule> known = recall_schedule(kind, job_.disk_cache);
-    if (known == Schedule::fused)
-        return;
-    std::unique_ptr<Wavefront> staged;
-    try {
-        staged = make_wavefront(device, plan, cache, [] {});
-    } catch (const RenderError&) { // no room for both
-        return;
-    }
-    if (!known) {
-        const bool faster = paths_per_second(*staged, plan) > paths_per_second(*wavefront_, result_.plan);
-        known = faster ? Schedule::staged : Schedule::fused;
-        remember_schedule(kind, *known, job_.disk_cache);
-    }
-    if (known == Schedule::staged) {
-        wavefront_ = std::move(staged);
-        result_.plan = plan;
-    }
-}
-
-// Of a batch that is thrown away, once lanes work as long at a time as they may. Paths that miss the medium count: both
-// schedules have the same.
-double Session::paths_per_second(Wavefront& wavefront, const Plan& plan) {
-    constexpr double start_up = 0.1, enough = 0.3; // seconds
-    const Band& band = bands_.front();
-    const std::uint32_t pixels = band.rows * width();
-    const auto samples = static_cast<std::uint32_t>(std::clamp<std::uint64_t>((1u << 22) / pixels, 1, plan.most_batch));
-    device_scene_->set_queues(plan.slots, queue_capacity(plan));
-    device_scene_->set_first_row(static_cast<std::uint32_t>(job_.crop.y0) + band.first_row);
-    wavefront.bind_film(band.film);
-    wavefront.begin_batch(0, samples, pixels);
-    Stopwatch watch;
-    double counted_from = 0.0;
-    std::uint64_t paths = 0;
-    for (bool resting = false; !resting && watch.seconds() < enough;) {
-        resting = wavefront.advance();
-        paths += wavefront.counters().paths;
-        if (!resting && counted_from == 0.0 && watch.seconds() > start_up) {
-            counted_from = watch.seconds();
-            paths = 0;
-        }
-    }
-    const double seconds = watch.seconds() - counted_from;
-    commands_.fill(band.film, 0);
-    return static_cast<double>(paths) / seconds;
-}
 
 // Runs batches of samples over all bands until the samples, the time or the user's patience is used up.
 void Session::render(std::uint32_t samples) {
@@ -266,18 +84,6 @@ std::uint32_t Session::next_batch(std::uint32_t batch, double seconds) const {
     if (seconds > 4.0)
         return std::max(batch / 2, 1u);
     return std::min(batch * (seconds < 0.1 ? 8 : seconds < 1.0 ? 2 : 1), most_batch_);
-}
-
-void Session::begin_identity(const Device& device, const Assets& assets) {
-    if (!job_.checkpoint && !job_.resume)
-        return;
-    std::vector<std::uint32_t> rows;
-    for (const Band& band : bands_)
-        rows.push_back(band.rows);
-    identity_ = identify(device_scene_->frame(), device_scene_->specialization(), assets, job_.sample_offset,
-                         fmt::format("{}, {}", device.info().name, device.info().driver), rows);
-    if (job_.resume)
-        check_identity(job_.resume->identity, identity_);
 }
 
 void Session::resume(const Checkpoint& from) {
