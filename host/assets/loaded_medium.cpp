@@ -78,14 +78,24 @@ bool leaps(const Method& method) {
     return method.flights_have(TRAIT_CELLS) && !method.shadow_rays_have(TRAIT_VOXELS | TRAIT_CONTROL);
 }
 
+// A direction in which shadow rays go: any will do.
+glm::dvec3 some_light(const std::vector<Light>& lights) {
+    for (const Light& light : lights) {
+        if (const auto* directional = std::get_if<DirectionalLight>(&light))
+            return directional->direction;
+        if (const auto* sun = std::get_if<SunLight>(&light))
+            return sun->direction;
+    }
+    return {0.0, 1.0, 0.0};
+}
+
 PilotScene pilot_scene(const Scene& scene, const Volume& volume, const Method& method, const DensityField& field,
                        double sigma_t) {
     const glm::dmat4 to_index = glm::inverse(field.index_to_world);
     PilotScene pilot;
     pilot.eye = to_index * glm::dvec4(scene.camera.position, 1.0);
     if (method.nee == NEE_COLLISIONS || method.nee == NEE_TENTATIVE)
-        for (const DirectionalLight& light : scene.lights) // any of them will do
-            pilot.light = glm::normalize(glm::dvec3(to_index * glm::dvec4(light.direction, 0.0)));
+        pilot.light = glm::normalize(glm::dvec3(to_index * glm::dvec4(some_light(scene.lights), 0.0)));
     pilot.sigma_t = sigma_t;
     pilot.albedo = largest(volume.sigma_s) / std::max(largest(volume.sigma_a + volume.sigma_s), 1e-300);
     pilot.g = volume.g;
@@ -149,6 +159,13 @@ Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
             throw InputError(fmt::format("{}: {}", volume.place, error.what()));
         }
     }
+    for (const Light& light : scene.lights)
+        if (const auto* sky = std::get_if<SkyLight>(&light)) {
+            assets.sky = load_sky(*sky);
+            if (assets.sky->mended > 0)
+                assets.warnings.push_back(fmt::format("{}: {} texels were negative or not finite, and count as 0",
+                                                      sky->file.string(), assets.sky->mended));
+        }
     return assets;
 }
 

@@ -11,6 +11,7 @@
 #include "field_cache.h"
 #include "majorant_grid.h"
 #include "method.h"
+#include "sky_map.h"
 
 namespace vkvol {
 
@@ -32,6 +33,8 @@ struct LoadedMedium {
 using Media = std::span<const LoadedMedium>;
 struct Assets {
     std::vector<LoadedMedium> media;
+    std::optional<SkyMap> sky; // the map of it, if the scene has one
+    std::vector<std::string> warnings;
 };
 
 // Opens the files, if the scene has any. Throws InputError, also for what is not supported. `kept`: grids that need not

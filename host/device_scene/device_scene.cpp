@@ -1,6 +1,7 @@
 #include "device_scene.h"
 
 #include "kernel_text.h"
+#include "light_table.h"
 #include "scene_upload.h"
 
 namespace vkvol {
@@ -14,7 +15,17 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
       chromatic_(vkvol::is_chromatic(scene)), text_(kernel_text(specialization_, assets.media, chromatic_)),
       origin_(render_origin(scene, assets.media)) {
     specialization_[SPEC_TEXELS] = buffers_.texels() ? 1 : 0;
+    if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN)
+        make_lights(scene, assets);
     text_ += buffers_.window_bits() ? ", grids in windows" : "";
+}
+
+void DeviceScene::make_lights(const Scene& scene, const Assets& assets) {
+    const LightTable table = make_light_table(scene, assets, origin_, 0.5 * longest_diagonal(scene, assets.media));
+    frame_.light_count = static_cast<std::uint32_t>(table.rows.size());
+    frame_.sky_count = table.sky_count;
+    frame_.sky = make_sky_params(scene, assets);
+    buffers_.upload_lights(device_, commands_, table, assets.sky ? &*assets.sky : nullptr);
 }
 
 void DeviceScene::set_queues(std::uint32_t slots, std::uint32_t queue_capacity) {

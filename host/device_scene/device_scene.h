@@ -38,6 +38,8 @@ public:
     std::uint64_t bytes() const;
 
 private:
+    void make_lights(const Scene& scene, const Assets& assets);
+
     const Device& device_;
     Commands& commands_;
     Specialization specialization_;

@@ -33,6 +33,14 @@ void upload_range(Commands& commands, const Buffer& buffer, const Parts& parts, 
     }
 }
 
+void make_buffer(const Device& device, Commands& commands, std::optional<Buffer>& buffer, const char* name,
+                 std::span<const std::byte> first, std::span<const std::byte> second = {}) {
+    if (first.empty())
+        return;
+    buffer.emplace(device, name, first.size() + second.size(), storage_and_texels, BufferPlace::device);
+    upload_range(commands, *buffer, std::array{first, second}, 0, buffer->bytes());
+}
+
 } // namespace
 
 SceneBuffers::SceneBuffers(const Device& device, Commands& commands, Media media, std::uint64_t most_grid_bytes,
@@ -47,10 +55,7 @@ void SceneBuffers::upload(const Device& device, Commands& commands, const Loaded
                           std::uint64_t most_grid_bytes, std::uint64_t most_texel_bytes) {
     const auto make = [&](std::optional<Buffer>& buffer, const char* name, std::span<const std::byte> first,
                           std::span<const std::byte> second = {}) {
-        if (first.empty())
-            return;
-        buffer.emplace(device, name, first.size() + second.size(), storage_and_texels, BufferPlace::device);
-        upload_range(commands, *buffer, std::array{first, second}, 0, buffer->bytes());
+        make_buffer(device, commands, buffer, name, first, second);
     };
     if (medium.bvh) {
         make(triangles_, "triangles", bytes_of(medium.bvh->triangles));
@@ -66,6 +71,22 @@ void SceneBuffers::upload(const Device& device, Commands& commands, const Loaded
     make(controls_, "control grid", bytes_of(medium.controls));
     make(blackbody_, "black-body table", bytes_of(medium.blackbody));
     texels_ = grids_ && std::max({grids_->bytes(), leaf_table_->bytes(), majorants_->bytes()}) <= most_texel_bytes;
+}
+
+void SceneBuffers::upload_lights(const Device& device, Commands& commands, const LightTable& table, const SkyMap* sky) {
+    const auto check = [&](const char* what, std::uint64_t bytes, const char* remedy) {
+        if (const std::uint64_t most = device.limits().maxStorageBufferRange; bytes > most)
+            throw InputError(fmt::format("{} take {:.1f} MiB, but \"{}\" holds no more than {:.1f} MiB of them; {}",
+                                         what, bytes / mebibyte, device.info().name, most / mebibyte, remedy));
+    };
+    check("the lights", bytes_of(table.rows).size(), "leave some out");
+    make_buffer(device, commands, lights_, "lights", bytes_of(table.rows));
+    if (!sky)
+        return;
+    check("the texels of the <sky>", bytes_of(sky->texels).size(),
+          "make the map smaller, 8 million texels at most, say");
+    make_buffer(device, commands, sky_, "sky", bytes_of(sky->texels));
+    make_buffer(device, commands, sky_alias_, "choice of the sky's texels", bytes_of(sky->alias));
 }
 
 void SceneBuffers::make_grids(const Device& device, Commands& commands, const Parts& grids, std::uint64_t most_bytes) {
@@ -121,12 +142,16 @@ BoundBuffers SceneBuffers::bound() const {
     buffers[BINDING_BLACKBODY] = place(blackbody_);
     buffers[BINDING_TRIANGLES] = place(triangles_);
     buffers[BINDING_BVH] = place(bvh_);
+    buffers[BINDING_LIGHTS] = place(lights_);
+    buffers[BINDING_SKY] = place(sky_);
+    buffers[BINDING_SKY_ALIAS] = place(sky_alias_);
     return buffers;
 }
 
 std::uint64_t SceneBuffers::bytes() const {
     std::uint64_t total = frame_.bytes();
-    for (const auto* buffer : {&grids_, &leaf_table_, &majorants_, &controls_, &blackbody_, &triangles_, &bvh_})
+    for (const auto* buffer : {&grids_, &leaf_table_, &majorants_, &controls_, &blackbody_, &triangles_, &bvh_,
+                               &lights_, &sky_, &sky_alias_})
         total += *buffer ? (*buffer)->bytes() : 0;
     for (const Buffer& window : windows_)
         total += window.bytes();

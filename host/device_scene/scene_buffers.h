@@ -6,6 +6,7 @@
 
 #include "bindings.h"
 #include "commands.h"
+#include "light_table.h"
 #include "loaded_medium.h"
 #include "shared/frame.h"
 
@@ -18,6 +19,9 @@ public:
     // naming the limit and the remedy.
     SceneBuffers(const Device& device, Commands& commands, Media media, std::uint64_t most_grid_bytes,
                  std::uint64_t most_texel_bytes);
+
+    // `sky`: null without a map. Throws InputError if that is too large for the device.
+    void upload_lights(const Device& device, Commands& commands, const LightTable& table, const SkyMap* sky);
 
     // The buffers of `frame` that kernels reach by address are put into it.
     void set_frame(Commands& commands, shared::FrameParams frame);
@@ -41,6 +45,7 @@ private:
 
     Buffer frame_;
     std::optional<Buffer> grids_, leaf_table_, majorants_, controls_, blackbody_, triangles_, bvh_;
+    std::optional<Buffer> lights_, sky_, sky_alias_;
     std::vector<Buffer> windows_;
     bool texels_ = false;
     std::optional<std::uint32_t> window_bits_;

@@ -8,6 +8,7 @@
 #include "camera_rays.h"
 #include "error.h"
 #include "light_cache.h"
+#include "light_table.h"
 #include "noise.h"
 #include "shared/estimators.h"
 #include "shared/items.h"
@@ -165,12 +166,16 @@ double diagonal_of(const Volume& volume, const LoadedMedium& loaded) {
     return glm::length(glm::dmat3(medium_to_world(volume, loaded)) * (bounds.high - bounds.low));
 }
 
+} // namespace
+
 double longest_diagonal(const Scene& scene, Media media) {
     double longest = 0.0;
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         longest = std::max(longest, diagonal_of(scene.volumes[i], media[i]));
     return longest;
 }
+
+namespace {
 
 // How far before the eye rays begin. In single precision a point at distance D is known to D * 6e-8, and so is where a
 // ray of unit direction from the eye comes to be there. From afar rays therefore begin on a plane before the medium,
@@ -248,6 +253,10 @@ Specialization specialize(const Scene& scene, Media media, const Method& method)
     // Without shadow rays the choice is to leave no trace in the kernel.
     constants[SPEC_TRANSMITTANCE] = method.nee != NEE_NONE ? method.transmittance : TRANSMITTANCE_ANALYTIC;
     constants[SPEC_STEPS] = 1;
+    // Without looks only what flights meet by themselves is seen.
+    const int lights = lights_kind(scene.lights);
+    constants[SPEC_LIGHTS] = lights == LIGHTS_TABLE && method.nee == NEE_NONE ? LIGHTS_SUN : lights;
+    constants[SPEC_MIS] = lights == LIGHTS_SKY ? method.mis : MIS_BALANCE;
     return constants;
 }
 
@@ -326,8 +335,8 @@ shared::FrameParams make_frame(const Scene& scene, Media media, const Method& me
     }
     frame.sensors[0] = make_pinhole(scene, origin, 0.5 * longest_diagonal(scene, media));
     frame.lights[LIGHT_BACKGROUND].radiance = scene.background;
-    for (std::size_t i = 0; i < scene.lights.size(); ++i)
-        frame.lights[LIGHT_SUN + i] = {scene.lights[i].direction, scene.lights[i].irradiance};
+    if (const DirectionalLight* sun = only_directional(scene.lights))
+        frame.lights[LIGHT_SUN] = {sun->direction, sun->irradiance};
     frame.march = make_march(scene, media, method);
     frame.roulette_threshold = static_cast<float>(scene.settings.roulette_threshold);
     // Beyond a million scatterings a path of any albedo that scenes have is worth nothing; the bound is counted.

@@ -20,7 +20,10 @@ Specialization specialize(const Scene& scene, Media media, const Method& method)
 // World position of render space's origin: amid the media, or the camera where there is none.
 glm::dvec3 render_origin(const Scene& scene, Media media);
 
-// All but the fields that change during a render (crop_y) or belong to the queues.
+// Of the boxes around the media; world units, 0 where there is none.
+double longest_diagonal(const Scene& scene, Media media);
+
+// All but the lights of a table, and the fields that change during a render (crop_y) or belong to the queues.
 shared::FrameParams make_frame(const Scene& scene, Media media, const Method& method, Crop crop, std::uint32_t seed);
 
 } // namespace vkvol

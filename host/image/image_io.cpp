@@ -18,6 +18,7 @@
 #include "error.h"
 #include "exr_check.h"
 #include "file_ending.h"
+#include "image_input.h"
 #include "input_file.h"
 #include "one_line.h"
 
@@ -89,14 +90,6 @@ public:
 private:
     AtomicFile& file_;
 };
-
-// What OpenImageIO says of a failure.
-std::string reason_of(const std::string& message) {
-    std::string reason = one_line(message);
-    while (!reason.empty() && reason.back() == ' ')
-        reason.pop_back();
-    return reason.empty() ? "unknown reason" : reason;
-}
 
 void write_pixels(AtomicFile& file, const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
                   const void* pixels) {
@@ -197,32 +190,6 @@ Film film_of(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, cons
     return film;
 }
 
-// A header is soon written: what it promises is held against the file's own size before memory is given, and its
-// windows against what a picture can be.
-void check_size(const OIIO::ImageSpec& spec, const path& file) {
-    constexpr std::int64_t largest_edge = 65536;
-    const auto is_window = [](std::int64_t begin, std::int64_t size) {
-        return size >= 1 && size <= largest_edge && begin >= -largest_edge && begin <= largest_edge;
-    };
-    if (!is_window(std::int64_t{spec.x} - spec.full_x, spec.width) ||
-        !is_window(std::int64_t{spec.y} - spec.full_y, spec.height) || !is_window(0, spec.full_width) ||
-        !is_window(0, spec.full_height) || spec.depth > 1)
-        throw InputError(fmt::format("{}: has a data window of {}x{} at {},{} in a picture of {}x{} at {},{}; expected "
-                                     "edges from 1 to {}, nearby",
-                                     file.string(), spec.width, spec.height, spec.x, spec.y, spec.full_width,
-                                     spec.full_height, spec.full_x, spec.full_y, largest_edge));
-    constexpr std::uint64_t best_compression = 1040, small = 16 << 20; // as of zlib, and what any file may have
-    std::error_code error;
-    const std::uint64_t file_bytes = std::filesystem::file_size(file, error);
-    const std::uint64_t bytes =
-        std::uint64_t(spec.width) * std::uint64_t(spec.height) * std::uint64_t(spec.nchannels) * sizeof(float);
-    if (error || spec.nchannels > 1024 || bytes > small + best_compression * file_bytes)
-        throw InputError(
-            fmt::format("{}: states {}x{} pixels of {} channels, which a file of {} bytes cannot hold; copy "
-                        "or render it again",
-                        file.string(), spec.width, spec.height, spec.nchannels, error ? 0 : file_bytes));
-}
-
 } // namespace
 
 void check_writable(const path& target) {
@@ -308,23 +275,12 @@ void write_display(const path& target, const Film& film, const ToneMapping& mapp
     });
 }
 
-namespace {
-[[noreturn]] void fail_to_read(const path& file, const OIIO::ImageInput& input) {
-    throw InputError(
-        fmt::format("{}: cannot be read: {}; is it complete?", file.string(), reason_of(input.geterror())));
-}
-} // namespace
-
 Film read_exr(const path& file, Metadata* metadata) {
     check_input_file(file, "");
     if (file_ending(file) != ".exr")
         throw InputError(fmt::format("{}: expected an .exr file", file.string()));
-    check_exr_header(file);
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
-    if (!input)
-        throw InputError(fmt::format("{}: cannot be read: {}", file.string(), reason_of(OIIO::geterror())));
+    const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
     const OIIO::ImageSpec& spec = input->spec();
-    check_size(spec, file);
     std::vector<float> pixels(std::size_t(spec.width) * spec.height * spec.nchannels);
     if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()))
         fail_to_read(file, *input);

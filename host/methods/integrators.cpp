@@ -96,6 +96,7 @@ const std::vector<Axis>& axes() {
          {"analytic", "regular", "delta", "ratio", "residual", "march", "telescoping", "jackknife"}},
         {"nee", &AxisChoices::nee, {"none", "collisions", "tentative", "cached"}},
         {"emission", &AxisChoices::emission, {"collisions", "steps"}},
+        {"mis", &AxisChoices::mis, {"balance", "power", "light", "phase"}},
     };
     return table;
 }

@@ -34,6 +34,7 @@ private:
     void choose_scattering();
     void choose_flight();
     void choose_nee();
+    void choose_mis();
     void choose_transmittance();
     void choose_emission();
     void choose_filter();
@@ -54,6 +55,7 @@ Method Resolution::resolve() {
     choose_scattering();
     choose_flight();
     choose_nee();
+    choose_mis();
     choose_transmittance();
     choose_emission();
     choose_filter();
@@ -114,10 +116,19 @@ void Resolution::choose_nee() {
         nee = NEE_COLLISIONS;
     } else if (nee == NEE_CACHED && (field_ == FIELD_CONSTANT || !can_cache_light(scene_))) {
         if (choices_.nee)
-            warn("a cache of transmittances is for grids, and for noise in spheres and boxes; shadow rays start at "
-                 "every collision");
+            warn("a cache of transmittances is for grids, and for noise in spheres and boxes, under one directional "
+                 "light; shadow rays start at every collision");
         nee = NEE_COLLISIONS;
     }
+}
+
+void Resolution::choose_mis() {
+    const std::vector<Light>& lights = scene_.lights;
+    const bool shared = method_.nee != NEE_NONE && method_.scattering == SCATTERING_MULTIPLE &&
+                        std::any_of(lights.begin(), lights.end(), is_met_by_chance);
+    if (choices_.mis && !shared)
+        warn("mis is without effect: no light is found by looks and by flights alike");
+    method_.mis = shared ? choices_.mis.value_or(MIS_BALANCE) : MIS_BALANCE;
 }
 
 void Resolution::choose_transmittance() {
@@ -220,7 +231,7 @@ int density_kind(const Scene& scene) {
 
 bool can_cache_light(const Scene& scene) {
     const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
-    return density_kind(scene) != FIELD_CONSTANT && !any_medium(scene, is_mesh);
+    return only_directional(scene.lights) && density_kind(scene) != FIELD_CONSTANT && !any_medium(scene, is_mesh);
 }
 
 bool has_chromatic_extinction(const Scene& scene) {

@@ -21,6 +21,7 @@ struct Method {
     int free_flight = 0;   // FREE_FLIGHT_...
     int transmittance = 0; // TRANSMITTANCE_...; unused if nee is NEE_NONE
     int nee = 0;           // NEE_...
+    int mis = 0;           // MIS_...; unused where flights meet no light but the background
     int emission_at = 0;   // EMISSION_AT_...; a march through the medium adds emission step by step in either case
     Filter filter = Filter::stochastic; // of grids
     bool jitter = true;
@@ -41,7 +42,8 @@ bool is_through(const Method& method);
 // FIELD_..., FIELD_CONSTANT without a volume.
 int density_kind(const Scene& scene);
 bool has_chromatic_extinction(const Scene& scene); // sigma_t differs between channels
-// Where transmittances towards a light can be cached: the density varies, and the shape is no mesh.
+// Where transmittances towards a light can be cached: there is but one, directional; the density varies, and the shape
+// is no mesh.
 bool can_cache_light(const Scene& scene);
 bool emits(const Scene& scene); // judged by coefficients: the temperature grid may be missing
 

@@ -1,9 +1,9 @@
 #include "scene_hash.h"
 
-#include <cstdint>
 #include <fmt/format.h>
 #include <iterator>
 
+#include "digest.h"
 #include "method.h"
 #include "shared/constants.h"
 
@@ -22,15 +22,7 @@ public:
         fmt::format_to(std::back_inserter(text_), "{}={}:{};", key, value.size(), value);
     }
 
-    // FNV-1a, 64 bit.
-    std::string hash() const {
-        std::uint64_t hash = 14695981039346656037ull;
-        for (const char c : text_) {
-            hash ^= static_cast<unsigned char>(c);
-            hash *= 1099511628211ull;
-        }
-        return fmt::format("{:016x}", hash);
-    }
+    std::string hash() const { return digest_text(text_); }
 
 private:
     std::string text_;
@@ -83,6 +75,35 @@ void add_volume(Writer& writer, const Volume& volume) {
     writer.add("reference", emission.reference);
 }
 
+void add_light(Writer& writer, const DirectionalLight& light) {
+    writer.add("direction", light.direction);
+    writer.add("irradiance", light.irradiance);
+}
+
+void add_light(Writer& writer, const SunLight& light) {
+    writer.add("sun", light.direction);
+    writer.add("irradiance", light.irradiance);
+    writer.add("angle", light.angle);
+}
+
+void add_light(Writer& writer, const PointLight& light) {
+    writer.add("point", light.position);
+    writer.add("intensity", light.intensity);
+}
+
+void add_light(Writer& writer, const SpotLight& light) {
+    writer.add("spot", light.position);
+    writer.add("axis", light.direction);
+    writer.add("intensity", light.intensity);
+    writer.add("cone", glm::dvec3(light.angle, light.blend, 0.0));
+}
+
+void add_light(Writer& writer, const SkyLight& light) {
+    add_file(writer, light.file);
+    writer.add("rotation", light.rotation);
+    writer.add("scale", light.scale);
+}
+
 void add_view(Writer& writer, const Camera& camera, const Picture& picture) {
     writer.add("position", camera.position);
     writer.add("rotation", glm::dvec3(camera.pitch, camera.yaw, camera.roll));
@@ -128,11 +149,9 @@ std::string scene_hash(const Scene& authored) {
     add_view(writer, scene.camera, scene.picture);
     for (const Volume& volume : scene.volumes)
         add_volume(writer, volume);
-    if (method.nee != NEE_NONE)
-        for (const DirectionalLight& light : scene.lights) {
-            writer.add("direction", light.direction);
-            writer.add("irradiance", light.irradiance);
-        }
+    for (const Light& light : scene.lights)
+        if (method.nee != NEE_NONE || is_met_by_chance(light))
+            std::visit([&writer](const auto& kind) { add_light(writer, kind); }, light);
     writer.add("background", scene.background);
     add_method(writer, scene.settings, method);
     return writer.hash();

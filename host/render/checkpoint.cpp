@@ -6,8 +6,8 @@
 #include <fstream>
 #include <new>
 #include <nlohmann/json.hpp>
-#include <zlib.h>
 
+#include "digest.h"
 #include "error.h"
 #include "image_io.h"
 #include "version.h"
@@ -21,29 +21,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-// magic, bytes of the header, header (JSON), film, pixels, CRC-32 of all before.
-constexpr char magic[] = {'v', 'k', 'v', 'o', 'l', 'c', 'h', '2'};
+// magic, bytes of the header, header (JSON), film, pixels, digest of all before.
+constexpr char magic[] = {'v', 'k', 'v', 'o', 'l', 'c', 'h', '3'};
 
-// Two 32-bit checksums of different polynomials: equal by accident once in 10^19.
-class Fingerprint {
-public:
-    void add(std::span<const std::byte> bytes) {
-        if (bytes.empty()) // zlib takes a null pointer for the wish to begin anew
-            return;
-        const auto* data = reinterpret_cast<const Bytef*>(bytes.data());
-        crc_ = crc32_z(crc_, data, bytes.size());
-        adler_ = adler32_z(adler_, data, bytes.size());
-    }
-    template <class T> void add_all(const T& values) { add(std::as_bytes(std::span(values))); }
-    std::string text() const { return fmt::format("{:08x}{:08x}", crc_, adler_); }
-
-private:
-    uLong crc_ = crc32_z(0, nullptr, 0), adler_ = adler32_z(0, nullptr, 0);
-};
-
-void add_field(Fingerprint& fingerprint, const std::optional<DensityField>& field) {
+void add_field(Digest& digest, const std::optional<DensityField>& field) {
     if (field)
-        fingerprint.add(field->bytes.span());
+        digest.add(field->bytes.span());
 }
 
 template <class T> void append(std::string& text, std::span<const T> values) {
@@ -98,8 +81,10 @@ std::string read_file(const std::filesystem::path& file) {
     return bytes;
 }
 
-std::uint32_t checksum(std::string_view bytes) {
-    return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+std::uint64_t checksum(std::string_view bytes) {
+    Digest digest;
+    digest.add_all(bytes);
+    return digest.value();
 }
 
 // What follows the checksum's approval was written by save_checkpoint.
@@ -111,12 +96,12 @@ template <class T> void take(std::string_view& bytes, std::span<T> values) {
 }
 
 Checkpoint parse(std::string_view bytes) {
-    std::uint32_t crc = 0;
-    if (bytes.size() < sizeof magic + sizeof crc || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
+    std::uint64_t sum = 0;
+    if (bytes.size() < sizeof magic + sizeof sum || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
         throw std::invalid_argument("it is none");
-    std::memcpy(&crc, bytes.data() + bytes.size() - sizeof crc, sizeof crc);
-    bytes.remove_suffix(sizeof crc);
-    if (crc != checksum(bytes))
+    std::memcpy(&sum, bytes.data() + bytes.size() - sizeof sum, sizeof sum);
+    bytes.remove_suffix(sizeof sum);
+    if (sum != checksum(bytes))
         throw std::invalid_argument("its checksum is wrong");
     bytes.remove_prefix(sizeof magic);
     std::uint64_t header_size = 0;
@@ -135,21 +120,23 @@ Checkpoint parse(std::string_view bytes) {
 
 RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization, const Assets& assets,
                         std::uint32_t sample_offset, const std::string& device, std::vector<std::uint32_t> band_rows) {
-    Fingerprint fingerprint;
-    fingerprint.add(std::as_bytes(std::span(&sample_offset, 1)));
-    fingerprint.add(std::as_bytes(std::span(&frame, 1)));
-    fingerprint.add_all(specialization);
+    Digest digest;
+    digest.add(std::as_bytes(std::span(&sample_offset, 1)));
+    digest.add(std::as_bytes(std::span(&frame, 1)));
+    digest.add_all(specialization);
+    if (assets.sky)
+        digest.add_all(assets.sky->texels);
     for (const LoadedMedium& medium : assets.media) {
-        add_field(fingerprint, medium.field);
-        add_field(fingerprint, medium.temperature);
+        add_field(digest, medium.field);
+        add_field(digest, medium.temperature);
         if (medium.majorants)
-            fingerprint.add_all(medium.majorants->bounds);
-        fingerprint.add_all(medium.controls);
-        fingerprint.add_all(medium.blackbody);
+            digest.add_all(medium.majorants->bounds);
+        digest.add_all(medium.controls);
+        digest.add_all(medium.blackbody);
         if (medium.bvh)
-            fingerprint.add_all(medium.bvh->triangles);
+            digest.add_all(medium.bvh->triangles);
     }
-    return {fingerprint.text(), version, device, std::move(band_rows)};
+    return {digest.text(), version, device, std::move(band_rows)};
 }
 
 void save_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint) {
@@ -161,8 +148,8 @@ void save_checkpoint(const std::filesystem::path& file, const Checkpoint& checkp
     append(bytes, std::span<const shared::FilmPixel>(checkpoint.film));
     if (checkpoint.pixels)
         append(bytes, std::span<const std::uint32_t>(*checkpoint.pixels));
-    const std::uint32_t crc = checksum(bytes);
-    append(bytes, std::span<const std::uint32_t>(&crc, 1));
+    const std::uint64_t sum = checksum(bytes);
+    append(bytes, std::span<const std::uint64_t>(&sum, 1));
     write_text(file, bytes);
 }
 

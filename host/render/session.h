@@ -1,5 +1,5 @@
-// From a scene to a film, samples as wanted. Nothing is printed; what is wrong is thrown. The command line, the bench and
-// the tests want all of a scene's samples at once, by render().
+// From a scene to a film, samples as wanted. Nothing is printed; what is wrong is thrown. The command line, the bench
+// and the tests want all of a scene's samples at once, by render().
 #pragma once
 
 #include <functional>

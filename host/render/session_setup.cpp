@@ -42,6 +42,7 @@ void Session::load(const Device& device, const std::vector<std::string>& authore
     result_.load_seconds = watch.lap();
     result_.warnings.assign(scene_.warnings.begin() + std::ptrdiff_t(authored_warnings.size()), scene_.warnings.end());
     result_.warnings.insert(result_.warnings.end(), method_.warnings.begin(), method_.warnings.end());
+    result_.warnings.insert(result_.warnings.end(), assets.warnings.begin(), assets.warnings.end());
     bool has_colour = false; // fog, not fire
     for (const LoadedMedium& medium : assets.media) {
         result_.warnings.insert(result_.warnings.end(), medium.warnings.begin(), medium.warnings.end());

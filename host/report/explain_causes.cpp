@@ -253,11 +253,17 @@ Answer inside(const Evidence& e) {
                        text_of(e.sight->eye), box_text(e.sight->box), e.sight->least_depth);
 }
 
+// Where light comes from, if from one direction; else 0.
+glm::dvec3 light_direction(const Evidence& e) {
+    const DirectionalLight* sun = only_directional(e.scene.lights);
+    return sun ? sun->direction : glm::dvec3(0.0);
+}
+
 // What Henyey and Greenstein's phase function makes of light that goes straight from the light to the camera, to that
 // of isotropic scattering.
 double phase_to_camera(const Evidence& e) {
     const double g = volume_of(e.scene)->g;
-    const double mu = glm::dot(e.scene.lights.back().direction, e.sight->forward); // of the angle of scattering
+    const double mu = glm::dot(light_direction(e), e.sight->forward); // of the angle of scattering
     return (1.0 - g * g) / std::pow(1.0 + g * g - 2.0 * g * mu, 1.5);
 }
 
@@ -265,7 +271,7 @@ Answer phase_peak(const Evidence& e) {
     if (e.odd != Odd::black || !e.sight || !sees_light(e) || e.emits)
         return {};
     const double g = volume_of(e.scene)->g;
-    if (std::abs(g) < 0.8 || phase_to_camera(e) > 0.05)
+    if (std::abs(g) < 0.8 || phase_to_camera(e) > 0.05 || !only_directional(e.scene.lights))
         return {};
     return fmt::format("the medium scatters the light past the camera: with heyneygreenstein_g {:g}, {:.1g} of what "
                        "it would be by even scattering comes this way; lower it, or let the light shine {} the camera",
@@ -275,7 +281,7 @@ Answer phase_peak(const Evidence& e) {
 Answer backlit(const Evidence& e) {
     if (e.odd != Odd::black || !e.sight || !sees_light(e) || e.emits || e.sight->most_depth < deep)
         return {};
-    const glm::dvec3& direction = e.scene.lights.back().direction;
+    const glm::dvec3 direction = light_direction(e);
     if (glm::dot(direction, e.sight->forward) < 0.3)
         return {};
     return fmt::format("the camera sees the far side of the medium: the <light> stands behind it, at {}, and the "
@@ -287,7 +293,8 @@ Answer unlike_colours(const Evidence& e) {
     const Volume* volume = volume_of(e.scene);
     if (e.odd != Odd::black || !volume || !sees_light(e) || e.emits || e.scene.background != Rgb(0.0))
         return {};
-    const Rgb& irradiance = e.scene.lights.back().irradiance;
+    const DirectionalLight* sun = only_directional(e.scene.lights);
+    const Rgb irradiance = sun ? sun->irradiance : Rgb(1.0);
     if (irradiance * volume->sigma_s != Rgb(0.0))
         return {};
     return fmt::format("light and medium have no colour in common: the <light> has {}, of which sigma_s {} scatters "

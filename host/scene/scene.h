@@ -12,9 +12,9 @@
 #include <variant>
 #include <vector>
 
-namespace vkvol {
+#include "lights.h"
 
-using Rgb = glm::dvec3; // linear Rec.709, >= 0
+namespace vkvol {
 
 // World units. Far beyond any scene, and small enough that products of three stay finite on the device.
 inline constexpr double largest_length = 1e11;
@@ -107,11 +107,6 @@ struct Volume {
     TemperatureEmission temperature; // adds to Le
 };
 
-struct DirectionalLight {
-    glm::dvec3 direction{0.0, 1.0, 0.0}; // unit, from the scene towards the light
-    Rgb irradiance{0.0};                 // on a plane perpendicular to `direction`
-};
-
 // How the density between voxel centres is looked up. `stochastic` takes one of the eight corners with the
 // probability of its trilinear weight: exact in expectation wherever the density enters linearly.
 enum class Filter { nearest, trilinear, stochastic };
@@ -123,6 +118,7 @@ struct AxisChoices {
     std::optional<int> transmittance; // TRANSMITTANCE_...
     std::optional<int> nee;           // NEE_...
     std::optional<int> emission;      // EMISSION_AT_...
+    std::optional<int> mis = {};      // MIS_...
 };
 
 // Ray marching. Lengths in world units, or in voxels of a grid.
@@ -164,7 +160,7 @@ struct Scene {
     Camera camera;
     Picture picture;
     std::vector<Volume> volumes; // the media
-    std::vector<DirectionalLight> lights;
+    std::vector<Light> lights;
     Rgb background{0.0}; // constant radiance from every direction
     RenderSettings settings;
     std::optional<Expected> expected;

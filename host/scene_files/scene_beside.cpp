@@ -1,9 +1,10 @@
 #include "scene_beside.h"
 
-#include <cstdint>
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
+
+#include "digest.h"
 
 namespace vkvol {
 
@@ -13,16 +14,6 @@ constexpr const char* before = "<?xml version=\"1.0\"?>\n"
                                "<!-- What vkvol chose, to start from. It is made anew with the picture until somebody "
                                "changes it (mark ";
 constexpr const char* after = "). -->\n";
-
-// FNV-1a, 64 bit.
-std::string mark_of(const std::string& text) {
-    std::uint64_t hash = 14695981039346656037ull;
-    for (const char c : text) {
-        hash ^= static_cast<unsigned char>(c);
-        hash *= 1099511628211ull;
-    }
-    return fmt::format("{:016x}", hash);
-}
 
 bool may_be_written(const std::filesystem::path& file) {
     std::error_code error;
@@ -40,7 +31,7 @@ bool may_be_written(const std::filesystem::path& file) {
 } // namespace
 
 std::string marked(const std::string& scene) {
-    return before + mark_of(scene) + after + scene;
+    return before + digest_text(scene) + after + scene;
 }
 
 bool is_untouched(const std::string& text) {

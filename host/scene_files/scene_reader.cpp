@@ -13,10 +13,10 @@ namespace {
 
 const std::vector<std::string> vocabulary = {
     "densityField", "sphere", "box", "models", "noise", "sigma_a", "sigma_s", "heyneygreenstein_g", "phase", "medium",
-    "emission", "light", "backgroundColor", "camera", "width", "height", "rayPerPixelCount", "maxDepth", "integrator",
-    "march", "filter", "russianRoulette", "majorant", "lightRayDensityMultiplier", "shadowRayDensityMultiplier",
-    "stepSize", "importanceSampling", "fileName", "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds",
-    "expected",
+    "emission", "light", "lights", "backgroundColor", "camera", "width", "height", "rayPerPixelCount", "maxDepth",
+    "integrator", "march", "filter", "russianRoulette", "majorant", "lightRayDensityMultiplier",
+    "shadowRayDensityMultiplier", "stepSize", "importanceSampling", "fileName", "multiThreaded",
+    "multiThreadedChunkSize", "diffuseRebounds", "expected",
     // Names that are read for old files' sake: a misspelling in the original's report, and the old name of integrator.
     "heynegreenstein_g", "intersectionHandler"};
 
@@ -32,6 +32,7 @@ Scene SceneReader::read() {
     background.allow(color_attributes);
     scene.background = color(background);
     read_light(scene);
+    read_lights(scene);
     if (const std::optional<Volume> medium = volume(scene.settings.integrator))
         scene.volumes.push_back(*medium);
     if (!any_medium(scene, [](const Volume& each) { return std::holds_alternative<GridFile>(each.shape); }))
@@ -151,7 +152,7 @@ void SceneReader::read_light(Scene& scene) const {
     if (largest == 0.0)
         element.fail(
             "<light> has no direction; x, y, z point from the scene towards the light, e.g. x=\"0\" y=\"1\" z=\"0\"");
-    scene.lights.push_back({glm::normalize(direction / largest), irradiance});
+    scene.lights.push_back(DirectionalLight{glm::normalize(direction / largest), irradiance});
 }
 
 // What asks for something that this renderer does not do, each with what is done in its place.

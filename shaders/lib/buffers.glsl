@@ -26,6 +26,8 @@ layout(constant_id = SPEC_TRACE) const int TRACE = 0;
 layout(constant_id = SPEC_TEXELS) const int TEXELS = 0;
 layout(constant_id = SPEC_LEAPS) const int LEAPS = 0;
 layout(constant_id = SPEC_PHASE) const int PHASE = PHASE_HENYEY_GREENSTEIN;
+layout(constant_id = SPEC_LIGHTS) const int LIGHTS = LIGHTS_SUN;
+layout(constant_id = SPEC_MIS) const int MIS = MIS_BALANCE;
 
 const int FLIGHT_TRAITS = FREE_FLIGHT_TRAITS(FREE_FLIGHT);
 const int SHADOW_TRAITS = TRANSMITTANCE_TRAITS(TRANSMITTANCE);
@@ -61,6 +63,9 @@ layout(scalar, binding = BINDING_WORK) buffer WorkBlock { uint work[]; };
 layout(scalar, binding = BINDING_SAMPLES) buffer SampleBlock { uvec3 waiting_samples[]; };
 layout(scalar, binding = BINDING_PLACES) buffer PlaceBlock { SamplePlace sample_places[]; };
 layout(scalar, binding = BINDING_BLACKBODY) readonly buffer BlackbodyBlock { vec3 blackbody[]; };
+layout(scalar, binding = BINDING_LIGHTS) readonly buffer LightBlock { LightRow lights[]; };
+layout(scalar, binding = BINDING_SKY) readonly buffer SkyBlock { vec4 sky_texels[]; };
+layout(scalar, binding = BINDING_SKY_ALIAS) readonly buffer SkyAliasBlock { AliasEntry sky_alias[]; };
 layout(scalar, binding = BINDING_TRACE) buffer TraceBlock {
     uint trace_count;
     TraceRecord trace_records[];

@@ -6,6 +6,7 @@
 
 #include "sensors/camera.glsl"
 #include "film/film.glsl"
+#include "lights/table.glsl"
 #include "lib/interval.glsl"
 
 void main() {
@@ -19,7 +20,10 @@ void main() {
     for (uint i = push.sample_begin; i < push.sample_end && !hit; ++i) {
         CameraRay ray = camera_ray(place, i);
         hit = may_meet_medium(frame.media[0], to_medium(frame.media[0], ray.origin, ray.direction));
-        film_add(entry, frame.lights[LIGHT_BACKGROUND].radiance, place, i, tally);
+        vec3 radiance = frame.lights[LIGHT_BACKGROUND].radiance;
+        if (LIGHTS == LIGHTS_SKY)
+            radiance += light_from_beyond(ray.direction, 0.0);
+        film_add(entry, radiance, place, i, tally);
     }
     // llvmpipe leaves loops early, see most_iterations in plan.cpp: what it did not look at is for paths to see.
     // So they are counted, for a condition on `i` would be optimized away.

@@ -29,6 +29,11 @@ Walk kept(Walk w) {
     return w;
 }
 
+// How far a segment may go, where that is not for the medium alone to say: a shadow ray, to a light that is not infinitely far.
+float cut_short(float t, float reach) {
+    return LIGHTS == LIGHTS_SUN ? t : min(t, reach);
+}
+
 // The part of the segment within the medium that begins at t.x.
 void begin_part(MediumParams v, Ray ray, vec2 t, bool seeing, inout Walk w) {
     w.origin = ray.origin + t.x * ray.direction;
@@ -45,7 +50,8 @@ void begin_part(MediumParams v, Ray ray, vec2 t, bool seeing, inout Walk w) {
 
 // A vertex on the boundary, heading out, has no such part, nor a camera ray that misses: then an empty one, which the
 // first step leaves. Of a mesh, the search for it only begins.
-void begin_segment(MediumParams v, vec3 position, vec3 direction, bool seeing, inout Walk w, inout PartSearch search) {
+void begin_segment(MediumParams v, vec3 position, vec3 direction, float reach, bool seeing, inout Walk w,
+                   inout PartSearch search) {
     search.stage = SEARCH_OVER;
     if (SHAPE == SHAPE_MESH) {
         search = begin_search(SEARCH_FIRST, 0.0);
@@ -54,13 +60,16 @@ void begin_segment(MediumParams v, vec3 position, vec3 direction, bool seeing, i
         vec2 t;
         if (!medium_interval(v, ray, t))
             t = vec2(0.0);
+        t.y = cut_short(t.y, reach);
+        t.x = min(t.x, t.y);
         begin_part(v, ray, t, seeing, w);
     }
 }
 
 // What `event` of a step means for the segment: where a part of a mesh has ended there may be a further one.
-uint after_step(uint event, Walk w, inout PartSearch search) {
+uint after_step(uint event, Walk w, float reach, inout PartSearch search) {
     bool searches = SHAPE == SHAPE_MESH && event == EVENT_LEFT && search.stage == SEARCH_OVER;
+    searches = searches && (LIGHTS == LIGHTS_SUN || w.start + w.t_end < reach);
     if (searches)
         search = begin_search(SEARCH_NEXT, w.start + w.t_end);
     return searches ? EVENT_MOVING : event;
@@ -71,7 +80,8 @@ bool is_searching(PartSearch search) {
 }
 
 // Goes on with a search for some nodes. Where it ends, the segment is in the next part, or has left the medium.
-uint search_part(MediumParams v, vec3 position, vec3 direction, bool seeing, inout Walk w, inout PartSearch search) {
+uint search_part(MediumParams v, vec3 position, vec3 direction, float reach, bool seeing, inout Walk w,
+                 inout PartSearch search) {
     uint event = EVENT_MOVING;
     // A loop, since software drivers do both sides of an `if`: a group none of whose lanes searches passes it by.
     for (bool begins = is_searching(search); begins; begins = false) {
@@ -81,6 +91,7 @@ uint search_part(MediumParams v, vec3 position, vec3 direction, bool seeing, ino
         bool over = false;
         for (int k = 0; k < MESH_NODES_PER_TURN && !over; ++k)
             over = step_search(v.bvh_nodes, mesh_ray, search, t);
+        t.y = over ? cut_short(t.y, reach) : t.y;
         bool found = over && t.x < t.y;
         if (over && (found || search.stage == SEARCH_FIRST))
             begin_part(v, ray, t, seeing, w);
@@ -90,11 +101,11 @@ uint search_part(MediumParams v, vec3 position, vec3 direction, bool seeing, ino
     return event;
 }
 
-// Transmittance of a homogeneous sphere or box.
-Spectrum analytic_shadow(MediumParams v, vec3 position, vec3 direction) {
+// Transmittance of a homogeneous sphere or box, up to a distance of `reach`.
+Spectrum analytic_shadow(MediumParams v, vec3 position, vec3 direction, float reach) {
     vec2 t;
-    float inside = medium_interval(v, to_medium(v, position, direction), t) ? t.y - t.x : 0.0;
-    return analytic_transmittance(v, inside);
+    float inside = medium_interval(v, to_medium(v, position, direction), t) ? cut_short(t.y, reach) - t.x : 0.0;
+    return analytic_transmittance(v, max(inside, 0.0));
 }
 
 #endif

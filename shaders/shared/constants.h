@@ -23,15 +23,18 @@
 #define BINDING_LATTICE 17    // vec4 per node of two lattices, see lattice.glsl
 #define BINDING_SAMPLES 18    // staged: vec3 radiance per sample that waits to be added to the film
 #define BINDING_PLACES 19     // staged: SamplePlace
-#define BINDING_TEST_INPUT 20 // test kernels only
-#define BINDING_TEST_OUTPUT 21
-#define BINDING_BUFFERS 22
+#define BINDING_LIGHTS 20     // LightRow, those that are chosen among
+#define BINDING_SKY 21        // vec4 per texel of a map of the sky, see sky.glsl
+#define BINDING_SKY_ALIAS 22  // AliasEntry per row of that map, then per texel
+#define BINDING_TEST_INPUT 23 // test kernels only
+#define BINDING_TEST_OUTPUT 24
+#define BINDING_BUFFERS 25
 // The same buffers as texels: software drivers gather these, and read storage buffers lane by lane.
-#define BINDING_GRID_TEXELS 22
-#define BINDING_LEAF_TEXELS 23
-#define BINDING_MAJORANT_TEXELS 24
-#define BINDING_LATTICE_TEXELS 25
-#define BINDING_COUNT 26
+#define BINDING_GRID_TEXELS 25
+#define BINDING_LEAF_TEXELS 26
+#define BINDING_MAJORANT_TEXELS 27
+#define BINDING_LATTICE_TEXELS 28
+#define BINDING_COUNT 29
 
 #define WORKGROUP_SIZE 64
 
@@ -60,7 +63,9 @@
 #define SPEC_TEXELS 14           // 1: grids, their tables and lattices are read as texels
 #define SPEC_LEAPS 15            // 1: walks pass empty majorant cells together
 #define SPEC_PHASE 16
-#define SPEC_COUNT 17
+#define SPEC_LIGHTS 17
+#define SPEC_MIS 18
+#define SPEC_COUNT 19
 
 #define SHAPE_NONE 0 // background only
 #define SHAPE_SPHERE 1
@@ -93,6 +98,22 @@
 // As numbered in the scene: vkvol::PhaseFunction.
 #define PHASE_HENYEY_GREENSTEIN 0
 #define PHASE_RAYLEIGH 1
+
+#define LIGHTS_SUN 0   // one without place or extent, or none, besides an even background
+#define LIGHTS_TABLE 1 // any, of which every look chooses one
+#define LIGHTS_SKY 2   // and some that flights meet by themselves when they leave
+
+#define LIGHT_DIRECTIONAL 0
+#define LIGHT_DISC 1 // in the sky
+#define LIGHT_POINT 2
+#define LIGHT_SPOT 3
+#define LIGHT_MAP 4 // of the sky
+
+// How what looks toward a light and what flights meet of it share the work.
+#define MIS_BALANCE 0
+#define MIS_POWER 1
+#define MIS_LIGHT 2 // all by looks
+#define MIS_PHASE 3 // all by flights; but for lights without extent
 
 #define EMISSION_NONE 0
 #define EMISSION_CONSTANT 1

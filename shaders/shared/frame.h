@@ -103,7 +103,34 @@ struct LatticeParams {
     ivec3 dims;   // at least 2 along each axis
 };
 
-// A row of the table of lights.
+// An entry of a table from which i is drawn with a given probability, by one look-up: of a uniformly random entry its own number with
+// probability keep / 2^32, else `other` (Walker's alias method).
+struct AliasEntry {
+    uint keep;
+    uint other;
+};
+
+// A light of several; which fields mean something depends on its kind.
+struct LightRow {
+    uint kind; // LIGHT_...
+    AliasEntry alias;
+    float chance;   // with which it is chosen
+    vec3 position;  // render space
+    vec3 direction; // unit: towards the light, where it is infinitely far; of a spot, along its axis
+    vec3 radiance;  // from everywhere on it; of a directional light its irradiance, of a point the radiant intensity
+    float extent;   // of a disc: 1 - cos of the angle from its middle to its rim
+    float cos_full; // of a spot: full intensity within,
+    float cos_none; // none beyond
+};
+
+// A map of the sky, see sky.glsl.
+struct SkyParams {
+    uint width; // texels
+    uint height;
+    float turn; // added to a direction's longitude, in turns
+};
+
+// Lights that are known without a choice.
 struct LightParams {
     vec3 direction; // unit, towards the light; none of the background
     vec3 radiance;  // of the background, from everywhere; of the sun its irradiance across `direction`
@@ -112,7 +139,10 @@ struct LightParams {
 struct FrameParams {
     SensorParams sensors[MOST_SENSORS];
     MediumParams media[MOST_MEDIA];
-    LightParams lights[MOST_LIGHTS]; // LIGHT_...
+    LightParams lights[MOST_LIGHTS]; // LIGHT_BACKGROUND, LIGHT_SUN
+    uint light_count;                // of the table
+    uint sky_count;                  // its first rows: those that flights meet by themselves
+    SkyParams sky;
     MarchParams march;
     LatticeParams lattice; // NEE_CACHED only
     float roulette_threshold;

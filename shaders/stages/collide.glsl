@@ -4,12 +4,34 @@
 #include "field/emission.glsl"
 #include "lights/light.glsl"
 #include "lights/light_cache.glsl"
+#include "lights/table.glsl"
 #include "lib/trace.glsl"
+
+// Likewise from one of many lights, which is drawn here.
+void gather_some_light(MediumParams v, vec3 position, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
+    LightSample drawn = look_for_light(position, rng);
+    float phase = phase_eval(v, lane.path.direction, drawn.direction);
+    vec3 light = drawn.light * phase * (drawn.pdf > 0.0 ? weight_of_look(drawn.pdf, phase) : 1.0);
+    if (LOOKS) {
+        lane.position = position;
+        lane.lit = lit;
+        lane.resume = next;
+        lane.to_light = drawn.direction;
+        lane.light_distance = drawn.distance;
+        lane.light = light;
+        lane.todo = largest(light) > 0.0 ? TODO_LOOK : next;
+    } else {
+        lane.path.radiance += lit * analytic_shadow(v, position, drawn.direction, drawn.distance) * light;
+        lane.todo = next;
+    }
+}
 
 // Light at a point that an interaction of throughput `lit` there scatters into the path. Known at once in a homogeneous
 // sphere or box, else the lane goes to look, or, by chance, makes do with the cache; and then does as `next` says.
 void gather_light(MediumParams v, vec3 position, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
-    if (LOOKS) {
+    if (LIGHTS != LIGHTS_SUN) {
+        gather_some_light(v, position, lit, next, lane, rng);
+    } else if (LOOKS) {
         lane.position = position;
         lane.lit = lit;
         lane.resume = next;
@@ -22,7 +44,7 @@ void gather_light(MediumParams v, vec3 position, Spectrum lit, uint next, inout 
             lane.todo = to_uniform(next_words(rng)).x < lane.chance ? TODO_LOOK : next;
         }
     } else {
-        Spectrum T = analytic_shadow(v, position, frame.lights[LIGHT_SUN].direction);
+        Spectrum T = analytic_shadow(v, position, frame.lights[LIGHT_SUN].direction, FAR);
         lane.path.radiance += sun_contribution(v, frame.lights[LIGHT_SUN], lane.path.direction, lit * T);
         lane.todo = next;
     }

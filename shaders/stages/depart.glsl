@@ -27,6 +27,8 @@ uvec4 first_words(bool looks, inout Rng rng) {
 void scatter(MediumParams v, vec4 u, inout Lane lane) {
     vec3 before = lane.path.direction;
     lane.path.direction = phase_sample(v, before, u.yz);
+    if (LIGHTS == LIGHTS_SKY)
+        lane.path.phase_pdf = phase_eval(v, before, lane.path.direction);
     lane.todo = survives(lane.beta, u.w) ? TODO_FLY : TODO_END;
     if (LOOKS && NEE == NEE_CACHED && lane.path.depth < frame.max_depth)
         lane.path.radiance -= lane.beta * frame.lights[LIGHT_SUN].radiance *
@@ -48,7 +50,8 @@ void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     if (LOOKS && looks)
         begin_transmittance(words, lane.walk);
     begin_segment(v, looks ? looking_from(lane) : lane.path.position,
-                  looks ? frame.lights[LIGHT_SUN].direction : lane.path.direction, looks, lane.walk, lane.search);
+                  looks ? looking_along(lane) : lane.path.direction, looks ? looking_as_far_as(lane) : FAR, looks,
+                  lane.walk, lane.search);
     tally.shadow_rays += looks ? 1u : 0u;
     lane.T = to_spectrum(vec3(1.0));
     lane.steps = 0u;

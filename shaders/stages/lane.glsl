@@ -53,6 +53,13 @@ Spectrum lit_beta(Lane lane) {
 vec3 looking_from(Lane lane) {
     return NEE == NEE_TENTATIVE ? lane.position : lane.path.position;
 }
+vec3 looking_along(Lane lane) {
+    return LIGHTS == LIGHTS_SUN ? frame.lights[LIGHT_SUN].direction : lane.to_light;
+}
+// World units, how far it is to the light.
+float looking_as_far_as(Lane lane) {
+    return LIGHTS == LIGHTS_SUN ? FAR : lane.light_distance;
+}
 uint after_looking(Lane lane) {
     return NEE == NEE_TENTATIVE ? lane.resume : SCATTERING == SCATTERING_SINGLE ? TODO_END : TODO_DEPART;
 }
@@ -62,6 +69,7 @@ uint after_looking(Lane lane) {
     bool seeing = LOOKS && amid && next == TODO_SEE;                                                                  \
     bool looking = seeing || (LOOKS && next == TODO_LOOK);                                                            \
     bool flight_rests = NEE == NEE_TENTATIVE;                                                                         \
+    bool chooses_light = LIGHTS != LIGHTS_SUN;                                                                        \
     bool has_cache = LOOKS && NEE == NEE_CACHED;                                                                      \
     bool under_way = (amid && next == TODO_FLY) || seeing || (looking && flight_rests);
 

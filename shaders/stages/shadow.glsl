@@ -7,9 +7,11 @@
 void end_shadow(MediumParams v, uint event, inout Lane lane) {
     Spectrum T = event == EVENT_LEFT ? end_transmittance(v, lane.walk, lane.T) : to_spectrum(vec3(0.0));
     Spectrum more = NEE == NEE_CACHED ? (T - lane.cached) / lane.chance : T;
-    lane.path.radiance += sun_contribution(v, frame.lights[LIGHT_SUN], lane.path.direction, lit_beta(lane) * more);
+    lane.path.radiance +=
+        LIGHTS == LIGHTS_SUN ? sun_contribution(v, frame.lights[LIGHT_SUN], lane.path.direction, lit_beta(lane) * more)
+                             : lit_beta(lane) * more * lane.light;
     lane.T = T;
-    trace(TRACE_LIGHT, lane, looking_from(lane), frame.lights[LIGHT_SUN].direction);
+    trace(TRACE_LIGHT, lane, looking_from(lane), looking_along(lane));
     lane.todo = after_looking(lane);
     if (NEE == NEE_TENTATIVE) {
         lane.walk = lane.flight;

@@ -24,7 +24,7 @@ void main() {
     w.tau = ray.e;
     w.depth = 0.0;
     PartSearch search;
-    begin_segment(v, ray.origin, ray.direction, seeing, w, search);
+    begin_segment(v, ray.origin, ray.direction, FAR, seeing, w, search);
     uint event = EVENT_MOVING;
     for (uint turn = 0u; turn < push.step_limit && event == EVENT_MOVING; ++turn) {
         if (ahead) {

@@ -19,18 +19,18 @@ void main() {
     PartSearch search;
     w.tau = begin_flight(v, beta, inputs[i].e, inputs[i].select);
     w.depth = 0.0;
-    begin_segment(v, inputs[i].origin, inputs[i].direction, false, w, search);
+    begin_segment(v, inputs[i].origin, inputs[i].direction, FAR, false, w, search);
     uint event = EVENT_MOVING;
     uint steps = 0u;
     for (; steps < push.step_limit && (event == EVENT_MOVING || event == EVENT_TOUCHED); ++steps) {
         if (is_searching(search)) {
-            event = search_part(v, inputs[i].origin, inputs[i].direction, false, w, search);
+            event = search_part(v, inputs[i].origin, inputs[i].direction, FAR, false, w, search);
             continue;
         }
         Collision c = Collision(0.0, 1.0, 0.0, 0.0, 0.0);
         event = NULL_FLIGHT ? next_collision(v, false, w, rng, tally, c) : EVENT_MOVING;
         event = fly(v, c, event, w, rng, beta, deposit, tally);
-        event = after_step(event, w, search);
+        event = after_step(event, w, FAR, search);
     }
     if (event == EVENT_LEFT && !NULL_FLIGHT && !goes_through())
         beta *= depth_weight(v, beta, w.depth, false);

@@ -47,6 +47,7 @@ void put(uvec4 v) {
 #define laid_aside suspended[1]
 #define waiting sample_places[1]
 #define control_cell controls[1]
+#define light_row lights[1]
 #define bvh_node bvh[1]
 #define header queues[1]
 #define entry film[1]

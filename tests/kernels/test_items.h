@@ -117,5 +117,33 @@ struct NoiseOutput {
     float octave; // the first alone, before clamping
 };
 
+struct SkyInput {
+    uint key;
+    vec3 direction;
+};
+
+struct SkyOutput {
+    vec3 direction;
+    vec3 light; // as drawn
+    float pdf;
+    vec3 radiance; // looked up in that direction
+    float pdf_there;
+    vec3 given_radiance; // and in the given one
+    float given_pdf;
+};
+
+struct LookInput {
+    uint key;
+    vec3 position;
+};
+
+struct LookOutput {
+    uint index;
+    vec3 direction;
+    float distance;
+    vec3 light;
+    float pdf;
+};
+
 SHARED_END
 #endif

@@ -24,23 +24,23 @@ void main() {
         uvec4 words = next_words(rng);
         w.tau = to_exponential(words.x, words);
         begin_transmittance(words, w);
-        begin_segment(v, ray.origin, ray.direction, true, w, search);
+        begin_segment(v, ray.origin, ray.direction, FAR, true, w, search);
     } else {
-        T = analytic_shadow(v, ray.origin, ray.direction);
+        T = analytic_shadow(v, ray.origin, ray.direction, FAR);
         event = EVENT_LEFT;
     }
     bool opaque = false;
     uint steps = 0u;
     for (; steps < push.step_limit && event == EVENT_MOVING; ++steps) {
         if (is_searching(search)) {
-            event = search_part(v, ray.origin, ray.direction, true, w, search);
+            event = search_part(v, ray.origin, ray.direction, FAR, true, w, search);
             continue;
         }
         Collision c = Collision(0.0, 1.0, 0.0, 0.0, 0.0);
         if (NULL_TRANSMITTANCE)
             event = next_collision(v, true, w, rng, tally, c);
         event = see(v, c, event, w, rng, T, opaque, tally);
-        event = opaque ? EVENT_LEFT : after_step(event, w, search);
+        event = opaque ? EVENT_LEFT : after_step(event, w, FAR, search);
     }
     if (LOOKS)
         T = opaque ? to_spectrum(vec3(0.0)) : end_transmittance(v, w, T);

@@ -23,7 +23,7 @@ Scene scene_of(const std::string& integrator, int field, bool light = true) {
         volume.noise = Noise{};
     scene.volumes = {volume};
     if (light)
-        scene.lights = {{{0, 1, 0}, Rgb(1.0)}};
+        scene.lights = {DirectionalLight{{0, 1, 0}, Rgb(1.0)}};
     return scene;
 }
 

@@ -158,7 +158,7 @@ TEST_CASE("a thin slab scatters what the closed form says", "[gpu][hard][closed_
     scene.settings.spp = 2048;
     scene.settings.max_depth = 1;
     scene.lights = {sunlight()};
-    const double mu0 = scene.lights[0].direction.z;
+    const double mu0 = sunlight().direction.z;
     const double L = 3.0 * reference::slab_single_reflection(0.8, reference::hg_eval(0.0, 0.0), tau, mu0, 1.0);
     RunningMean mean;
     for (const glm::vec3& pixel : render_here(scene, 11).film.mean)
@@ -196,7 +196,7 @@ TEST_CASE("a semi-infinite medium reflects as Chandrasekhar says", "[gpu][hard][
     scene.background = Rgb(1.0);
     check(reference::plane_albedo(albedo));
     scene.background = Rgb(0.0);
-    scene.lights = {{{0.0, 0.0, 1.0}, Rgb(1.0)}};
+    scene.lights = {DirectionalLight{{0.0, 0.0, 1.0}, Rgb(1.0)}};
     check(reference::normal_reflection(albedo));
 }
 
@@ -275,11 +275,12 @@ TEST_CASE("light shines through a row of a hundred and fifty bodies", "[gpu][har
     Scene scene = beam(medium(write_mesh(row), 1.0, 0.9), {10.0, 0.0, 0.005});
     scene.camera.yaw = 90.0;
     scene.background = Rgb(0.0);
-    scene.lights = {{{0.0, 0.0, 1.0}, Rgb(3.0, 2.0, 1.0)}};
+    scene.lights = {DirectionalLight{{0.0, 0.0, 1.0}, Rgb(3.0, 2.0, 1.0)}};
     scene.settings.integrator = "ratioTracking";
     scene.settings.choices = {SCATTERING_SINGLE, FREE_FLIGHT_ANALYTIC, TRANSMITTANCE_ANALYTIC, NEE_COLLISIONS, {}};
     const double escapes = std::exp(-6.0), depth = 0.005 + 149 * 0.01;
-    const Rgb seen = scene.lights.front().irradiance * (0.9 / (4.0 * std::numbers::pi) * std::exp(-depth));
+    const Rgb seen = std::get<DirectionalLight>(scene.lights.front()).irradiance *
+                     (0.9 / (4.0 * std::numbers::pi) * std::exp(-depth));
     CHECK_AGREEMENT(
         agree_with_escapes(render_here(scene, 21).film, everywhere(scene, escapes), Rgb(0.0), seen, "a row of bodies"));
 }
@@ -289,7 +290,7 @@ TEST_CASE("flights go on to the next body after a shadow ray", "[gpu][mesh][imag
     const Mesh bodies =
         join(make_box({-1.0, -1.0, -0.5}, {1.0, 1.0, 0.0}, 1), make_box({-1.0, -1.0, -2.0}, {1.0, 1.0, -1.0}, 1));
     Scene scene = scene_of(medium(write_mesh(bodies), 1.0, 0.8), 1.6, 16);
-    scene.lights = {{{0.0, 1.0, 0.0}, Rgb(3.0)}};
+    scene.lights = {DirectionalLight{{0.0, 1.0, 0.0}, Rgb(3.0)}};
     scene.background = sky;
     scene.settings.spp = 256;
     scene.settings.integrator = "ratioTracking";

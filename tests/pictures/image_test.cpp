@@ -74,7 +74,7 @@ TEST_CASE("a slab lit from behind equals the reference", "[gpu][image]") {
     Scene scene = scene_of(medium(write_grid(grid), 4.0 / (12 * 0.75 * 0.25), 0.9, 0.3), 3.0, 24, 25.0);
     scene.settings.spp = 384;
     scene.settings.max_depth = 1;
-    scene.lights = {{{0.0, 0.0, -1.0}, Rgb(3.0)}};
+    scene.lights = {DirectionalLight{{0.0, 0.0, -1.0}, Rgb(3.0)}};
     check(scene, "slab lit from behind", {"ratioTracking"});
 }
 

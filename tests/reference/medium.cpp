@@ -78,7 +78,7 @@ std::vector<Interval> support(const Medium& medium, const Ray& ray) {
 
     std::vector<Interval> ahead;
     for (const Interval& part : parts)
-        if (const Interval clipped = clip(part, {0.0, std::numeric_limits<double>::infinity()}); !clipped.empty())
+        if (const Interval clipped = clip(part, {0.0, ray.reach}); !clipped.empty())
             ahead.push_back(clipped);
     return ahead;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "camera.h"
@@ -18,18 +19,40 @@ using vkvol::Rgb;
 Rgb direct_light(const World& world, const glm::dvec3& p, const glm::dvec3& travel, Rng& rng) {
     const Medium& medium = *world.medium;
     Rgb Ld(0.0);
-    for (const vkvol::DirectionalLight& light : world.scene.lights) {
-        // Light travels along -light.direction and leaves along -travel: their cosine is dot(direction, travel).
-        const double mu = glm::dot(light.direction, travel);
+    for (const vkvol::Light& light : world.scene.lights) {
+        const bool has_extent = std::holds_alternative<vkvol::SunLight>(light);
+        const Draw draw = has_extent ? rng.next() : Draw{};
+        const auto found = towards(light, p, draw.x(), draw.y());
+        if (!found)
+            continue;
+        // Light travels along -direction and leaves along -travel: their cosine is dot(direction, travel).
+        const double mu = glm::dot(found->ray.direction, travel);
+        const Rgb T = estimate_transmittance(medium, world.method.transmittance, found->ray, world.method.march, rng);
+        Ld += phase_eval(medium, mu) * T * found->light;
+    }
+    if (world.sky && world.method.scattering == SCATTERING_SINGLE) { // no flight goes on to meet it
+        const Draw draw = rng.next();
+        const glm::dvec3 direction = turned({0.0, 1.0, 0.0}, 1.0 - 2.0 * draw.x(), draw.y());
         const Rgb T =
-            estimate_transmittance(medium, world.method.transmittance, {p, light.direction}, world.method.march, rng);
-        Ld += phase_eval(medium, mu) * T * light.irradiance;
+            estimate_transmittance(medium, world.method.transmittance, {p, direction}, world.method.march, rng);
+        Ld += 4.0 * std::numbers::pi * phase_eval(medium, glm::dot(direction, travel)) * T *
+              world.sky->radiance(direction);
     }
     return Ld;
 }
 
+Rgb light_from_beyond(const World& world, const glm::dvec3& direction, bool at_camera) {
+    Rgb L = world.scene.background;
+    if (world.sky)
+        L += world.sky->radiance(direction);
+    if (at_camera || world.method.nee == NEE_NONE)
+        for (const vkvol::Light& light : world.scene.lights)
+            L += disc_radiance(light, direction);
+    return L;
+}
+
 World make_world(const vkvol::Scene& scene, Medium medium) {
-    World world{scene, std::move(medium), {}};
+    World world{scene, std::move(medium), {}, load_sky(scene.lights)};
     world.medium->majorant_scale = scene.settings.majorant_scale;
     world.method = resolve_method(scene, *world.medium);
     return world;
@@ -40,12 +63,12 @@ World load_world(const vkvol::Scene& scene) {
         throw std::runtime_error("the reference renders one volume");
     if (scene.volumes.empty()) {
         Medium nothing;
-        return {scene, std::nullopt, resolve_method(scene, nothing)};
+        return {scene, std::nullopt, resolve_method(scene, nothing), load_sky(scene.lights)};
     }
     Medium medium = load(preset_volume(scene.settings.integrator, scene.volumes.front()), scene.settings.filter);
     if (medium.grid() && medium.grid()->empty()) { // no voxels, no medium
         Medium nothing;
-        return {scene, std::nullopt, resolve_method(scene, nothing)};
+        return {scene, std::nullopt, resolve_method(scene, nothing), load_sky(scene.lights)};
     }
     if (auto* grid = std::get_if<Grid>(&medium.shape); grid && scene.settings.majorant_cell > 0)
         build_majorants(*grid, scene.settings.majorant_cell);
@@ -77,7 +100,7 @@ Flight gathering_flight(const World& world, const Ray& ray, double exponential, 
 
 Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng& rng) {
     if (!world.medium)
-        return world.scene.background;
+        return light_from_beyond(world, ray.direction, true);
     if (marches_through(world.method))
         return march_through(world, ray, rng);
     const Medium& medium = *world.medium;
@@ -89,7 +112,7 @@ Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng
         const Flight flight = gathering_flight(world, ray, exponential, select, beta, !last, rng, L);
         beta = flight.beta;
         if (!flight.t)
-            return L + beta * world.scene.background;
+            return L + beta * light_from_beyond(world, ray.direction, depth == 0);
         ray.origin = ray.at(*flight.t);
         if (method.emission == EMISSION_AT_COLLISIONS)
             L += beta * (1.0 - medium.albedo) * medium.emission.at(ray.origin);

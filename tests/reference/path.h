@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "lights.h"
 #include "medium.h"
 #include "reference_method.h"
 #include "rng.h"
@@ -13,6 +14,7 @@ struct World {
     vkvol::Scene scene;
     std::optional<Medium> medium; // none: background only
     Method method;
+    std::optional<Sky> sky = std::nullopt;
 };
 
 // Opens the scene's volume and resolves its integrator. Throws std::runtime_error for what the reference does not model
@@ -27,9 +29,13 @@ vkvol::Rgb radiance(const World& world, Ray ray, double exponential, double sele
 // One sample of pixel (x, y) of the picture.
 vkvol::Rgb trace_path(const World& world, int x, int y, std::uint32_t sample, std::uint32_t seed);
 
-// Radiance from all directional lights scattered at p into the path that travels along `travel`, per unit of scattered
-// throughput.
+// Radiance from all lights that flights do not meet, scattered at p into the path that travels along `travel`, per unit
+// of scattered throughput.
 vkvol::Rgb direct_light(const World& world, const glm::dvec3& p, const glm::dvec3& travel, Rng& rng);
+
+// Radiance that comes from far away along `direction`, and that direct_light leaves to flights; `at_camera`: all there
+// is.
+vkvol::Rgb light_from_beyond(const World& world, const glm::dvec3& direction, bool at_camera);
 
 // Does a path of this method collide nowhere, and sum up what it passes?
 bool marches_through(const Method& method);

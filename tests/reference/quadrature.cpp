@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "lights.h"
 #include "phase.h"
 
 namespace reference {
@@ -122,16 +123,19 @@ Rgb chromatic_transmittance(const Medium& medium, const Ray& ray, double t0, dou
     return glm::exp(-medium.sigma_t * density_integral(medium, ray, t0, t1));
 }
 
-Rgb single_scattering_quadrature(const Medium& medium, const vkvol::DirectionalLight& light, const Ray& ray,
-                                 int panels) {
+Rgb single_scattering_quadrature(const Medium& medium, const vkvol::Light& light, const Ray& ray, int panels) {
     const Ray field_ray = DensityAlong(medium, ray).ray();
     const Rgb integral = attenuated_integral(
         medium, ray, panels, [&](const Interval& interval) { return breaks(medium, field_ray, interval); },
         [&](double t) {
-            return chromatic_transmittance(medium, {ray.at(t), light.direction});
+            const auto found = towards(light, ray.at(t), 0.5, 0.5);
+            if (!found)
+                return Rgb(0.0);
+            const double mu = glm::dot(found->ray.direction, ray.direction);
+            return chromatic_transmittance(medium, found->ray, 0.0, found->ray.reach) * phase_eval(medium, mu) *
+                   found->light;
         });
-    const double mu = glm::dot(light.direction, ray.direction);
-    return medium.albedo * phase_eval(medium, mu) * integral * light.irradiance;
+    return medium.albedo * integral;
 }
 
 Rgb unscattered_quadrature(const Medium& medium, const Rgb& background, const Ray& ray, int panels) {

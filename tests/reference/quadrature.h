@@ -20,10 +20,10 @@ double transmittance_quadrature(const Medium& medium, const Ray& ray, double t0,
 vkvol::Rgb chromatic_transmittance(const Medium& medium, const Ray& ray, double t0 = 0.0,
                                    double t1 = std::numeric_limits<double>::infinity());
 
-// Radiance of light scattered exactly once, from one directional light: the integral over t of
+// Radiance of light scattered exactly once, from one light without extent: the integral over t of
 // sigma_t albedo p T(0, t) T(t, light) E. Every smooth piece is cut into `panels` (a homogeneous medium into 64 times
 // as many) with five Gauss points each.
-vkvol::Rgb single_scattering_quadrature(const Medium& medium, const vkvol::DirectionalLight& light, const Ray& ray,
+vkvol::Rgb single_scattering_quadrature(const Medium& medium, const vkvol::Light& light, const Ray& ray,
                                         int panels = 1);
 
 // Radiance emitted along the ray and not scattered, plus the background seen straight through.

@@ -26,7 +26,8 @@ Rgb rough_transmittance(const Medium& medium, const Ray& ray) {
 Rgb cached_light(const World& world, const glm::dvec3& p, const glm::dvec3& travel, const Rgb& beta, Rng& rng) {
     const Medium& medium = *world.medium;
     Rgb Ld(0.0);
-    for (const vkvol::DirectionalLight& light : world.scene.lights) {
+    {
+        const vkvol::DirectionalLight& light = *vkvol::only_directional(world.scene.lights);
         const Ray ray{p, light.direction};
         const double phase = phase_eval(medium, glm::dot(light.direction, travel));
         const Rgb known = rough_transmittance(medium, ray);
@@ -45,7 +46,8 @@ Rgb cached_light(const World& world, const glm::dvec3& p, const glm::dvec3& trav
 Rgb foreseen_light(const World& world, const glm::dvec3& p, const glm::dvec3& before, const glm::dvec3& after) {
     const Medium& medium = *world.medium;
     Rgb foreseen(0.0);
-    for (const vkvol::DirectionalLight& light : world.scene.lights) {
+    {
+        const vkvol::DirectionalLight& light = *vkvol::only_directional(world.scene.lights);
         const Rgb T = rough_transmittance(medium, {p, light.direction});
         const double drawn = phase_eval(medium, glm::dot(light.direction, after));
         const double average = phase_eval_twice(medium, glm::dot(light.direction, before));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <limits>
 
 #include "scene.h"
 
@@ -10,6 +11,7 @@ namespace reference {
 struct Ray {
     glm::dvec3 origin;
     glm::dvec3 direction; // unit in world space; after a map to index space still moves one world unit per t
+    double reach = std::numeric_limits<double>::infinity(); // of what is asked: support() ends there
 
     glm::dvec3 at(double t) const { return origin + t * direction; }
 };

@@ -106,8 +106,8 @@ TEST_CASE("single scattering in a grid", "[cpu][reference]") {
     vkvol::Scene scene = pixel_scene(v, 20.0);
     const glm::dvec3 middle = skewed * glm::dvec3(3, 7, 5);
     scene.camera.position = {middle.x, middle.y, 20.0};
-    scene.lights = {{glm::normalize(glm::dvec3(1, 2, -0.5)), vkvol::Rgb(3.0)},
-                    {glm::normalize(glm::dvec3(-1, 0.3, 1)), vkvol::Rgb(4.0)}};
+    scene.lights = {vkvol::DirectionalLight{glm::normalize(glm::dvec3(1, 2, -0.5)), vkvol::Rgb(3.0)},
+                    vkvol::DirectionalLight{glm::normalize(glm::dvec3(-1, 0.3, 1)), vkvol::Rgb(4.0)}};
     scene.settings.max_depth = 1;
     const World world = make_world(scene, with_grid(random_grid(skewed), v));
     const Ray ray{world.scene.camera.position, {0, 0, -1}};
@@ -137,7 +137,7 @@ TEST_CASE("a semi-infinite medium", "[cpu][reference]") {
     CHECK(std::abs(z_albedo) < 4.0);
 
     scene.background = vkvol::Rgb(0.0);
-    scene.lights = {{{0, 0, 1}, vkvol::Rgb(1.0)}};
+    scene.lights = {vkvol::DirectionalLight{{0, 0, 1}, vkvol::Rgb(1.0)}};
     const double z_reflection = sample_pixel(load_world(scene), 60000, 43).z(normal_reflection(c.albedo));
     CHECK(std::abs(z_reflection) < 4.0);
 }
@@ -179,7 +179,7 @@ TEST_CASE("a constant grid scatters like a homogeneous box", "[cpu][reference]")
     v.Le = vkvol::Rgb(0.2);
     vkvol::Scene scene = pixel_scene(v, 10.0);
     scene.background = vkvol::Rgb(0.3);
-    scene.lights = {{glm::normalize(glm::dvec3(1, 1, 1)), vkvol::Rgb(2.0)}};
+    scene.lights = {vkvol::DirectionalLight{glm::normalize(glm::dvec3(1, 1, 1)), vkvol::Rgb(2.0)}};
     scene.settings.integrator = preset;
     World world = load_world(scene);
     const Mean homogeneous = sample_pixel(world, 60000, 53);

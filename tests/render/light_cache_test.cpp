@@ -107,7 +107,7 @@ TEST_CASE("a cache that is wrong everywhere is corrected by the few that look", 
     columns.linear = glm::dmat3(0.05);
     columns.translation = -center_of(columns);
     Scene scene = scene_of(medium(write_grid(columns), 2.0, 0.2), 4.0, 24);
-    scene.lights = {{{0.0, 1.0, 0.0}, Rgb(3.0, 2.0, 1.0)}};
+    scene.lights = {DirectionalLight{{0.0, 1.0, 0.0}, Rgb(3.0, 2.0, 1.0)}};
     scene.settings.spp = 256;
     scene.settings.integrator = "cachedRatioTracking";
     const RenderResult cached = render_here(scene, 3);

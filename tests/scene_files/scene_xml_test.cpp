@@ -67,9 +67,10 @@ TEST_CASE("every element of the vocabulary is read", "[cpu][xml]") {
     CHECK(volume.Le == Rgb(2, 1, 0));
     CHECK(volume.density_scale == 2.5);
     REQUIRE(scene.lights.size() == 1);
-    CHECK(scene.lights[0].direction.y == Approx(0.6));
-    CHECK(scene.lights[0].direction.z == Approx(0.8));
-    CHECK(scene.lights[0].irradiance == Rgb(10, 20, 30));
+    const auto& light = std::get<DirectionalLight>(scene.lights[0]);
+    CHECK(light.direction.y == Approx(0.6));
+    CHECK(light.direction.z == Approx(0.8));
+    CHECK(light.irradiance == Rgb(10, 20, 30));
     CHECK(scene.background.z == Approx(0.6));
     CHECK(scene.camera.position == glm::dvec3(1, 2, 3));
     CHECK(scene.camera.pitch == -19.0);

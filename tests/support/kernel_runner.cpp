@@ -23,6 +23,8 @@ KernelRunner::KernelRunner(std::span<const std::uint32_t> spirv, const Specializ
                            scene.most_grid_bytes != 0 ? scene.most_grid_bytes
                                                       : std::uint64_t{test_device().limits().maxStorageBufferRange},
                            std::uint64_t{4} * test_device().limits().maxTexelBufferElements);
+    if (scene.lights)
+        scene_buffers_->upload_lights(test_device(), commands_, *scene.lights, scene.sky);
     scene_buffers_->set_frame(commands_, scene.frame);
     BoundBuffers bound = scene_buffers_->bound();
     bound[BINDING_COUNTERS] = &counters_;

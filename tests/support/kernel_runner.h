@@ -16,7 +16,9 @@ namespace vkvol {
 struct KernelScene {
     shared::FrameParams frame{};
     const LoadedMedium* volume = nullptr; // its grids, mesh and tables; null where the kernel looks up none
-    std::uint64_t most_grid_bytes = 0;    // in one buffer; 0: as the device allows. More lie in windows
+    const LightTable* lights = nullptr;
+    const SkyMap* sky = nullptr;
+    std::uint64_t most_grid_bytes = 0; // in one buffer; 0: as the device allows. More lie in windows
 };
 
 class KernelRunner {

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <unistd.h>
 
+#include "image_io.h"
 #include "tests/reference/camera.h"
 #include "tests/reference/rng.h"
 
@@ -72,6 +73,20 @@ GridFile write_grids(const std::vector<GridRecipe>& grids) {
 
 GridFile write_grid(const GridRecipe& grid) {
     return write_grids({grid});
+}
+
+SkyLight write_sky(const RadianceMap& map) {
+    Film film;
+    film.picture_width = map.width;
+    film.picture_height = map.height;
+    film.crop = {0, map.width, 0, map.height};
+    film.mean = map.texels;
+    film.variance.resize(map.texels.size());
+    film.samples.resize(map.texels.size());
+    SkyLight sky;
+    sky.file = temporary_file("exr");
+    write_exr(sky.file, film, {});
+    return sky;
 }
 
 MeshFiles write_mesh(const Mesh& mesh) {

@@ -3,6 +3,7 @@
 
 #include "test_grids.h"
 #include "test_meshes.h"
+#include "test_sky.h"
 
 namespace vkvol {
 
@@ -12,6 +13,9 @@ GridFile write_grid(const GridRecipe& grid);
 
 // Likewise a mesh, as .obj.
 MeshFiles write_mesh(const Mesh& mesh);
+
+// Likewise a map of the sky, as .exr.
+SkyLight write_sky(const RadianceMap& map);
 
 // Of its voxels, in world space.
 glm::dvec3 center_of(const GridRecipe& grid);

@@ -1,0 +1,15 @@
+// Tables for drawing from discrete distributions: see AliasEntry in shaders/shared/frame.h.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "shared/frame.h"
+
+namespace vkvol {
+
+// Entry i is drawn in proportion to weights[i] >= 0, of which one is above 0. Vose's construction ("A Linear Algorithm
+// for Generating Random Numbers with a Given Distribution", 1991).
+std::vector<shared::AliasEntry> make_alias_table(std::span<const double> weights);
+
+} // namespace vkvol

@@ -1,0 +1,57 @@
+#include "radiance_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <memory>
+
+#include "error.h"
+#include "file_ending.h"
+#include "image_input.h"
+#include "input_file.h"
+
+namespace vkvol {
+
+namespace {
+
+// IEC 61966-2-1.
+float from_srgb(float x) {
+    return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
+}
+
+bool is_whole_numbers(const OIIO::ImageSpec& spec) {
+    return !spec.format.is_floating_point();
+}
+
+} // namespace
+
+RadianceMap read_radiance_map(const std::filesystem::path& file) {
+    check_input_file(file, "");
+    const std::string ending = file_ending(file);
+    const std::vector<std::string> known = {".exr", ".hdr", ".png", ".jpg", ".jpeg", ".tif", ".tiff"};
+    if (std::find(known.begin(), known.end(), ending) == known.end())
+        throw InputError(
+            fmt::format("{}: unknown kind of map '{}'; expected .exr, .hdr or .png", file.string(), ending));
+    const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
+    const OIIO::ImageSpec& spec = input->spec();
+    const int channels = spec.nchannels;
+    std::vector<float> values(std::size_t(spec.width) * spec.height * channels);
+    if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data()))
+        fail_to_read(file, *input);
+    RadianceMap map{spec.width, spec.height, {}, 0};
+    map.texels.reserve(std::size_t(spec.width) * spec.height);
+    for (std::size_t i = 0; i < values.size(); i += channels) {
+        glm::vec3 texel = channels < 3 ? glm::vec3(values[i]) : glm::vec3(values[i], values[i + 1], values[i + 2]);
+        bool fine = true;
+        for (int c = 0; c < 3; ++c) {
+            const bool good = std::isfinite(texel[c]) && texel[c] >= 0.0f;
+            fine = fine && good;
+            texel[c] = !good ? 0.0f : is_whole_numbers(spec) ? from_srgb(texel[c]) : texel[c];
+        }
+        map.mended += fine ? 0 : 1;
+        map.texels.push_back(texel);
+    }
+    return map;
+}
+
+} // namespace vkvol

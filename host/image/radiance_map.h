@@ -1,0 +1,21 @@
+// Pictures that are read as light.
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace vkvol {
+
+struct RadianceMap {
+    int width = 0;
+    int height = 0;
+    std::vector<glm::vec3> texels; // linear Rec.709, >= 0, rows top to bottom
+    std::size_t mended = 0;        // texels that had a channel which was negative or not finite, now 0
+};
+
+// Reads .exr and .hdr as they are, and .png, .jpg and .tif of whole numbers as sRGB. One channel is grey; alpha is left
+// out. Throws InputError for what is no such picture or is too large.
+RadianceMap read_radiance_map(const std::filesystem::path& file);
+
+} // namespace vkvol

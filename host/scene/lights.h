@@ -1,0 +1,63 @@
+// The lights of a scene as they are written. World space; colours are linear Rec.709, >= 0.
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace vkvol {
+
+using Rgb = glm::dvec3;
+
+// Infinitely far away and without extent.
+struct DirectionalLight {
+    glm::dvec3 direction{0.0, 1.0, 0.0}; // unit, from the scene towards the light
+    Rgb irradiance{0.0};                 // on a plane perpendicular to `direction`
+};
+
+// A disc of even radiance in the sky, which the camera sees.
+struct SunLight {
+    glm::dvec3 direction{0.0, 1.0, 0.0}; // unit, towards its middle
+    Rgb irradiance{0.0};                 // on a plane perpendicular to `direction`
+    double angle = 0.53;                 // degrees, its whole diameter, in (0, 180]
+};
+
+struct PointLight {
+    glm::dvec3 position{0.0};
+    Rgb intensity{0.0}; // per steradian
+};
+
+// A point that shines into a cone. Within `angle * (1 - blend)` it has its intensity, beyond `angle` none; in between
+// that falls off as a smooth step of the cosine.
+struct SpotLight {
+    glm::dvec3 position{0.0};
+    glm::dvec3 direction{0.0, -1.0, 0.0}; // unit, of the cone's axis
+    Rgb intensity{0.0};                   // per steradian, on the axis
+    double angle = 45.0;                  // degrees, the cone's whole opening, in (0, 180]
+    double blend = 0.2;                   // in [0, 1]
+};
+
+// A map of the radiance that comes from every direction: columns are longitudes, rows latitudes, the zenith (y) on top.
+// The middle column is where a camera looks that is not turned, and the map is seen from within: further right is
+// further to that camera's right. Between the middles of texels radiance is interpolated linearly.
+struct SkyLight {
+    std::filesystem::path file;
+    double rotation = 0.0; // degrees, positive turns it counter-clockwise as seen from above
+    Rgb scale{1.0};        // multiplies the map
+};
+
+using Light = std::variant<DirectionalLight, SunLight, PointLight, SpotLight, SkyLight>;
+
+// The light if there is but one and it has neither place nor extent: such a scene needs no choice of lights.
+inline const DirectionalLight* only_directional(const std::vector<Light>& lights) {
+    return lights.size() == 1 ? std::get_if<DirectionalLight>(&lights.front()) : nullptr;
+}
+
+// One that flights meet by themselves, since it has an extent.
+inline bool is_met_by_chance(const Light& light) {
+    return std::holds_alternative<SunLight>(light) || std::holds_alternative<SkyLight>(light);
+}
+
+} // namespace vkvol

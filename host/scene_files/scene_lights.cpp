@@ -1,0 +1,140 @@
+// The part of SceneReader that reads <lights>.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "blackbody.h"
+#include "scene_reader.h"
+
+namespace vkvol {
+
+namespace {
+
+const std::vector<std::string> kinds = {"directional", "sun", "point", "spot", "sky"};
+const std::vector<std::string> light_colors = {"r", "g", "b", "kelvin", "multiplier"};
+constexpr Limits flame{500.0, 40000.0, true, true, "a temperature from 500 to 40000 kelvin"};
+
+std::vector<std::string> with_colors(std::vector<std::string> attributes) {
+    attributes.insert(attributes.end(), light_colors.begin(), light_colors.end());
+    return attributes;
+}
+
+glm::dvec3 unit(const glm::dvec3& v) {
+    const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    return glm::normalize(v / largest);
+}
+
+// Where it is, or where towards, by x, y and z.
+glm::dvec3 xyz(const XmlElement& element, const Limits& limits) {
+    return {element.attribute_number("x", 0.0, limits), element.attribute_number("y", 0.0, limits),
+            element.attribute_number("z", 0.0, limits)};
+}
+
+glm::dvec3 direction(const XmlElement& element) {
+    const glm::dvec3 towards = xyz(element, any_number);
+    if (towards == glm::dvec3(0.0))
+        element.fail(fmt::format("<{}> has no direction; x, y, z point from the scene towards the light, e.g. x=\"0\" "
+                                 "y=\"1\" z=\"0\"",
+                                 element.name()));
+    return unit(towards);
+}
+
+glm::dvec3 looking_at(const XmlElement& element, const glm::dvec3& position) {
+    const std::vector<double> numbers = element.attribute_numbers("lookAt", coordinate);
+    if (numbers.size() != 3)
+        element.fail(fmt::format("<{}> needs lookAt=\"x y z\", the point at which it shines", element.name()));
+    const glm::dvec3 target(numbers[0], numbers[1], numbers[2]);
+    if (target == position)
+        element.fail_attribute("lookAt",
+                               fmt::format("<{}> lookAt: is where the light is; move one of them", element.name()));
+    return unit(target - position);
+}
+
+} // namespace
+
+// By r, g and b, or by the temperature of a black body, of luminance 1; each times multiplier. `fallback`: for lights
+// without any of these.
+Rgb SceneReader::light_color(const XmlElement& element, double fallback) const {
+    const bool mixed = element.has("r") || element.has("g") || element.has("b");
+    if (!element.has("kelvin"))
+        return mixed ? color(element) : Rgb(fallback * element.attribute_number("multiplier", 1.0, not_negative));
+    if (mixed)
+        element.fail_attribute(
+            "kelvin",
+            fmt::format("<{}> kelvin: r, g and b say its colour already; remove one of them", element.name()));
+    const double kelvin = element.attribute_number("kelvin", 6500.0, flame);
+    const Rgb tint = blackbody_rgb(kelvin, kelvin) * element.attribute_number("multiplier", 1.0, not_negative);
+    constexpr double brightest = 1e12;
+    if (std::max({tint.x, tint.y, tint.z}) > brightest)
+        element.fail_attribute("multiplier", fmt::format("<{}> multiplier: {:g} is the most that a colour may come to; "
+                                                         "lower it",
+                                                         element.name(), brightest));
+    return tint;
+}
+
+Light SceneReader::light(const XmlElement& element) const {
+    const std::string kind = element.name();
+    if (kind == "directional") {
+        element.allow(with_colors({"x", "y", "z"}));
+        return DirectionalLight{direction(element), light_color(element, 1.0)};
+    }
+    if (kind == "sun") {
+        element.allow(with_colors({"x", "y", "z", "angle"}));
+        SunLight sun{direction(element), light_color(element, 1.0)};
+        // Smaller, and the radiance of the disc would be no number that single precision can square.
+        sun.angle = element.attribute_number("angle", sun.angle,
+                                             {0.01, 180.0, true, true, "an angle from 0.01 to 180 degrees"});
+        return sun;
+    }
+    if (kind == "point") {
+        element.allow(with_colors({"x", "y", "z"}));
+        return PointLight{xyz(element, coordinate), light_color(element, 1.0)};
+    }
+    if (kind == "spot") {
+        element.allow(with_colors({"x", "y", "z", "lookAt", "angle", "blend"}));
+        SpotLight spot;
+        spot.position = xyz(element, coordinate);
+        spot.direction = looking_at(element, spot.position);
+        spot.intensity = light_color(element, 1.0);
+        spot.angle =
+            element.attribute_number("angle", spot.angle, {0.1, 180.0, true, true, "an angle from 0.1 to 180 degrees"});
+        spot.blend = element.attribute_number("blend", spot.blend, {0.0, 1.0, true, true, "a number from 0 to 1"});
+        return spot;
+    }
+    element.allow(with_colors({"baseDir", "rotation"}), true);
+    SkyLight sky;
+    sky.file = file_path(element, "sky.exr");
+    sky.rotation = element.attribute_number("rotation", 0.0, any_number);
+    sky.scale = light_color(element, 1.0);
+    return sky;
+}
+
+void SceneReader::read_lights(Scene& scene) const {
+    const XmlElement group = one("lights");
+    group.allow({}, false, kinds);
+    pugi::xml_node sky;
+    for (const pugi::xml_node node : document_.root().child("lights").children()) {
+        if (node.type() != pugi::node_element)
+            continue;
+        const XmlElement element(document_, node);
+        if (element.name() == "sky" && sky)
+            element.fail(fmt::format("a second <sky>, after the one at {}; remove one", document_.place(sky)));
+        if (element.name() == "sky")
+            sky = node;
+        const Light read = light(element);
+        const auto color_of = [](const auto& kind) {
+            if constexpr (requires { kind.irradiance; })
+                return kind.irradiance;
+            else if constexpr (requires { kind.intensity; })
+                return kind.intensity;
+            else
+                return kind.scale;
+        };
+        if (std::visit(color_of, read) == Rgb(0.0))
+            scene.black.push_back({element.name(), element.place()});
+        else
+            scene.lights.push_back(read);
+    }
+}
+
+} // namespace vkvol

@@ -1,0 +1,19 @@
+// Directions drawn from the map of the sky by a key, and what the map is at them and at given ones.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "kernel.glsl"
+
+#include "lights/sky.glsl"
+TEST_IO(SkyInput, SkyOutput)
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= push.lanes)
+        return;
+    Rng rng = Rng(inputs[i].key, 0u, 0u, frame.seed);
+    vec2 u = to_uniform(next_words(rng)).xy;
+    LightSample drawn = sample_sky(u, rng);
+    vec2 place = sky_place(drawn.direction), given = sky_place(inputs[i].direction);
+    outputs[i] = SkyOutput(drawn.direction, drawn.light, drawn.pdf, sky_radiance(place), sky_pdf(place, drawn.direction),
+                           sky_radiance(given), sky_pdf(given, inputs[i].direction));
+}

@@ -1,0 +1,174 @@
+// Pictures lit by lights of every kind, against the reference, which asks all lights everywhere and weights nothing;
+// and the ways to share work between looks and flights, against each other.
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include "shared/constants.h"
+#include "support/agreement.h"
+#include "support/images.h"
+#include "support/scenes.h"
+#include "support/statistics.h"
+#include "tests/reference/reference.h"
+
+using namespace vkvol;
+
+namespace {
+
+const GridFile& cloud_file() {
+    static const GridFile file = write_grid(cloud_grid());
+    return file;
+}
+
+const SkyLight& sunset() {
+    static const SkyLight sky = write_sky(sunset_map());
+    return sky;
+}
+
+struct NamedLights {
+    std::string name;
+    std::vector<Light> lights;
+};
+
+// About the scenes below, whose media reach some 5 from the origin. None is within a medium: by distance sampling
+// alone what a point gives has no variance there.
+std::vector<NamedLights> all_lights() {
+    const SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {3.0, 2.5, 2.0}, 8.0};
+    const PointLight point{{6.0, 5.0, 4.0}, {120.0, 90.0, 60.0}};
+    const SpotLight spot{
+        {0.0, 9.0, 3.0}, glm::normalize(glm::dvec3(0.0, -3.0, -1.0)), {200.0, 250.0, 300.0}, 40.0, 0.5};
+    return {
+        {"directional lights",
+         {sunlight({3.0, 2.5, 1.5}), DirectionalLight{glm::normalize(glm::dvec3(-2.0, 1.0, -0.5)), {1.0, 2.0, 4.0}}}},
+        {"sun", {sun}},
+        {"wide sun", {SunLight{sun.direction, sun.irradiance, 120.0}}},
+        {"point", {point}},
+        {"spot", {spot}},
+        {"sky", {sunset()}},
+        {"everything", {sunlight(), sun, point, spot, sunset()}}};
+}
+
+Scene lit_by(const Volume& volume, double width, const std::vector<Light>& lights, std::uint32_t spp) {
+    Scene scene = scene_of(volume, width, 16, 25.0, glm::dvec3(0.0), {10.0, 25.0, -5.0});
+    scene.background = {0.05, 0.1, 0.15};
+    scene.lights = lights;
+    scene.settings.spp = spp;
+    scene.settings.filter = Filter::trilinear;
+    return scene;
+}
+
+Volume cloud(double g = 0.5) {
+    return medium(cloud_file(), 2.0, 0.9, g);
+}
+
+} // namespace
+
+TEST_CASE("every light equals the reference's, in a cloud", "[gpu][lights]") {
+    for (const NamedLights& lit : all_lights()) {
+        const Scene scene = lit_by(cloud(), 11.0, lit.lights, 256);
+        CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_reference(scene, 2), lit.name + ", cloud"));
+    }
+}
+
+TEST_CASE("every light equals the reference's, in a ball and in a mesh", "[gpu][lights][mesh]") {
+    const Mesh bodies =
+        join(make_box({-3.0, -1.0, -1.0}, {-0.5, 1.5, 1.0}, 1), make_box({0.5, -2.0, -2.0}, {3.0, 1.0, 1.0}, 1));
+    for (const NamedLights& lit : all_lights()) {
+        const Scene ball = lit_by(medium(Sphere{{0.1, -0.1, 0.0}, 2.0}, 1.5, 0.95, -0.4), 5.0, lit.lights, 256);
+        CHECK_AGREEMENT(agree(render_here(ball, 3).film, render_reference(ball, 4), lit.name + ", ball"));
+        const Scene mesh = lit_by(medium(write_mesh(bodies), 1.0, 0.8, 0.3), 8.0, lit.lights, 256);
+        CHECK_AGREEMENT(agree(render_here(mesh, 5).film, render_reference(mesh, 6), lit.name + ", mesh"));
+    }
+}
+
+// Shadow rays to a lamp in the midst end there, in every estimator. A hole around the lamp keeps the variance finite.
+TEST_CASE("shadow rays end at a lamp within the medium", "[gpu][lights]") {
+    GridRecipe shell = cloud_grid();
+    const auto value = shell.value;
+    shell.value = [value](glm::ivec3 i) {
+        return glm::length(glm::dvec3(i) - glm::dvec3(0.0, 3.0, 2.0)) < 5.0 ? 0.0f : value(i);
+    };
+    const glm::dvec3 lamp = glm::dvec3(shell.linear * glm::dvec3(0.0, 3.0, 2.0)) + shell.translation;
+    const Volume volume = medium(write_grid(shell), 2.0, 0.9, 0.3);
+    Scene scene = lit_by(volume, 11.0, {PointLight{lamp, Rgb(30.0, 20.0, 10.0)}}, 192);
+    scene.settings.integrator = "ratioTracking";
+    const Film reference = render_reference(scene, 7);
+    for (const int transmittance : {TRANSMITTANCE_REGULAR, TRANSMITTANCE_DELTA, TRANSMITTANCE_RATIO,
+                                    TRANSMITTANCE_RESIDUAL, TRANSMITTANCE_TELESCOPING})
+        for (const int nee : {NEE_COLLISIONS, NEE_TENTATIVE}) {
+            scene.settings.choices.transmittance = transmittance;
+            scene.settings.choices.nee = nee;
+            CHECK_AGREEMENT(agree(render_here(scene, 8).film, reference,
+                                  fmt::format("lamp, transmittance {}, nee {}", transmittance, nee)));
+        }
+}
+
+TEST_CASE("single scattering from lamps equals the quadrature", "[gpu][lights][closed_form]") {
+    const Light light =
+        GENERATE(Light(PointLight{{3.0, 2.5, 1.0}, Rgb(20.0)}),
+                 Light(SpotLight{{0.0, 4.0, 2.0}, glm::normalize(glm::dvec3(0.0, -2.0, -1.0)), Rgb(60.0), 60.0, 1.0}));
+    const double tau = GENERATE(0.1, 3.0);
+    Scene scene = scene_of(medium(Box{{0, 0, 0}, {2.0, 2.0, 1.0}}, tau, 0.9, 0.4), 1.2, 16, 20.0, glm::dvec3(0.0),
+                           {10.0, -20.0, 0.0});
+    scene.lights = {light};
+    scene.settings.spp = 2048;
+    scene.settings.max_depth = 1;
+    const reference::Medium medium = reference::load(scene.volumes.front(), Filter::trilinear);
+    std::vector<Rgb> means;
+    for (int y = 0; y < scene.picture.height; ++y)
+        for (int x = 0; x < scene.picture.width; ++x) {
+            Rgb sum(0.0);
+            for (int k = 0; k < 4; ++k)
+                sum += reference::single_scattering_quadrature(
+                    medium, light,
+                    reference::camera_ray(scene.camera, scene.picture, x + (k % 2 + 0.5) / 2, y + (k / 2 + 0.5) / 2));
+            means.push_back(sum / 4.0);
+        }
+    CHECK_AGREEMENT(
+        agree_with_means(render_here(scene, 9).film, means, fmt::format("lamp {}, tau {}", light.index(), tau)));
+}
+
+// What is scattered from all directions alike is what comes from all of them.
+TEST_CASE("a furnace of a map of ones", "[gpu][lights][furnace]") {
+    const SkyLight ones = write_sky(make_map(8, 4, [](int, int) { return Rgb(1.0, 0.5, 2.0); }));
+    for (const double g : {0.0, 0.9, -0.7})
+        for (const int mis : {MIS_BALANCE, MIS_POWER, MIS_LIGHT, MIS_PHASE}) {
+            Scene scene = lit_by(cloud(g), 11.0, {ones}, 64);
+            scene.volumes.front() = medium(cloud_file(), 1.0, 1.0, g);
+            scene.background = Rgb(0.0);
+            scene.settings.choices.mis = mis;
+            RunningMean mean;
+            for (const glm::vec3& pixel : render_here(scene, 10).film.mean)
+                mean.add(pixel.z);
+            CAPTURE(g, mis, mean.mean(), mean.standard_error());
+            CHECK(t_test_p(mean, 2.0, 1e-5) > 1e-4);
+        }
+}
+
+TEST_CASE("a sky is seen where no medium is", "[gpu][lights]") {
+    Scene scene =
+        lit_by(cloud(), 40.0, {sunset(), SunLight{glm::normalize(glm::dvec3(-1.0, 0.2, -2.0)), Rgb(2.0), 20.0}}, 64);
+    scene.camera.fov = 120.0;
+    CHECK_AGREEMENT(agree(render_here(scene, 11).film, render_reference(scene, 12), "a sky around a cloud"));
+    scene.volumes.clear();
+    CHECK_AGREEMENT(agree(render_here(scene, 13).film, render_reference(scene, 14), "a sky alone"));
+}
+
+TEST_CASE("looks and flights find the same light", "[gpu][lights][agreement]") {
+    const SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {5.0, 4.0, 3.0}, 60.0};
+    for (const double g : {0.0, 0.85}) {
+        std::vector<Estimate> estimates;
+        std::uint32_t seed = 20;
+        for (const int nee : {NEE_COLLISIONS, NEE_TENTATIVE})
+            for (const int mis : {MIS_BALANCE, MIS_POWER, MIS_LIGHT, MIS_PHASE}) {
+                Scene scene = lit_by(cloud(g), 11.0, {sun, sunset()}, 512);
+                scene.settings.integrator = "ratioTracking";
+                scene.settings.choices.nee = nee;
+                scene.settings.choices.mis = mis;
+                estimates.push_back({fmt::format("nee {}, mis {}", nee, mis), render_here(scene, seed++).film});
+            }
+        const PairwiseAgreement all = compare_all(estimates);
+        CAPTURE(g, all.mean_pair, all.pixel_pair);
+        CHECK(all.mean_z < z_limit(1e-3, double(all.tests)));
+        CHECK(all.pixel_z < z_limit(1e-3, double(all.tests)));
+    }
+}

@@ -1,0 +1,101 @@
+#include "lights.h"
+
+#include <OpenImageIO/imagebuf.h>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "phase.h"
+
+namespace reference {
+
+using vkvol::Rgb;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+double radians(double degrees) {
+    return degrees * pi / 180.0;
+}
+
+struct Ask {
+    const glm::dvec3& p;
+    double u, v;
+
+    std::optional<Towards> operator()(const vkvol::DirectionalLight& light) const {
+        return Towards{{p, light.direction}, light.irradiance};
+    }
+    // Evenly over the disc's solid angle, by the cosine.
+    std::optional<Towards> operator()(const vkvol::SunLight& sun) const {
+        const double rim = std::cos(radians(0.5 * sun.angle));
+        const glm::dvec3 direction = turned(sun.direction, 1.0 - u * (1.0 - rim), v);
+        return Towards{{p, direction}, disc_radiance(sun, sun.direction) * (2.0 * pi * (1.0 - rim))};
+    }
+    std::optional<Towards> operator()(const vkvol::PointLight& light) const {
+        const double distance = glm::distance(light.position, p);
+        return Towards{{p, (light.position - p) / distance, distance}, light.intensity / (distance * distance)};
+    }
+    std::optional<Towards> operator()(const vkvol::SpotLight& spot) const {
+        const auto found = (*this)(vkvol::PointLight{spot.position, spot.intensity});
+        const double none = std::cos(radians(0.5 * spot.angle));
+        const double full = std::cos(radians(0.5 * spot.angle * (1.0 - spot.blend)));
+        const double cosine = glm::dot(-found->ray.direction, spot.direction);
+        if (cosine <= none)
+            return std::nullopt;
+        const double t = cosine >= full ? 1.0 : (cosine - none) / (full - none);
+        return Towards{found->ray, found->light * (3.0 * t * t - 2.0 * t * t * t)};
+    }
+    std::optional<Towards> operator()(const vkvol::SkyLight&) const { return std::nullopt; }
+};
+
+} // namespace
+
+std::optional<Towards> towards(const vkvol::Light& light, const glm::dvec3& p, double u, double v) {
+    return std::visit(Ask{p, u, v}, light);
+}
+
+Rgb disc_radiance(const vkvol::Light& light, const glm::dvec3& direction) {
+    const auto* sun = std::get_if<vkvol::SunLight>(&light);
+    if (!sun)
+        return Rgb(0.0);
+    const double half = radians(0.5 * sun->angle);
+    const bool inside = glm::length(glm::cross(direction, sun->direction)) < std::sin(half) &&
+                        glm::dot(direction, sun->direction) > 0.0;
+    return inside ? sun->irradiance / (pi * std::sin(half) * std::sin(half)) : Rgb(0.0);
+}
+
+Rgb Sky::radiance(const glm::dvec3& direction) const {
+    const double longitude = std::atan2(direction.x, -direction.z) + radians(rotation); // of the map's middle: 0
+    const double latitude = std::acos(std::clamp(direction.y, -1.0, 1.0));
+    const double x = (longitude / (2.0 * pi) + 0.5) * width - 0.5, y = latitude / pi * height - 0.5;
+    const auto texel = [&](double column, double row) {
+        const int i = static_cast<int>(column - width * std::floor(column / width)) % width;
+        const int j = std::clamp(static_cast<int>(row), 0, height - 1);
+        return texels[static_cast<std::size_t>(j) * width + i];
+    };
+    const double left = std::floor(x), top = std::floor(y), f = x - left, g = y - top;
+    return (1.0 - g) * ((1.0 - f) * texel(left, top) + f * texel(left + 1.0, top)) +
+           g * ((1.0 - f) * texel(left, top + 1.0) + f * texel(left + 1.0, top + 1.0));
+}
+
+std::optional<Sky> load_sky(const std::vector<vkvol::Light>& lights) {
+    for (const vkvol::Light& light : lights)
+        if (const auto* authored = std::get_if<vkvol::SkyLight>(&light)) {
+            OIIO::ImageBuf image(authored->file.string());
+            if (!image.read(0, 0, true, OIIO::TypeDesc::FLOAT))
+                throw std::runtime_error(image.geterror());
+            Sky sky{image.spec().width, image.spec().height, {}, authored->rotation};
+            for (int y = 0; y < sky.height; ++y)
+                for (int x = 0; x < sky.width; ++x) {
+                    float texel[3];
+                    image.getpixel(x, y, 0, texel, 3);
+                    sky.texels.push_back(Rgb(texel[0], texel[1], texel[2]) * authored->scale);
+                }
+            return sky;
+        }
+    return std::nullopt;
+}
+
+} // namespace reference
