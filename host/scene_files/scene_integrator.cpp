@@ -1,4 +1,5 @@
 // The part of SceneReader that reads how the medium is rendered, and says what of the scene that leaves out.
+#include <algorithm>
 #include <cstring>
 #include <fmt/format.h>
 
@@ -86,13 +87,14 @@ void SceneReader::check_method(const Scene& scene) const {
 }
 
 void SceneReader::warn_about_light(const Scene& scene, const Method& method) const {
-    if (scene.lights.empty() || method.nee != NEE_NONE)
+    if (method.nee != NEE_NONE || std::all_of(scene.lights.begin(), scene.lights.end(), is_met_by_chance))
         return;
+    const XmlElement light = one("light"), element = light.exists() && !scene.lights.empty() ? light : one("lights");
     if (scene.settings.choices.nee.value_or(choose_integrator(scene).nee) == NEE_NONE)
-        one("light").warn(fmt::format("{} cannot see a directional light, which is left out; ratioTracking renders it",
-                                      method.integrator));
+        element.warn(fmt::format("{} cannot see a light without extent, which is left out; ratioTracking renders it",
+                                 method.integrator));
     else if (method.scattering == SCATTERING_NONE)
-        one("light").warn(
+        element.warn(
             fmt::format("{} scatters nothing, and the light is left out; ratioTracking renders it", method.integrator));
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 
 #include "blackbody.h"
 #include "scene_reader.h"
@@ -50,20 +51,33 @@ glm::dvec3 looking_at(const XmlElement& element, const glm::dvec3& position) {
     return unit(target - position);
 }
 
+// The camera may see it.
+void check_disc(const XmlElement& element, const SunLight& sun) {
+    constexpr double brightest = 1e12; // as of any radiance
+    const double sine = std::sin(0.5 * sun.angle * std::numbers::pi / 180.0);
+    const double radiance =
+        std::max({sun.irradiance.x, sun.irradiance.y, sun.irradiance.z}) / (std::numbers::pi * sine * sine);
+    if (radiance > brightest)
+        element.fail_attribute("angle", fmt::format("<sun> angle: a disc of {:g} degrees and of this irradiance has a "
+                                                    "radiance of {:.3g}, but {:g} is the most; widen or dim it",
+                                                    sun.angle, radiance, brightest));
+}
+
 } // namespace
 
-// By r, g and b, or by the temperature of a black body, of luminance 1; each times multiplier. `fallback`: for lights
-// without any of these.
-Rgb SceneReader::light_color(const XmlElement& element, double fallback) const {
+// By r, g and b, or by the temperature of a black body, of luminance 1; white without any of these. Each times
+// multiplier.
+Rgb SceneReader::light_color(const XmlElement& element) const {
     const bool mixed = element.has("r") || element.has("g") || element.has("b");
-    if (!element.has("kelvin"))
-        return mixed ? color(element) : Rgb(fallback * element.attribute_number("multiplier", 1.0, not_negative));
-    if (mixed)
+    if (mixed && element.has("kelvin"))
         element.fail_attribute(
             "kelvin",
             fmt::format("<{}> kelvin: r, g and b say its colour already; remove one of them", element.name()));
+    if (mixed)
+        return color(element);
     const double kelvin = element.attribute_number("kelvin", 6500.0, flame);
-    const Rgb tint = blackbody_rgb(kelvin, kelvin) * element.attribute_number("multiplier", 1.0, not_negative);
+    const Rgb tint = (element.has("kelvin") ? blackbody_rgb(kelvin, kelvin) : Rgb(1.0)) *
+                     element.attribute_number("multiplier", 1.0, not_negative);
     constexpr double brightest = 1e12;
     if (std::max({tint.x, tint.y, tint.z}) > brightest)
         element.fail_attribute("multiplier", fmt::format("<{}> multiplier: {:g} is the most that a colour may come to; "
@@ -76,26 +90,26 @@ Light SceneReader::light(const XmlElement& element) const {
     const std::string kind = element.name();
     if (kind == "directional") {
         element.allow(with_colors({"x", "y", "z"}));
-        return DirectionalLight{direction(element), light_color(element, 1.0)};
+        return DirectionalLight{direction(element), light_color(element)};
     }
     if (kind == "sun") {
         element.allow(with_colors({"x", "y", "z", "angle"}));
-        SunLight sun{direction(element), light_color(element, 1.0)};
-        // Smaller, and the radiance of the disc would be no number that single precision can square.
+        SunLight sun{direction(element), light_color(element)};
         sun.angle = element.attribute_number("angle", sun.angle,
                                              {0.01, 180.0, true, true, "an angle from 0.01 to 180 degrees"});
+        check_disc(element, sun);
         return sun;
     }
     if (kind == "point") {
         element.allow(with_colors({"x", "y", "z"}));
-        return PointLight{xyz(element, coordinate), light_color(element, 1.0)};
+        return PointLight{xyz(element, coordinate), light_color(element)};
     }
     if (kind == "spot") {
         element.allow(with_colors({"x", "y", "z", "lookAt", "angle", "blend"}));
         SpotLight spot;
         spot.position = xyz(element, coordinate);
         spot.direction = looking_at(element, spot.position);
-        spot.intensity = light_color(element, 1.0);
+        spot.intensity = light_color(element);
         spot.angle =
             element.attribute_number("angle", spot.angle, {0.1, 180.0, true, true, "an angle from 0.1 to 180 degrees"});
         spot.blend = element.attribute_number("blend", spot.blend, {0.0, 1.0, true, true, "a number from 0 to 1"});
@@ -105,7 +119,7 @@ Light SceneReader::light(const XmlElement& element) const {
     SkyLight sky;
     sky.file = file_path(element, "sky.exr");
     sky.rotation = element.attribute_number("rotation", 0.0, any_number);
-    sky.scale = light_color(element, 1.0);
+    sky.scale = light_color(element);
     return sky;
 }
 

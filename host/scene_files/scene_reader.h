@@ -42,7 +42,7 @@ private:
     void read_light(Scene& scene) const;
     void read_lights(Scene& scene) const;
     Light light(const XmlElement& element) const;
-    Rgb light_color(const XmlElement& element, double fallback) const;
+    Rgb light_color(const XmlElement& element) const;
     std::optional<Volume> volume(const std::string& integrator) const;
     std::optional<Shape> shape(const std::string& integrator, std::string& place) const;
     XmlElement shape_element(const std::string& integrator) const;

@@ -22,7 +22,6 @@
     ROW(uint, pixel)     /* fused: index into the film; staged: into the work list */                                 \
     ROW(uint, place)     /* of the pixel in the picture, x | y << 16 */                                               \
     ROW(uint, sample_index)                                                                                           \
-    ROW(float, phase_pdf) /* of the direction, where it was sampled at the vertex; per steradian */                   \
     ROW(uint, draw)  /* random draws consumed; 0 at the camera, whose draw also holds the first free flight */        \
     ROW(uint, depth) /* scattering events, this one included; 0 at the camera */                                      \
     ROW(uint, todo)  /* TODO_...: what comes next */
@@ -38,6 +37,7 @@
     ROW(vec3, position, looking && flight_rests) /* and where that is, render space */                                \
     ROW(uint, resume, looking && flight_rests) /* what to do after it */                                              \
     ROW(uint, steps, under_way)                /* of the segment */                                                   \
+    ROW(float, phase_pdf, under_way && sees_sky) /* with which the flight's direction was drawn; 0 at the camera */     \
     ROW(vec3, to_light, looking && chooses_light) /* unit */                                                          \
     ROW(float, light_distance, looking && chooses_light) /* world units */                                            \
     ROW(vec3, light, looking && chooses_light) /* what comes along the shadow ray if nothing is in between, per unit of the \

@@ -28,7 +28,7 @@ void scatter(MediumParams v, vec4 u, inout Lane lane) {
     vec3 before = lane.path.direction;
     lane.path.direction = phase_sample(v, before, u.yz);
     if (LIGHTS == LIGHTS_SKY)
-        lane.path.phase_pdf = phase_eval(v, before, lane.path.direction);
+        lane.phase_pdf = phase_eval(v, before, lane.path.direction);
     lane.todo = survives(lane.beta, u.w) ? TODO_FLY : TODO_END;
     if (LOOKS && NEE == NEE_CACHED && lane.path.depth < frame.max_depth)
         lane.path.radiance -= lane.beta * frame.lights[LIGHT_SUN].radiance *
@@ -40,6 +40,8 @@ void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     bool at_camera = !looks && lane.path.depth == 0u;
     uvec4 words = first_words(looks, rng);
     lane.todo = looks ? TODO_SEE : TODO_FLY;
+    if (LIGHTS == LIGHTS_SKY && at_camera)
+        lane.phase_pdf = 0.0;
     if (!looks && !at_camera)
         scatter(v, to_uniform(words), lane);
     if (NEE == NEE_TENTATIVE && looks)

@@ -9,7 +9,6 @@ void generate(inout Lane lane, out Rng rng) {
     lane.path.position = ray.origin;
     lane.path.direction = ray.direction;
     lane.path.radiance = vec3(0.0);
-    lane.path.phase_pdf = 0.0;
     lane.path.draw = 0u;
     lane.path.depth = 0u;
     lane.beta = to_spectrum(vec3(1.0));

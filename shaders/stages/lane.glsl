@@ -69,6 +69,7 @@ uint after_looking(Lane lane) {
     bool seeing = LOOKS && amid && next == TODO_SEE;                                                                  \
     bool looking = seeing || (LOOKS && next == TODO_LOOK);                                                            \
     bool flight_rests = NEE == NEE_TENTATIVE;                                                                         \
+    bool sees_sky = LIGHTS == LIGHTS_SKY;                                                                             \
     bool chooses_light = LIGHTS != LIGHTS_SUN;                                                                        \
     bool has_cache = LOOKS && NEE == NEE_CACHED;                                                                      \
     bool under_way = (amid && next == TODO_FLY) || seeing || (looking && flight_rests);

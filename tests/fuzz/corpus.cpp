@@ -9,6 +9,7 @@
 #include <openvdb/openvdb.h>
 #include <zlib.h>
 
+#include "image_io.h"
 #include "support/test_grids.h"
 #include "support/test_meshes.h"
 #include "target.h"
@@ -157,6 +158,13 @@ void write_scene_files(const std::filesystem::path& directory) {
     write_file(directory / "cloud.vdb", make_vdbs(directory).front());
     write_file(directory / "ball.obj", make_objs().back());
     write_file(directory / "ball.mtl", ball_mtl);
+    Film sky;
+    sky.picture_width = sky.crop.x1 = 4;
+    sky.picture_height = sky.crop.y1 = 2;
+    sky.mean.resize(8, glm::vec3(1.0f, 2.0f, 3.0f));
+    sky.variance.resize(8);
+    sky.samples.resize(8);
+    write_exr(directory / "sky.exr", sky, {});
 }
 
 std::vector<std::string> make_vdbs(const std::filesystem::path& scratch) {

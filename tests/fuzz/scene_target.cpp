@@ -58,6 +58,12 @@ std::string attribute_value(std::string_view name, Source& random) {
         return one_of("none|collisions|tentative", random);
     if (name == "emission")
         return one_of("collisions|steps", random);
+    if (name == "mis")
+        return one_of("balance|power|light|phase", random);
+    if (name == "lookAt")
+        return one_of("0 0 0|1 2 3|0 0", random);
+    if (name == "kelvin")
+        return one_of("|2000|6500", random);
     if (name == "octaves" || name == "cell")
         return std::to_string(1 + random.below(16));
     if (name == "lacunarity" || name == "reference")
@@ -102,6 +108,12 @@ std::string build(Source& random) {
             continue;
         xml += element(grammar[i], random);
     }
+    if (random.one_in(3)) {
+        xml += "  <lights>\n";
+        for (std::uint64_t lights = random.below(4); lights > 0; --lights)
+            xml += element(random.pick(light_grammar), random);
+        xml += "  </lights>\n";
+    }
     return xml + "</options>\n";
 }
 
@@ -109,7 +121,7 @@ std::string build(Source& random) {
 void damage_elements(std::string& xml, Source& random) {
     switch (random.below(6)) {
     case 0: {
-        const std::string added = element(random.pick(grammar), random);
+        const std::string added = element(random.one_in(4) ? random.pick(light_grammar) : random.pick(grammar), random);
         const std::size_t line = xml.find('\n', random.below(xml.size()));
         xml.insert(line == std::string::npos ? xml.size() : line + 1, added);
         break;
@@ -147,7 +159,8 @@ void damage_elements(std::string& xml, Source& random) {
 
 class SceneTarget : public Target {
 public:
-    SceneTarget() : Target("scene", ".xml", 64, 0) {}
+    // OpenImageIO reads maps of the sky, as in image_target.cpp.
+    SceneTarget() : Target("scene", ".xml", 256, 0) {}
 
     void prepare(const std::filesystem::path& directory) override {
         directory_ = directory;

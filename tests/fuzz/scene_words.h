@@ -16,6 +16,12 @@ inline constexpr const char* element_names[] = {"densityField",
                                                 "medium",
                                                 "emission",
                                                 "light",
+                                                "lights",
+                                                "directional",
+                                                "sun",
+                                                "point",
+                                                "spot",
+                                                "sky",
                                                 "backgroundColor",
                                                 "camera",
                                                 "width",
@@ -75,7 +81,7 @@ inline constexpr Words grammar[] = {
      "decompositionTracking|spectralTracking|unbiasedRayMarching|regularTracking|rayMarching|adaptiveRayMarching|"
      "densitySampling|homogeneousRayMarcherNEE|homogeneousRayMarcherImproved|heterogeneousPerlinNoise|nanoVDBSimple|"
      "nanoVDBEmission",
-     {"scattering", "flight", "transmittance", "nee", "emission"}},
+     {"scattering", "flight", "transmittance", "nee", "emission", "mis"}},
     {"march", "", {"step", "shadowStep", "opticalStep", "jitter", "unit"}},
     {"filter", "nearest|trilinear|stochastic", {}},
     {"russianRoulette", "", {"threshold"}},
@@ -87,6 +93,14 @@ inline constexpr Words grammar[] = {
     {"fileName", "a|b.png", {}},
     {"multiThreaded", "true|0", {"freeThreads"}},
     {"multiThreadedChunkSize", "i", {}}};
+
+// Within <lights>.
+inline constexpr Words light_grammar[] = {
+    {"directional", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier"}},
+    {"sun", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier", "angle"}},
+    {"point", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier"}},
+    {"spot", "", {"x", "y", "z", "lookAt", "angle", "blend", "kelvin", "multiplier"}},
+    {"sky", "sky.exr|none.exr", {"baseDir", "rotation", "kelvin", "multiplier"}}};
 
 inline constexpr const char* ordinary_numbers[] = {"0.5",
                                                    "0.25",

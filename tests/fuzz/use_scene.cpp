@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "light_table.h"
 #include "method.h"
 #include "scene_hash.h"
 #include "scene_upload.h"
@@ -82,6 +83,15 @@ void check_frame(const shared::FrameParams& frame, int shape) {
            "the optical step is not a positive float");
 }
 
+void check_light(const shared::LightRow& row) {
+    expect_radiance(row.radiance, "a light is out of range");
+    expect_finite(row.position, "a light's place is not finite");
+    expect_finite(row.direction, "a light's direction is not finite");
+    expect(row.chance > 0.0f && row.chance <= 1.0f, "a light's chance is none");
+    expect(std::isfinite(row.extent) && row.extent >= 0.0f, "a disc's extent is none");
+    expect(row.cos_full >= row.cos_none, "a cone's rim is inside out");
+}
+
 void check_loaded(const LoadedMedium& loaded) {
     if (loaded.field)
         check_field(*loaded.field);
@@ -147,6 +157,12 @@ void use_scene(const Scene& authored) {
         check_loaded(medium);
     const Specialization constants = specialize(scene, assets.media, method);
     is_chromatic(scene);
+    if (constants[SPEC_LIGHTS] != LIGHTS_SUN) {
+        const LightTable table = make_light_table(scene, assets, render_origin(scene, assets.media),
+                                                  0.5 * longest_diagonal(scene, assets.media));
+        for (const shared::LightRow& row : table.rows)
+            check_light(row);
+    }
     const Crop crop{0, scene.picture.width, 0, scene.picture.height};
     check_frame(make_frame(scene, assets.media, method, crop, 1), static_cast<int>(constants[SPEC_SHAPE]));
 }

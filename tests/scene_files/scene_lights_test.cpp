@@ -1,0 +1,113 @@
+// <lights>: what is read of it, and what is refused.
+#include <catch2/catch.hpp>
+
+#include "error.h"
+#include "integrators.h"
+#include "method.h"
+#include "scene_hash.h"
+#include "shared/constants.h"
+#include "support/scene_text.h"
+#include "support/scenes.h"
+
+using namespace vkvol;
+
+TEST_CASE("lights of every kind are read", "[cpu][xml]") {
+    const Scene scene = parse(R"(<sphere/><light y="2" r="3"/><lights>
+        <directional x="1" r="2" g="1" b=".5" multiplier="2"/>
+        <sun z="4" angle="2"/>
+        <point x="1" y="2" z="3" multiplier="7"/>
+        <spot y="5" lookAt="0 0 0" angle="30" blend="0" kelvin="2700"/>
+        <sky rotation="-30" multiplier=".5">a/sky.exr</sky></lights>)");
+    REQUIRE(scene.lights.size() == 6);
+    CHECK(std::get<DirectionalLight>(scene.lights[0]).irradiance == Rgb(3, 0, 0));
+    CHECK(std::get<DirectionalLight>(scene.lights[1]).irradiance == Rgb(4, 2, 1));
+    CHECK(std::get<DirectionalLight>(scene.lights[1]).direction == glm::dvec3(1, 0, 0));
+    CHECK(std::get<SunLight>(scene.lights[2]).irradiance == Rgb(1.0));
+    CHECK(std::get<SunLight>(scene.lights[2]).angle == 2.0);
+    CHECK(std::get<PointLight>(scene.lights[3]).position == glm::dvec3(1, 2, 3));
+    CHECK(std::get<PointLight>(scene.lights[3]).intensity == Rgb(7.0));
+    const auto& spot = std::get<SpotLight>(scene.lights[4]);
+    CHECK(spot.direction == glm::dvec3(0, -1, 0));
+    CHECK(spot.blend == 0.0);
+    const Rgb weights(0.2126, 0.7152, 0.0722); // of luminance, Rec.709
+    CHECK(glm::dot(spot.intensity, weights) == Approx(1.0).epsilon(1e-3));
+    CHECK(spot.intensity.x > 2.0 * spot.intensity.z);
+    const auto& sky = std::get<SkyLight>(scene.lights[5]);
+    CHECK(sky.file.filename() == "sky.exr");
+    CHECK(sky.rotation == -30.0);
+    CHECK(sky.scale == Rgb(0.5));
+    CHECK(scene.warnings.empty());
+}
+
+TEST_CASE("what is wrong with a light is said at its place", "[cpu][xml]") {
+    const auto error = [](const std::string& light) { return error_of("<lights>" + light + "</lights>"); };
+    for (const auto& [light, words] : std::vector<std::pair<std::string, std::string>>{
+             {"<lamp/>", "2:9"},
+             {"<directional/>", "<directional> has no direction"},
+             {"<sun r=\"1\"/>", "<sun> has no direction"},
+             {"<sun y=\"1\" angle=\"0\"/>", "from 0.01 to 180"},
+             {"<sun y=\"1\" angle=\"0.01\" multiplier=\"1e12\"/>", "widen or dim it"},
+             {"<point x=\"nan\"/>", "<point> x"},
+             {"<point kelvin=\"2700\" r=\"1\"/>", "remove one of them"},
+             {"<point kelvin=\"100\"/>", "from 500 to 40000"},
+             {"<point multiplier=\"1e20\"/>", "lower"},
+             {"<spot/>", "lookAt=\"x y z\""},
+             {"<spot lookAt=\"0 0 0\"/>", "is where the light is"},
+             {"<spot lookAt=\"0 1\"/>", "lookAt=\"x y z\""},
+             {"<spot lookAt=\"0 1 0\" angle=\"0\"/>", "from 0.1 to 180"},
+             {"<spot lookAt=\"0 1 0\" blend=\"2\"/>", "from 0 to 1"},
+             {"<sky/>", "names no file"},
+             {"<sky>a.exr</sky><sky>b.exr</sky>", "a second <sky>"},
+             {"<sky colour=\"1\">a.exr</sky>", "colour"}}) {
+        CAPTURE(light, words);
+        CHECK_THAT(error(light), Catch::Contains(words));
+    }
+}
+
+TEST_CASE("black lights are left out", "[cpu][xml]") {
+    const Scene scene = parse(R"(<sphere/><lights><point r="0"/><sky multiplier="0">a.exr</sky></lights>)");
+    CHECK(scene.lights.empty());
+    REQUIRE(scene.black.size() == 2);
+    CHECK(scene.black.back().name == "sky");
+}
+
+TEST_CASE("integrators that send no shadow rays see what has an extent", "[cpu][xml]") {
+    CHECK(warns(parse(R"(<sphere/><integrator>deltaTracking</integrator><lights><point x="3"/></lights>)"),
+                "ratioTracking renders it"));
+    CHECK_FALSE(warns(parse(R"(<sphere/><integrator>deltaTracking</integrator><lights><sun y="3"/></lights>)"),
+                      "ratioTracking"));
+}
+
+TEST_CASE("what a scene's lights ask for", "[cpu][method]") {
+    const auto method_of = [](const std::string& lights, const std::string& integrator = "") {
+        return choose_method(with_preset(parse("<box/><noise/>" + integrator + "<lights>" + lights + "</lights>")));
+    };
+    CHECK(method_of("<directional y=\"1\"/>").nee == NEE_CACHED);
+    CHECK(method_of("<directional y=\"1\"/><directional x=\"1\"/>").nee == NEE_COLLISIONS);
+    CHECK(method_of("<point/>").nee == NEE_COLLISIONS);
+    CHECK(method_of("<sun y=\"1\"/>").mis == MIS_BALANCE);
+    const std::string phase = R"(<integrator mis="phase">ratioTracking</integrator>)";
+    CHECK(method_of("<sun y=\"1\"/>", phase).mis == MIS_PHASE);
+    CHECK(method_of("<point/>", phase).warnings.size() == 1);
+}
+
+TEST_CASE("a map of the sky without light is refused, and what is no number counts as none", "[cpu][lights]") {
+    const auto load = [](const SkyLight& sky) {
+        Scene scene;
+        scene.lights = {sky};
+        return load_assets(scene, choose_method(scene));
+    };
+    CHECK_THROWS_WITH(load(write_sky(make_map(4, 2, [](int, int) { return Rgb(0.0); }))),
+                      Catch::Contains("a map without light"));
+    SkyLight missing;
+    missing.file = "none.exr";
+    CHECK_THROWS_WITH(load(missing), Catch::Contains("none.exr"));
+    missing.file = "none.bmp";
+    CHECK_THROWS_AS(load(missing), InputError);
+    const Assets assets = load(write_sky(make_map(4, 2, [](int x, int y) {
+        return x == 1 ? Rgb(std::numeric_limits<double>::quiet_NaN()) : y == 1 ? Rgb(-1.0) : Rgb(2.0);
+    })));
+    CHECK(assets.sky->mended == 5);
+    REQUIRE(assets.warnings.size() == 1);
+    CHECK_THAT(assets.warnings[0], Catch::Contains("5 texels were negative or not finite"));
+}
