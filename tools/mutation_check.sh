@@ -54,7 +54,7 @@ faces a millionth too far ~ shaders/majorants/majorant.glsl ~ return max(w.t, mi
 thin media at 24 bits ~ shaders/lib/rng.glsl ~ word < small ? series ~ false ? series ~ [rng]
 window some words off ~ shaders/field/grid.glsl ~ frame_block.grid_windows[i >> WINDOW_BITS] ~ frame_block.grid_windows[(i + 64u) >> WINDOW_BITS] ~ [windows]
 pixels lost at a checkpoint ~ host/render/wavefront.cpp ~ first * sizeof(std::uint32_t)); ~ 0 * first); ~ [checkpoint]
-fingerprint without grids ~ host/render/checkpoint.cpp ~ fingerprint.add(field->bytes.span()); ~ ; ~ [checkpoint]
+fingerprint without grids ~ host/render/checkpoint.cpp ~ digest.add(field->bytes.span()); ~ ; ~ [checkpoint]
 huge samples kept ~ shaders/film/film.glsl ~ 281474976710656.0 ~ 3.0e38 ~ [command]
 steps ahead of a collision kept ~ shaders/estimators/ahead.glsl ~ walk.t = t[k]; ~ walk.t = w.t; ~ steps found ahead*
 numbers for steps ahead not put back ~ shaders/estimators/ahead.glsl ~ rng.draw += 1u; ~ rng.draw = ahead.draw; ~ steps found ahead*
@@ -79,6 +79,17 @@ a place taken before it is free ~ shaders/passes/generate.comp ~ tenants != inde
 staged shadow rays leave flights at rest ~ shaders/shared/path_state.h ~ WALK_ROW(flight, seeing && flight_rests) ~ WALK_ROW(flight, false) ~ [agreement]
 a cached transmittance forgotten between passes ~ shaders/shared/path_state.h ~ SPECTRUM_ROW(cached, has_cache) ~ SPECTRUM_ROW(cached, false) ~ [light_cache]
 rayleigh drawn as it is not ~ shaders/phase/rayleigh.glsl ~ float w = 4.0 * u - 2.0; ~ float w = 4.2 * u - 2.1; ~ [phase]
+shadow rays past their lamp ~ shaders/shapes/segment.glsl ~ return LIGHTS == LIGHTS_SUN ? t : min(t, reach); ~ return t; ~ [lights]
+weights of looks and flights off ~ shaders/lights/table.glsl ~ own > 0.0 ? 1.0 / (1.0 + (MIS ~ own > 0.0 ? 1.0 / (0.9 + (MIS ~ [lights]
+sky drawn without its sine ~ shaders/lights/sky.glsl ~ / max(sine, 1.0e-12)); ~ ); ~ [lights]
+sky turned the other way ~ shaders/lights/sky.glsl ~ + 0.5 + sky.turn) ~ + 0.5 - sky.turn) ~ [lights]
+sun's disc too wide ~ shaders/lights/disc.glsl ~ return 2.0 * INV_4PI / light.extent; ~ return 1.9 * INV_4PI / light.extent; ~ [lights]
+lamp without its cosine ~ shaders/lights/flat.glsl ~ (light.area * max(-dot(direction, light.direction), 1.0e-12)) ~ light.area ~ [lights]
+lamps not drawn by the phase function ~ shaders/lights/lamp.glsl ~ select < share                ? ~ false ? ~ [lights]
+one lamp for all that are seen ~ shaders/lights/lamp.glsl ~ seen.light *= met; ~ ; ~ [lights]
+tree's chance forgotten ~ shaders/lights/table.glsl ~ chance *= below; ~ ; ~ [lights]
+branch's chance not its own ~ shaders/lights/tree.glsl ~ float(goes_left ? share : 0u - share) ~ float(share) ~ [lights]
+spot without its rim ~ shaders/lights/point.glsl ~ t * t * (3.0 - 2.0 * t) ~ t ~ [lights]
 END
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "alias_table.h"
+#include "daylight.h"
 #include "error.h"
 
 namespace vkvol {
@@ -99,7 +100,7 @@ SkyMap make_sky(const RadianceMap& map, const Rgb& scale) {
 }
 
 SkyMap load_sky(const SkyLight& light) {
-    const RadianceMap map = read_radiance_map(light.file);
+    const RadianceMap map = light.daylight ? make_daylight(*light.daylight) : read_radiance_map(light.file);
     check(map, light);
     return make_sky(map, light.scale);
 }

@@ -21,11 +21,13 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
 }
 
 void DeviceScene::make_lights(const Scene& scene, const Assets& assets) {
-    const LightTable table = make_light_table(scene, assets, origin_, 0.5 * longest_diagonal(scene, assets.media));
-    frame_.light_count = static_cast<std::uint32_t>(table.rows.size());
-    frame_.sky_count = table.sky_count;
+    lights_ = make_light_table(scene, assets, origin_, 0.5 * longest_diagonal(scene, assets.media));
+    frame_.choices = lights_.choices;
+    frame_.sky_count = lights_.sky_count;
+    frame_.lamp_first = lights_.lamp_first;
+    frame_.lamp_count = lights_.lamp_count;
     frame_.sky = make_sky_params(scene, assets);
-    buffers_.upload_lights(device_, commands_, table, assets.sky ? &*assets.sky : nullptr);
+    buffers_.upload_lights(device_, commands_, lights_, assets.sky ? &*assets.sky : nullptr);
 }
 
 void DeviceScene::set_queues(std::uint32_t slots, std::uint32_t queue_capacity) {

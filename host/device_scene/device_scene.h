@@ -32,8 +32,9 @@ public:
     std::optional<std::uint32_t> window_bits() const { return buffers_.window_bits(); }
     bool is_chromatic() const { return chromatic_; }
     bool emits() const { return specialization_[SPEC_EMISSION] != EMISSION_NONE; }
-    const std::string& text() const { return text_; } // of its kernels
-    glm::dvec3 origin() const { return origin_; }     // of render space, in world space
+    const std::string& text() const { return text_; }    // of its kernels
+    glm::dvec3 origin() const { return origin_; }        // of render space, in world space
+    const LightTable& lights() const { return lights_; } // empty where there is no choice
     BoundBuffers bound() const;
     std::uint64_t bytes() const;
 
@@ -45,6 +46,7 @@ private:
     Specialization specialization_;
     shared::FrameParams frame_;
     SceneBuffers buffers_;
+    LightTable lights_;
     std::optional<LightCache> light_cache_;
     bool chromatic_;
     std::string text_;

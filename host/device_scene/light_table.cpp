@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "alias_table.h"
+#include "light_tree.h"
 
 namespace vkvol {
 
@@ -29,8 +30,14 @@ double versine(double angle) {
 struct Entry {
     shared::LightRow row{};
     double fluence = 0.0; // amid the media, roughly
-    bool met = false;     // by flights that leave
+    // In this order rows are laid out.
+    enum class Place { sky, far, lamp, point } place = Place::far; // sky: met by flights that leave
+    float reach = 0.0f;                                            // from its middle
 };
+
+bool is_somewhere(const Entry& entry) {
+    return entry.place == Entry::Place::lamp || entry.place == Entry::Place::point;
+}
 
 // One light as a row.
 class Rows {
@@ -52,7 +59,7 @@ public:
         entry.row.direction = light.direction;
         entry.row.extent = static_cast<float>(versine(half));
         entry.fluence = mean(light.irradiance);
-        entry.met = true;
+        entry.place = Entry::Place::sky;
         return entry;
     }
 
@@ -60,6 +67,7 @@ public:
         Entry entry = begin(LIGHT_POINT, light.intensity);
         entry.row.position = light.position - origin_;
         entry.fluence = mean(light.intensity) / square_distance(light.position);
+        entry.place = Entry::Place::point;
         return entry;
     }
 
@@ -71,13 +79,44 @@ public:
         entry.row.cos_full = static_cast<float>(std::cos(half * (1.0 - light.blend)));
         entry.row.cos_none = static_cast<float>(std::cos(half));
         entry.fluence = mean(light.intensity) / square_distance(light.position);
+        entry.place = Entry::Place::point;
         return entry;
+    }
+
+    Entry operator()(const SphereLight& light) const {
+        Entry entry = begin(LIGHT_SPHERE, light.radiance);
+        entry.row.position = light.center - origin_;
+        entry.row.extent = static_cast<float>(light.radius);
+        return lamp(entry, light.radiance, light.center, pi * light.radius * light.radius,
+                    static_cast<float>(light.radius));
+    }
+
+    Entry operator()(const DiskLight& light) const {
+        Entry entry = begin(LIGHT_DISK, light.radiance);
+        entry.row.position = light.center - origin_;
+        entry.row.direction = light.normal;
+        const glm::dvec3 aside = std::abs(light.normal.x) < 0.8 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+        const glm::dvec3 u = glm::normalize(glm::cross(light.normal, aside));
+        entry.row.edge_u = light.radius * u;
+        entry.row.edge_v = light.radius * glm::cross(light.normal, u);
+        return lamp(entry, light.radiance, light.center, pi * light.radius * light.radius,
+                    static_cast<float>(light.radius));
+    }
+
+    Entry operator()(const RectangleLight& light) const {
+        Entry entry = begin(LIGHT_RECTANGLE, light.radiance);
+        entry.row.position = light.center - origin_;
+        entry.row.direction = light.normal();
+        entry.row.edge_u = light.edge_u;
+        entry.row.edge_v = light.edge_v;
+        return lamp(entry, light.radiance, light.center, 4.0 * glm::length(light.edge_u) * glm::length(light.edge_v),
+                    static_cast<float>(glm::length(light.edge_u + light.edge_v)));
     }
 
     Entry operator()(const SkyLight&) const {
         Entry entry = begin(LIGHT_MAP, Rgb(0.0));
         entry.fluence = mean(assets_.sky->fluence);
-        entry.met = true;
+        entry.place = Entry::Place::sky;
         return entry;
     }
 
@@ -86,6 +125,14 @@ private:
         Entry entry;
         entry.row.kind = static_cast<std::uint32_t>(kind);
         entry.row.radiance = radiance;
+        return entry;
+    }
+
+    Entry lamp(Entry entry, const Rgb& radiance, const glm::dvec3& center, double area, float reach) const {
+        entry.row.area = static_cast<float>(area);
+        entry.fluence = std::min(mean(radiance) * area / square_distance(center), 2.0 * pi * mean(radiance));
+        entry.place = Entry::Place::lamp;
+        entry.reach = reach;
         return entry;
     }
 
@@ -100,41 +147,83 @@ private:
     double radius_;
 };
 
-void set_chances(std::vector<Entry>& entries) {
+// Of the first rows, by their fluence.
+void set_chances(std::vector<shared::LightRow>& rows, const std::vector<double>& fluences) {
     double sum = 0.0;
-    for (const Entry& entry : entries)
-        sum += entry.fluence;
+    for (const double fluence : fluences)
+        sum += fluence;
+    const double count = double(fluences.size());
     std::vector<double> chances;
-    for (const Entry& entry : entries)
-        chances.push_back((sum > 0.0 ? (1.0 - least_share) * entry.fluence / sum : 0.0) +
-                          least_share / double(entries.size()));
-    const double total = sum > 0.0 ? 1.0 : least_share;
+    for (const double fluence : fluences)
+        chances.push_back(sum > 0.0 ? (1.0 - least_share) * fluence / sum + least_share / count : 1.0 / count);
     const std::vector<shared::AliasEntry> alias = make_alias_table(chances);
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-        entries[i].row.chance = static_cast<float>(chances[i] / total);
-        entries[i].row.alias = alias[i];
+    for (std::size_t i = 0; i < chances.size(); ++i) {
+        rows[i].chance = static_cast<float>(chances[i]);
+        rows[i].alias = alias[i];
     }
+}
+
+// Power as seen from a unit of distance, and never none: every light is to have a chance.
+PlacedLight placed(const Entry& entry, std::uint32_t row) {
+    const glm::vec3 radiance = entry.row.radiance;
+    const float mean = (radiance.x + radiance.y + radiance.z) / 3.0f;
+    const float power = mean * (entry.place == Entry::Place::lamp ? entry.row.area : 1.0f);
+    return {entry.row.position - entry.reach, entry.row.position + entry.reach, std::max(power, 1e-30f), row};
 }
 
 } // namespace
 
 int lights_kind(const std::vector<Light>& lights) {
-    if (std::any_of(lights.begin(), lights.end(), is_met_by_chance))
-        return LIGHTS_SKY;
-    return lights.empty() || only_directional(lights) ? LIGHTS_SUN : LIGHTS_TABLE;
+    const auto any = [&](bool (*is)(const Light&)) { return std::any_of(lights.begin(), lights.end(), is); };
+    if (lights.empty() || only_directional(lights))
+        return LIGHTS_SUN;
+    const auto somewhere = std::count_if(lights.begin(), lights.end(), [](const Light& light) {
+        return is_lamp(light) || std::holds_alternative<PointLight>(light) || std::holds_alternative<SpotLight>(light);
+    });
+    return LIGHTS_TABLE | (any(is_met_by_chance) ? LIGHTS_SKY : 0) | (any(is_lamp) ? LIGHTS_LAMPS : 0) |
+           (somewhere > 1 ? LIGHTS_TREE : 0);
+}
+
+double reach_of_lamps(const std::vector<Light>& lights, const glm::dvec3& origin) {
+    double reach = 0.0;
+    for (const Light& light : lights) {
+        if (const auto* sphere = std::get_if<SphereLight>(&light))
+            reach = std::max(reach, glm::distance(sphere->center, origin) + sphere->radius);
+        if (const auto* disk = std::get_if<DiskLight>(&light))
+            reach = std::max(reach, glm::distance(disk->center, origin) + disk->radius);
+        if (const auto* rectangle = std::get_if<RectangleLight>(&light))
+            reach = std::max(reach, glm::distance(rectangle->center, origin) +
+                                        glm::length(rectangle->edge_u + rectangle->edge_v));
+    }
+    return reach;
 }
 
 LightTable make_light_table(const Scene& scene, const Assets& assets, const glm::dvec3& origin, double radius) {
     std::vector<Entry> entries;
     for (const Light& light : scene.lights)
         entries.push_back(std::visit(Rows(assets, origin, radius), light));
-    std::stable_partition(entries.begin(), entries.end(), [](const Entry& entry) { return entry.met; });
-    set_chances(entries);
+    std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.place < b.place; });
     LightTable table;
+    std::vector<double> fluences;
+    std::vector<PlacedLight> somewhere;
+    const bool has_tree = (lights_kind(scene.lights) & LIGHTS_TREE) != 0;
     for (const Entry& entry : entries) {
+        const auto row = static_cast<std::uint32_t>(table.rows.size());
         table.rows.push_back(entry.row);
-        table.sky_count += entry.met ? 1 : 0;
+        table.sky_count += entry.place == Entry::Place::sky ? 1 : 0;
+        table.lamp_first += entry.place < Entry::Place::lamp ? 1 : 0;
+        table.lamp_count += entry.place == Entry::Place::lamp ? 1 : 0;
+        if (!has_tree || !is_somewhere(entry))
+            fluences.push_back(entry.fluence);
+        else if (somewhere.push_back(placed(entry, row)); somewhere.size() == 1)
+            fluences.push_back(entry.fluence); // of the tree
+        else
+            fluences.back() += entry.fluence;
     }
+    table.choices = static_cast<std::uint32_t>(fluences.size());
+    set_chances(table.rows, fluences);
+    if (has_tree)
+        table.tree = make_light_tree(somewhere);
     return table;
 }
 

@@ -10,16 +10,20 @@
 namespace vkvol {
 
 struct LightTable {
-    std::vector<shared::LightRow> rows; // first those that flights meet by themselves
-    std::uint32_t sky_count = 0;        // how many these are
+    std::vector<shared::LightRow> rows;
+    std::vector<shared::LightNode> tree; // over those that are somewhere, if there are several
+    std::uint32_t choices = 0, sky_count = 0, lamp_first = 0, lamp_count = 0; // see FrameParams
 };
 
-// LIGHTS_...: what has to be done to see all of them. `sky`: whether the scene has a map of it.
+// LIGHTS_...: what has to be done to see all of them.
 int lights_kind(const std::vector<Light>& lights);
 
-// `origin`: of render space, world; `radius`: of the media about it. A look's chance to go toward a light is in
-// proportion to the light's fluence amid the media, and never less than a tenth of an even share.
+// `origin`: of render space, world; `radius`: of the media about it. A look's chance to go toward a light, or
+// toward the tree, is in proportion to its fluence amid the media, and never less than a tenth of an even share.
 LightTable make_light_table(const Scene& scene, const Assets& assets, const glm::dvec3& origin, double radius);
+
+// World units: how far from `origin` lamps reach; 0 without any.
+double reach_of_lamps(const std::vector<Light>& lights, const glm::dvec3& origin);
 
 shared::SkyParams make_sky_params(const Scene& scene, const Assets& assets);
 

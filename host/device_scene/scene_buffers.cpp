@@ -81,6 +81,7 @@ void SceneBuffers::upload_lights(const Device& device, Commands& commands, const
     };
     check("the lights", bytes_of(table.rows).size(), "leave some out");
     make_buffer(device, commands, lights_, "lights", bytes_of(table.rows));
+    make_buffer(device, commands, light_tree_, "tree of lights", bytes_of(table.tree));
     if (!sky)
         return;
     check("the texels of the <sky>", bytes_of(sky->texels).size(),
@@ -143,6 +144,7 @@ BoundBuffers SceneBuffers::bound() const {
     buffers[BINDING_TRIANGLES] = place(triangles_);
     buffers[BINDING_BVH] = place(bvh_);
     buffers[BINDING_LIGHTS] = place(lights_);
+    buffers[BINDING_LIGHT_TREE] = place(light_tree_);
     buffers[BINDING_SKY] = place(sky_);
     buffers[BINDING_SKY_ALIAS] = place(sky_alias_);
     return buffers;
@@ -151,7 +153,7 @@ BoundBuffers SceneBuffers::bound() const {
 std::uint64_t SceneBuffers::bytes() const {
     std::uint64_t total = frame_.bytes();
     for (const auto* buffer : {&grids_, &leaf_table_, &majorants_, &controls_, &blackbody_, &triangles_, &bvh_,
-                               &lights_, &sky_, &sky_alias_})
+                               &lights_, &light_tree_, &sky_, &sky_alias_})
         total += *buffer ? (*buffer)->bytes() : 0;
     for (const Buffer& window : windows_)
         total += window.bytes();

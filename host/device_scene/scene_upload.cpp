@@ -255,8 +255,9 @@ Specialization specialize(const Scene& scene, Media media, const Method& method)
     constants[SPEC_STEPS] = 1;
     // Without looks only what flights meet by themselves is seen.
     const int lights = lights_kind(scene.lights);
-    constants[SPEC_LIGHTS] = lights == LIGHTS_TABLE && method.nee == NEE_NONE ? LIGHTS_SUN : lights;
-    constants[SPEC_MIS] = lights == LIGHTS_SKY ? method.mis : MIS_BALANCE;
+    const int seen = method.nee == NEE_NONE ? lights & ~LIGHTS_LAMPS : lights;
+    constants[SPEC_LIGHTS] = seen == LIGHTS_TABLE && method.nee == NEE_NONE ? LIGHTS_SUN : seen;
+    constants[SPEC_MIS] = method.mis;
     return constants;
 }
 
@@ -333,7 +334,8 @@ shared::FrameParams make_frame(const Scene& scene, Media media, const Method& me
         if (method.nee == NEE_CACHED)
             frame.lattice = make_lattice_of(scene.volumes[i], media[i]);
     }
-    frame.sensors[0] = make_pinhole(scene, origin, 0.5 * longest_diagonal(scene, media));
+    frame.sensors[0] = make_pinhole(
+        scene, origin, std::max(0.5 * longest_diagonal(scene, media), reach_of_lamps(scene.lights, origin)));
     frame.lights[LIGHT_BACKGROUND].radiance = scene.background;
     if (const DirectionalLight* sun = only_directional(scene.lights))
         frame.lights[LIGHT_SUN] = {sun->direction, sun->irradiance};

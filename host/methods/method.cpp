@@ -99,11 +99,15 @@ void Resolution::choose_nee() {
     nee = choices_.nee.value_or(preset_.nee);
     const bool scatters = method_.scattering != SCATTERING_NONE &&
                           any_medium(scene_, [](const Volume& volume) { return volume.sigma_s != Rgb(0.0); });
-    if (scene_.lights.empty() || !scatters) {
+    // The camera sees lamps by shadow rays, whether or not anything scatters.
+    const bool shows_lamps = std::any_of(scene_.lights.begin(), scene_.lights.end(), is_lamp) && !is_through(method_);
+    if (scene_.lights.empty() || (!scatters && !shows_lamps)) {
         if (choices_.nee.value_or(NEE_NONE) != NEE_NONE)
             warn(scene_.lights.empty() ? "nee is without effect: the scene has no light"
                                        : "nee is without effect: nothing scatters");
         nee = NEE_NONE;
+    } else if (!scatters) {
+        nee = nee == NEE_NONE ? NEE_NONE : NEE_COLLISIONS; // of which none has light; the camera's looks are all there are
     } else if (is_through(method_)) {
         if (choices_.nee == NEE_COLLISIONS || choices_.nee == NEE_CACHED)
             warn("a march through the medium has no collisions; shadow rays start at every step");
@@ -124,10 +128,11 @@ void Resolution::choose_nee() {
 
 void Resolution::choose_mis() {
     const std::vector<Light>& lights = scene_.lights;
-    const bool shared = method_.nee != NEE_NONE && method_.scattering == SCATTERING_MULTIPLE &&
-                        std::any_of(lights.begin(), lights.end(), is_met_by_chance);
+    const bool met =
+        method_.scattering == SCATTERING_MULTIPLE && std::any_of(lights.begin(), lights.end(), is_met_by_chance);
+    const bool shared = method_.nee != NEE_NONE && (met || std::any_of(lights.begin(), lights.end(), is_lamp));
     if (choices_.mis && !shared)
-        warn("mis is without effect: no light is found by looks and by flights alike");
+        warn("mis is without effect: no light is found in two ways");
     method_.mis = shared ? choices_.mis.value_or(MIS_BALANCE) : MIS_BALANCE;
 }
 

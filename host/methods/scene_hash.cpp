@@ -98,8 +98,33 @@ void add_light(Writer& writer, const SpotLight& light) {
     writer.add("cone", glm::dvec3(light.angle, light.blend, 0.0));
 }
 
+void add_light(Writer& writer, const SphereLight& light) {
+    writer.add("ball", light.center);
+    writer.add("radius", light.radius);
+    writer.add("radiance", light.radiance);
+}
+
+void add_light(Writer& writer, const DiskLight& light) {
+    writer.add("disk", light.center);
+    writer.add("normal", light.normal);
+    writer.add("radius", light.radius);
+    writer.add("radiance", light.radiance);
+}
+
+void add_light(Writer& writer, const RectangleLight& light) {
+    writer.add("rectangle", light.center);
+    writer.add("edge", light.edge_u);
+    writer.add("other", light.edge_v);
+    writer.add("radiance", light.radiance);
+}
+
 void add_light(Writer& writer, const SkyLight& light) {
-    add_file(writer, light.file);
+    if (light.daylight) {
+        writer.add("daylight", light.daylight->sun);
+        writer.add("air", glm::dvec3(light.daylight->turbidity, light.daylight->ground, 0.0));
+    } else {
+        add_file(writer, light.file);
+    }
     writer.add("rotation", light.rotation);
     writer.add("scale", light.scale);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compute_pass.h"
+#include "light_table.h"
 #include "loaded_medium.h"
 #include "plan.h"
 #include "render_counts.h"
@@ -41,7 +42,8 @@ struct Checkpoint {
 };
 
 RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization, const Assets& assets,
-                        std::uint32_t sample_offset, const std::string& device, std::vector<std::uint32_t> band_rows);
+                        const LightTable& lights, std::uint32_t sample_offset, const std::string& device,
+                        std::vector<std::uint32_t> band_rows);
 
 // Atomically: the file is the last checkpoint or this one. Throws RenderError.
 void save_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);

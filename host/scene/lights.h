@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -39,16 +40,51 @@ struct SpotLight {
     double blend = 0.2;                   // in [0, 1]
 };
 
+// Lamps shine and stop nothing: what passes through them goes on. The camera sees them.
+
+// A ball that shines outwards, evenly.
+struct SphereLight {
+    glm::dvec3 center{0.0};
+    double radius = 1.0; // > 0
+    Rgb radiance{0.0};
+};
+
+// A disk that shines evenly from the side of its normal.
+struct DiskLight {
+    glm::dvec3 center{0.0};
+    glm::dvec3 normal{0.0, -1.0, 0.0}; // unit
+    double radius = 1.0;               // > 0
+    Rgb radiance{0.0};
+};
+
+// A rectangle that does.
+struct RectangleLight {
+    glm::dvec3 center{0.0};
+    glm::dvec3 edge_u{0.5, 0.0, 0.0}, edge_v{0.0, 0.0, 0.5}; // halves of its edges, across each other
+    Rgb radiance{0.0};
+
+    glm::dvec3 normal() const { return glm::normalize(glm::cross(edge_u, edge_v)); }
+};
+
+// A sky by day, as assets/daylight.h makes it.
+struct Daylight {
+    glm::dvec3 sun{0.0, 1.0, 0.0}; // unit, towards it; above the horizon
+    double turbidity = 3.0;        // haze: 2 is very clear, 10 hazy
+    double ground = 0.2;           // albedo of what is below the horizon, in [0, 1]
+};
+
 // A map of the radiance that comes from every direction: columns are longitudes, rows latitudes, the zenith (y) on top.
 // The middle column is where a camera looks that is not turned, and the map is seen from within: further right is
 // further to that camera's right. Between the middles of texels radiance is interpolated linearly.
 struct SkyLight {
     std::filesystem::path file;
-    double rotation = 0.0; // degrees, positive turns it counter-clockwise as seen from above
-    Rgb scale{1.0};        // multiplies the map
+    std::optional<Daylight> daylight; // in place of the file
+    double rotation = 0.0;            // degrees, positive turns it counter-clockwise as seen from above
+    Rgb scale{1.0};                   // multiplies the map
 };
 
-using Light = std::variant<DirectionalLight, SunLight, PointLight, SpotLight, SkyLight>;
+using Light =
+    std::variant<DirectionalLight, SunLight, PointLight, SpotLight, SkyLight, SphereLight, DiskLight, RectangleLight>;
 
 // The light if there is but one and it has neither place nor extent: such a scene needs no choice of lights.
 inline const DirectionalLight* only_directional(const std::vector<Light>& lights) {
@@ -58,6 +94,12 @@ inline const DirectionalLight* only_directional(const std::vector<Light>& lights
 // One that flights meet by themselves, since it has an extent.
 inline bool is_met_by_chance(const Light& light) {
     return std::holds_alternative<SunLight>(light) || std::holds_alternative<SkyLight>(light);
+}
+
+// One with a shape and a place, which the camera sees.
+inline bool is_lamp(const Light& light) {
+    return std::holds_alternative<SphereLight>(light) || std::holds_alternative<DiskLight>(light) ||
+           std::holds_alternative<RectangleLight>(light);
 }
 
 } // namespace vkvol

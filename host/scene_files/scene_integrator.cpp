@@ -91,7 +91,8 @@ void SceneReader::warn_about_light(const Scene& scene, const Method& method) con
         return;
     const XmlElement light = one("light"), element = light.exists() && !scene.lights.empty() ? light : one("lights");
     if (scene.settings.choices.nee.value_or(choose_integrator(scene).nee) == NEE_NONE)
-        element.warn(fmt::format("{} cannot see a light without extent, which is left out; ratioTracking renders it",
+        element.warn(fmt::format("{} sends no shadow rays, without which a light that is no sun or sky is left out; "
+                                 "ratioTracking renders it",
                                  method.integrator));
     else if (method.scattering == SCATTERING_NONE)
         element.warn(

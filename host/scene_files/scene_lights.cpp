@@ -5,13 +5,15 @@
 #include <numbers>
 
 #include "blackbody.h"
+#include "daylight.h"
 #include "scene_reader.h"
 
 namespace vkvol {
 
 namespace {
 
-const std::vector<std::string> kinds = {"directional", "sun", "point", "spot", "sky"};
+const std::vector<std::string> kinds = {"directional", "sun",       "point", "spot",    "sphere",
+                                        "disk",        "rectangle", "sky",   "daylight"};
 const std::vector<std::string> light_colors = {"r", "g", "b", "kelvin", "multiplier"};
 constexpr Limits flame{500.0, 40000.0, true, true, "a temperature from 500 to 40000 kelvin"};
 
@@ -49,6 +51,29 @@ glm::dvec3 looking_at(const XmlElement& element, const glm::dvec3& position) {
         element.fail_attribute("lookAt",
                                fmt::format("<{}> lookAt: is where the light is; move one of them", element.name()));
     return unit(target - position);
+}
+
+// As a camera of this `lookAt` and `up` would have it: `width` across, `height` along up.
+RectangleLight rectangle(const XmlElement& element, const Rgb& radiance) {
+    RectangleLight light;
+    light.center = xyz(element, coordinate);
+    light.radiance = radiance;
+    const glm::dvec3 normal = looking_at(element, light.center);
+    glm::dvec3 up = std::abs(normal.y) < 0.999 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
+    if (element.has("up")) {
+        const std::vector<double> numbers = element.attribute_numbers("up", any_number);
+        if (numbers.size() != 3 || glm::dvec3(numbers[0], numbers[1], numbers[2]) == glm::dvec3(0.0))
+            element.fail_attribute("up", "<rectangle> up: expected a direction x y z, e.g. up=\"0 1 0\"");
+        up = unit({numbers[0], numbers[1], numbers[2]});
+    }
+    const glm::dvec3 across = glm::cross(normal, up);
+    if (glm::length(across) < 1e-6)
+        element.fail_attribute(element.has("up") ? "up" : "lookAt",
+                               "<rectangle> up: is the direction in which it shines; name another");
+    light.edge_u = 0.5 * element.attribute_number("width", 1.0, length) * -glm::normalize(across);
+    light.edge_v = 0.5 * element.attribute_number("height", 1.0, length) *
+                   glm::normalize(glm::cross(glm::normalize(across), normal));
+    return light;
 }
 
 // The camera may see it.
@@ -115,12 +140,54 @@ Light SceneReader::light(const XmlElement& element) const {
         spot.blend = element.attribute_number("blend", spot.blend, {0.0, 1.0, true, true, "a number from 0 to 1"});
         return spot;
     }
+    if (kind == "sphere") {
+        element.allow(with_colors({"x", "y", "z", "radius"}));
+        return SphereLight{xyz(element, coordinate), element.attribute_number("radius", 1.0, length),
+                           light_color(element)};
+    }
+    if (kind == "disk") {
+        element.allow(with_colors({"x", "y", "z", "lookAt", "radius"}));
+        const glm::dvec3 center = xyz(element, coordinate);
+        return DiskLight{center, looking_at(element, center), element.attribute_number("radius", 1.0, length),
+                         light_color(element)};
+    }
+    if (kind == "rectangle") {
+        element.allow(with_colors({"x", "y", "z", "lookAt", "up", "width", "height"}));
+        return rectangle(element, light_color(element));
+    }
     element.allow(with_colors({"baseDir", "rotation"}), true);
     SkyLight sky;
     sky.file = file_path(element, "sky.exr");
     sky.rotation = element.attribute_number("rotation", 0.0, any_number);
     sky.scale = light_color(element);
     return sky;
+}
+
+// A sky, and the sun in it.
+void SceneReader::read_daylight(const XmlElement& element, Scene& scene) const {
+    element.allow({"x", "y", "z", "turbidity", "ground", "multiplier"});
+    Daylight daylight;
+    daylight.sun = direction(element);
+    if (daylight.sun.y <= 0.0)
+        element.fail_attribute("y",
+                               "<daylight> y: the sun is below the horizon; x, y, z point from the scene towards it, "
+                               "and y is up");
+    daylight.turbidity = element.attribute_number("turbidity", daylight.turbidity,
+                                                  {1.7, 10.0, true, true, "a number from 1.7 (clear) to 10 (hazy)"});
+    daylight.ground =
+        element.attribute_number("ground", daylight.ground, {0.0, 1.0, true, true, "an albedo from 0 to 1"});
+    SkyLight sky;
+    sky.daylight = daylight;
+    sky.scale = Rgb(element.attribute_number("multiplier", 1.0, {0.0, 1e6, true, true, "a number from 0 to 1e6"}));
+    if (sky.scale == Rgb(0.0)) {
+        scene.black.push_back({element.name(), element.place()});
+        return;
+    }
+    SunLight sun;
+    sun.direction = daylight.sun;
+    sun.irradiance = sky.scale * sun_irradiance(daylight);
+    scene.lights.push_back(sky);
+    scene.lights.push_back(sun);
 }
 
 void SceneReader::read_lights(Scene& scene) const {
@@ -131,16 +198,23 @@ void SceneReader::read_lights(Scene& scene) const {
         if (node.type() != pugi::node_element)
             continue;
         const XmlElement element(document_, node);
-        if (element.name() == "sky" && sky)
-            element.fail(fmt::format("a second <sky>, after the one at {}; remove one", document_.place(sky)));
-        if (element.name() == "sky")
+        const bool is_sky = element.name() == "sky" || element.name() == "daylight";
+        if (is_sky && sky)
+            element.fail(fmt::format("a second map of the sky, after the one at {}; remove one", document_.place(sky)));
+        if (is_sky)
             sky = node;
+        if (element.name() == "daylight") {
+            read_daylight(element, scene);
+            continue;
+        }
         const Light read = light(element);
         const auto color_of = [](const auto& kind) {
             if constexpr (requires { kind.irradiance; })
                 return kind.irradiance;
             else if constexpr (requires { kind.intensity; })
                 return kind.intensity;
+            else if constexpr (requires { kind.radiance; })
+                return kind.radiance;
             else
                 return kind.scale;
         };

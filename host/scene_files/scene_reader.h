@@ -41,6 +41,7 @@ private:
     Rgb color(const XmlElement& element) const;
     void read_light(Scene& scene) const;
     void read_lights(Scene& scene) const;
+    void read_daylight(const XmlElement& element, Scene& scene) const;
     Light light(const XmlElement& element) const;
     Rgb light_color(const XmlElement& element) const;
     std::optional<Volume> volume(const std::string& integrator) const;

@@ -29,6 +29,9 @@ layout(constant_id = SPEC_PHASE) const int PHASE = PHASE_HENYEY_GREENSTEIN;
 layout(constant_id = SPEC_LIGHTS) const int LIGHTS = LIGHTS_SUN;
 layout(constant_id = SPEC_MIS) const int MIS = MIS_BALANCE;
 
+const bool SEES_SKY = (LIGHTS & LIGHTS_SKY) != 0;
+const bool SEES_LAMPS = (LIGHTS & LIGHTS_LAMPS) != 0;
+const bool HAS_TREE = (LIGHTS & LIGHTS_TREE) != 0;
 const int FLIGHT_TRAITS = FREE_FLIGHT_TRAITS(FREE_FLIGHT);
 const int SHADOW_TRAITS = TRANSMITTANCE_TRAITS(TRANSMITTANCE);
 const bool NULL_FLIGHT = (FLIGHT_TRAITS & TRAIT_NULL) != 0;
@@ -66,6 +69,7 @@ layout(scalar, binding = BINDING_BLACKBODY) readonly buffer BlackbodyBlock { vec
 layout(scalar, binding = BINDING_LIGHTS) readonly buffer LightBlock { LightRow lights[]; };
 layout(scalar, binding = BINDING_SKY) readonly buffer SkyBlock { vec4 sky_texels[]; };
 layout(scalar, binding = BINDING_SKY_ALIAS) readonly buffer SkyAliasBlock { AliasEntry sky_alias[]; };
+layout(scalar, binding = BINDING_LIGHT_TREE) readonly buffer LightTreeBlock { LightNode light_nodes[]; };
 layout(scalar, binding = BINDING_TRACE) buffer TraceBlock {
     uint trace_count;
     TraceRecord trace_records[];

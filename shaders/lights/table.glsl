@@ -5,8 +5,10 @@
 #ifndef LIGHT_TABLE_GLSL
 #define LIGHT_TABLE_GLSL
 #include "lights/disc.glsl"
+#include "lights/lamp.glsl"
 #include "lights/point.glsl"
 #include "lights/sky.glsl"
+#include "lights/tree.glsl"
 
 // Of a direction that was drawn with density `own`, and that the other technique draws with `other`. Quotients, since the
 // densities of small lights overflow when squared.
@@ -21,13 +23,24 @@ float weight_of_flight(float phase_pdf, float pdf) {
     return MIS == MIS_PHASE || NEE == NEE_NONE ? 1.0 : MIS == MIS_LIGHT ? 0.0 : mis_weight(phase_pdf, pdf);
 }
 
-uint choose_light(uvec4 words) {
-    uint i = below(frame.light_count, words.x);
-    return choose(lights[i].alias, i, words.y);
+// The row of a light, and the chance with which it was chosen.
+uint choose_light(vec3 from, uvec4 words, inout Rng rng, out float chance) {
+    uint i = below(frame.choices, words.x);
+    i = choose(lights[i].alias, i, words.y);
+    chance = lights[i].chance;
+    if (HAS_TREE && i == frame.choices - 1u) {
+        float below;
+        i = descend(from, rng, below);
+        chance *= below;
+    }
+    return i;
 }
 
-LightSample sample_light(LightRow light, vec3 from, vec2 u, inout Rng rng) {
-    if (LIGHTS == LIGHTS_SKY && light.kind == LIGHT_MAP)
+LightSample sample_light(MediumParams v, LightRow light, vec3 from, vec3 travel, uvec4 words, inout Rng rng) {
+    vec2 u = to_uniform(words).zw;
+    if (SEES_LAMPS && light.kind >= LIGHT_SPHERE)
+        return sample_lamp(v, light, from, travel, u, to_tap(words).z);
+    if (SEES_SKY && light.kind == LIGHT_MAP)
         return sample_sky(u, rng);
     switch (light.kind) {
     case LIGHT_DISC:
@@ -42,13 +55,14 @@ LightSample sample_light(LightRow light, vec3 from, vec2 u, inout Rng rng) {
 }
 
 // Light that reaches `from`, over the density with which its direction was drawn: to be multiplied by the phase function,
-// whose density of that direction is phase_pdf, and by weight_of_look.
-LightSample look_for_light(vec3 from, inout Rng rng) {
+// whose density of that direction is phase_pdf, and by weight_of_look. `travel`: how the path came there.
+LightSample look_for_light(MediumParams v, vec3 from, vec3 travel, inout Rng rng) {
     uvec4 words = next_words(rng);
-    LightRow light = lights[choose_light(words)];
-    LightSample drawn = sample_light(light, from, to_uniform(words).zw, rng);
-    drawn.pdf *= light.chance;
-    drawn.light /= drawn.pdf > 0.0 ? drawn.pdf : light.chance;
+    float chance;
+    LightRow light = lights[choose_light(from, words, rng, chance)];
+    LightSample drawn = sample_light(v, light, from, travel, words, rng);
+    drawn.pdf *= chance;
+    drawn.light /= drawn.pdf > 0.0 ? drawn.pdf : chance;
     return drawn;
 }
 

@@ -22,7 +22,7 @@ const uint BURST = 16u; // turns: a lane without a pixel waits for half as many
 // A path's turns, from its beginning to its sample in the sums.
 void turn_of_pixel(MediumParams v, inout Lane lane, inout Rng rng, inout FilmPixel sums, inout Tally tally) {
     if (lane.todo == TODO_BEGIN)
-        generate(lane, rng);
+        generate(v, lane, rng);
     turn(v, lane, rng, tally);
     if (lane.todo == TODO_END)
         accumulate(sums, lane, tally);

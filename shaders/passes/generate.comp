@@ -36,7 +36,7 @@ void main() {
     Rng rng;
     lane.path.place = place_of(work[index]);
     lane.path.sample_index = paths[slot].sample_index;
-    generate(lane, rng);
+    generate(frame.media[0], lane, rng);
     lay_aside(slot, index, rng, lane, false);
-    push_item(QUEUE_TRACK, slot);
+    push_item(LOOKS && lane.todo == TODO_LOOK ? QUEUE_SHADOW : QUEUE_TRACK, slot);
 }

@@ -21,8 +21,10 @@ void main() {
         CameraRay ray = camera_ray(place, i);
         hit = may_meet_medium(frame.media[0], to_medium(frame.media[0], ray.origin, ray.direction));
         vec3 radiance = frame.lights[LIGHT_BACKGROUND].radiance;
-        if (LIGHTS == LIGHTS_SKY)
+        if (SEES_SKY)
             radiance += light_from_beyond(ray.direction, 0.0);
+        if (SEES_LAMPS)
+            radiance += lamps_seen(ray.origin, ray.direction);
         film_add(entry, radiance, place, i, tally);
     }
     // llvmpipe leaves loops early, see most_iterations in plan.cpp: what it did not look at is for paths to see.

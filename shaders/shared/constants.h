@@ -26,15 +26,16 @@
 #define BINDING_LIGHTS 20     // LightRow, those that are chosen among
 #define BINDING_SKY 21        // vec4 per texel of a map of the sky, see sky.glsl
 #define BINDING_SKY_ALIAS 22  // AliasEntry per row of that map, then per texel
-#define BINDING_TEST_INPUT 23 // test kernels only
-#define BINDING_TEST_OUTPUT 24
-#define BINDING_BUFFERS 25
+#define BINDING_LIGHT_TREE 23 // LightNode, depth first
+#define BINDING_TEST_INPUT 24 // test kernels only
+#define BINDING_TEST_OUTPUT 25
+#define BINDING_BUFFERS 26
 // The same buffers as texels: software drivers gather these, and read storage buffers lane by lane.
-#define BINDING_GRID_TEXELS 25
-#define BINDING_LEAF_TEXELS 26
-#define BINDING_MAJORANT_TEXELS 27
-#define BINDING_LATTICE_TEXELS 28
-#define BINDING_COUNT 29
+#define BINDING_GRID_TEXELS 26
+#define BINDING_LEAF_TEXELS 27
+#define BINDING_MAJORANT_TEXELS 28
+#define BINDING_LATTICE_TEXELS 29
+#define BINDING_COUNT 30
 
 #define WORKGROUP_SIZE 64
 
@@ -100,14 +101,19 @@
 #define PHASE_RAYLEIGH 1
 
 #define LIGHTS_SUN 0   // one without place or extent, or none, besides an even background
-#define LIGHTS_TABLE 1 // any, of which every look chooses one
-#define LIGHTS_SKY 2   // and some that flights meet by themselves when they leave
+#define LIGHTS_TABLE 1 // any, of which every look chooses one; and sums with
+#define LIGHTS_SKY 2   // some that flights meet by themselves when they leave
+#define LIGHTS_LAMPS 4 // some that have a shape and a place
+#define LIGHTS_TREE 8  // several that have a place
 
 #define LIGHT_DIRECTIONAL 0
 #define LIGHT_DISC 1 // in the sky
 #define LIGHT_POINT 2
 #define LIGHT_SPOT 3
 #define LIGHT_MAP 4 // of the sky
+#define LIGHT_SPHERE 5
+#define LIGHT_DISK 6
+#define LIGHT_RECTANGLE 7
 
 // How what looks toward a light and what flights meet of it share the work.
 #define MIS_BALANCE 0
@@ -174,6 +180,8 @@
 #define TRACE_LIGHT 2       // a shadow ray has ended
 #define TRACE_ESCAPE 3      // into the background
 #define TRACE_END 4
+
+#define NO_LIGHT 0xffffffffu
 
 #define NO_PIXEL 0xffffffffu
 

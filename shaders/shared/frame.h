@@ -114,13 +114,25 @@ struct AliasEntry {
 struct LightRow {
     uint kind; // LIGHT_...
     AliasEntry alias;
-    float chance;   // with which it is chosen
+    float chance; // with which it is chosen; of the first that is in a tree, with which the tree is
     vec3 position;  // render space
-    vec3 direction; // unit: towards the light, where it is infinitely far; of a spot, along its axis
+    vec3 direction; // unit: towards the light, where it is infinitely far; of a spot, along its axis; of what is flat, its normal
+    vec3 edge_u;    // halves of the edges of a rectangle, or radii of a disk; across each other
+    vec3 edge_v;
     vec3 radiance;  // from everywhere on it; of a directional light its irradiance, of a point the radiant intensity
-    float extent;   // of a disc: 1 - cos of the angle from its middle to its rim
+    float extent;   // of a disc: 1 - cos of the angle from its middle to its rim; of a sphere its radius
+    float area;     // of a lamp, as seen from in front
     float cos_full; // of a spot: full intensity within,
     float cos_none; // none beyond
+};
+
+// Of a binary tree over lights, in depth-first order; a branch's left one follows it.
+struct LightNode {
+    vec3 low; // bounds of all lights below, render space
+    vec3 high;
+    float power; // of all of them
+    uint light;  // its row; NO_LIGHT of a branch
+    uint right;
 };
 
 // A map of the sky, see sky.glsl.
@@ -140,8 +152,10 @@ struct FrameParams {
     SensorParams sensors[MOST_SENSORS];
     MediumParams media[MOST_MEDIA];
     LightParams lights[MOST_LIGHTS]; // LIGHT_BACKGROUND, LIGHT_SUN
-    uint light_count;                // of the table
-    uint sky_count;                  // its first rows: those that flights meet by themselves
+    uint choices;                    // rows of the table to choose among; where there is a tree, the last of them stands for that
+    uint sky_count;                  // the first rows: those that flights meet by themselves
+    uint lamp_first;                 // rows of the lamps
+    uint lamp_count;
     SkyParams sky;
     MarchParams march;
     LatticeParams lattice; // NEE_CACHED only

@@ -9,7 +9,7 @@
 
 // Likewise from one of many lights, which is drawn here.
 void gather_some_light(MediumParams v, vec3 position, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
-    LightSample drawn = look_for_light(position, rng);
+    LightSample drawn = look_for_light(v, position, lane.path.direction, rng);
     float phase = phase_eval(v, lane.path.direction, drawn.direction);
     vec3 light = drawn.light * phase * (drawn.pdf > 0.0 ? weight_of_look(drawn.pdf, phase) : 1.0);
     if (LOOKS) {

@@ -27,7 +27,7 @@ uvec4 first_words(bool looks, inout Rng rng) {
 void scatter(MediumParams v, vec4 u, inout Lane lane) {
     vec3 before = lane.path.direction;
     lane.path.direction = phase_sample(v, before, u.yz);
-    if (LIGHTS == LIGHTS_SKY)
+    if (SEES_SKY)
         lane.phase_pdf = phase_eval(v, before, lane.path.direction);
     lane.todo = survives(lane.beta, u.w) ? TODO_FLY : TODO_END;
     if (LOOKS && NEE == NEE_CACHED && lane.path.depth < frame.max_depth)
@@ -40,7 +40,7 @@ void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     bool at_camera = !looks && lane.path.depth == 0u;
     uvec4 words = first_words(looks, rng);
     lane.todo = looks ? TODO_SEE : TODO_FLY;
-    if (LIGHTS == LIGHTS_SKY && at_camera)
+    if (SEES_SKY && at_camera)
         lane.phase_pdf = 0.0;
     if (!looks && !at_camera)
         scatter(v, to_uniform(words), lane);

@@ -9,7 +9,7 @@ void escape(MediumParams v, inout Lane lane) {
     if (!NULL_FLIGHT && !goes_through())
         beta *= depth_weight(v, beta, lane.walk.depth, false);
     lane.path.radiance += beta * frame.lights[LIGHT_BACKGROUND].radiance;
-    if (LIGHTS == LIGHTS_SKY)
+    if (SEES_SKY)
         lane.path.radiance += beta * light_from_beyond(lane.path.direction, lane.phase_pdf);
     trace(TRACE_ESCAPE, lane, lane.path.position, lane.path.direction);
     lane.todo = TODO_END;

@@ -61,7 +61,10 @@ float looking_as_far_as(Lane lane) {
     return LIGHTS == LIGHTS_SUN ? FAR : lane.light_distance;
 }
 uint after_looking(Lane lane) {
-    return NEE == NEE_TENTATIVE ? lane.resume : SCATTERING == SCATTERING_SINGLE ? TODO_END : TODO_DEPART;
+    bool at_camera = SEES_LAMPS && lane.path.depth == 0u;
+    return NEE == NEE_TENTATIVE                               ? lane.resume
+           : SCATTERING == SCATTERING_SINGLE && !at_camera ? TODO_END
+                                                              : TODO_DEPART;
 }
 
 // What the rows of path_state.h ask for.
@@ -69,7 +72,7 @@ uint after_looking(Lane lane) {
     bool seeing = LOOKS && amid && next == TODO_SEE;                                                                  \
     bool looking = seeing || (LOOKS && next == TODO_LOOK);                                                            \
     bool flight_rests = NEE == NEE_TENTATIVE;                                                                         \
-    bool sees_sky = LIGHTS == LIGHTS_SKY;                                                                             \
+    bool sees_sky = SEES_SKY;                                                                             \
     bool chooses_light = LIGHTS != LIGHTS_SUN;                                                                        \
     bool has_cache = LOOKS && NEE == NEE_CACHED;                                                                      \
     bool under_way = (amid && next == TODO_FLY) || seeing || (looking && flight_rests);

@@ -60,7 +60,7 @@ std::string attribute_value(std::string_view name, Source& random) {
         return one_of("collisions|steps", random);
     if (name == "mis")
         return one_of("balance|power|light|phase", random);
-    if (name == "lookAt")
+    if (name == "lookAt" || name == "up")
         return one_of("0 0 0|1 2 3|0 0", random);
     if (name == "kelvin")
         return one_of("|2000|6500", random);

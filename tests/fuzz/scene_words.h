@@ -100,6 +100,10 @@ inline constexpr Words light_grammar[] = {
     {"sun", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier", "angle"}},
     {"point", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier"}},
     {"spot", "", {"x", "y", "z", "lookAt", "angle", "blend", "kelvin", "multiplier"}},
+    {"sphere", "", {"x", "y", "z", "radius", "kelvin", "multiplier"}},
+    {"disk", "", {"x", "y", "z", "lookAt", "radius", "r", "multiplier"}},
+    {"rectangle", "", {"x", "y", "z", "lookAt", "up", "width", "height", "b", "multiplier"}},
+    {"daylight", "", {"x", "y", "z", "turbidity", "ground", "multiplier"}},
     {"sky", "sky.exr|none.exr", {"baseDir", "rotation", "kelvin", "multiplier"}}};
 
 inline constexpr const char* ordinary_numbers[] = {"0.5",

@@ -87,8 +87,8 @@ void check_light(const shared::LightRow& row) {
     expect_radiance(row.radiance, "a light is out of range");
     expect_finite(row.position, "a light's place is not finite");
     expect_finite(row.direction, "a light's direction is not finite");
-    expect(row.chance > 0.0f && row.chance <= 1.0f, "a light's chance is none");
     expect(std::isfinite(row.extent) && row.extent >= 0.0f, "a disc's extent is none");
+    expect(std::isfinite(row.area) && row.area >= 0.0f, "a lamp's area is none");
     expect(row.cos_full >= row.cos_none, "a cone's rim is inside out");
 }
 
@@ -162,6 +162,13 @@ void use_scene(const Scene& authored) {
                                                   0.5 * longest_diagonal(scene, assets.media));
         for (const shared::LightRow& row : table.rows)
             check_light(row);
+        for (std::uint32_t i = 0; i < table.choices; ++i)
+            expect(table.rows[i].chance > 0.0f && table.rows[i].chance <= 1.0f, "a light's chance is none");
+        for (const shared::LightNode& node : table.tree) {
+            expect(std::isfinite(node.power) && node.power > 0.0f, "a light's power is none");
+            expect_finite(node.low, "a light's bounds are not finite");
+            expect_finite(node.high, "a light's bounds are not finite");
+        }
     }
     const Crop crop{0, scene.picture.width, 0, scene.picture.height};
     check_frame(make_frame(scene, assets.media, method, crop, 1), static_cast<int>(constants[SPEC_SHAPE]));

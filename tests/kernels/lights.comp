@@ -11,7 +11,10 @@ void main() {
     if (i >= push.lanes)
         return;
     Rng rng = Rng(inputs[i].key, 0u, 0u, frame.seed);
-    LightSample drawn = look_for_light(inputs[i].position, rng);
+    LightSample drawn = look_for_light(frame.media[0], inputs[i].position, vec3(0.0, 0.0, -1.0), rng);
     Rng again = Rng(inputs[i].key, 0u, 0u, frame.seed);
-    outputs[i] = LookOutput(choose_light(next_words(again)), drawn.direction, drawn.distance, drawn.light, drawn.pdf);
+    uvec4 words = next_words(again);
+    float chance;
+    uint index = choose_light(inputs[i].position, words, again, chance);
+    outputs[i] = LookOutput(index, chance, drawn.direction, drawn.distance, drawn.light, drawn.pdf);
 }

@@ -139,6 +139,7 @@ struct LookInput {
 
 struct LookOutput {
     uint index;
+    float chance;
     vec3 direction;
     float distance;
     vec3 light;

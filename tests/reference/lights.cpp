@@ -47,6 +47,30 @@ struct Ask {
         const double t = cosine >= full ? 1.0 : (cosine - none) / (full - none);
         return Towards{found->ray, found->light * (3.0 * t * t - 2.0 * t * t * t)};
     }
+    // Lamps by an even choice of a point of their surface; a ball's far side does not shine at p.
+    std::optional<Towards> operator()(const vkvol::SphereLight& ball) const {
+        const glm::dvec3 normal = turned({0.0, 0.0, 1.0}, 1.0 - 2.0 * u, v);
+        return from_point(ball.center + ball.radius * normal, normal, 4.0 * pi * ball.radius * ball.radius,
+                          ball.radiance);
+    }
+    std::optional<Towards> operator()(const vkvol::DiskLight& disk) const {
+        const glm::dvec3 at = disk.radius * std::sqrt(u) * turned(disk.normal, 0.0, v); // a right angle to the normal
+        return from_point(disk.center + at, disk.normal, pi * disk.radius * disk.radius, disk.radiance);
+    }
+    std::optional<Towards> operator()(const vkvol::RectangleLight& r) const {
+        const double area = 4.0 * glm::length(glm::cross(r.edge_u, r.edge_v));
+        return from_point(r.center + (2.0 * u - 1.0) * r.edge_u + (2.0 * v - 1.0) * r.edge_v, r.normal(), area,
+                          r.radiance);
+    }
+    std::optional<Towards> from_point(const glm::dvec3& point, const glm::dvec3& normal, double area,
+                                      const Rgb& radiance) const {
+        const double distance = glm::distance(point, p);
+        const glm::dvec3 direction = (point - p) / distance;
+        const double cosine = -glm::dot(direction, normal);
+        if (cosine <= 0.0)
+            return std::nullopt;
+        return Towards{{p, direction, distance}, radiance * (area * cosine / (distance * distance))};
+    }
     std::optional<Towards> operator()(const vkvol::SkyLight&) const { return std::nullopt; }
 };
 
@@ -64,6 +88,38 @@ Rgb disc_radiance(const vkvol::Light& light, const glm::dvec3& direction) {
     const bool inside = glm::length(glm::cross(direction, sun->direction)) < std::sin(half) &&
                         glm::dot(direction, sun->direction) > 0.0;
     return inside ? sun->irradiance / (pi * std::sin(half) * std::sin(half)) : Rgb(0.0);
+}
+
+std::optional<double> lamp_distance(const vkvol::Light& light, const Ray& ray) {
+    const auto plane = [&](const glm::dvec3& center, const glm::dvec3& normal) {
+        const double facing = -glm::dot(ray.direction, normal);
+        return facing > 0.0 ? glm::dot(ray.origin - center, normal) / facing : -1.0;
+    };
+    double t = -1.0;
+    if (const auto* ball = std::get_if<vkvol::SphereLight>(&light))
+        t = intersect(vkvol::Sphere{ball->center, ball->radius}, ray).empty()
+                ? -1.0
+                : intersect(vkvol::Sphere{ball->center, ball->radius}, ray).t0;
+    if (const auto* disk = std::get_if<vkvol::DiskLight>(&light)) {
+        t = plane(disk->center, disk->normal);
+        t = glm::distance(ray.at(t), disk->center) < disk->radius ? t : -1.0;
+    }
+    if (const auto* r = std::get_if<vkvol::RectangleLight>(&light)) {
+        t = plane(r->center, r->normal());
+        const glm::dvec3 at = ray.at(t) - r->center;
+        const bool on = std::abs(glm::dot(at, r->edge_u)) < glm::dot(r->edge_u, r->edge_u) &&
+                        std::abs(glm::dot(at, r->edge_v)) < glm::dot(r->edge_v, r->edge_v);
+        t = on ? t : -1.0;
+    }
+    return t > 0.0 ? std::optional(t) : std::nullopt;
+}
+
+Rgb lamp_radiance(const vkvol::Light& light) {
+    if (const auto* ball = std::get_if<vkvol::SphereLight>(&light))
+        return ball->radiance;
+    if (const auto* disk = std::get_if<vkvol::DiskLight>(&light))
+        return disk->radiance;
+    return std::get<vkvol::RectangleLight>(light).radiance;
 }
 
 Rgb Sky::radiance(const glm::dvec3& direction) const {

@@ -35,4 +35,8 @@ std::optional<Towards> towards(const vkvol::Light& light, const glm::dvec3& p, d
 // Radiance of the disc of a sun in this direction; 0 of other lights.
 vkvol::Rgb disc_radiance(const vkvol::Light& light, const glm::dvec3& direction);
 
+// Where a ray meets the side of a lamp that shines at it; none of other lights.
+std::optional<double> lamp_distance(const vkvol::Light& light, const Ray& ray);
+vkvol::Rgb lamp_radiance(const vkvol::Light& light); // of a lamp
+
 } // namespace reference

@@ -20,7 +20,7 @@ Rgb direct_light(const World& world, const glm::dvec3& p, const glm::dvec3& trav
     const Medium& medium = *world.medium;
     Rgb Ld(0.0);
     for (const vkvol::Light& light : world.scene.lights) {
-        const bool has_extent = std::holds_alternative<vkvol::SunLight>(light);
+        const bool has_extent = std::holds_alternative<vkvol::SunLight>(light) || vkvol::is_lamp(light);
         const Draw draw = has_extent ? rng.next() : Draw{};
         const auto found = towards(light, p, draw.x(), draw.y());
         if (!found)
@@ -39,6 +39,20 @@ Rgb direct_light(const World& world, const glm::dvec3& p, const glm::dvec3& trav
               world.sky->radiance(direction);
     }
     return Ld;
+}
+
+Rgb lamps_seen(const World& world, const Ray& ray, Rng& rng) {
+    Rgb L(0.0);
+    for (const vkvol::Light& light : world.scene.lights) {
+        const std::optional<double> distance = lamp_distance(light, ray);
+        if (!distance || (world.medium && world.method.nee == NEE_NONE))
+            continue;
+        const Ray seen{ray.origin, ray.direction, *distance};
+        L += lamp_radiance(light) * (world.medium ? estimate_transmittance(*world.medium, world.method.transmittance,
+                                                                           seen, world.method.march, rng)
+                                                  : Rgb(1.0));
+    }
+    return L;
 }
 
 Rgb light_from_beyond(const World& world, const glm::dvec3& direction, bool at_camera) {
@@ -149,7 +163,8 @@ Rgb trace_path(const World& world, int x, int y, std::uint32_t sample, std::uint
     Rng rng{static_cast<std::uint32_t>(x) | static_cast<std::uint32_t>(y) << 16, sample, seed};
     const Draw draw = rng.next();
     const Ray ray = camera_ray(world.scene.camera, world.scene.picture, x + draw.x(), y + draw.y());
-    return radiance(world, ray, draw.exponential(2), draw.select(), rng);
+    const Rgb lamps = lamps_seen(world, ray, rng);
+    return lamps + radiance(world, ray, draw.exponential(2), draw.select(), rng);
 }
 
 } // namespace reference

@@ -37,6 +37,9 @@ vkvol::Rgb direct_light(const World& world, const glm::dvec3& p, const glm::dvec
 // is.
 vkvol::Rgb light_from_beyond(const World& world, const glm::dvec3& direction, bool at_camera);
 
+// Lamps in sight of the camera, through the medium.
+vkvol::Rgb lamps_seen(const World& world, const Ray& ray, Rng& rng);
+
 // Does a path of this method collide nowhere, and sum up what it passes?
 bool marches_through(const Method& method);
 vkvol::Rgb march_through(const World& world, const Ray& ray, Rng& rng);

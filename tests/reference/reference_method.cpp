@@ -1,5 +1,6 @@
 #include "reference_method.h"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -120,8 +121,11 @@ Method resolve_method(const vkvol::Scene& scene, Medium& medium) {
     if (!medium.grey() && (method.free_flight == FREE_FLIGHT_DELTA || method.free_flight == FREE_FLIGHT_WEIGHTED ||
                            method.free_flight == FREE_FLIGHT_DECOMPOSITION))
         method.free_flight = FREE_FLIGHT_SPECTRAL;
-    if (scene.lights.empty() || method.scattering == SCATTERING_NONE)
+    const bool lamps = std::any_of(scene.lights.begin(), scene.lights.end(), vkvol::is_lamp);
+    if (scene.lights.empty() || (method.scattering == SCATTERING_NONE && !lamps))
         method.nee = NEE_NONE;
+    if (method.nee != NEE_NONE && method.scattering == SCATTERING_NONE)
+        method.nee = NEE_COLLISIONS;
     if (method.nee == NEE_TENTATIVE && depth_sampled(method.free_flight))
         method.nee = NEE_COLLISIONS;
     if (method.nee == NEE_CACHED && !cached)

@@ -141,6 +141,11 @@ TEST_CASE("a checkpoint is continued by its own render alone", "[gpu][checkpoint
         recipe.value = [](glm::ivec3 voxel) { return (voxel == faint ? 0.5f : 1.0f) * cloud_noise(voxel); };
         other.volumes.front().shape = write_grid(recipe);
     }
+    SECTION("of a lamp among others") {
+        other.lights.push_back(SphereLight{{3.0, 4.0, 5.0}, 1.0, Rgb(2.0)});
+        render_part(other, job);
+        other.lights.back() = SphereLight{{3.0, 4.0, 5.0}, 1.0, Rgb(2.0, 2.0, 2.1)};
+    }
     SECTION("of the samples' range") {
         rest.sample_offset = 1;
     }

@@ -17,6 +17,7 @@ struct Structs {
     shared::SamplePlace waiting;
     shared::ControlCell control_cell;
     shared::LightRow light_row;
+    shared::LightNode light_node;
     shared::BvhNode bvh_node;
     shared::QueueHeader header;
     shared::FilmPixel entry;
@@ -43,8 +44,8 @@ std::vector<std::uint32_t> list_words(const Structs& all) {
         words.resize(first + sizeof field / 4);
         std::memcpy(&words[first], &field, sizeof field);
     };
-    const auto& [path, laid_aside, waiting, control_cell, light_row, bvh_node, header, entry, counters, frame, push] =
-        all;
+    const auto& [path, laid_aside, waiting, control_cell, light_row, light_node, bvh_node, header, entry, counters,
+                 frame, push] = all;
 #define PUT(field) put(field);
 #include "kernels/layout_fields.h"
 #undef PUT
@@ -73,6 +74,7 @@ TEST_CASE("shared structs have one layout on host and device", "[gpu][layout]") 
     const Buffer places = second_of_two(commands, all.waiting, storage);
     const Buffer controls = second_of_two(commands, all.control_cell, storage);
     const Buffer lights = second_of_two(commands, all.light_row, storage);
+    const Buffer light_nodes = second_of_two(commands, all.light_node, storage);
     const Buffer nodes = second_of_two(commands, all.bvh_node, storage);
     const Buffer headers = second_of_two(commands, all.header, storage);
     const Buffer film = second_of_two(commands, all.entry, storage);
@@ -89,6 +91,7 @@ TEST_CASE("shared structs have one layout on host and device", "[gpu][layout]") 
     bound[BINDING_PLACES] = &places;
     bound[BINDING_CONTROLS] = &controls;
     bound[BINDING_LIGHTS] = &lights;
+    bound[BINDING_LIGHT_TREE] = &light_nodes;
     bound[BINDING_BVH] = &nodes;
     bound[BINDING_QUEUES] = &headers;
     bound[BINDING_FILM] = &film;

@@ -1,6 +1,8 @@
 // <lights>: what is read of it, and what is refused.
 #include <catch2/catch.hpp>
+#include <numbers>
 
+#include "daylight.h"
 #include "error.h"
 #include "integrators.h"
 #include "method.h"
@@ -17,8 +19,11 @@ TEST_CASE("lights of every kind are read", "[cpu][xml]") {
         <sun z="4" angle="2"/>
         <point x="1" y="2" z="3" multiplier="7"/>
         <spot y="5" lookAt="0 0 0" angle="30" blend="0" kelvin="2700"/>
-        <sky rotation="-30" multiplier=".5">a/sky.exr</sky></lights>)");
-    REQUIRE(scene.lights.size() == 6);
+        <sky rotation="-30" multiplier=".5">a/sky.exr</sky>
+        <sphere radius="2" multiplier="3"/>
+        <disk y="2" lookAt="0 0 0" radius=".5"/>
+        <rectangle z="-2" lookAt="0 0 0" width="3" height="4"/></lights>)");
+    REQUIRE(scene.lights.size() == 9);
     CHECK(std::get<DirectionalLight>(scene.lights[0]).irradiance == Rgb(3, 0, 0));
     CHECK(std::get<DirectionalLight>(scene.lights[1]).irradiance == Rgb(4, 2, 1));
     CHECK(std::get<DirectionalLight>(scene.lights[1]).direction == glm::dvec3(1, 0, 0));
@@ -36,6 +41,12 @@ TEST_CASE("lights of every kind are read", "[cpu][xml]") {
     CHECK(sky.file.filename() == "sky.exr");
     CHECK(sky.rotation == -30.0);
     CHECK(sky.scale == Rgb(0.5));
+    CHECK(std::get<SphereLight>(scene.lights[6]).radiance == Rgb(3.0));
+    CHECK(std::get<DiskLight>(scene.lights[7]).normal == glm::dvec3(0, -1, 0));
+    const auto& rectangle = std::get<RectangleLight>(scene.lights[8]);
+    CHECK(glm::distance(rectangle.normal(), glm::dvec3(0, 0, 1)) < 1e-12);
+    CHECK(glm::length(rectangle.edge_u) == Approx(1.5));
+    CHECK(rectangle.edge_v == glm::dvec3(0, 2, 0));
     CHECK(scene.warnings.empty());
 }
 
@@ -56,12 +67,49 @@ TEST_CASE("what is wrong with a light is said at its place", "[cpu][xml]") {
              {"<spot lookAt=\"0 1\"/>", "lookAt=\"x y z\""},
              {"<spot lookAt=\"0 1 0\" angle=\"0\"/>", "from 0.1 to 180"},
              {"<spot lookAt=\"0 1 0\" blend=\"2\"/>", "from 0 to 1"},
+             {"<sphere radius=\"0\"/>", "<sphere> radius"},
+             {"<disk/>", "lookAt=\"x y z\""},
+             {"<rectangle lookAt=\"0 1 0\" up=\"0 2 0\"/>", "is the direction in which it shines"},
+             {"<rectangle lookAt=\"0 1 0\" up=\"0 2\"/>", "expected a direction"},
+             {"<rectangle lookAt=\"0 1 0\" width=\"-1\"/>", "<rectangle> width"},
              {"<sky/>", "names no file"},
-             {"<sky>a.exr</sky><sky>b.exr</sky>", "a second <sky>"},
+             {"<sky>a.exr</sky><sky>b.exr</sky>", "a second map of the sky"},
+             {"<sky>a.exr</sky><daylight y=\"1\"/>", "a second map of the sky"},
+             {"<daylight x=\"1\" y=\"-0.1\"/>", "below the horizon"},
+             {"<daylight/>", "<daylight> has no direction"},
+             {"<daylight y=\"1\" turbidity=\"1\"/>", "from 1.7 (clear)"},
              {"<sky colour=\"1\">a.exr</sky>", "colour"}}) {
         CAPTURE(light, words);
         CHECK_THAT(error(light), Catch::Contains(words));
     }
+}
+
+// Figures by hand from the paper's formulas: turbidity 3, the sun 30 degrees from the zenith.
+TEST_CASE("daylight has a sky and a sun", "[cpu][xml]") {
+    const Scene scene = parse(R"(<sphere/><lights><daylight x=".5" y=".8660254037844387" multiplier="2"/></lights>)");
+    REQUIRE(scene.lights.size() == 2);
+    const auto& sky = std::get<SkyLight>(scene.lights[0]);
+    const auto& sun = std::get<SunLight>(scene.lights[1]);
+    CHECK(sun.angle == 0.53);
+    CHECK(sun.irradiance.x > sun.irradiance.y);
+    CHECK(sun.irradiance.y > sun.irradiance.z);
+    const glm::dvec3 weights(0.2126, 0.7152, 0.0722); // of luminance
+    // Of 133 klx, air mass 1.154 leaves about three quarters.
+    const double lux = glm::dot(sun.irradiance, weights) / 2.0;
+    CHECK(lux > 85.0);
+    CHECK(lux < 110.0);
+    const RadianceMap map = make_daylight(*sky.daylight);
+    const auto luminance = [&](int column, int row) {
+        return glm::dot(glm::dvec3(map.texels[std::size_t(row) * map.width + column]), weights);
+    };
+    // chi = (4/9 - 1/40) 120 degrees = 50.33; (12.1359 - 4.9710) tan chi - 0.6465 + 2.4192 = 10.41.
+    CHECK(luminance(0, 0) == Approx(10.41).epsilon(0.02));
+    // The sun is at +x: three quarters across, a third of the way down to the horizon; there the sky is brightest.
+    CHECK(luminance(3 * map.width / 4, map.height / 6) > 2.0 * luminance(map.width / 4, map.height / 6));
+    // Below the horizon is the ground, lit by sun and sky: 0.2 / pi of some 110 klx.
+    CHECK(luminance(5, map.height - 1) == Approx(luminance(300, map.height / 2 + 1)));
+    CHECK(luminance(5, map.height - 1) > 0.2 / std::numbers::pi * 0.85 * lux);
+    CHECK(luminance(5, map.height - 1) < 0.2 / std::numbers::pi * 1.4 * lux);
 }
 
 TEST_CASE("black lights are left out", "[cpu][xml]") {

@@ -1,0 +1,19 @@
+// The tree by which the kernels choose among lights that are somewhere: see shaders/lights/tree.glsl.
+#pragma once
+
+#include <vector>
+
+#include "shared/frame.h"
+
+namespace vkvol {
+
+struct PlacedLight {
+    glm::vec3 low, high; // of the box around it
+    float power = 0.0f;  // > 0, in any unit
+    std::uint32_t row = 0;
+};
+
+// In depth-first order, the root first; of one light or more.
+std::vector<shared::LightNode> make_light_tree(std::vector<PlacedLight> lights);
+
+} // namespace vkvol

@@ -1,0 +1,36 @@
+// Rectangles and disks that shine evenly from one side, that of their normal.
+#ifndef FLAT_LIGHT_GLSL
+#define FLAT_LIGHT_GLSL
+#include "lights/sample.glsl"
+
+// Where on it, in halves of its edges or in its radius, from -1 to 1.
+bool is_on_flat(LightRow light, vec2 at) {
+    return light.kind == LIGHT_DISK ? dot(at, at) < 1.0 : all(lessThan(abs(at), vec2(1.0)));
+}
+
+// How far it is to where it shines at a ray; FAR where it does not.
+float hit_flat(LightRow light, vec3 from, vec3 direction) {
+    float facing = -dot(direction, light.direction);
+    float t = facing > 0.0 ? dot(from - light.position, light.direction) / facing : -1.0;
+    vec3 aside = from + t * direction - light.position;
+    vec2 at = vec2(dot(aside, light.edge_u) / dot(light.edge_u, light.edge_u),
+                   dot(aside, light.edge_v) / dot(light.edge_v, light.edge_v));
+    return t > 0.0 && is_on_flat(light, at) ? t : FAR;
+}
+
+// Evenly over its area. A disk's points by radius and angle, not by both sines, of which Vulkan asks little: see turned().
+vec3 flat_direction(LightRow light, vec3 from, vec2 u) {
+    vec2 at = 2.0 * u - 1.0;
+    if (light.kind == LIGHT_DISK) {
+        float phi = 6.283185307179586 * (u.y - 0.5);
+        at = sqrt(u.x) * normalize(vec2(cos(phi), sin(phi)));
+    }
+    return normalize(light.position + at.x * light.edge_u + at.y * light.edge_v - from);
+}
+
+// Per steradian, of a direction that meets it at a distance t.
+float flat_pdf(LightRow light, vec3 direction, float t) {
+    return t * t / (light.area * max(-dot(direction, light.direction), 1.0e-12));
+}
+
+#endif

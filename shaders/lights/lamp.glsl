@@ -1,0 +1,68 @@
+// Lamps: lights of a shape and place. What passes through them is not stopped, and flights do not meet them: all their light is
+// found by looks, and the camera sees them by looks too.
+//
+// A look's direction is drawn from the lamp's own shape or, with chance c, by the phase function: one sample of a mixture, weighted
+// by the mixture's density. By its shape alone, near a lamp or in a sharp phase function the weight would have no bound.
+#ifndef LAMP_GLSL
+#define LAMP_GLSL
+#include "lights/flat.glsl"
+#include "lights/sphere.glsl"
+#include "phase/phase.glsl"
+
+float hit_lamp(LightRow light, vec3 from, vec3 direction) {
+    return light.kind == LIGHT_SPHERE ? hit_sphere(light, from, direction) : hit_flat(light, from, direction);
+}
+
+// Of the shape's own directions.
+float lamp_pdf(LightRow light, vec3 from, vec3 direction, float t) {
+    return light.kind == LIGHT_SPHERE ? sphere_pdf(light, from) : flat_pdf(light, direction, t);
+}
+
+// c: next to nothing for what is small as seen from here, against the narrowest that the phase function draws.
+float phase_share(MediumParams v, LightRow light, vec3 from) {
+    vec3 apart = light.position - from;
+    vec3 peak = v.g < 0.0 ? vec3(0.0, -1.0, 0.0) : vec3(0.0, 1.0, 0.0);
+    float s = phase_eval(v, vec3(0.0, 1.0, 0.0), peak) * light.area / max(dot(apart, apart), 1.0e-30);
+    return 0.5 * s / (1.0 + s);
+}
+
+// `pdf` of what is returned: 0, for no flight meets it. Its light is over the mixture's density already.
+LightSample sample_lamp(MediumParams v, LightRow light, vec3 from, vec3 travel, vec2 u, float select) {
+    float share = MIS == MIS_LIGHT ? 0.0 : MIS == MIS_PHASE ? 1.0 : phase_share(v, light, from);
+    vec3 direction = select < share                ? phase_sample(v, travel, u)
+                     : light.kind == LIGHT_SPHERE ? sphere_direction(light, from, u)
+                                                  : flat_direction(light, from, u);
+    float t = hit_lamp(light, from, direction);
+    float density = mix(lamp_pdf(light, from, direction, t), phase_eval(v, travel, direction), share);
+    bool seen = t < FAR && density > 0.0;
+    return LightSample(direction, t, seen ? light.radiance / density : vec3(0.0), 0.0);
+}
+
+// What the camera sees along a ray: one of the lamps that it meets, drawn by u in [0, 1) from all of them alike.
+LightSample seen_lamp(vec3 from, vec3 direction, float u) {
+    LightSample seen = LightSample(direction, FAR, vec3(0.0), 0.0);
+    float met = 0.0;
+    for (uint i = frame.lamp_first; i < frame.lamp_first + frame.lamp_count; ++i) {
+        float t = hit_lamp(lights[i], from, direction);
+        if (t < FAR) {
+            // With chance 1 / met the latest takes the place of the one before: u is stretched to what is left of it.
+            met += 1.0;
+            bool taken = u * met < 1.0;
+            u = taken ? u * met : (u * met - 1.0) / max(met - 1.0, 1.0);
+            seen.distance = taken ? t : seen.distance;
+            seen.light = taken ? lights[i].radiance : seen.light;
+        }
+    }
+    seen.light *= met;
+    return seen;
+}
+
+// All of them together, where nothing is between.
+vec3 lamps_seen(vec3 from, vec3 direction) {
+    vec3 radiance = vec3(0.0);
+    for (uint i = frame.lamp_first; i < frame.lamp_first + frame.lamp_count; ++i)
+        radiance += hit_lamp(lights[i], from, direction) < FAR ? lights[i].radiance : vec3(0.0);
+    return radiance;
+}
+
+#endif

@@ -1,0 +1,100 @@
+// The choice of a light: what the kernels draw, against the chances they state.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+
+#include "kernels/test_items.h"
+#include "light_table.h"
+#include "lights.spv.h"
+#include "shared/constants.h"
+#include "support/kernel_runner.h"
+#include "support/statistics.h"
+#include "tests/reference/rng.h"
+
+using namespace vkvol;
+
+namespace {
+
+double random(std::uint32_t i, std::uint32_t which) {
+    return reference::pcg4d({i, which, 3, 4})[0] * 0x1p-32;
+}
+
+// Points in a cube, of powers over three decades, a sphere, a spot and a directional light.
+std::vector<Light> many_lights(int points) {
+    std::vector<Light> lights;
+    for (int i = 0; i < points; ++i) {
+        const auto at = [&](std::uint32_t which) { return 20.0 * random(std::uint32_t(i), which) - 10.0; };
+        lights.push_back(PointLight{{at(0), at(1), at(2)}, Rgb(std::pow(10.0, 3.0 * random(std::uint32_t(i), 3)))});
+    }
+    lights.push_back(SphereLight{{1.0, 2.0, 3.0}, 0.5, Rgb(30.0)});
+    lights.push_back(SpotLight{{-3.0, 4.0, 0.0}, {0.0, -1.0, 0.0}, Rgb(100.0), 60.0, 0.5});
+    lights.push_back(DirectionalLight{{0.0, 1.0, 0.0}, Rgb(2.0)});
+    return lights;
+}
+
+std::vector<shared::LookOutput> look(const std::vector<Light>& lights, const glm::vec3& from, std::uint32_t count) {
+    Scene scene;
+    scene.lights = lights;
+    const LightTable table = make_light_table(scene, Assets{}, glm::dvec3(0.0), 10.0);
+    KernelScene kernel;
+    kernel.frame.choices = table.choices;
+    kernel.frame.sky_count = table.sky_count;
+    kernel.frame.lamp_first = table.lamp_first;
+    kernel.frame.lamp_count = table.lamp_count;
+    kernel.lights = &table;
+    Specialization constants{};
+    constants[SPEC_LIGHTS] = lights_kind(lights);
+    constants[SPEC_SCATTERING] = SCATTERING_MULTIPLE;
+    constants[SPEC_NEE] = NEE_COLLISIONS;
+    std::vector<shared::LookInput> inputs;
+    for (std::uint32_t i = 0; i < count; ++i)
+        inputs.push_back({i, from});
+    return KernelRunner(lights_spv, constants, kernel).run<shared::LookOutput>(inputs);
+}
+
+} // namespace
+
+TEST_CASE("lights are chosen with the chances that are stated", "[gpu][lights]") {
+    constexpr std::uint32_t count = 1 << 18;
+    for (const int points : {0, 1, 7, 1000})
+        for (const glm::vec3 from : {glm::vec3(0.0f), glm::vec3(9.0f, -9.0f, 9.0f), glm::vec3(60.0f, 0.0f, 0.0f)}) {
+            std::map<std::uint32_t, double> observed, chance;
+            for (const shared::LookOutput& o : look(many_lights(points), from, count)) {
+                observed[o.index] += 1.0;
+                const auto [found, is_new] = chance.emplace(o.index, o.chance);
+                REQUIRE(found->second == o.chance); // the same whenever it is drawn
+            }
+            std::vector<double> counts, expected;
+            double total = 0.0;
+            for (const auto& [index, p] : chance) {
+                counts.push_back(observed[index]);
+                expected.push_back(p * count);
+                total += p;
+            }
+            // What was never drawn has little chance: the rest, as one more bin.
+            counts.push_back(0.0);
+            expected.push_back((1.0 - total) * count);
+            CAPTURE(points, from.x, total);
+            CHECK(total < 1.0 + 1e-5);
+            CHECK(chi_square_test_p(counts, expected) > 1e-4);
+        }
+}
+
+// From anywhere, the mean over looks of light / chance is the sum over all lights: here 1 / distance^2 by hand.
+TEST_CASE("looks at a thousand lights find the light of all", "[gpu][lights]") {
+    const std::vector<Light> all = many_lights(1000), lights(all.begin(), all.begin() + 1000);
+    for (const glm::dvec3 from : {glm::dvec3(0.5, 0.2, 0.1), glm::dvec3(-9.0, 4.0, 8.0), glm::dvec3(30.0, 0.0, 0.0)}) {
+        double expected = 0.0;
+        for (const Light& light : lights) {
+            const auto& point = std::get<PointLight>(light);
+            const glm::dvec3 apart = point.position - from;
+            expected += point.intensity.x / glm::dot(apart, apart);
+        }
+        RunningMean mean;
+        for (const shared::LookOutput& o : look(lights, glm::vec3(from), 1 << 17))
+            mean.add(o.light.x);
+        CAPTURE(from.x, mean.mean(), mean.standard_error(), expected);
+        CHECK(t_test_p(mean, expected) > 1e-4);
+        CHECK(mean.variance() < 4.0 * expected * expected); // an even choice has some hundred times that
+    }
+}
