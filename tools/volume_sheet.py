@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Renders density files as `vkvol FILE` does by itself, and lays the pictures out on one sheet.
+"""Renders density files as `vkvol FILE` does by itself, or scenes, and lays the pictures out on one sheet.
 
     tools/volume_sheet.py smoke.nvdb fire.vdb ... -o sheet.png [--vkvol build/vkvol] [-- options of vkvol]
 
@@ -29,7 +29,9 @@ def render(vkvol, file, options, folder):
     print(said, flush=True)
     # Of the lines, the assumptions, without the folders that files are in; and how long it took.
     said = said.replace(str(file), file.name).replace(f"{picture}: ", "").split("; scene: ")[0]
-    if run.returncode == 0:
+    if run.returncode == 0 and file.suffix == ".xml":
+        said = file.stem + said.split(", on ")[0].replace(str(picture), "")
+    elif run.returncode == 0:
         said += run.stdout.strip().split("\n")[-1].replace(str(picture), "").split(", on ")[0]
     return (picture if picture.exists() else None), said.removeprefix("vkvol: error: ")
 
