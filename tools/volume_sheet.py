@@ -30,7 +30,7 @@ def render(vkvol, file, options, folder):
     # Of the lines, the assumptions, without the folders that files are in; and how long it took.
     said = said.replace(str(file), file.name).replace(f"{picture}: ", "").split("; scene: ")[0]
     if run.returncode == 0 and file.suffix == ".xml":
-        said = file.stem + said.split(", on ")[0].replace(str(picture), "")
+        said = file.stem + ": " + said.split(", on ")[0].replace(str(picture), "")
     elif run.returncode == 0:
         said += run.stdout.strip().split("\n")[-1].replace(str(picture), "").split(", on ")[0]
     return (picture if picture.exists() else None), said.removeprefix("vkvol: error: ")
