@@ -85,11 +85,12 @@ sky drawn without its sine ~ shaders/lights/sky.glsl ~ / max(sine, 1.0e-12)); ~ 
 sky turned the other way ~ shaders/lights/sky.glsl ~ + 0.5 + sky.turn) ~ + 0.5 - sky.turn) ~ [lights]
 sun's disc too wide ~ shaders/lights/disc.glsl ~ return 2.0 * INV_4PI / light.extent; ~ return 1.9 * INV_4PI / light.extent; ~ [lights]
 lamp without its cosine ~ shaders/lights/flat.glsl ~ (light.area * max(-dot(direction, light.direction), 1.0e-12)) ~ light.area ~ [lights]
-lamps not drawn by the phase function ~ shaders/lights/lamp.glsl ~ select < share                ? ~ false ? ~ [lights]
+lamps not drawn by the phase function ~ shaders/lights/lamp.glsl ~ bool by_phase = select < share; ~ bool by_phase = false; ~ [lights]
 one lamp for all that are seen ~ shaders/lights/lamp.glsl ~ seen.light *= met; ~ ; ~ [lights]
 tree's chance forgotten ~ shaders/lights/table.glsl ~ chance *= below; ~ ; ~ [lights]
 branch's chance not its own ~ shaders/lights/tree.glsl ~ float(goes_left ? share : 0u - share) ~ float(share) ~ [lights]
 spot without its rim ~ shaders/lights/point.glsl ~ t * t * (3.0 - 2.0 * t) ~ t ~ [lights]
+lamps before a mesh seen through it ~ shaders/shapes/segment.glsl ~ t.x = min(t.x, t.y); // the first ~ // the first ~ [lights]
 END
 }
 

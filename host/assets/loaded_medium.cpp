@@ -143,6 +143,17 @@ void load_files(const Scene& scene, const Volume& volume, const Method& method, 
     }
 }
 
+void load_sky(const SkyLight& sky, Assets& assets) {
+    try {
+        assets.sky = load_sky(sky);
+    } catch (const InputError& error) {
+        throw InputError(sky.place.empty() ? error.what() : fmt::format("{}: {}", sky.place, error.what()));
+    }
+    if (assets.sky->mended > 0)
+        assets.warnings.push_back(fmt::format("{}: {} texels were negative or not finite, and count as 0",
+                                              sky.file.string(), assets.sky->mended));
+}
+
 } // namespace
 
 Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
@@ -160,12 +171,8 @@ Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
         }
     }
     for (const Light& light : scene.lights)
-        if (const auto* sky = std::get_if<SkyLight>(&light)) {
-            assets.sky = load_sky(*sky);
-            if (assets.sky->mended > 0)
-                assets.warnings.push_back(fmt::format("{}: {} texels were negative or not finite, and count as 0",
-                                                      sky->file.string(), assets.sky->mended));
-        }
+        if (const auto* sky = std::get_if<SkyLight>(&light))
+            load_sky(*sky, assets);
     return assets;
 }
 

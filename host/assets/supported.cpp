@@ -1,6 +1,7 @@
 #include "supported.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "error.h"
 #include "shared/constants.h"
@@ -13,6 +14,15 @@ void check_supported(const Scene& scene) {
     const auto is_map = [](const Light& light) { return std::holds_alternative<SkyLight>(light); };
     if (std::count_if(scene.lights.begin(), scene.lights.end(), is_map) > 1)
         throw InputError("a scene with several maps of the sky is not rendered by this version; keep one");
+    // Every camera ray asks all lamps, and every path that leaves all suns.
+    constexpr std::ptrdiff_t most_lamps = 4096, most_suns = 256;
+    if (const auto lamps = std::count_if(scene.lights.begin(), scene.lights.end(), is_lamp); lamps > most_lamps)
+        throw InputError(fmt::format("{} spheres, disks and rectangles of light are more than the {} that can be seen; "
+                                     "make most of them points",
+                                     lamps, most_lamps));
+    if (const auto suns = std::count_if(scene.lights.begin(), scene.lights.end(), is_met_by_chance); suns > most_suns)
+        throw InputError(fmt::format("{} suns are more than the {} that are rendered; make most of them directional",
+                                     suns, most_suns));
 }
 
 } // namespace vkvol

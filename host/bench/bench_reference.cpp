@@ -66,6 +66,9 @@ bool is_newer_than_assets(const std::filesystem::path& file, const Scene& scene)
             assets.push_back(grid->path);
         else if (const MeshFiles* mesh = std::get_if<MeshFiles>(&volume.shape))
             assets.insert(assets.end(), mesh->paths.begin(), mesh->paths.end());
+    for (const Light& light : scene.lights)
+        if (const auto* sky = std::get_if<SkyLight>(&light); sky && !sky->daylight)
+            assets.push_back(sky->file);
     std::error_code error;
     const auto written = std::filesystem::last_write_time(file, error);
     return !error && std::all_of(assets.begin(), assets.end(), [&](const std::filesystem::path& asset) {

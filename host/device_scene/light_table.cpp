@@ -1,6 +1,7 @@
 #include "light_table.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -76,8 +77,8 @@ public:
         const double half = radians(0.5 * light.angle);
         entry.row.position = light.position - origin_;
         entry.row.direction = light.direction;
-        entry.row.cos_full = static_cast<float>(std::cos(half * (1.0 - light.blend)));
-        entry.row.cos_none = static_cast<float>(std::cos(half));
+        entry.row.full_within = static_cast<float>(versine(half * (1.0 - light.blend)));
+        entry.row.none_beyond = static_cast<float>(versine(half));
         entry.fluence = mean(light.intensity) / square_distance(light.position);
         entry.place = Entry::Place::point;
         return entry;
@@ -182,6 +183,14 @@ int lights_kind(const std::vector<Light>& lights) {
     });
     return LIGHTS_TABLE | (any(is_met_by_chance) ? LIGHTS_SKY : 0) | (any(is_lamp) ? LIGHTS_LAMPS : 0) |
            (somewhere > 1 ? LIGHTS_TREE : 0);
+}
+
+std::uint32_t loop_iterations(const std::vector<Light>& lights) {
+    if (lights_kind(lights) == LIGHTS_SUN)
+        return 0;
+    const auto count = [&](bool (*is)(const Light&)) { return std::count_if(lights.begin(), lights.end(), is); };
+    const auto levels = std::bit_width(lights.size()) + 1;
+    return static_cast<std::uint32_t>(count(is_lamp) + 1 + count(is_met_by_chance) + 1 + levels + 1);
 }
 
 double reach_of_lamps(const std::vector<Light>& lights, const glm::dvec3& origin) {

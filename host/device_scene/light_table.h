@@ -22,6 +22,10 @@ int lights_kind(const std::vector<Light>& lights);
 // toward the tree, is in proportion to its fluence amid the media, and never less than a tenth of an even share.
 LightTable make_light_table(const Scene& scene, const Assets& assets, const glm::dvec3& origin, double radius);
 
+// Iterations of the loops in which a kernel asks all of some kind, or goes down the tree; each with the one that ends
+// it.
+std::uint32_t loop_iterations(const std::vector<Light>& lights);
+
 // World units: how far from `origin` lamps reach; 0 without any.
 double reach_of_lamps(const std::vector<Light>& lights, const glm::dvec3& origin);
 

@@ -100,14 +100,15 @@ void Resolution::choose_nee() {
     const bool scatters = method_.scattering != SCATTERING_NONE &&
                           any_medium(scene_, [](const Volume& volume) { return volume.sigma_s != Rgb(0.0); });
     // The camera sees lamps by shadow rays, whether or not anything scatters.
-    const bool shows_lamps = std::any_of(scene_.lights.begin(), scene_.lights.end(), is_lamp) && !is_through(method_);
+    const bool shows_lamps = std::any_of(scene_.lights.begin(), scene_.lights.end(), is_lamp) &&
+                             !(is_through(method_) && method_.scattering == SCATTERING_NONE);
     if (scene_.lights.empty() || (!scatters && !shows_lamps)) {
         if (choices_.nee.value_or(NEE_NONE) != NEE_NONE)
             warn(scene_.lights.empty() ? "nee is without effect: the scene has no light"
                                        : "nee is without effect: nothing scatters");
         nee = NEE_NONE;
-    } else if (!scatters) {
-        nee = nee == NEE_NONE ? NEE_NONE : NEE_COLLISIONS; // of which none has light; the camera's looks are all there are
+    } else if (!scatters) { // the camera's looks are all there are
+        nee = nee == NEE_NONE ? NEE_NONE : is_through(method_) ? NEE_TENTATIVE : NEE_COLLISIONS;
     } else if (is_through(method_)) {
         if (choices_.nee == NEE_COLLISIONS || choices_.nee == NEE_CACHED)
             warn("a march through the medium has no collisions; shadow rays start at every step");

@@ -1,5 +1,6 @@
 #include "scene_hash.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <iterator>
 
@@ -177,6 +178,12 @@ std::string scene_hash(const Scene& authored) {
     for (const Light& light : scene.lights)
         if (method.nee != NEE_NONE || is_met_by_chance(light))
             std::visit([&writer](const auto& kind) { add_light(writer, kind); }, light);
+    // Where light scatters but once, what flights meet is scattered by looks alone.
+    if (method.scattering == SCATTERING_SINGLE &&
+        std::any_of(scene.lights.begin(), scene.lights.end(), is_met_by_chance))
+        writer.add("looks", method.nee != NEE_NONE ? 1 : 0);
+    if (method.biases & bias_shadow_steps)
+        writer.add("mis", method.mis);
     writer.add("background", scene.background);
     add_method(writer, scene.settings, method);
     return writer.hash();

@@ -24,7 +24,7 @@ std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
         iterations += 2 + 1 + MESH_NODES_PER_TURN * node;
     if (loops.octaves > 0)
         iterations += 4 * steps * (loops.octaves + 1);
-    return iterations;
+    return iterations + loops.lights;
 }
 
 // Turns whose loops stay below the limit.
@@ -50,7 +50,8 @@ Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish) {
     const std::uint32_t longest = longest_budget(loops, plan.steps);
     plan.budget = std::min(pick(wish.budget, longest), longest);
     plan.step_limit = pick(wish.step_limit, 1u << 26);
-    plan.most_batch = pick(wish.most_batch, longest_batch);
+    plan.most_batch =
+        std::min(pick(wish.most_batch, longest_batch), longest_batch / (1 + loops.lights)); // each looks at them
     plan.waiting = staged ? std::max(wish.waiting, 4 * plan.slots) : 0;
     if (staged) // so that two pixels and more have a place
         plan.most_batch = std::min(plan.most_batch, plan.waiting / 2);

@@ -67,6 +67,7 @@ void Session::load(const Device& device, const std::vector<std::string>& authore
 
 void Session::find_wish(const Assets& assets, const Specialization& specialization) {
     wish_ = job_.plan;
+    loops_.lights = loop_iterations(scene_.lights);
     for (std::size_t i = 0; i < assets.media.size(); ++i) {
         const Volume& volume = scene_.volumes[i];
         const LoadedMedium& medium = assets.media[i];

@@ -294,7 +294,9 @@ Answer unlike_colours(const Evidence& e) {
     if (e.odd != Odd::black || !volume || !sees_light(e) || e.emits || e.scene.background != Rgb(0.0))
         return {};
     const DirectionalLight* sun = only_directional(e.scene.lights);
-    const Rgb irradiance = sun ? sun->irradiance : Rgb(1.0);
+    if (!sun)
+        return {};
+    const Rgb irradiance = sun->irradiance;
     if (irradiance * volume->sigma_s != Rgb(0.0))
         return {};
     return fmt::format("light and medium have no colour in common: the <light> has {}, of which sigma_s {} scatters "
@@ -357,7 +359,13 @@ Answer overexposed(const Evidence& e) {
 
 } // namespace
 
+// Flights meet the sky by themselves, and the camera sees lamps.
 bool sees_light(const Scene& scene, const Method& method) {
+    const auto any = [&](bool (*is)(const Light&)) {
+        return std::any_of(scene.lights.begin(), scene.lights.end(), is);
+    };
+    if (any(is_met_by_chance) || (any(is_lamp) && method.nee != NEE_NONE))
+        return true;
     return !scene.lights.empty() && method.nee != NEE_NONE && scene.settings.max_depth != 0u;
 }
 

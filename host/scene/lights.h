@@ -78,6 +78,7 @@ struct Daylight {
 // further to that camera's right. Between the middles of texels radiance is interpolated linearly.
 struct SkyLight {
     std::filesystem::path file;
+    std::string place;                // of the element, "file:line:column", for messages; or empty
     std::optional<Daylight> daylight; // in place of the file
     double rotation = 0.0;            // degrees, positive turns it counter-clockwise as seen from above
     Rgb scale{1.0};                   // multiplies the map

@@ -58,6 +58,9 @@ void FileUses::reads_files_of(const Scene& scene) {
                     reads("the materials of a model", library);
             }
     }
+    for (const Light& light : scene.lights)
+        if (const auto* sky = std::get_if<SkyLight>(&light); sky && !sky->daylight)
+            reads("the scene's map of the sky", sky->file);
 }
 
 void FileUses::writes(const std::string& what, const path& file, const std::string& option) {

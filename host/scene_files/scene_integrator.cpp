@@ -87,10 +87,15 @@ void SceneReader::check_method(const Scene& scene) const {
 }
 
 void SceneReader::warn_about_light(const Scene& scene, const Method& method) const {
-    if (method.nee != NEE_NONE || std::all_of(scene.lights.begin(), scene.lights.end(), is_met_by_chance))
+    if (method.nee != NEE_NONE || scene.lights.empty())
         return;
     const XmlElement light = one("light"), element = light.exists() && !scene.lights.empty() ? light : one("lights");
-    if (scene.settings.choices.nee.value_or(choose_integrator(scene).nee) == NEE_NONE)
+    if (std::all_of(scene.lights.begin(), scene.lights.end(), is_met_by_chance)) {
+        if (method.scattering == SCATTERING_SINGLE)
+            element.warn(fmt::format("{} sends no shadow rays, without which what scatters once has no light; the sky "
+                                     "is seen only",
+                                     method.integrator));
+    } else if (scene.settings.choices.nee.value_or(choose_integrator(scene).nee) == NEE_NONE)
         element.warn(fmt::format("{} sends no shadow rays, without which a light that is no sun or sky is left out; "
                                  "ratioTracking renders it",
                                  method.integrator));

@@ -158,6 +158,7 @@ Light SceneReader::light(const XmlElement& element) const {
     element.allow(with_colors({"baseDir", "rotation"}), true);
     SkyLight sky;
     sky.file = file_path(element, "sky.exr");
+    sky.place = element.place();
     sky.rotation = element.attribute_number("rotation", 0.0, any_number);
     sky.scale = light_color(element);
     return sky;
@@ -178,7 +179,7 @@ void SceneReader::read_daylight(const XmlElement& element, Scene& scene) const {
         element.attribute_number("ground", daylight.ground, {0.0, 1.0, true, true, "an albedo from 0 to 1"});
     SkyLight sky;
     sky.daylight = daylight;
-    sky.scale = Rgb(element.attribute_number("multiplier", 1.0, {0.0, 1e6, true, true, "a number from 0 to 1e6"}));
+    sky.scale = Rgb(element.attribute_number("multiplier", 1.0, {0.0, 1e5, true, true, "a number from 0 to 1e5"}));
     if (sky.scale == Rgb(0.0)) {
         scene.black.push_back({element.name(), element.place()});
         return;

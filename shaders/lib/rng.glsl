@@ -16,6 +16,10 @@
 //   shadow ray             e_x: first distance; y, z, select: telescoping's level, offset and residue; none is drawn
 //                          for one known in closed form
 //   light from the cache   x: whether a shadow ray corrects it
+//   choice of a light      x, y: which; z, w: where on it; select: whether by the phase function instead. Then, down a tree,
+//                          a draw for each four levels, a word each; of a map of the sky x, y: row; z, w: column
+//   lamp before the camera w of the camera's draw: which of those that the ray meets. After its shadow ray the first
+//                          flight takes a draw of its own, e_z as from the camera's
 //   scattering             e_x: next free flight; y, z: phase function; w: roulette; select
 #ifndef RNG_GLSL
 #define RNG_GLSL

@@ -18,6 +18,13 @@ float hit_flat(LightRow light, vec3 from, vec3 direction) {
     return t > 0.0 && is_on_flat(light, at) ? t : FAR;
 }
 
+// The same along a direction that was drawn toward it, which rounding may lead past what is small.
+float flat_distance(LightRow light, vec3 from, vec3 direction) {
+    float facing = -dot(direction, light.direction);
+    float t = facing > 0.0 ? dot(from - light.position, light.direction) / facing : -1.0;
+    return t > 0.0 ? t : FAR;
+}
+
 // Evenly over its area. A disk's points by radius and angle, not by both sines, of which Vulkan asks little: see turned().
 vec3 flat_direction(LightRow light, vec3 from, vec2 u) {
     vec2 at = 2.0 * u - 1.0;

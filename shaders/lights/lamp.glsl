@@ -29,10 +29,13 @@ float phase_share(MediumParams v, LightRow light, vec3 from) {
 // `pdf` of what is returned: 0, for no flight meets it. Its light is over the mixture's density already.
 LightSample sample_lamp(MediumParams v, LightRow light, vec3 from, vec3 travel, vec2 u, float select) {
     float share = MIS == MIS_LIGHT ? 0.0 : MIS == MIS_PHASE ? 1.0 : phase_share(v, light, from);
-    vec3 direction = select < share                ? phase_sample(v, travel, u)
+    bool by_phase = select < share;
+    vec3 direction = by_phase                      ? phase_sample(v, travel, u)
                      : light.kind == LIGHT_SPHERE ? sphere_direction(light, from, u)
                                                   : flat_direction(light, from, u);
-    float t = hit_lamp(light, from, direction);
+    float t = by_phase                      ? hit_lamp(light, from, direction)
+              : light.kind == LIGHT_SPHERE ? sphere_distance(light, from, direction)
+                                           : flat_distance(light, from, direction);
     float density = mix(lamp_pdf(light, from, direction, t), phase_eval(v, travel, direction), share);
     bool seen = t < FAR && density > 0.0;
     return LightSample(direction, t, seen ? light.radiance / density : vec3(0.0), 0.0);
@@ -55,14 +58,6 @@ LightSample seen_lamp(vec3 from, vec3 direction, float u) {
     }
     seen.light *= met;
     return seen;
-}
-
-// All of them together, where nothing is between.
-vec3 lamps_seen(vec3 from, vec3 direction) {
-    vec3 radiance = vec3(0.0);
-    for (uint i = frame.lamp_first; i < frame.lamp_first + frame.lamp_count; ++i)
-        radiance += hit_lamp(lights[i], from, direction) < FAR ? lights[i].radiance : vec3(0.0);
-    return radiance;
 }
 
 #endif

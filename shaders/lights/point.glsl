@@ -13,9 +13,9 @@ LightSample sample_point(LightRow light, vec3 from) {
 
 LightSample sample_spot(LightRow light, vec3 from) {
     LightSample drawn = sample_point(light, from);
-    float along = -dot(drawn.direction, light.direction);
-    // smoothstep is undefined where its edges are equal: a cone without a soft rim
-    float t = clamp((along - light.cos_none) / max(light.cos_full - light.cos_none, 1.0e-7), 0.0, 1.0);
+    vec3 apart = drawn.direction + light.direction;
+    float x = 0.5 * dot(apart, apart); // 1 - cos of the angle to its axis, with all digits where that is small
+    float t = clamp((light.none_beyond - x) / max(light.none_beyond - light.full_within, 1.0e-12), 0.0, 1.0);
     drawn.light *= t * t * (3.0 - 2.0 * t);
     return drawn;
 }

@@ -21,6 +21,13 @@ float hit_sphere(LightRow light, vec3 from, vec3 direction) {
     return inside > 0.0 && t > 0.0 ? t : FAR;
 }
 
+// The same along a direction that was drawn toward it, which rounding may lead past what is small.
+float sphere_distance(LightRow light, vec3 from, vec3 direction) {
+    vec3 apart = light.position - from;
+    float t = hit_sphere(light, from, direction);
+    return t < FAR || sphere_rim(light, from) == 0.0 ? t : max(dot(apart, direction), 0.0);
+}
+
 // Evenly over the solid angle that it takes.
 vec3 sphere_direction(LightRow light, vec3 from, vec2 u) {
     return turned(normalize(light.position - from), sphere_rim(light, from) * u.x, u.y);

@@ -20,11 +20,15 @@ void main() {
     for (uint i = push.sample_begin; i < push.sample_end && !hit; ++i) {
         CameraRay ray = camera_ray(place, i);
         hit = may_meet_medium(frame.media[0], to_medium(frame.media[0], ray.origin, ray.direction));
-        vec3 radiance = frame.lights[LIGHT_BACKGROUND].radiance;
+        // As a path would find it, in the same order: it is not for the batch to say which bits a sample has.
+        vec3 radiance = vec3(0.0);
+        if (SEES_LAMPS) {
+            Rng rng = pixel_rng(place, i, 0u);
+            radiance = seen_lamp(ray.origin, ray.direction, to_uniform(next_words(rng)).w).light;
+        }
+        radiance += frame.lights[LIGHT_BACKGROUND].radiance;
         if (SEES_SKY)
             radiance += light_from_beyond(ray.direction, 0.0);
-        if (SEES_LAMPS)
-            radiance += lamps_seen(ray.origin, ray.direction);
         film_add(entry, radiance, place, i, tally);
     }
     // llvmpipe leaves loops early, see most_iterations in plan.cpp: what it did not look at is for paths to see.

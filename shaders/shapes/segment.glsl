@@ -91,7 +91,10 @@ uint search_part(MediumParams v, vec3 position, vec3 direction, float reach, boo
         bool over = false;
         for (int k = 0; k < MESH_NODES_PER_TURN && !over; ++k)
             over = step_search(v.bvh_nodes, mesh_ray, search, t);
-        t.y = over ? cut_short(t.y, reach) : t.y;
+        if (over && LIGHTS != LIGHTS_SUN) {
+            t.y = cut_short(t.y, reach);
+            t.x = min(t.x, t.y); // the first part may begin behind the lamp
+        }
         bool found = over && t.x < t.y;
         if (over && (found || search.stage == SEARCH_FIRST))
             begin_part(v, ray, t, seeing, w);

@@ -122,8 +122,8 @@ struct LightRow {
     vec3 radiance;  // from everywhere on it; of a directional light its irradiance, of a point the radiant intensity
     float extent;   // of a disc: 1 - cos of the angle from its middle to its rim; of a sphere its radius
     float area;     // of a lamp, as seen from in front
-    float cos_full; // of a spot: full intensity within,
-    float cos_none; // none beyond
+    float full_within; // of a spot, 1 - cos of angles to its axis: full intensity within,
+    float none_beyond; // none beyond
 };
 
 // Of a binary tree over lights, in depth-first order; a branch's left one follows it.

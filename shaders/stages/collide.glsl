@@ -19,7 +19,7 @@ void gather_some_light(MediumParams v, vec3 position, Spectrum lit, uint next, i
         lane.to_light = drawn.direction;
         lane.light_distance = drawn.distance;
         lane.light = light;
-        lane.todo = largest(light) > 0.0 ? TODO_LOOK : next;
+        lane.todo = largest(light) > 0.0 && largest(lit) > 0.0 ? TODO_LOOK : next;
     } else {
         lane.path.radiance += lit * analytic_shadow(v, position, drawn.direction, drawn.distance) * light;
         lane.todo = next;

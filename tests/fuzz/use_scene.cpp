@@ -89,7 +89,7 @@ void check_light(const shared::LightRow& row) {
     expect_finite(row.direction, "a light's direction is not finite");
     expect(std::isfinite(row.extent) && row.extent >= 0.0f, "a disc's extent is none");
     expect(std::isfinite(row.area) && row.area >= 0.0f, "a lamp's area is none");
-    expect(row.cos_full >= row.cos_none, "a cone's rim is inside out");
+    expect(row.full_within <= row.none_beyond, "a cone's rim is inside out");
 }
 
 void check_loaded(const LoadedMedium& loaded) {

@@ -183,8 +183,26 @@ TEST_CASE("lamps are seen", "[gpu][lights]") {
     }
     Scene absorbing = lit_by(medium(Sphere{{0, 0, 0}, 2.0}, 0.7, 0.0), 12.0, lamps, 64);
     CHECK_AGREEMENT(agree(render_here(absorbing, 33).film, render_reference(absorbing, 34), "lamps and an absorber"));
+    const Mesh cube = make_box({-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}, 1);
+    const Scene mesh = lit_by(medium(write_mesh(cube), 1.0, 0.5), 12.0, lamps, 64);
+    CHECK_AGREEMENT(agree(render_here(mesh, 37).film, render_reference(mesh, 38), "lamps and a mesh"));
     absorbing.volumes.clear();
     CHECK_AGREEMENT(agree(render_here(absorbing, 35).film, render_reference(absorbing, 36), "lamps alone"));
+}
+
+// llvmpipe ends all loops of an invocation after 65535 iterations. Four hundred lamps in one place shine as one.
+TEST_CASE("no lamp of many is lost, however long a lane works", "[gpu][lights]") {
+    const auto picture = [](int count) {
+        const std::vector<Light> lamps(std::size_t(count), SphereLight{{0.0, 0.0, 0.0}, 3.0, Rgb(1.0 / count)});
+        Scene scene = lit_by(medium(Sphere{{0, 0, 3}, 1.5}, 0.7, 0.0), 5.0, lamps, 64);
+        scene.background = Rgb(0.0);
+        return render_here(scene, 39).film;
+    };
+    const Film one = picture(1), many = picture(400);
+    for (std::size_t i = 0; i < one.mean.size(); ++i) {
+        CAPTURE(i, one.mean[i].x, many.mean[i].x);
+        REQUIRE(std::abs(many.mean[i].x - one.mean[i].x) <= 1e-5f * one.mean[i].x);
+    }
 }
 
 TEST_CASE("looks and flights find the same light", "[gpu][lights][agreement]") {

@@ -126,6 +126,24 @@ TEST_CASE("integrators that send no shadow rays see what has an extent", "[cpu][
                       "ratioTracking"));
 }
 
+TEST_CASE("what is scattered once under a sky that no shadow ray asks is another picture", "[cpu][xml]") {
+    const auto scene = [](const std::string& attributes) {
+        return parse("<sphere/><integrator scattering=\"single\"" + attributes +
+                     ">ratioTracking</integrator><lights><sun y=\"3\"/></lights>");
+    };
+    CHECK(scene_hash(scene("")) != scene_hash(scene(" nee=\"none\"")));
+    CHECK(warns(scene(" nee=\"none\""), "what scatters once has no light"));
+    CHECK(scene("").warnings.empty());
+}
+
+TEST_CASE("too many lamps are refused", "[cpu][xml]") {
+    std::string lamps;
+    for (int i = 0; i < 4097; ++i)
+        lamps += "<sphere/>";
+    const Scene scene = parse("<lights>" + lamps + "</lights>");
+    CHECK_THROWS_WITH(load_assets(scene, choose_method(scene)), Catch::Contains("make most of them points"));
+}
+
 TEST_CASE("what a scene's lights ask for", "[cpu][method]") {
     const auto method_of = [](const std::string& lights, const std::string& integrator = "") {
         return choose_method(with_preset(parse("<box/><noise/>" + integrator + "<lights>" + lights + "</lights>")));
