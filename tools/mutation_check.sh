@@ -87,7 +87,7 @@ sun's disc too wide ~ shaders/lights/disc.glsl ~ return 2.0 * INV_4PI / light.ex
 lamp without its cosine ~ shaders/lights/flat.glsl ~ (light.area * max(-dot(direction, light.direction), 1.0e-12)) ~ light.area ~ [lights]
 lamps not drawn by the phase function ~ shaders/lights/lamp.glsl ~ bool by_phase = select < share; ~ bool by_phase = false; ~ [lights]
 one lamp for all that are seen ~ shaders/lights/lamp.glsl ~ seen.light *= met; ~ ; ~ [lights]
-tree's chance forgotten ~ shaders/lights/table.glsl ~ chance *= below; ~ ; ~ [lights]
+tree's chance forgotten ~ shaders/lights/table.glsl ~ chance *= of_leaf; ~ ; ~ [lights]
 branch's chance not its own ~ shaders/lights/tree.glsl ~ float(goes_left ? share : 0u - share) ~ float(share) ~ [lights]
 spot without its rim ~ shaders/lights/point.glsl ~ t * t * (3.0 - 2.0 * t) ~ t ~ [lights]
 lamps before a mesh seen through it ~ shaders/shapes/segment.glsl ~ t.x = min(t.x, t.y); // the first ~ // the first ~ [lights]

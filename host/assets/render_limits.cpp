@@ -20,7 +20,6 @@ constexpr double most_collisions = 1e7;
 constexpr double most_steps = 1e6;
 // Of the sigmas in world units, times the largest density.
 constexpr double largest_extinction = 1e30;
-constexpr double brightest = 1e12; // as of colours in the scene
 
 // The medium's box as a camera meets it, world space.
 struct Extent {
@@ -107,10 +106,10 @@ void check_glow(const Volume& volume, const LoadedMedium& loaded) {
     else
         most = loaded.temperature->max_value();
     most *= largest(volume.temperature.color);
-    if (!(most <= brightest))
+    if (!(most <= brightest_light))
         throw InputError(fmt::format("<emission> reaches a radiance of {:.3g} where \"{}\" is hottest, but {:g} is the "
                                      "most; lower its multiplier or temperatureScale, or raise referenceTemperature",
-                                     most, volume.temperature.grid, brightest));
+                                     most, volume.temperature.grid, brightest_light));
 }
 
 } // namespace

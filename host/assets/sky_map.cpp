@@ -47,7 +47,6 @@ void append(std::vector<shared::AliasEntry>& table, std::span<const double> weig
 }
 
 void check(const RadianceMap& map, const SkyLight& light) {
-    constexpr double brightest = 1e12; // as of any colour
     double most = 0.0;
     for (const glm::vec3& texel : map.texels)
         for (int c = 0; c < 3; ++c)
@@ -56,10 +55,10 @@ void check(const RadianceMap& map, const SkyLight& light) {
         throw InputError(fmt::format("{}: a map without light: every texel is 0{}; remove the <sky>, or name another "
                                      "file",
                                      light.file.string(), map.mended > 0 ? ", negative or not finite" : ""));
-    if (most > brightest)
+    if (most > brightest_light)
         throw InputError(fmt::format("{}: its brightest texel times multiplier is {:.3g}, but {:g} is the most; lower "
                                      "the multiplier",
-                                     light.file.string(), most, brightest));
+                                     light.file.string(), most, brightest_light));
 }
 
 } // namespace

@@ -5,7 +5,8 @@
 
 namespace vkvol {
 
-// Throws InputError, in one line, for a scene of more media or lights than the kernels' tables have rows.
+// Throws InputError, in one line, for a scene of more media, maps of the sky, lamps or suns than the kernels have room
+// or time for.
 void check_supported(const Scene& scene);
 
 } // namespace vkvol

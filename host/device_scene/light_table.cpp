@@ -178,9 +178,7 @@ int lights_kind(const std::vector<Light>& lights) {
     const auto any = [&](bool (*is)(const Light&)) { return std::any_of(lights.begin(), lights.end(), is); };
     if (lights.empty() || only_directional(lights))
         return LIGHTS_SUN;
-    const auto somewhere = std::count_if(lights.begin(), lights.end(), [](const Light& light) {
-        return is_lamp(light) || std::holds_alternative<PointLight>(light) || std::holds_alternative<SpotLight>(light);
-    });
+    const auto somewhere = std::count_if(lights.begin(), lights.end(), has_place);
     return LIGHTS_TABLE | (any(is_met_by_chance) ? LIGHTS_SKY : 0) | (any(is_lamp) ? LIGHTS_LAMPS : 0) |
            (somewhere > 1 ? LIGHTS_TREE : 0);
 }

@@ -98,9 +98,8 @@ void add_face(Progress& progress, const tinyobj::index_t* corners, int count) {
 }
 
 std::optional<Rgb> diffuse_of(const tinyobj::material_t& material, Progress& progress) {
-    constexpr double brightest = 1e12; // as of colours in the scene
     const Rgb color(material.diffuse[0], material.diffuse[1], material.diffuse[2]);
-    if (glm::all(glm::greaterThanEqual(color, Rgb(0.0))) && glm::all(glm::lessThanEqual(color, Rgb(brightest))))
+    if (glm::all(glm::greaterThanEqual(color, Rgb(0.0))) && glm::all(glm::lessThanEqual(color, Rgb(brightest_light))))
         return color;
     progress.obj->warnings.push_back(
         one_line(fmt::format("{}: the Kd of material \"{}\" is no colour, and is left out; numbers >= 0 are",

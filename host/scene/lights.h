@@ -12,6 +12,10 @@ namespace vkvol {
 
 using Rgb = glm::dvec3;
 
+// No colour of a light times its multiplier is more, nor radiance of what is seen: it is squared and summed over the
+// samples in single precision, which ends at 3e38.
+inline constexpr double brightest_light = 1e12;
+
 // Infinitely far away and without extent.
 struct DirectionalLight {
     glm::dvec3 direction{0.0, 1.0, 0.0}; // unit, from the scene towards the light
@@ -101,6 +105,11 @@ inline bool is_met_by_chance(const Light& light) {
 inline bool is_lamp(const Light& light) {
     return std::holds_alternative<SphereLight>(light) || std::holds_alternative<DiskLight>(light) ||
            std::holds_alternative<RectangleLight>(light);
+}
+
+// One that is somewhere, near or far.
+inline bool has_place(const Light& light) {
+    return is_lamp(light) || std::holds_alternative<PointLight>(light) || std::holds_alternative<SpotLight>(light);
 }
 
 } // namespace vkvol

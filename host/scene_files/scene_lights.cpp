@@ -78,14 +78,13 @@ RectangleLight rectangle(const XmlElement& element, const Rgb& radiance) {
 
 // The camera may see it.
 void check_disc(const XmlElement& element, const SunLight& sun) {
-    constexpr double brightest = 1e12; // as of any radiance
     const double sine = std::sin(0.5 * sun.angle * std::numbers::pi / 180.0);
     const double radiance =
         std::max({sun.irradiance.x, sun.irradiance.y, sun.irradiance.z}) / (std::numbers::pi * sine * sine);
-    if (radiance > brightest)
+    if (radiance > brightest_light)
         element.fail_attribute("angle", fmt::format("<sun> angle: a disc of {:g} degrees and of this irradiance has a "
                                                     "radiance of {:.3g}, but {:g} is the most; widen or dim it",
-                                                    sun.angle, radiance, brightest));
+                                                    sun.angle, radiance, brightest_light));
 }
 
 } // namespace
@@ -103,11 +102,10 @@ Rgb SceneReader::light_color(const XmlElement& element) const {
     const double kelvin = element.attribute_number("kelvin", 6500.0, flame);
     const Rgb tint = (element.has("kelvin") ? blackbody_rgb(kelvin, kelvin) : Rgb(1.0)) *
                      element.attribute_number("multiplier", 1.0, not_negative);
-    constexpr double brightest = 1e12;
-    if (std::max({tint.x, tint.y, tint.z}) > brightest)
+    if (std::max({tint.x, tint.y, tint.z}) > brightest_light)
         element.fail_attribute("multiplier", fmt::format("<{}> multiplier: {:g} is the most that a colour may come to; "
                                                          "lower it",
-                                                         element.name(), brightest));
+                                                         element.name(), brightest_light));
     return tint;
 }
 

@@ -129,14 +129,12 @@ Rgb SceneReader::color(const XmlElement& element) const {
     const auto channel = [&](const char* name) { return element.attribute_number(name, 0.0, not_negative); };
     const double multiplier = element.attribute_number("multiplier", 1.0, not_negative);
     const Rgb color = Rgb(channel("r"), channel("g"), channel("b")) * multiplier;
-    // Radiance is squared and summed over the samples in single precision, which ends at 3e38.
-    constexpr double brightest = 1e12;
     for (const char* name : {"r", "g", "b"})
-        if (channel(name) * multiplier > brightest)
+        if (channel(name) * multiplier > brightest_light)
             element.fail_attribute(name,
                                    fmt::format("<{}> {} times multiplier is {:g}, but {:g} is the most; lower one "
                                                "of them",
-                                               element.name(), name, channel(name) * multiplier, brightest));
+                                               element.name(), name, channel(name) * multiplier, brightest_light));
     return color;
 }
 

@@ -29,9 +29,9 @@ uint choose_light(vec3 from, uvec4 words, inout Rng rng, out float chance) {
     i = choose(lights[i].alias, i, words.y);
     chance = lights[i].chance;
     if (HAS_TREE && i == frame.choices - 1u) {
-        float below;
-        i = descend(from, rng, below);
-        chance *= below;
+        float of_leaf;
+        i = descend(from, rng, of_leaf);
+        chance *= of_leaf;
     }
     return i;
 }

@@ -6,8 +6,8 @@
 #include "lib/buffers.glsl"
 #include "lib/rng.glsl"
 
-// Near its middle a node counts as about a third of its reach away: an eighth of the square made the least noise of several
-// (a thousand lights of powers over three decades, from within: a quarter of that with the whole reach).
+// Near its middle a node counts as about a third of its reach away: an eighth of the square made the least noise of several,
+// see tools/results/README.md.
 float importance(LightNode node, vec3 from) {
     vec3 middle = 0.5 * (node.low + node.high);
     vec3 half_size = 0.5 * (node.high - node.low);

@@ -39,7 +39,8 @@
 
 #define WORKGROUP_SIZE 64
 
-// Rows of the tables that a frame has. A scene that asks for more is refused, in host/assets/supported.cpp.
+// Rows of the tables that a frame has. A scene of more media is refused, in host/assets/supported.cpp; of more lights, those
+// that are chosen among are in a table of their own.
 #define MOST_SENSORS 1
 #define MOST_MEDIA 1
 #define MOST_LIGHTS 2
