@@ -20,9 +20,13 @@ build=$work/build
 mutations() {
     cat <<'END'
 albedo + 2 % ~ host/device_scene/scene_upload.cpp ~ params.albedo = albedo_of(volume); ~ params.albedo = 1.02 * albedo_of(volume); ~ [image]
-g sign in sampling ~ shaders/phase/phase.glsl ~ hg_sample(v.g, ~ hg_sample(-v.g, ~ [image]
-g sign toward the light ~ shaders/phase/phase.glsl ~ hg_eval(v.g, hg_from_peak(v.g, ~ hg_eval(-v.g, hg_from_peak(-v.g, ~ [image]
+g sign in sampling ~ shaders/phase/phase.glsl ~ hg_sample(v.phase.g, ~ hg_sample(-v.phase.g, ~ [image]
+g sign toward the light ~ shaders/phase/phase.glsl ~ hg_eval(v.phase.g, hg_from_peak(v.phase.g, ~ hg_eval(-v.phase.g, hg_from_peak(-v.phase.g, ~ [image]
 light direction reversed in phase ~ shaders/lights/light.glsl ~ direction, light.direction) ~ direction, -light.direction) ~ [image]
+Draine drawn in too few steps ~ shaders/phase/draine.glsl ~ i < 10 ~ i < 3 ~ [phase]~[agreement]
+phase functions of two swapped ~ shaders/phase/double_henyey_greenstein.glsl ~ second ? p.g2 : p.g, ~ second ? p.g : p.g2, ~ [phase]~[agreement]
+droplets drawn without alpha ~ shaders/phase/droplets.glsl ~ second ? p.alpha : 0.0 ~ 0.0 ~ [phase]~[agreement]
+tables drawn as if level ~ shaders/phase/phase_table.glsl ~ 2.0 * slope * share ~ slope * share ~ [phase]~[agreement]
 1 / 4 pi missing ~ shaders/phase/henyey_greenstein.glsl ~ return INV_4PI * (1.0 - a) ~ return (1.0 - a) ~ [image]
 majorant x 0.9 ~ host/fields/majorant_grid.cpp ~ bound = std::max(bound, value); ~ bound = std::max(bound, 0.9f * value); ~ [image]
 majorant not dilated ~ host/fields/majorant_grid.cpp ~ glm::max((first - 1) / grid.cell, glm::ivec3(0)); ~ high; ~ [image]

@@ -5,6 +5,8 @@
 
 #include "blackbody.h"
 #include "error.h"
+#include "phase_params.h"
+#include "phase_table.h"
 #include "pilot_paths.h"
 #include "render_limits.h"
 #include "shared/estimators.h"
@@ -90,7 +92,7 @@ glm::dvec3 some_light(const std::vector<Light>& lights) {
 }
 
 PilotScene pilot_scene(const Scene& scene, const Volume& volume, const Method& method, const DensityField& field,
-                       double sigma_t) {
+                       double sigma_t, double g) {
     const glm::dmat4 to_index = glm::inverse(field.index_to_world);
     PilotScene pilot;
     pilot.eye = to_index * glm::dvec4(scene.camera.position, 1.0);
@@ -98,7 +100,7 @@ PilotScene pilot_scene(const Scene& scene, const Volume& volume, const Method& m
         pilot.light = glm::normalize(glm::dvec3(to_index * glm::dvec4(some_light(scene.lights), 0.0)));
     pilot.sigma_t = sigma_t;
     pilot.albedo = largest(volume.sigma_s) / std::max(largest(volume.sigma_a + volume.sigma_s), 1e-300);
-    pilot.g = volume.g;
+    pilot.g = g;
     pilot.leaps = leaps(method);
     return pilot;
 }
@@ -115,8 +117,10 @@ void load_grid(const Scene& scene, const Volume& volume, const Method& method, c
                                               file.path.string(), file.grid, field.background));
     const double scale = scene.settings.majorant_scale;
     const double voxel_sigma_t = largest(world_sigma_t(volume, &field)) * field.voxel_size();
-    loaded.majorants = choose_majorant_grid(field, pilot_scene(scene, volume, method, field, voxel_sigma_t * scale),
-                                            scene.settings.majorant_cell);
+    loaded.majorants = choose_majorant_grid(
+        field,
+        pilot_scene(scene, volume, method, field, voxel_sigma_t * scale, mean_cosine(volume, loaded.phase_nodes)),
+        scene.settings.majorant_cell);
     const bool decomposes = method.flights_have(TRAIT_CONTROL);
     if (decomposes || method.shadow_rays_have(TRAIT_CONTROL))
         loaded.controls = make_controls(field, *loaded.majorants, decomposes ? 0.0 : voxel_sigma_t);
@@ -130,13 +134,18 @@ void load_grid(const Scene& scene, const Volume& volume, const Method& method, c
 
 void load_files(const Scene& scene, const Volume& volume, const Method& method, FieldCache* kept,
                 LoadedMedium& loaded) {
+    if (volume.phase == PhaseFunction::table) {
+        PhaseTable table = load_phase_table(volume.phase_details.file);
+        loaded.phase_nodes = std::move(table.nodes);
+        loaded.warnings = std::move(table.warnings);
+    }
     if (const auto* file = std::get_if<GridFile>(&volume.shape))
         load_grid(scene, volume, method, *file, kept, loaded);
     if (const auto* files = std::get_if<MeshFiles>(&volume.shape)) {
         loaded.mesh = load_mesh(*files);
         loaded.bvh = build_bvh(*loaded.mesh, box_center(*loaded.mesh));
         if (method.material_colour)
-            loaded.warnings = loaded.mesh->warnings;
+            loaded.warnings.insert(loaded.warnings.end(), loaded.mesh->warnings.begin(), loaded.mesh->warnings.end());
         if (method.material_colour && !loaded.mesh->diffuse)
             loaded.warnings.push_back(fmt::format("{}: has no material with a diffuse colour; <medium> is what glows",
                                                   files->paths.front().string()));

@@ -20,10 +20,11 @@ namespace vkvol {
 struct LoadedMedium {
     std::optional<DensityField> field;
     std::optional<MajorantGrid> majorants;
-    std::vector<shared::ControlCell> controls; // per majorant cell, for the estimators that use them
-    std::optional<DensityField> temperature;   // only if the scene wants its glow
-    std::vector<glm::vec3> blackbody;          // BLACKBODY_ENTRIES colours between 0 and the hottest kelvin, or none
-    double hottest = 0.0;                      // kelvin
+    std::vector<shared::ControlCell> controls;  // per majorant cell, for the estimators that use them
+    std::optional<DensityField> temperature;    // only if the scene wants its glow
+    std::vector<glm::vec3> blackbody;           // BLACKBODY_ENTRIES colours between 0 and the hottest kelvin, or none
+    double hottest = 0.0;                       // kelvin
+    std::vector<shared::PhaseNode> phase_nodes; // of a phase function that is a table
     std::optional<Mesh> mesh;
     std::optional<Bvh> bvh;            // about the middle of the mesh
     std::vector<std::string> warnings; // what the scene asks for and its files do not hold

@@ -61,11 +61,14 @@ std::filesystem::path cache_file(const Estimator& estimator, std::uint32_t seed)
 // The hash knows the files of a scene by name and size; one made anew may have both as before.
 bool is_newer_than_assets(const std::filesystem::path& file, const Scene& scene) {
     std::vector<std::filesystem::path> assets;
-    for (const Volume& volume : scene.volumes)
+    for (const Volume& volume : scene.volumes) {
+        if (volume.phase == PhaseFunction::table)
+            assets.push_back(volume.phase_details.file);
         if (const GridFile* grid = std::get_if<GridFile>(&volume.shape))
             assets.push_back(grid->path);
         else if (const MeshFiles* mesh = std::get_if<MeshFiles>(&volume.shape))
             assets.insert(assets.end(), mesh->paths.begin(), mesh->paths.end());
+    }
     for (const Light& light : scene.lights)
         if (const auto* sky = std::get_if<SkyLight>(&light); sky && !sky->daylight)
             assets.push_back(sky->file);

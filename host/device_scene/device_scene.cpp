@@ -12,12 +12,19 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
     : device_(device), commands_(commands), specialization_(specialize(scene, assets.media, method)),
       frame_(make_frame(scene, assets.media, method, crop, seed)),
       buffers_(device, commands, assets.media, most_grid_bytes, most_texel_bytes),
-      chromatic_(vkvol::is_chromatic(scene)), text_(kernel_text(specialization_, assets.media, chromatic_)),
+      form_(is_chromatic(scene) ? form_chromatic : 0),
+      text_(kernel_text(specialization_, assets.media, is_chromatic(scene))),
       origin_(render_origin(scene, assets.media)) {
     specialization_[SPEC_TEXELS] = buffers_.texels() ? 1 : 0;
     if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN)
         make_lights(scene, assets);
-    text_ += buffers_.window_bits() ? ", grids in windows" : "";
+    if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN || specialization_[SPEC_PHASE] != PHASE_HENYEY_GREENSTEIN)
+        form_ |= form_full;
+    if (const std::optional<std::uint32_t> bits = buffers_.window_bits()) {
+        form_ |= form_windows;
+        specialization_[SPEC_WINDOW_BITS] = static_cast<std::int32_t>(*bits);
+        text_ += ", grids in windows";
+    }
 }
 
 void DeviceScene::make_lights(const Scene& scene, const Assets& assets) {
@@ -44,7 +51,7 @@ void DeviceScene::make_light_cache() {
 
 void DeviceScene::compile_light_cache(VkPipelineCache cache) {
     if (light_cache_)
-        light_cache_->compile(specialization_, buffers_.window_bits(), cache);
+        light_cache_->compile(specialization_, form_, cache);
 }
 
 void DeviceScene::fill_light_cache() {

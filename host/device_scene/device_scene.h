@@ -29,8 +29,7 @@ public:
 
     const shared::FrameParams& frame() const { return frame_; }
     const Specialization& specialization() const { return specialization_; }
-    std::optional<std::uint32_t> window_bits() const { return buffers_.window_bits(); }
-    bool is_chromatic() const { return chromatic_; }
+    unsigned form() const { return form_; } // of its kernels, see specialization.h
     bool emits() const { return specialization_[SPEC_EMISSION] != EMISSION_NONE; }
     const std::string& text() const { return text_; }    // of its kernels
     glm::dvec3 origin() const { return origin_; }        // of render space, in world space
@@ -48,7 +47,7 @@ private:
     SceneBuffers buffers_;
     LightTable lights_;
     std::optional<LightCache> light_cache_;
-    bool chromatic_;
+    unsigned form_;
     std::string text_;
     glm::dvec3 origin_;
 };

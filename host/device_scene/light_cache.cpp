@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "average.spv.h"
-#include "average_windows.spv.h"
+#include "average_forms.h"
 #include "shade.spv.h"
 
 namespace vkvol {
@@ -43,13 +42,9 @@ LightCache::LightCache(const Device& device, const BoundBuffers& scene, const sh
               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, BufferPlace::device),
       bindings_(device, with_lattice(scene, buffer_)), nodes_(static_cast<std::uint32_t>(count(lattice))) {}
 
-void LightCache::compile(const Specialization& specialization, std::optional<std::uint32_t> window_bits,
-                         VkPipelineCache cache) {
-    Specialization constants = specialization;
-    constants[SPEC_WINDOW_BITS] = static_cast<std::int32_t>(window_bits.value_or(0));
-    const auto average = window_bits ? std::span<const std::uint32_t>(average_windows_spv) : average_spv;
-    for (const std::span<const std::uint32_t> spirv : {average, std::span<const std::uint32_t>(shade_spv)})
-        passes_.push_back(std::make_unique<ComputePass>(device_, bindings_, spirv, constants, cache));
+void LightCache::compile(const Specialization& specialization, unsigned form, VkPipelineCache cache) {
+    for (const std::span<const std::uint32_t> spirv : {average_forms[form], std::span<const std::uint32_t>(shade_spv)})
+        passes_.push_back(std::make_unique<ComputePass>(device_, bindings_, spirv, specialization, cache));
 }
 
 void LightCache::fill(Commands& commands) {

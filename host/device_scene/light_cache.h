@@ -19,7 +19,7 @@ public:
     // Of a scene whose buffers and frame are on the device.
     LightCache(const Device& device, const BoundBuffers& scene, const shared::LatticeParams& lattice);
 
-    void compile(const Specialization& specialization, std::optional<std::uint32_t> window_bits, VkPipelineCache cache);
+    void compile(const Specialization& specialization, unsigned form, VkPipelineCache cache);
     // Once compiled, and before it is read. The kernels go.
     void fill(Commands& commands);
 

@@ -57,6 +57,7 @@ void SceneBuffers::upload(const Device& device, Commands& commands, const Loaded
                           std::span<const std::byte> second = {}) {
         make_buffer(device, commands, buffer, name, first, second);
     };
+    make(phase_, "phase function", bytes_of(medium.phase_nodes));
     if (medium.bvh) {
         make(triangles_, "triangles", bytes_of(medium.bvh->triangles));
         make(bvh_, "bounding volume hierarchy", bytes_of(medium.bvh->nodes));
@@ -143,6 +144,7 @@ BoundBuffers SceneBuffers::bound() const {
     buffers[BINDING_BLACKBODY] = place(blackbody_);
     buffers[BINDING_TRIANGLES] = place(triangles_);
     buffers[BINDING_BVH] = place(bvh_);
+    buffers[BINDING_PHASE] = place(phase_);
     buffers[BINDING_LIGHTS] = place(lights_);
     buffers[BINDING_LIGHT_TREE] = place(light_tree_);
     buffers[BINDING_SKY] = place(sky_);
@@ -153,7 +155,7 @@ BoundBuffers SceneBuffers::bound() const {
 std::uint64_t SceneBuffers::bytes() const {
     std::uint64_t total = frame_.bytes();
     for (const auto* buffer : {&grids_, &leaf_table_, &majorants_, &controls_, &blackbody_, &triangles_, &bvh_,
-                               &lights_, &light_tree_, &sky_, &sky_alias_})
+                               &lights_, &light_tree_, &sky_, &sky_alias_, &phase_})
         total += *buffer ? (*buffer)->bytes() : 0;
     for (const Buffer& window : windows_)
         total += window.bytes();

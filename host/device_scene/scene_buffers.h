@@ -45,7 +45,7 @@ private:
 
     Buffer frame_;
     std::optional<Buffer> grids_, leaf_table_, majorants_, controls_, blackbody_, triangles_, bvh_;
-    std::optional<Buffer> lights_, light_tree_, sky_, sky_alias_;
+    std::optional<Buffer> lights_, light_tree_, sky_, sky_alias_, phase_;
     std::vector<Buffer> windows_;
     bool texels_ = false;
     std::optional<std::uint32_t> window_bits_;

@@ -10,6 +10,7 @@
 #include "light_cache.h"
 #include "light_table.h"
 #include "noise.h"
+#include "phase_params.h"
 #include "shared/estimators.h"
 #include "shared/items.h"
 
@@ -19,8 +20,9 @@ static_assert(std::is_standard_layout_v<shared::FrameParams>);
 static_assert(sizeof(shared::SensorParams) == 4 * 12 + 4);
 static_assert(sizeof(shared::GridParams) == 4 * 12 + 2 * 4);
 static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 5 * 4);
-static_assert(sizeof(shared::MediumParams) == 3 * 16 + 3 * 12 + sizeof(shared::GridParams) + 12 + 5 * 4 + 2 * 12 + 4 +
-                                                  sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) + 4);
+static_assert(sizeof(shared::MediumParams) == 3 * 16 + 3 * 12 + sizeof(shared::GridParams) + 12 + 5 * 4 + 2 * 12 +
+                                                  sizeof(shared::PhaseParams) + sizeof(shared::EmissionParams) +
+                                                  sizeof(shared::NoiseParams) + 4);
 static_assert(sizeof(shared::LatticeParams) == 3 * 12);
 static_assert(sizeof(shared::PassPush) <= 128, "the least push constant space that Vulkan promises");
 
@@ -153,7 +155,7 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
     params.sigma_t = static_cast<float>(largest(sigma_t));
     params.sigma_ratio = has_chromatic_extinction(scene) ? sigma_t / largest(sigma_t) : Rgb(1.0);
     params.albedo = albedo_of(volume);
-    params.g = static_cast<float>(volume.g);
+    params.phase = phase_params(volume, loaded.phase_nodes);
     params.emission = make_emission(volume, loaded, method, origin);
     return params;
 }

@@ -59,14 +59,27 @@ void add_shape(Writer& writer, const Volume& volume) {
     }
 }
 
+void add_phase(Writer& writer, const Volume& volume) {
+    const PhaseDetails& details = volume.phase_details;
+    if (volume.phase != PhaseFunction::henyey_greenstein)
+        writer.add("phase", static_cast<int>(volume.phase));
+    if (volume.phase == PhaseFunction::double_henyey_greenstein)
+        writer.add("second", glm::dvec3(details.g2, details.share, 0.0));
+    if (volume.phase == PhaseFunction::draine)
+        writer.add("alpha", details.alpha);
+    if (volume.phase == PhaseFunction::droplets)
+        writer.add("diameter", details.diameter);
+    if (volume.phase == PhaseFunction::table)
+        add_file(writer, details.file);
+}
+
 void add_volume(Writer& writer, const Volume& volume) {
     add_shape(writer, volume);
     writer.add("sigma_a", volume.sigma_a);
     writer.add("sigma_s", volume.sigma_s);
     writer.add("density_scale", volume.density_scale);
     writer.add("g", volume.g);
-    if (volume.phase != PhaseFunction::henyey_greenstein)
-        writer.add("phase", static_cast<int>(volume.phase));
+    add_phase(writer, volume);
     writer.add("Le", volume.Le);
     const TemperatureEmission& emission = volume.temperature;
     writer.add("emission", emission.color);

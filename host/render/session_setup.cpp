@@ -138,8 +138,7 @@ std::unique_ptr<Wavefront> Session::make_wavefront(const Device& device, const P
         bound[BINDING_TRACE] = &trace_->buffer();
     }
     return std::make_unique<Wavefront>(device, bound, bands_.front().rows * width(), specialization,
-                                       TrackVariant{device_scene_->is_chromatic(), device_scene_->window_bits()}, plan,
-                                       cache.handle(), meanwhile);
+                                       device_scene_->form(), plan, cache.handle(), meanwhile);
 }
 
 // Fused or staged, by a moment of each, unless that was done before with such a scene at such a size.

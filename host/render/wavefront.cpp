@@ -8,23 +8,13 @@
 
 #include "accumulate.spv.h"
 #include "begin.spv.h"
-#include "fused.spv.h"
-#include "fused_chromatic.spv.h"
-#include "fused_chromatic_windows.spv.h"
-#include "fused_windows.spv.h"
-#include "generate.spv.h"
-#include "generate_chromatic.spv.h"
+#include "fused_forms.h"
+#include "generate_forms.h"
 #include "hand_out.spv.h"
 #include "prepare.spv.h"
-#include "shadow.spv.h"
-#include "shadow_chromatic.spv.h"
-#include "shadow_chromatic_windows.spv.h"
-#include "shadow_windows.spv.h"
-#include "sky.spv.h"
-#include "track.spv.h"
-#include "track_chromatic.spv.h"
-#include "track_chromatic_windows.spv.h"
-#include "track_windows.spv.h"
+#include "shadow_forms.h"
+#include "sky_forms.h"
+#include "track_forms.h"
 #include "vulkan_error.h"
 
 namespace vkvol {
@@ -45,22 +35,6 @@ bool is_empty(const shared::QueueHeader& header) {
     return header.tail == header.limit && static_cast<std::int32_t>(header.limit - header.head) <= 0;
 }
 
-// A kernel in its four forms.
-struct Forms {
-    Words usual, chromatic, windows, chromatic_windows;
-
-    Words of(const TrackVariant& variant) const {
-        if (variant.window_bits)
-            return variant.chromatic ? chromatic_windows : windows;
-        return variant.chromatic ? chromatic : usual;
-    }
-};
-
-const Forms fused_kernel{fused_spv, fused_chromatic_spv, fused_windows_spv, fused_chromatic_windows_spv};
-const Forms track_kernel{track_spv, track_chromatic_spv, track_windows_spv, track_chromatic_windows_spv};
-const Forms shadow_kernel{shadow_spv, shadow_chromatic_spv, shadow_windows_spv, shadow_chromatic_windows_spv};
-const Forms generate_kernel{generate_spv, generate_chromatic_spv, generate_spv, generate_chromatic_spv};
-
 // A pass of every round, as a schedule lists it. Without a queue it looks at all places of samples, and seldom, since
 // they can wait.
 struct PassRow {
@@ -72,14 +46,14 @@ struct PassRow {
 constexpr std::uint32_t seldom_rounds = 4;
 
 // What a pass pushes to an earlier queue, or to its own, waits for the next round.
-std::vector<PassRow> passes_of(const Plan& plan, const TrackVariant& variant, bool has_shadow_rays) {
+std::vector<PassRow> passes_of(const Plan& plan, unsigned form, bool has_shadow_rays) {
     if (plan.schedule == Schedule::fused)
         return {{"generate", hand_out_spv, plan.slots, QUEUE_GENERATE, QUEUE_GENERATE},
-                {"track", fused_kernel.of(variant), plan.lanes, QUEUE_TRACK, QUEUE_RESUME, true}};
-    std::vector<PassRow> rows{{"generate", generate_kernel.of(variant), plan.slots, QUEUE_GENERATE, QUEUE_GENERATE},
-                              {"track", track_kernel.of(variant), plan.lanes, QUEUE_TRACK, QUEUE_RESUME, true}};
+                {"track", fused_forms[form], plan.lanes, QUEUE_TRACK, QUEUE_RESUME, true}};
+    std::vector<PassRow> rows{{"generate", generate_forms[form], plan.slots, QUEUE_GENERATE, QUEUE_GENERATE},
+                              {"track", track_forms[form], plan.lanes, QUEUE_TRACK, QUEUE_RESUME, true}};
     if (has_shadow_rays)
-        rows.push_back({"shadow", shadow_kernel.of(variant), plan.lanes, QUEUE_SHADOW, QUEUE_LOOK, true});
+        rows.push_back({"shadow", shadow_forms[form], plan.lanes, QUEUE_SHADOW, QUEUE_LOOK, true});
     rows.push_back({"accumulate", accumulate_spv, 0});
     return rows;
 }
@@ -87,13 +61,13 @@ std::vector<PassRow> passes_of(const Plan& plan, const TrackVariant& variant, bo
 } // namespace
 
 Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, std::uint32_t most_pixels,
-                     const Specialization& specialization, const TrackVariant& variant, const Plan& plan,
-                     VkPipelineCache cache, const std::function<void()>& meanwhile)
+                     const Specialization& specialization, unsigned form, const Plan& plan, VkPipelineCache cache,
+                     const std::function<void()>& meanwhile)
     : device_(device), plan_(plan), commands_(device),
       readback_(device, "readback", queue_bytes + sizeof(shared::Counters), 0, BufferPlace::host) {
     const std::uint64_t slots = plan.slots;
     add_buffer(BINDING_PATHS, "path states", slots * sizeof(shared::PathState));
-    add_buffer(BINDING_BETAS, "path throughputs", slots * (variant.chromatic ? sizeof(glm::vec3) : sizeof(float)));
+    add_buffer(BINDING_BETAS, "path throughputs", slots * (form & form_chromatic ? sizeof(glm::vec3) : sizeof(float)));
     add_buffer(BINDING_SUSPENDED, "suspended paths", slots * sizeof(shared::Suspended));
     add_buffer(BINDING_QUEUE_ITEMS, "queues",
                std::uint64_t{QUEUE_COUNT} * queue_capacity(plan) * sizeof(std::uint32_t));
@@ -105,7 +79,7 @@ Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, st
         add_buffer(BINDING_PLACES, "places of samples", waiting * sizeof(shared::SamplePlace));
     }
     bindings_.emplace(device, bound(scene_buffers));
-    make_passes(specialization, variant, cache, meanwhile);
+    make_passes(specialization, form, cache, meanwhile);
     push_.budget = std::min(plan.budget, first_budget);
     push_.step_limit = plan.step_limit;
     commands_.fill(buffer(BINDING_QUEUES), 0);
@@ -138,23 +112,22 @@ BoundBuffers Wavefront::bound(BoundBuffers all) const {
 
 // The large kernels compile beside the others, and these one after another: with as many threads as kernels the large
 // ones, which are waited for, would have their core to themselves less.
-void Wavefront::make_passes(const Specialization& specialization, const TrackVariant& variant, VkPipelineCache cache,
+void Wavefront::make_passes(const Specialization& specialization, unsigned form, VkPipelineCache cache,
                             const std::function<void()>& meanwhile) {
     Specialization constants = specialization;
     constants[SPEC_STEPS] = static_cast<std::int32_t>(plan_.steps);
-    constants[SPEC_WINDOW_BITS] = static_cast<std::int32_t>(variant.window_bits.value_or(0));
     const auto make = [&](Words spirv) {
         return std::make_unique<ComputePass>(device_, *bindings_, spirv, constants, cache);
     };
     const bool is_known = specialization[SPEC_TRANSMITTANCE] == TRANSMITTANCE_ANALYTIC &&
                           specialization[SPEC_SHAPE] != SHAPE_MESH; // LOOKS of segment.glsl
     const bool has_shadow_rays = specialization[SPEC_NEE] != NEE_NONE && !is_known;
-    const std::vector<PassRow> rows = passes_of(plan_, variant, has_shadow_rays);
+    const std::vector<PassRow> rows = passes_of(plan_, form, has_shadow_rays);
     std::vector<std::future<std::unique_ptr<ComputePass>>> compiling;
     for (const PassRow& row : rows)
         compiling.push_back(std::async(row.is_large ? std::launch::async : std::launch::deferred, make, row.kernel));
     begin_ = make(begin_spv);
-    sky_ = make(sky_spv);
+    sky_ = make(sky_forms[form]);
     prepare_ = make(prepare_spv);
     meanwhile();
     figures_.push_back({"sky"});

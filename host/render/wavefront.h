@@ -23,18 +23,13 @@ struct PassFigures {
     std::uint64_t queued = 0; // items that it found in its queue, over all rounds
 };
 
-// Which of their compiled forms the tracking kernels take.
-struct TrackVariant {
-    bool chromatic = false;                   // the throughput has three channels
-    std::optional<std::uint32_t> window_bits; // grids lie in windows of 2^bits words
-};
-
 class Wavefront {
 public:
-    // `most_pixels`: of any film that will be bound. `meanwhile`: called while the large kernels compile.
+    // `most_pixels`: of any film that will be bound. `form`: of the kernels, see specialization.h. `meanwhile`: called
+    // while the large kernels compile.
     Wavefront(const Device& device, const BoundBuffers& scene_buffers, std::uint32_t most_pixels,
-              const Specialization& specialization, const TrackVariant& variant, const Plan& plan,
-              VkPipelineCache cache, const std::function<void()>& meanwhile);
+              const Specialization& specialization, unsigned form, const Plan& plan, VkPipelineCache cache,
+              const std::function<void()>& meanwhile);
     ~Wavefront();
     Wavefront(const Wavefront&) = delete;
     Wavefront& operator=(const Wavefront&) = delete;
@@ -70,7 +65,7 @@ private:
         std::uint32_t lanes, queue, before;
     };
 
-    void make_passes(const Specialization& specialization, const TrackVariant& variant, VkPipelineCache cache,
+    void make_passes(const Specialization& specialization, unsigned form, VkPipelineCache cache,
                      const std::function<void()>& meanwhile);
     void add_buffer(std::uint32_t binding, const char* name, std::uint64_t bytes, VkBufferUsageFlags more_usage = 0);
     BoundBuffers bound(BoundBuffers scene_buffers) const;

@@ -90,7 +90,16 @@ struct Noise {
 };
 
 // As PHASE_... of shaders/shared/constants.h.
-enum class PhaseFunction { henyey_greenstein, rayleigh };
+enum class PhaseFunction { henyey_greenstein, rayleigh, double_henyey_greenstein, draine, droplets, table };
+
+// What phase functions have besides g, those that have it.
+struct PhaseDetails {
+    double g2 = 0.0;                 // double: mean cosine of the second, in (-1, 1)
+    double share = 0.5;              // double: part of the light that goes by it, in [0, 1]
+    double alpha = 1.0;              // Draine: weight of the square of the cosine, in [0, 250]
+    double diameter = 10.0;          // droplets: micrometres, in [0.01, 50]
+    std::filesystem::path file = {}; // table
+};
 
 // A participating medium filling a shape. Coefficients multiply the density: that of the grid, of the noise, or 1.
 struct Volume {
@@ -102,7 +111,8 @@ struct Volume {
     CoefficientUnit unit = CoefficientUnit::voxel; // without meaning but for grids: else always world
     double density_scale = 1.0;                    // >= 0, multiplies the density
     PhaseFunction phase = PhaseFunction::henyey_greenstein;
-    double g = 0.0;                  // Henyey-Greenstein mean cosine, in (-1, 1), + is forward
+    double g = 0.0; // Henyey and Greenstein's, the first of two, and Draine's: in (-1, 1), + is forward
+    PhaseDetails phase_details;
     Rgb Le{0.0};                     // radiance emitted per absorption event: emission is sigma_a * Le
     TemperatureEmission temperature; // adds to Le
 };

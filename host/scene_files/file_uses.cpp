@@ -49,6 +49,8 @@ void FileUses::reads(const std::string& what, const path& file) {
 
 void FileUses::reads_files_of(const Scene& scene) {
     for (const Volume& volume : scene.volumes) {
+        if (volume.phase == PhaseFunction::table)
+            reads("the scene's phase function", volume.phase_details.file);
         if (const auto* grid = std::get_if<GridFile>(&volume.shape))
             reads("the scene's density field", grid->path);
         if (const auto* mesh = std::get_if<MeshFiles>(&volume.shape))

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "nearest_name.h"
 #include "scene_reader.h"
 
 namespace vkvol {
@@ -38,38 +37,12 @@ Rgb SceneReader::coefficient(const char* name, const Rgb& fallback) const {
     return {channel("r"), channel("g"), channel("b")};
 }
 
-// `g`: the element, which the first of them alone has a use for.
-void SceneReader::read_phase(Volume& volume, const XmlElement& g) const {
-    static const std::vector<std::string> names = {"henyeyGreenstein", "rayleigh"}; // as PhaseFunction
-    const XmlElement phase = one("phase");
-    phase.allow({}, true);
-    if (!phase.exists())
-        return;
-    const std::string name = phase.text();
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end())
-        phase.fail_text(fmt::format("unknown phase function '{}'{}", name, name_hint(name, names)));
-    volume.phase = static_cast<PhaseFunction>(found - names.begin());
-    if (volume.phase != PhaseFunction::henyey_greenstein && volume.g != 0.0) {
-        g.warn(fmt::format("<{}> is without effect: phase {} has no asymmetry", g.name(), name));
-        volume.g = 0.0;
-    }
-}
-
 void SceneReader::read_coefficients(Volume& volume) const {
     volume.sigma_a = coefficient("sigma_a", volume.sigma_a);
     volume.sigma_s = coefficient("sigma_s", volume.sigma_s);
     volume.unit = unit(one("sigma_a"), one("sigma_s"), std::holds_alternative<GridFile>(volume.shape));
 
-    const XmlElement g = one({"heyneygreenstein_g", "heynegreenstein_g"});
-    g.allow({}, true);
-    volume.g = g.number(volume.g, {-1, 1, false, false, "a number between -1 and 1, both excluded"});
-    constexpr double sharpest = 0.99999; // single precision still has 1 - g to a thousandth
-    if (std::abs(volume.g) > sharpest)
-        g.fail_text(fmt::format("<{}> {} is too near 1 for single precision; expected at most {} in magnitude",
-                                g.name(), volume.g, sharpest));
-
-    read_phase(volume, g);
+    read_phase(volume);
 
     const XmlElement medium = one("medium");
     medium.allow(color_attributes);

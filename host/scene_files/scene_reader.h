@@ -50,12 +50,13 @@ private:
     Sphere sphere(const XmlElement& element) const;
     Box box(const XmlElement& element) const;
     std::filesystem::path file_path(const XmlElement& element, const char* example) const;
+    std::filesystem::path file_path(const XmlElement& element, const std::string& name) const;
     GridFile grid_file(const XmlElement& element) const;
     MeshFiles mesh_files() const;
     std::optional<Noise> noise(bool is_grid) const;
     Rgb coefficient(const char* name, const Rgb& fallback) const;
     void read_coefficients(Volume& volume) const;
-    void read_phase(Volume& volume, const XmlElement& g) const;
+    void read_phase(Volume& volume) const;
     void check_extinction(const Volume& volume) const;
     TemperatureEmission temperature_emission(bool is_grid) const;
     CoefficientUnit unit(const XmlElement& sigma_a, const XmlElement& sigma_s, bool is_grid) const;

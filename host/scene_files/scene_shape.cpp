@@ -90,6 +90,11 @@ std::filesystem::path SceneReader::file_path(const XmlElement& element, const ch
     const std::string name = element.text();
     if (name.empty())
         element.fail(fmt::format("<{}> names no file; write one between the tags, e.g. {}", element.name(), example));
+    return file_path(element, name);
+}
+
+// Beside the scene, or below `baseDir`.
+std::filesystem::path SceneReader::file_path(const XmlElement& element, const std::string& name) const {
     std::string path = element.attribute("baseDir");
     if (!path.empty() && path.back() != '/' && path.back() != '\\')
         path += '/';

@@ -25,8 +25,13 @@ layout(constant_id = SPEC_STEPS) const int STEPS = 1;
 layout(constant_id = SPEC_TRACE) const int TRACE = 0;
 layout(constant_id = SPEC_TEXELS) const int TEXELS = 0;
 layout(constant_id = SPEC_LEAPS) const int LEAPS = 0;
+#ifdef FULL
 layout(constant_id = SPEC_PHASE) const int PHASE = PHASE_HENYEY_GREENSTEIN;
-layout(constant_id = SPEC_LIGHTS) const int LIGHTS = LIGHTS_SUN;
+layout(constant_id = SPEC_LIGHTS) const int LIGHTS = LIGHTS_TABLE;
+#else
+const int PHASE = PHASE_HENYEY_GREENSTEIN;
+const int LIGHTS = LIGHTS_SUN;
+#endif
 layout(constant_id = SPEC_MIS) const int MIS = MIS_BALANCE;
 
 const bool SEES_SKY = (LIGHTS & LIGHTS_SKY) != 0;
@@ -66,6 +71,7 @@ layout(scalar, binding = BINDING_WORK) buffer WorkBlock { uint work[]; };
 layout(scalar, binding = BINDING_SAMPLES) buffer SampleBlock { uvec3 waiting_samples[]; };
 layout(scalar, binding = BINDING_PLACES) buffer PlaceBlock { SamplePlace sample_places[]; };
 layout(scalar, binding = BINDING_BLACKBODY) readonly buffer BlackbodyBlock { vec3 blackbody[]; };
+layout(scalar, binding = BINDING_PHASE) readonly buffer PhaseBlock { PhaseNode phase_nodes[]; };
 layout(scalar, binding = BINDING_LIGHTS) readonly buffer LightBlock { LightRow lights[]; };
 layout(scalar, binding = BINDING_SKY) readonly buffer SkyBlock { vec4 sky_texels[]; };
 layout(scalar, binding = BINDING_SKY_ALIAS) readonly buffer SkyAliasBlock { AliasEntry sky_alias[]; };

@@ -21,8 +21,9 @@ float lamp_pdf(LightRow light, vec3 from, vec3 direction, float t) {
 // c: next to nothing for what is small as seen from here, against the narrowest that the phase function draws.
 float phase_share(MediumParams v, LightRow light, vec3 from) {
     vec3 apart = light.position - from;
-    vec3 peak = v.g < 0.0 ? vec3(0.0, -1.0, 0.0) : vec3(0.0, 1.0, 0.0);
-    float s = phase_eval(v, vec3(0.0, 1.0, 0.0), peak) * light.area / max(dot(apart, apart), 1.0e-30);
+    vec3 along = vec3(0.0, 1.0, 0.0);
+    float peak = max(phase_eval(v, along, along), phase_eval(v, along, -along));
+    float s = peak * light.area / max(dot(apart, apart), 1.0e-30);
     return 0.5 * s / (1.0 + s);
 }
 

@@ -27,15 +27,16 @@
 #define BINDING_SKY 21        // vec4 per texel of a map of the sky, see sky.glsl
 #define BINDING_SKY_ALIAS 22  // AliasEntry per row of that map, then per texel
 #define BINDING_LIGHT_TREE 23 // LightNode, depth first
-#define BINDING_TEST_INPUT 24 // test kernels only
-#define BINDING_TEST_OUTPUT 25
-#define BINDING_BUFFERS 26
+#define BINDING_PHASE 24      // PhaseNode, of a phase function that is a table
+#define BINDING_TEST_INPUT 25 // test kernels only
+#define BINDING_TEST_OUTPUT 26
+#define BINDING_BUFFERS 27
 // The same buffers as texels: software drivers gather these, and read storage buffers lane by lane.
-#define BINDING_GRID_TEXELS 26
-#define BINDING_LEAF_TEXELS 27
-#define BINDING_MAJORANT_TEXELS 28
-#define BINDING_LATTICE_TEXELS 29
-#define BINDING_COUNT 30
+#define BINDING_GRID_TEXELS 27
+#define BINDING_LEAF_TEXELS 28
+#define BINDING_MAJORANT_TEXELS 29
+#define BINDING_LATTICE_TEXELS 30
+#define BINDING_COUNT 31
 
 #define WORKGROUP_SIZE 64
 
@@ -100,6 +101,10 @@
 // As numbered in the scene: vkvol::PhaseFunction.
 #define PHASE_HENYEY_GREENSTEIN 0
 #define PHASE_RAYLEIGH 1
+#define PHASE_DOUBLE_HENYEY_GREENSTEIN 2
+#define PHASE_DRAINE 3
+#define PHASE_DROPLETS 4
+#define PHASE_TABLE 5
 
 #define LIGHTS_SUN 0   // one without place or extent, or none, besides an even background
 #define LIGHTS_TABLE 1 // any, of which every look chooses one; and sums with

@@ -74,6 +74,22 @@ struct MarchParams {
     float jitter;       // 1: sample points anywhere in their step; 0: in its middle
 };
 
+// Of phase functions, what they need; see shaders/phase.
+struct PhaseParams {
+    float g;     // Henyey and Greenstein's and Draine's, in (-1, 1)
+    float g2;    // likewise of a second function,
+    float share; // by which this part of the light goes
+    float alpha; // of Draine's
+    uint nodes;  // of a table, at least 2
+};
+
+// A node of a phase function that is a table.
+struct PhaseNode {
+    float x;     // 1 - mu, from 0 at the first to 2 at the last
+    float value; // per steradian
+    float share; // of the light that is scattered at smaller x; 1 at the last
+};
+
 // Medium space: index space for a grid, voxel centres at integers; the unit ball or the cube [-1, 1]^3 for shapes.
 struct MediumParams {
     vec4 to_medium[3]; // rows of the affine map render -> medium
@@ -89,7 +105,7 @@ struct MediumParams {
     float sigma_t;    // extinction at density 1, of the channel where it is largest [1 / world unit], > 0
     vec3 sigma_ratio; // of the channels to that, in [0, 1]
     vec3 albedo;      // sigma_s / sigma_t
-    float g;
+    PhaseParams phase;
     EmissionParams emission;
     NoiseParams noise;
     uint bvh_nodes; // of a mesh

@@ -156,6 +156,7 @@ void write_scene_files(const std::filesystem::path& directory) {
     write_file(directory / "fire.nvdb",
                make_nvdb({{density, "density"}, {heat, "temperature"}}, std::uint16_t(Codec::ZIP)));
     write_file(directory / "cloud.vdb", make_vdbs(directory).front());
+    write_file(directory / "phase.txt", "0 10\n90 1\n180 2\n");
     write_file(directory / "ball.obj", make_objs().back());
     write_file(directory / "ball.mtl", ball_mtl);
     Film sky;

@@ -46,6 +46,8 @@ std::string attribute_value(std::string_view name, Source& random) {
         return one_of("density|temperature|density|other", random);
     if (name == "baseDir")
         return one_of(".|./|", random);
+    if (name == "file")
+        return one_of("phase.txt|phase.txt|none.txt|.", random);
     if (name == "jitter")
         return one_of("true|false", random);
     if (name == "scattering")
@@ -69,6 +71,11 @@ std::string attribute_value(std::string_view name, Source& random) {
     if (name == "lacunarity" || name == "reference")
         return one_of("2|1|100|640", random);
     return number(random);
+}
+
+const Words& words_of(std::string_view name) {
+    return *std::find_if(std::begin(grammar), std::end(grammar),
+                         [&](const Words& words) { return words.element == name; });
 }
 
 std::string element(const Words& words, Source& random) {
@@ -197,7 +204,7 @@ public:
             defines["long"] = std::string(random.below(100000), 'x');
         SceneOverrides overrides;
         if (random.one_in(10))
-            overrides.integrator = one_of(grammar[18].text, random) +
+            overrides.integrator = one_of(words_of("integrator").text, random) +
                                    (random.one_in(2) ? ":flight=" + attribute_value("flight", random) : "");
         if (random.one_in(20))
             overrides.grid = directory_ / "cloud.nvdb";

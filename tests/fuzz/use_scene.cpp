@@ -53,7 +53,9 @@ void check_volume(const shared::MediumParams& v) {
     expect(std::isfinite(v.sigma_t) && v.sigma_t >= 0.0f, "the extinction is not finite");
     expect_finite(v.sigma_ratio, "the ratio of extinctions is not finite");
     expect_finite(v.albedo, "the albedo is not finite");
-    expect(std::abs(v.g) < 1.0f, "g is not between -1 and 1 in single precision");
+    expect(std::abs(v.phase.g) < 1.0f && std::abs(v.phase.g2) < 1.0f, "g is not between -1 and 1 in single precision");
+    expect(v.phase.share >= 0.0f && v.phase.share <= 1.0f, "the share of the second phase function is out of range");
+    expect(v.phase.alpha >= 0.0f && v.phase.alpha <= 250.0f, "alpha is out of range");
     expect_radiance(v.emission.constant, "constant emission is out of range");
     expect_radiance(v.emission.color, "the temperature's colour is out of range");
     expect_finite(v.emission.to_index, "the map to the temperature grid is not finite");

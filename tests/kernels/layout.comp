@@ -48,6 +48,7 @@ void put(uvec4 v) {
 #define waiting sample_places[1]
 #define control_cell controls[1]
 #define light_row lights[1]
+#define phase_node phase_nodes[1]
 #define light_node light_nodes[1]
 #define bvh_node bvh[1]
 #define header queues[1]

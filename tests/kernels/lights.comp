@@ -1,6 +1,7 @@
 // Looks toward the lights of a table, from given points.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#define FULL
 #include "kernel.glsl"
 
 #include "lights/table.glsl"

@@ -1,6 +1,7 @@
 // Directions drawn from the map of the sky by a key, and what the map is at them and at given ones.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#define FULL
 #include "kernel.glsl"
 
 #include "lights/sky.glsl"

@@ -77,6 +77,19 @@ struct PhaseOutput {
     vec3 bitangent;
 };
 
+struct ScatterInput {
+    vec3 before;
+    vec2 u;
+    float x; // 1 - mu
+};
+struct ScatterOutput {
+    vec3 drawn;
+    float drawn_eval;
+    vec3 at; // of x
+    float at_eval;
+    float at_eval_twice;
+};
+
 struct ShapeInput {
     vec3 origin;
     vec3 direction;

@@ -137,6 +137,38 @@ TEST_CASE("single scattering from lamps equals the quadrature", "[gpu][lights][c
         agree_with_means(render_here(scene, 9).film, means, fmt::format("lamp {}, tau {}", light.index(), tau)));
 }
 
+// Looks are weighted by phase_eval and flights drawn by phase_sample: their sum tells whether these agree.
+TEST_CASE("a furnace of a map of ones, of every phase function", "[gpu][lights][furnace][phase]") {
+    const SkyLight ones = write_sky(make_map(8, 4, [](int, int) { return Rgb(1.0, 0.5, 2.0); }));
+    for (const NamedPhase& phase : all_phases()) {
+        Scene scene = lit_by(phase.of(medium(cloud_file(), 1.0, 1.0)), 11.0, {ones}, 64);
+        scene.background = Rgb(0.0);
+        RunningMean mean;
+        for (const glm::vec3& pixel : render_here(scene, 15).film.mean)
+            mean.add(pixel.z);
+        CAPTURE(phase.name, mean.mean(), mean.standard_error());
+        CHECK(t_test_p(mean, 2.0, 1e-5) > 1e-4);
+    }
+}
+
+TEST_CASE("looks and flights find the same light, by every phase function", "[gpu][lights][agreement][phase]") {
+    const SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {5.0, 4.0, 3.0}, 60.0};
+    std::uint32_t seed = 70;
+    for (const NamedPhase& phase : all_phases()) {
+        std::vector<Estimate> estimates;
+        for (const int mis : {MIS_BALANCE, MIS_POWER, MIS_LIGHT, MIS_PHASE}) {
+            const SphereLight ball{{5.5, 5.5, 2.0}, 2.5, Rgb(2.0)};
+            Scene scene = lit_by(phase.of(medium(cloud_file(), 2.0, 0.9)), 11.0, {sun, sunset(), ball}, 256);
+            scene.settings.integrator = "ratioTracking";
+            scene.settings.choices.mis = mis;
+            estimates.push_back({fmt::format("{}, mis {}", phase.name, mis), render_here(scene, seed++).film});
+        }
+        const PairwiseAgreement all = compare_all(estimates);
+        CAPTURE(all.mean_pair, all.mean_z);
+        CHECK(all.mean_z < z_limit(1e-3, double(all.pairs * all_phases().size()) * 3.0));
+    }
+}
+
 // What is scattered from all directions alike is what comes from all of them.
 TEST_CASE("a furnace of a map of ones", "[gpu][lights][furnace]") {
     const SkyLight ones = write_sky(make_map(8, 4, [](int, int) { return Rgb(1.0, 0.5, 2.0); }));

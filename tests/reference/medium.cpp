@@ -1,9 +1,11 @@
 #include "medium.h"
 
-#include "phase.h"
-
 #include <algorithm>
+#include <cmath>
+#include <fstream>
 #include <limits>
+#include <numbers>
+#include <sstream>
 #include <stdexcept>
 
 namespace reference {
@@ -11,6 +13,36 @@ namespace reference {
 using vkvol::Rgb;
 
 namespace {
+
+// Pairs of degrees and values; comments are lines of their own.
+std::vector<TableNode> load_table(const std::filesystem::path& file) {
+    std::vector<TableNode> table;
+    std::ifstream stream(file);
+    for (std::string line; std::getline(stream, line);) {
+        std::replace(line.begin(), line.end(), ',', ' ');
+        double degrees, value;
+        if (line[0] != '#' && std::istringstream(line) >> degrees >> value)
+            table.push_back({std::cos(degrees * std::numbers::pi / 180.0), value});
+    }
+    return normalised(table);
+}
+
+void load_phase(const vkvol::Volume& volume, Medium& medium) {
+    medium.phase = volume.phase;
+    medium.g = volume.g;
+    medium.g2 = volume.phase_details.g2;
+    medium.share = volume.phase_details.share;
+    medium.alpha = volume.phase_details.alpha;
+    if (volume.phase == vkvol::PhaseFunction::table)
+        medium.table = load_table(volume.phase_details.file);
+    if (volume.phase == vkvol::PhaseFunction::droplets) {
+        const Droplets fit = droplets(volume.phase_details.diameter);
+        medium.g = fit.g_hg;
+        medium.g2 = fit.g_d;
+        medium.share = fit.w_d;
+        medium.alpha = fit.alpha;
+    }
+}
 
 template <typename Shape>
 Medium with_shape(Shape shape, const vkvol::Volume& volume, std::optional<vkvol::Filter> filter) {
@@ -21,8 +53,7 @@ Medium with_shape(Shape shape, const vkvol::Volume& volume, std::optional<vkvol:
     medium.sigma_t = sigma_t * volume.density_scale;
     for (int i = 0; i < 3; ++i)
         medium.albedo[i] = sigma_t[i] > 0.0 ? volume.sigma_s[i] / sigma_t[i] : 0.0;
-    medium.g = volume.g;
-    medium.phase = volume.phase;
+    load_phase(volume, medium);
     medium.emission.constant = volume.Le;
     medium.filter = filter.value_or(vkvol::Filter::trilinear);
     if (const Grid* grid = medium.grid()) {
@@ -84,16 +115,66 @@ std::vector<Interval> support(const Medium& medium, const Ray& ray) {
 }
 
 double phase_eval(const Medium& medium, double mu) {
-    return medium.phase == vkvol::PhaseFunction::rayleigh ? rayleigh_eval(mu) : hg_eval(medium.g, mu);
+    using enum vkvol::PhaseFunction;
+    switch (medium.phase) {
+    case rayleigh:
+        return rayleigh_eval(mu);
+    case double_henyey_greenstein:
+        return std::lerp(hg_eval(medium.g, mu), hg_eval(medium.g2, mu), medium.share);
+    case draine:
+        return draine_eval(medium.g, medium.alpha, mu);
+    case droplets:
+        return std::lerp(hg_eval(medium.g, mu), draine_eval(medium.g2, medium.alpha, mu), medium.share);
+    case table:
+        return table_eval(medium.table, mu);
+    case henyey_greenstein:
+        break;
+    }
+    return hg_eval(medium.g, mu);
 }
 
 double phase_eval_twice(const Medium& medium, double mu) {
-    return medium.phase == vkvol::PhaseFunction::rayleigh ? rayleigh_eval_twice(mu) : hg_eval(medium.g * medium.g, mu);
+    using enum vkvol::PhaseFunction;
+    if (medium.phase == rayleigh)
+        return rayleigh_eval_twice(mu);
+    if (medium.phase != double_henyey_greenstein)
+        return hg_eval(medium.g * medium.g, mu);
+    const double s = medium.share, r = 1.0 - s;
+    return r * r * hg_eval(medium.g * medium.g, mu) + 2.0 * r * s * hg_eval(medium.g * medium.g2, mu) +
+           s * s * hg_eval(medium.g2 * medium.g2, mu);
 }
 
+bool has_phase_twice(const Medium& medium) {
+    return medium.phase <= vkvol::PhaseFunction::double_henyey_greenstein;
+}
+
+namespace {
+
+double sample_cosine(const Medium& medium, double u) {
+    using enum vkvol::PhaseFunction;
+    const bool second = u < medium.share;
+    const double rest = second ? u / medium.share : (u - medium.share) / (1.0 - medium.share);
+    switch (medium.phase) {
+    case rayleigh:
+        return rayleigh_sample_cosine(u);
+    case double_henyey_greenstein:
+        return hg_sample_cosine(second ? medium.g2 : medium.g, rest);
+    case draine:
+        return draine_sample_cosine(medium.g, medium.alpha, u);
+    case droplets:
+        return second ? draine_sample_cosine(medium.g2, medium.alpha, rest) : hg_sample_cosine(medium.g, rest);
+    case table:
+        return table_sample_cosine(medium.table, u);
+    case henyey_greenstein:
+        break;
+    }
+    return hg_sample_cosine(medium.g, u);
+}
+
+} // namespace
+
 glm::dvec3 phase_sample(const Medium& medium, const glm::dvec3& direction, double u, double v) {
-    const bool rayleigh = medium.phase == vkvol::PhaseFunction::rayleigh;
-    return turned(direction, rayleigh ? rayleigh_sample_cosine(u) : hg_sample_cosine(medium.g, u), v);
+    return turned(direction, sample_cosine(medium, u), v);
 }
 
 } // namespace reference

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "emission.h"
+#include "phase.h"
 #include "reference_mesh.h"
 #include "reference_noise.h"
 
@@ -18,6 +19,8 @@ struct Medium {
     vkvol::Rgb albedo{0.0};
     vkvol::PhaseFunction phase = vkvol::PhaseFunction::henyey_greenstein;
     double g = 0.0;
+    double g2 = 0.0, share = 0.0, alpha = 0.0; // of a second function and its part
+    std::vector<TableNode> table;
     Emission emission;
     vkvol::Filter filter = vkvol::Filter::trilinear;
     double majorant_scale = 1.0;
@@ -32,7 +35,8 @@ struct Medium {
 
 // The medium's phase function [1/sr], that of two scatterings, and a direction drawn from it.
 double phase_eval(const Medium& medium, double mu);
-double phase_eval_twice(const Medium& medium, double mu);
+double phase_eval_twice(const Medium& medium, double mu); // where there is a closed form of it:
+bool has_phase_twice(const Medium& medium);
 glm::dvec3 phase_sample(const Medium& medium, const glm::dvec3& direction, double u, double v);
 
 // `stochastic` filtering has the expectation of trilinear, and is taken as trilinear, as is none.

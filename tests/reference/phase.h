@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <vector>
 
 namespace reference {
 
@@ -19,6 +20,27 @@ glm::dvec3 hg_sample(double g, const glm::dvec3& direction, double u, double v);
 double rayleigh_eval(double mu);
 double rayleigh_eval_twice(double mu);
 double rayleigh_sample_cosine(double u);
+
+// Draine's [1/sr]: Henyey and Greenstein's times 1 + alpha mu^2. Sampled by halving its distribution function, which is
+// known in closed form; of |g| >= 0.01, or 0.
+double draine_eval(double g, double alpha, double mu);
+double draine_sample_cosine(double g, double alpha, double u);
+
+// Water by the diameter of its droplets in micrometres, 0.01 to 50: Henyey and Greenstein's, and with weight w_d
+// Draine's (Jendersie and d'Eon 2023, in the paper's names).
+struct Droplets {
+    double g_hg, g_d, alpha, w_d;
+};
+Droplets droplets(double d);
+
+// Values at falling cosines from 1 to -1, linear between them, of any scale.
+struct TableNode {
+    double mu;
+    double value;
+};
+std::vector<TableNode> normalised(std::vector<TableNode> table); // [1/sr]
+double table_eval(const std::vector<TableNode>& table, double mu);
+double table_sample_cosine(const std::vector<TableNode>& table, double u); // by halving
 
 // The direction of cosine mu to `direction` and azimuth 2 pi v.
 glm::dvec3 turned(const glm::dvec3& direction, double mu, double v);

@@ -46,7 +46,7 @@ Rgb cached_light(const World& world, const glm::dvec3& p, const glm::dvec3& trav
 Rgb foreseen_light(const World& world, const glm::dvec3& p, const glm::dvec3& before, const glm::dvec3& after) {
     const Medium& medium = *world.medium;
     Rgb foreseen(0.0);
-    {
+    if (has_phase_twice(medium)) {
         const vkvol::DirectionalLight& light = *vkvol::only_directional(world.scene.lights);
         const Rgb T = rough_transmittance(medium, {p, light.direction});
         const double drawn = phase_eval(medium, glm::dot(light.direction, after));

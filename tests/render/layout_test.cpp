@@ -16,6 +16,7 @@ struct Structs {
     shared::Suspended laid_aside;
     shared::SamplePlace waiting;
     shared::ControlCell control_cell;
+    shared::PhaseNode phase_node;
     shared::LightRow light_row;
     shared::LightNode light_node;
     shared::BvhNode bvh_node;
@@ -44,8 +45,8 @@ std::vector<std::uint32_t> list_words(const Structs& all) {
         words.resize(first + sizeof field / 4);
         std::memcpy(&words[first], &field, sizeof field);
     };
-    const auto& [path, laid_aside, waiting, control_cell, light_row, light_node, bvh_node, header, entry, counters,
-                 frame, push] = all;
+    const auto& [path, laid_aside, waiting, control_cell, phase_node, light_row, light_node, bvh_node, header, entry,
+                 counters, frame, push] = all;
 #define PUT(field) put(field);
 #include "kernels/layout_fields.h"
 #undef PUT
@@ -73,6 +74,7 @@ TEST_CASE("shared structs have one layout on host and device", "[gpu][layout]") 
     const Buffer laid_aside = second_of_two(commands, all.laid_aside, storage);
     const Buffer places = second_of_two(commands, all.waiting, storage);
     const Buffer controls = second_of_two(commands, all.control_cell, storage);
+    const Buffer phase_nodes = second_of_two(commands, all.phase_node, storage);
     const Buffer lights = second_of_two(commands, all.light_row, storage);
     const Buffer light_nodes = second_of_two(commands, all.light_node, storage);
     const Buffer nodes = second_of_two(commands, all.bvh_node, storage);
@@ -90,6 +92,7 @@ TEST_CASE("shared structs have one layout on host and device", "[gpu][layout]") 
     bound[BINDING_SUSPENDED] = &laid_aside;
     bound[BINDING_PLACES] = &places;
     bound[BINDING_CONTROLS] = &controls;
+    bound[BINDING_PHASE] = &phase_nodes;
     bound[BINDING_LIGHTS] = &lights;
     bound[BINDING_LIGHT_TREE] = &light_nodes;
     bound[BINDING_BVH] = &nodes;

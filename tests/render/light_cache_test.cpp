@@ -24,7 +24,7 @@ std::vector<float> depths_at_nodes(const TestScene& scene, const shared::Lattice
     Specialization constants = scene.specialization;
     constants[SPEC_TEXELS] = buffers.texels() ? 1 : 0;
     LightCache cache(test_device(), buffers.bound(), lattice);
-    cache.compile(constants, buffers.window_bits(), VK_NULL_HANDLE);
+    cache.compile(constants, 0, VK_NULL_HANDLE);
     cache.fill(commands);
     std::vector<glm::vec4> entries(cache.buffer().bytes() / sizeof(glm::vec4));
     commands.download(cache.buffer(), std::as_writable_bytes(std::span(entries)));

@@ -7,6 +7,7 @@
 
 #include "fused.spv.h"
 #include "fused_chromatic.spv.h"
+#include "fused_full.spv.h"
 #include "shared/items.h"
 #include "specialization.h"
 
@@ -139,6 +140,16 @@ TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "
     touches({{SPEC_SHAPE, SHAPE_SPHERE}, {SPEC_FIELD, FIELD_CONSTANT}, {SPEC_FREE_FLIGHT, FREE_FLIGHT_ANALYTIC}}, {});
     touches({{SPEC_SHAPE, SHAPE_SPHERE}, {SPEC_FIELD, FIELD_NOISE}}, {});
     touches({{SPEC_SHAPE, SHAPE_MESH}, {SPEC_FIELD, FIELD_NOISE}}, {BINDING_TRIANGLES, BINDING_BVH});
+    const auto lights_touch = [&](int lights, std::set<int> more) {
+        more.insert(always.begin(), always.end());
+        more.insert(grid.begin(), grid.end());
+        const Specialization s = with({{SPEC_NEE, NEE_COLLISIONS}, {SPEC_LIGHTS, lights}});
+        CHECK(specialise(fused_full_spv, s).bindings == more);
+    };
+    lights_touch(LIGHTS_SUN, {});
+    lights_touch(LIGHTS_TABLE, {BINDING_LIGHTS});
+    lights_touch(LIGHTS_TABLE | LIGHTS_TREE, {BINDING_LIGHTS, BINDING_LIGHT_TREE});
+    lights_touch(LIGHTS_TABLE | LIGHTS_SKY, {BINDING_LIGHTS, BINDING_SKY, BINDING_SKY_ALIAS});
 }
 
 TEST_CASE("every feature costs instructions only where a scene has it", "[gpu][specialization]") {
@@ -157,6 +168,7 @@ TEST_CASE("every feature costs instructions only where a scene has it", "[gpu][s
     CHECK(color < count({{SPEC_EMISSION, EMISSION_BLACKBODY}}));
     CHECK(constant < count({{SPEC_EMISSION, EMISSION_CONSTANT}, {SPEC_EMISSION_AT, EMISSION_AT_STEPS}}));
     CHECK(none < specialise(fused_chromatic_spv, plain()).instructions);
+    CHECK(none == specialise(fused_full_spv, plain()).instructions);
     CHECK(none < count({{SPEC_FILTER, FILTER_TRILINEAR}}));
     CHECK(none < count({{SPEC_LEAPS, 1}}));
     // What is switched off leaves nothing behind, whatever the constants that describe it say.

@@ -138,6 +138,41 @@ Scene scene_of(const Volume& volume, double width, int pixels, double distance, 
     return scene;
 }
 
+std::filesystem::path write_text(const std::string& text) {
+    const std::filesystem::path file = temporary_file("txt");
+    std::ofstream(file) << text;
+    return file;
+}
+
+Volume NamedPhase::of(Volume volume) const {
+    volume.phase = kind;
+    volume.g = g;
+    volume.phase_details = details;
+    return volume;
+}
+
+std::vector<NamedPhase> all_phases() {
+    using enum PhaseFunction;
+    const auto two = [](double g2, double share) { return PhaseDetails{.g2 = g2, .share = share}; };
+    const auto with_alpha = [](double alpha) { return PhaseDetails{.alpha = alpha}; };
+    const auto water = [](double diameter) { return PhaseDetails{.diameter = diameter}; };
+    // A forward peak of 10^4 times the rest, a bow, a glory, and nothing between 100 and 110 degrees.
+    static const std::filesystem::path bow = write_text("# made up\n0 10000\n0.5 3000\n1, 200\n2 40\n5 8\n20 2\n60 1\n"
+                                                        "100 0\n110 0\n138 3\n140 6\n145 2\n178 2.5\n180 4\n");
+    return {{"henyeyGreenstein", henyey_greenstein, 0.6},
+            {"rayleigh", rayleigh},
+            {"doubleHenyeyGreenstein", double_henyey_greenstein, 0.8, two(-0.4, 0.3)},
+            {"draine", draine, 0.5, with_alpha(5.0)},
+            {"draine backward", draine, -0.7, with_alpha(1.0)},
+            {"draine even", draine, 0.0, with_alpha(40.0)},
+            {"draine sharp", draine, 0.97, with_alpha(250.0)},
+            {"droplets 0.05", droplets, 0.0, water(0.05)},
+            {"droplets 1", droplets, 0.0, water(1.0)},
+            {"droplets 3", droplets, 0.0, water(3.0)},
+            {"droplets 20", droplets, 0.0, water(20.0)},
+            {"table", table, 0.0, PhaseDetails{.file = bow}}};
+}
+
 DirectionalLight sunlight(Rgb irradiance) {
     return {glm::normalize(glm::dvec3(1.0, 1.5, 1.0)), irradiance};
 }

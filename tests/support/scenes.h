@@ -17,6 +17,20 @@ MeshFiles write_mesh(const Mesh& mesh);
 // Likewise a map of the sky, as .exr.
 SkyLight write_sky(const RadianceMap& map);
 
+// Likewise a text.
+std::filesystem::path write_text(const std::string& text);
+
+// A medium's phase function of every kind, with what it takes, by names.
+struct NamedPhase {
+    std::string name;
+    PhaseFunction kind;
+    double g = 0.0;
+    PhaseDetails details = {};
+
+    Volume of(Volume volume) const;
+};
+std::vector<NamedPhase> all_phases();
+
 // Of its voxels, in world space.
 glm::dvec3 center_of(const GridRecipe& grid);
 

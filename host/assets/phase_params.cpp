@@ -1,0 +1,89 @@
+#include "phase_params.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace vkvol {
+
+namespace {
+
+// Of a share of Henyey and Greenstein's phase function and one of Draine's.
+struct Mixture {
+    double g, g2, alpha, share;
+};
+
+// Jendersie and d'Eon's fit to Mie's theory of droplets of water in visible light, by their diameter in micrometres
+// ("An Approximate Mie Scattering Function for Fog and Cloud Rendering", 2023, equations 7 to 22).
+Mixture fit_to_droplets(double d) {
+    const double l = std::log(d);
+    if (d <= 0.1)
+        return {13.8 * d * d, 1.1456 * d * std::sin(9.29044 * d), 250.0, 0.252977 - 312.983 * std::pow(d, 4.3)};
+    if (d < 1.5) {
+        const double inner = std::cos((l - 0.238604) * (l + 1.00667) / (0.507522 - 0.15677 * l));
+        return {0.862 - 0.143 * l * l, 0.379685 * std::cos(1.19692 * inner + 1.37932 * l + 0.0625835) + 0.344213, 250.0,
+                0.146209 * std::cos(3.38707 * l + 2.11193) + 0.316072 + 0.0778917 * l};
+    }
+    if (d < 5.0) {
+        const double ll = std::log(l);
+        return {0.0604931 * ll + 0.940256, 0.500411 - 0.081287 / (-2.0 * l + std::tan(l) + 1.27551),
+                7.30354 * l + 6.31675, 0.026914 * (l - std::cos(5.68947 * (ll - 0.0292149))) + 0.376475};
+    }
+    return {std::exp(-0.0990567 / (d - 1.67154)), std::exp(-2.20679 / (d + 3.91029) - 0.428934),
+            std::exp(3.62489 - 8.29288 / (d + 5.52825)), std::exp(-0.599085 / (d - 0.641583) - 0.665888)};
+}
+
+double draine_mean_cosine(double g, double alpha) {
+    return g * (1.0 + alpha * (3.0 + 2.0 * g * g) / 5.0) / (1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0);
+}
+
+// Of densities linear between nodes: by 2 pi the integral of (1 - x) value.
+double table_mean_cosine(std::span<const shared::PhaseNode> nodes) {
+    double mean = 0.0;
+    for (std::size_t i = 1; i < nodes.size(); ++i) {
+        const double a = nodes[i - 1].x, b = nodes[i].x;
+        const double middle = 0.5 * (nodes[i - 1].value + nodes[i].value);
+        mean += (b - a) / 6.0 *
+                ((1.0 - a) * nodes[i - 1].value + 4.0 * (1.0 - 0.5 * (a + b)) * middle + (1.0 - b) * nodes[i].value);
+    }
+    return 2.0 * std::numbers::pi * mean;
+}
+
+} // namespace
+
+shared::PhaseParams phase_params(const Volume& volume, std::span<const shared::PhaseNode> nodes) {
+    const PhaseDetails& details = volume.phase_details;
+    Mixture mixture{volume.g, details.g2, details.alpha, details.share};
+    if (volume.phase == PhaseFunction::droplets)
+        mixture = fit_to_droplets(details.diameter);
+    shared::PhaseParams params{};
+    params.g = static_cast<float>(mixture.g);
+    params.g2 = static_cast<float>(mixture.g2);
+    params.share = static_cast<float>(mixture.share);
+    params.alpha = static_cast<float>(mixture.alpha);
+    params.nodes = static_cast<std::uint32_t>(nodes.size());
+    return params;
+}
+
+double mean_cosine(const Volume& volume, std::span<const shared::PhaseNode> nodes) {
+    const PhaseDetails& details = volume.phase_details;
+    switch (volume.phase) {
+    case PhaseFunction::rayleigh:
+        return 0.0;
+    case PhaseFunction::double_henyey_greenstein:
+        return std::lerp(volume.g, details.g2, details.share);
+    case PhaseFunction::draine:
+        return draine_mean_cosine(volume.g, details.alpha);
+    case PhaseFunction::droplets: {
+        const Mixture fit = fit_to_droplets(details.diameter);
+        return std::lerp(fit.g, draine_mean_cosine(fit.g2, fit.alpha), fit.share);
+    }
+    case PhaseFunction::table:
+        return table_mean_cosine(nodes);
+    case PhaseFunction::henyey_greenstein:
+        break;
+    }
+    return volume.g;
+}
+
+} // namespace vkvol

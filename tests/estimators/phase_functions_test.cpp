@@ -1,0 +1,211 @@
+// Phase functions of every kind: evaluated as the reference does, normalised, drawn as evaluated; and clouds of them.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+#include "kernels/test_items.h"
+#include "phase_params.h"
+#include "phase_table.h"
+#include "scatter.spv.h"
+#include "support/agreement.h"
+#include "support/images.h"
+#include "support/kernel_runner.h"
+#include "support/scenes.h"
+#include "support/statistics.h"
+#include "tests/reference/medium.h"
+#include "tests/reference/rng.h"
+
+using namespace vkvol;
+using std::numbers::pi;
+
+namespace {
+
+constexpr double ulp = 0x1p-23;
+
+double random(std::uint32_t i, std::uint32_t which) {
+    return reference::pcg4d({i, which, 7, 9})[0] * 0x1p-32;
+}
+
+glm::vec3 random_direction(std::uint32_t i) {
+    const double z = 2.0 * random(i, 1) - 1.0, phi = 2.0 * pi * random(i, 2), s = std::sqrt(1.0 - z * z);
+    return glm::normalize(glm::vec3(s * std::cos(phi), s * std::sin(phi), z));
+}
+
+std::vector<shared::ScatterOutput> scatter(const NamedPhase& phase, const std::vector<shared::ScatterInput>& inputs) {
+    const Volume volume = phase.of(Volume{});
+    LoadedMedium loaded;
+    if (phase.kind == PhaseFunction::table)
+        loaded.phase_nodes = load_phase_table(phase.details.file).nodes;
+    KernelScene kernel;
+    kernel.frame.media[0].phase = phase_params(volume, loaded.phase_nodes);
+    kernel.volume = &loaded;
+    Specialization constants{};
+    constants[SPEC_PHASE] = static_cast<int>(phase.kind);
+    return KernelRunner(scatter_spv, constants, kernel).run<shared::ScatterOutput>(inputs);
+}
+
+// 1 - mu, with all digits.
+double from_forward(const glm::vec3& before, const glm::vec3& after) {
+    const glm::dvec3 apart =
+        glm::dvec3(before) / glm::length(glm::dvec3(before)) - glm::dvec3(after) / glm::length(glm::dvec3(after));
+    return 0.5 * glm::dot(apart, apart);
+}
+
+// Of the numbers as kernels have them.
+reference::Medium medium_of(const NamedPhase& phase) {
+    reference::Medium result = reference::load(phase.of(medium(Sphere{}, 1.0, 1.0)));
+    for (double* number : {&result.g, &result.g2, &result.share, &result.alpha})
+        *number = static_cast<float>(*number);
+    return result;
+}
+
+// By midpoints in y of x = 2 y^4, which resolves forward peaks: calls f(mu, weight).
+template <class F> void over_cosines(int count, const F& f) {
+    for (int i = 0; i < count; ++i) {
+        const double y = (i + 0.5) / count;
+        f(1.0 - 2.0 * std::pow(y, 4), 8.0 * std::pow(y, 3) / count);
+    }
+}
+
+} // namespace
+
+TEST_CASE("phase functions of every kind equal the reference's", "[gpu][phase]") {
+    for (const NamedPhase& phase : all_phases()) {
+        const reference::Medium medium = medium_of(phase);
+        std::vector<shared::ScatterInput> inputs;
+        for (std::uint32_t i = 0; i < 4000; ++i) // dense towards both ends
+            inputs.push_back({random_direction(i),
+                              {0.5f, float(random(i, 3))},
+                              float(i < 2000 ? 2.0 * std::pow(10.0, -8.0 * i / 2000.0)
+                                             : 2.0 - 2.0 * std::pow(10.0, -6.0 * (i - 2000) / 2000.0))});
+        const auto outputs = scatter(phase, inputs);
+        for (std::size_t i = 0; i < inputs.size(); ++i) {
+            const double x = from_forward(inputs[i].before, outputs[i].at);
+            const double exact = reference::phase_eval(medium, 1.0 - x);
+            // Two unit vectors are of length 1 to 1.5 ulp, and what is between them known to 2 ulp of it: x to
+            // 2 ulp sqrt(2 x) + 4 ulp x. What the value's slope makes of that, and 24 roundings.
+            const double known = 2.0 * ulp * std::sqrt(2.0 * x) + 4.0 * ulp * x, step = std::max(known, 1e-12);
+            const double low = reference::phase_eval(medium, 1.0 - std::min(x + step, 2.0)),
+                         high = reference::phase_eval(medium, 1.0 - std::max(x - step, 0.0));
+            CAPTURE(phase.name, x, exact, outputs[i].at_eval);
+            REQUIRE(std::abs(outputs[i].at_eval - exact) <=
+                    24 * ulp * exact + 2.0 * std::max(std::abs(low - exact), std::abs(high - exact)));
+            if (reference::has_phase_twice(medium)) {
+                const double twice = reference::phase_eval_twice(medium, 1.0 - x);
+                REQUIRE(outputs[i].at_eval_twice == Approx(twice).epsilon(24 * ulp + 8.0 * known / std::max(x, 1e-3)));
+            }
+        }
+    }
+}
+
+TEST_CASE("phase functions of every kind integrate to 1, and have the mean cosine that is stated", "[cpu][phase]") {
+    for (const NamedPhase& phase : all_phases()) {
+        const reference::Medium medium = medium_of(phase);
+        double all = 0.0, mean = 0.0;
+        // Midpoints err by h^2 / 24 times the integrand's slope from end to end: 1e-9 of the peaks here, which are some
+        // 1e5 high; a table's kinks add as much.
+        over_cosines(200000, [&](double mu, double weight) {
+            const double p = 2.0 * pi * reference::phase_eval(medium, mu) * weight;
+            all += p;
+            mean += p * mu;
+        });
+        const auto nodes = phase.kind == PhaseFunction::table ? load_phase_table(phase.details.file).nodes
+                                                              : std::vector<shared::PhaseNode>{};
+        CAPTURE(phase.name, all, mean);
+        CHECK(all == Approx(1.0).margin(1e-5));
+        CHECK(mean_cosine(phase.of(Volume{}), nodes) == Approx(mean).margin(1e-5));
+    }
+}
+
+TEST_CASE("directions are drawn from phase functions of every kind as these are evaluated", "[gpu][phase]") {
+    constexpr std::uint32_t count = 1 << 18;
+    constexpr int bins = 64;
+    for (const NamedPhase& phase : all_phases()) {
+        const reference::Medium medium = medium_of(phase);
+        std::vector<shared::ScatterInput> inputs;
+        for (std::uint32_t i = 0; i < count; ++i)
+            inputs.push_back(
+                {random_direction(i), {float(random(i, 3) * 0.999999), float(random(i, 4) * 0.999999)}, 1.0f});
+        // Bins even in y, where x = 2 y^4; in each as many midpoints as the integral needs.
+        std::vector<double> observed(bins, 0.0), expected(bins, 0.0);
+        const auto bin = [](double x) { return std::min(int(std::pow(0.5 * x, 0.25) * bins), bins - 1); };
+        over_cosines(bins * 2000, [&](double mu, double weight) {
+            expected[std::size_t(bin(1.0 - mu))] += count * 2.0 * pi * reference::phase_eval(medium, mu) * weight;
+        });
+        for (const auto& [i, o] : [&] {
+                 std::vector<std::pair<std::size_t, shared::ScatterOutput>> all;
+                 for (const shared::ScatterOutput& output : scatter(phase, inputs))
+                     all.emplace_back(all.size(), output);
+                 return all;
+             }()) {
+            const double x = from_forward(inputs[i].before, o.drawn);
+            observed[std::size_t(bin(x))] += 1.0;
+            REQUIRE(glm::length(o.drawn) == Approx(1.0).epsilon(4 * ulp));
+            REQUIRE(o.drawn_eval > 0.0f);
+        }
+        CAPTURE(phase.name);
+        CHECK(chi_square_test_p(observed, expected) > sidak(1e-3, double(all_phases().size())));
+    }
+}
+
+// The inverse of the distribution function, to what single precision knows of u.
+TEST_CASE("Draine's phase function is drawn by its inverse", "[gpu][phase][hard]") {
+    for (const double g : {0.0, 0.05, -0.3, 0.6, 0.9, -0.99, 0.9999})
+        for (const double alpha : {0.0, 1.0, 20.0, 250.0}) {
+            const NamedPhase phase{"draine", PhaseFunction::draine, g, PhaseDetails{.alpha = alpha}};
+            std::vector<shared::ScatterInput> inputs;
+            for (int i = 0; i < 2000; ++i)
+                inputs.push_back({{0.0f, 0.0f, 1.0f}, {float(i / 2000.0), 0.3f}, 1.0f});
+            const auto outputs = scatter(phase, inputs);
+            for (std::size_t i = 0; i < inputs.size(); ++i) {
+                const double x = from_forward(inputs[i].before, outputs[i].drawn), u = inputs[i].u.x;
+                const double wanted = reference::draine_sample_cosine(float(g), alpha, g < 0.0 ? u : 1.0 - u);
+                // Some twenty roundings of terms below 3 norms, at the density there; and of the direction.
+                const double density = 2.0 * pi * reference::draine_eval(float(g), alpha, wanted);
+                CAPTURE(g, alpha, u, 1.0 - x, wanted);
+                REQUIRE(std::abs(1.0 - x - wanted) * density <=
+                        30 * ulp + density * (2.0 * ulp * std::sqrt(2.0 * x) + 4.0 * ulp * x));
+            }
+        }
+}
+
+TEST_CASE("two of two phase functions are their convolution", "[cpu][phase]") {
+    NamedPhase phase = all_phases()[2];
+    REQUIRE(phase.kind == PhaseFunction::double_henyey_greenstein);
+    phase.g = 0.6;
+    const reference::Medium medium = medium_of(phase);
+    constexpr int cosines = 8000, azimuths = 128;
+    for (const double mu : {-1.0, -0.3, 0.2, 0.9, 1.0}) {
+        double sum = 0.0;
+        for (int i = 0; i < cosines; ++i) {
+            const double m = -1.0 + 2.0 * (i + 0.5) / cosines, s = std::sqrt((1.0 - m * m) * (1.0 - mu * mu));
+            for (int j = 0; j < azimuths; ++j)
+                sum += reference::phase_eval(medium, m) *
+                       reference::phase_eval(medium, m * mu + s * std::cos(2.0 * pi * j / azimuths));
+        }
+        sum *= 2.0 / cosines * 2.0 * pi / azimuths;
+        CHECK(sum == Approx(reference::phase_eval_twice(medium, mu)).epsilon(1e-5)); // see phase_test.cpp
+    }
+}
+
+TEST_CASE("clouds of every phase function equal the reference's", "[gpu][phase][agreement]") {
+    static const GridFile file = write_grid(cloud_grid());
+    for (const NamedPhase& phase : all_phases()) {
+        if (phase.kind == PhaseFunction::henyey_greenstein || phase.kind == PhaseFunction::rayleigh)
+            continue; // elsewhere
+        Scene scene = scene_of(phase.of(medium(file, 2.0, 0.9)), 13.0, 12);
+        scene.background = {0.3, 0.5, 0.9};
+        scene.lights = {sunlight()};
+        scene.settings.spp = 256;
+        const bool is_first =
+            phase.name == "doubleHenyeyGreenstein" || phase.name == "droplets 20" || phase.name == "table";
+        for (const char* integrator : {"deltaTracking", "ratioTracking", "cachedRatioTracking"}) {
+            if (!is_first && integrator != std::string("cachedRatioTracking"))
+                continue;
+            scene.settings.integrator = integrator;
+            CHECK_AGREEMENT(agree(render_here(scene, 21).film, render_reference(scene, 22),
+                                  fmt::format("{}, {}", phase.name, integrator)));
+        }
+    }
+}
