@@ -93,6 +93,10 @@ lamps not drawn by the phase function ~ shaders/lights/lamp.glsl ~ bool by_phase
 one lamp for all that are seen ~ shaders/lights/lamp.glsl ~ seen.light *= met; ~ ; ~ [lights]
 tree's chance forgotten ~ shaders/lights/table.glsl ~ chance *= of_leaf; ~ ; ~ [lights]
 branch's chance not its own ~ shaders/lights/tree.glsl ~ float(goes_left ? share : 0u - share) ~ float(share) ~ [lights]
+collisions near a light in full ~ shaders/lights/equiangular.glsl ~ flown / max(flown + equiangular_pdf(s, t), 1.0e-30) ~ 1.0 ~ [lights]
+distances drawn otherwise than stated ~ shaders/lights/equiangular.glsl ~ float m = u * ~ float m = u * u * ~ [lights]
+way to where a look from along a flight begins not attenuated ~ shaders/stages/shadow.glsl ~ lane.lit *= T; ~ ; ~ [lights]
+density of a direction forgotten in a queue ~ shaders/shared/path_state.h ~ (under_way || sets_out) && sees_sky ~ under_way && sees_sky ~ [lights]
 spot without its rim ~ shaders/lights/point.glsl ~ t * t * (3.0 - 2.0 * t) ~ t ~ [lights]
 lamps before a mesh seen through it ~ shaders/shapes/segment.glsl ~ t.x = min(t.x, t.y); // the first ~ // the first ~ [lights]
 END

@@ -1,6 +1,7 @@
 #include "phase_params.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -63,6 +64,15 @@ shared::PhaseParams phase_params(const Volume& volume, std::span<const shared::P
     params.alpha = static_cast<float>(mixture.alpha);
     params.nodes = static_cast<std::uint32_t>(nodes.size());
     return params;
+}
+
+std::uint32_t phase_iterations(const Volume& volume, std::span<const shared::PhaseNode> nodes) {
+    constexpr std::uint32_t drawn = 3, evaluated = 12, newton_steps = 10;
+    if (volume.phase == PhaseFunction::draine || volume.phase == PhaseFunction::droplets)
+        return drawn * (newton_steps + 1);
+    if (volume.phase == PhaseFunction::table)
+        return (drawn + evaluated) * static_cast<std::uint32_t>(std::bit_width(nodes.size()) + 1);
+    return 0;
 }
 
 double mean_cosine(const Volume& volume, std::span<const shared::PhaseNode> nodes) {

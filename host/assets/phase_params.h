@@ -11,6 +11,11 @@ namespace vkvol {
 // `nodes`: of a table, else empty.
 shared::PhaseParams phase_params(const Volume& volume, std::span<const shared::PhaseNode> nodes);
 
+// Iterations of the loops within phase functions in a turn of a kernel, at most; each with the one that ends it. A turn
+// may draw a direction to scatter, and one to a lamp from either end of a flight, and evaluate four times for each of
+// these.
+std::uint32_t phase_iterations(const Volume& volume, std::span<const shared::PhaseNode> nodes);
+
 // Of the cosine between the directions of travel before and after.
 double mean_cosine(const Volume& volume, std::span<const shared::PhaseNode> nodes);
 

@@ -31,6 +31,8 @@ std::string kernel_text(const Specialization& s, Media media, bool chromatic) {
                             : s[SPEC_NEE] == NEE_CACHED   ? "collisions from a cache corrected"
                                                           : "every step",
                             choice(2, s[SPEC_TRANSMITTANCE]));
+    if (s[SPEC_DISTANCE] == DISTANCE_MIXED)
+        text += ", and looks from along flights";
     text += emissions[s[SPEC_EMISSION]];
     return text + (s[SPEC_EMISSION_AT] == EMISSION_AT_STEPS ? " along flights" : "");
 }

@@ -188,7 +188,8 @@ std::uint32_t loop_iterations(const std::vector<Light>& lights) {
         return 0;
     const auto count = [&](bool (*is)(const Light&)) { return std::count_if(lights.begin(), lights.end(), is); };
     const auto levels = std::bit_width(lights.size()) + 1;
-    return static_cast<std::uint32_t>(count(is_lamp) + 1 + count(is_met_by_chance) + 1 + levels + 1);
+    // The tree is gone down from a collision, and from along a flight.
+    return static_cast<std::uint32_t>(count(is_lamp) + 1 + count(is_met_by_chance) + 1 + 2 * (levels + 1));
 }
 
 double reach_of_lamps(const std::vector<Light>& lights, const glm::dvec3& origin) {

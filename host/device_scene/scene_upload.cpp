@@ -20,7 +20,7 @@ static_assert(std::is_standard_layout_v<shared::FrameParams>);
 static_assert(sizeof(shared::SensorParams) == 4 * 12 + 4);
 static_assert(sizeof(shared::GridParams) == 4 * 12 + 2 * 4);
 static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 5 * 4);
-static_assert(sizeof(shared::MediumParams) == 3 * 16 + 3 * 12 + sizeof(shared::GridParams) + 12 + 5 * 4 + 2 * 12 +
+static_assert(sizeof(shared::MediumParams) == 3 * 16 + 3 * 12 + sizeof(shared::GridParams) + 12 + 6 * 4 + 2 * 12 +
                                                   sizeof(shared::PhaseParams) + sizeof(shared::EmissionParams) +
                                                   sizeof(shared::NoiseParams) + 4);
 static_assert(sizeof(shared::LatticeParams) == 3 * 12);
@@ -132,6 +132,19 @@ void fill_density(const Volume& volume, double majorant_scale, bool decomposes, 
                                                       : std::max(0.0, majorant_scale - control));
 }
 
+// Within the medium's bounds, to the factor of two that weighting techniques asks for: of the bounds in its cells half,
+// as densities between 0 and a bound go.
+double usual_density(const Volume& volume, const LoadedMedium& loaded) {
+    if (volume.noise)
+        return 0.5;
+    if (!loaded.majorants)
+        return 1.0;
+    double sum = 0.0;
+    for (const float bound : loaded.majorants->bounds)
+        sum += bound;
+    return 0.5 * sum / std::max<double>(1.0, double(loaded.majorants->bounds.size()));
+}
+
 // `origin`: of render space, in world coordinates.
 shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const LoadedMedium& loaded,
                                  const Method& method, glm::dvec3 origin) {
@@ -154,6 +167,7 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
     const Rgb sigma_t = world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr);
     params.sigma_t = static_cast<float>(largest(sigma_t));
     params.sigma_ratio = has_chromatic_extinction(scene) ? sigma_t / largest(sigma_t) : Rgb(1.0);
+    params.usual_sigma_t = static_cast<float>(std::max(largest(sigma_t) * usual_density(volume, loaded), 1e-30));
     params.albedo = albedo_of(volume);
     params.phase = phase_params(volume, loaded.phase_nodes);
     params.emission = make_emission(volume, loaded, method, origin);
@@ -166,6 +180,43 @@ double diagonal_of(const Volume& volume, const LoadedMedium& loaded) {
         return 2.0 * glm::length(box_center(*loaded.mesh) - lowest_corner(*loaded.mesh));
     const Bounds bounds = medium_bounds(loaded);
     return glm::length(glm::dmat3(medium_to_world(volume, loaded)) * (bounds.high - bounds.low));
+}
+
+} // namespace
+
+namespace {
+
+std::optional<glm::dvec3> place_of(const Light& light) {
+    if (const auto* point = std::get_if<PointLight>(&light))
+        return point->position;
+    if (const auto* spot = std::get_if<SpotLight>(&light))
+        return spot->position;
+    if (const auto* sphere = std::get_if<SphereLight>(&light))
+        return sphere->center;
+    if (const auto* disk = std::get_if<DiskLight>(&light))
+        return disk->center;
+    if (const auto* rectangle = std::get_if<RectangleLight>(&light))
+        return rectangle->center;
+    return std::nullopt;
+}
+
+// World units, from the box around the medium; 0 within.
+double distance_to(const Volume& volume, const LoadedMedium& loaded, const glm::dvec3& position) {
+    const glm::dmat4 to_world = medium_to_world(volume, loaded);
+    const glm::dvec3 inside = glm::inverse(to_world) * glm::dvec4(position, 1.0);
+    const Bounds bounds = medium_bounds(loaded);
+    return glm::length(glm::dmat3(to_world) * (inside - glm::clamp(inside, bounds.low, bounds.high)));
+}
+
+// Near enough that what it lights differs much from place to place.
+bool has_near_light(const Scene& scene, Media media) {
+    constexpr double near = 0.1; // of the medium's diagonal
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+        for (const Light& light : scene.lights)
+            if (const std::optional<glm::dvec3> place = place_of(light))
+                if (distance_to(scene.volumes[i], media[i], *place) < near * diagonal_of(scene.volumes[i], media[i]))
+                    return true;
+    return false;
 }
 
 } // namespace
@@ -260,6 +311,8 @@ Specialization specialize(const Scene& scene, Media media, const Method& method)
     const int seen = method.nee == NEE_NONE ? lights & ~LIGHTS_LAMPS : lights;
     constants[SPEC_LIGHTS] = seen == LIGHTS_TABLE && method.nee == NEE_NONE ? LIGHTS_SUN : seen;
     constants[SPEC_MIS] = method.mis;
+    constants[SPEC_DISTANCE] =
+        method.distance.value_or(has_near_light(scene, media) ? DISTANCE_MIXED : DISTANCE_FLIGHTS);
     return constants;
 }
 

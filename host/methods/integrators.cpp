@@ -97,6 +97,7 @@ const std::vector<Axis>& axes() {
         {"nee", &AxisChoices::nee, {"none", "collisions", "tentative", "cached"}},
         {"emission", &AxisChoices::emission, {"collisions", "steps"}},
         {"mis", &AxisChoices::mis, {"balance", "power", "light", "phase"}},
+        {"distance", &AxisChoices::distance, {"flights", "mixed"}},
     };
     return table;
 }

@@ -35,6 +35,7 @@ private:
     void choose_flight();
     void choose_nee();
     void choose_mis();
+    void choose_distance();
     void choose_transmittance();
     void choose_emission();
     void choose_filter();
@@ -56,6 +57,7 @@ Method Resolution::resolve() {
     choose_flight();
     choose_nee();
     choose_mis();
+    choose_distance();
     choose_transmittance();
     choose_emission();
     choose_filter();
@@ -135,6 +137,17 @@ void Resolution::choose_mis() {
     if (choices_.mis && !shared)
         warn("mis is without effect: no light is found in two ways");
     method_.mis = shared ? choices_.mis.value_or(MIS_BALANCE) : MIS_BALANCE;
+}
+
+// Looks from along a flight need to know where it is within the medium, of which a mesh has many parts.
+void Resolution::choose_distance() {
+    const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
+    const bool could = method_.nee != NEE_NONE && method_.scattering != SCATTERING_NONE &&
+                       !any_medium(scene_, is_mesh) &&
+                       std::any_of(scene_.lights.begin(), scene_.lights.end(), has_place);
+    if (choices_.distance && !could)
+        warn("distance is without effect: it is for point, spot, sphere, disk and rectangle lights, and not in models");
+    method_.distance = could ? choices_.distance : DISTANCE_FLIGHTS;
 }
 
 void Resolution::choose_transmittance() {

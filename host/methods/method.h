@@ -17,12 +17,13 @@ enum Bias : unsigned {
 };
 
 struct Method {
-    int scattering = 0;    // SCATTERING_...
-    int free_flight = 0;   // FREE_FLIGHT_...
-    int transmittance = 0; // TRANSMITTANCE_...; unused if nee is NEE_NONE
-    int nee = 0;           // NEE_...
-    int mis = 0;           // MIS_...; unused where flights meet no light but the background
-    int emission_at = 0;   // EMISSION_AT_...; a march through the medium adds emission step by step in either case
+    int scattering = 0;          // SCATTERING_...
+    int free_flight = 0;         // FREE_FLIGHT_...
+    int transmittance = 0;       // TRANSMITTANCE_...; unused if nee is NEE_NONE
+    int nee = 0;                 // NEE_...
+    int mis = 0;                 // MIS_...; unused where flights meet no light but the background
+    std::optional<int> distance; // DISTANCE_...; none: as where the lights are asks for
+    int emission_at = 0; // EMISSION_AT_...; a march through the medium adds emission step by step in either case
     Filter filter = Filter::stochastic; // of grids
     bool jitter = true;
     bool material_colour = false;      // the mesh's diffuse colour, once loaded, takes the place of Volume::Le

@@ -6,6 +6,7 @@
 
 #include "error.h"
 #include "estimator_traits.h"
+#include "phase_params.h"
 #include "pilot_paths.h"
 #include "scene_upload.h"
 #include "schedule_memory.h"
@@ -72,6 +73,7 @@ void Session::find_wish(const Assets& assets, const Specialization& specializati
         const Volume& volume = scene_.volumes[i];
         const LoadedMedium& medium = assets.media[i];
         loops_.mesh = loops_.mesh || medium.bvh;
+        loops_.phase = std::max(loops_.phase, phase_iterations(volume, medium.phase_nodes));
         loops_.octaves = std::max(loops_.octaves, volume.noise ? std::uint32_t(volume.noise->octaves) : 0u);
         if (wish_.steps == 0)
             wish_.steps = steps_per_look(specialization, medium);

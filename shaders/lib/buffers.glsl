@@ -28,15 +28,18 @@ layout(constant_id = SPEC_LEAPS) const int LEAPS = 0;
 #ifdef FULL
 layout(constant_id = SPEC_PHASE) const int PHASE = PHASE_HENYEY_GREENSTEIN;
 layout(constant_id = SPEC_LIGHTS) const int LIGHTS = LIGHTS_TABLE;
+layout(constant_id = SPEC_DISTANCE) const int DISTANCE = DISTANCE_FLIGHTS;
 #else
 const int PHASE = PHASE_HENYEY_GREENSTEIN;
 const int LIGHTS = LIGHTS_SUN;
+const int DISTANCE = DISTANCE_FLIGHTS;
 #endif
 layout(constant_id = SPEC_MIS) const int MIS = MIS_BALANCE;
 
 const bool SEES_SKY = (LIGHTS & LIGHTS_SKY) != 0;
 const bool SEES_LAMPS = (LIGHTS & LIGHTS_LAMPS) != 0;
 const bool HAS_TREE = (LIGHTS & LIGHTS_TREE) != 0;
+const bool LOOKS_ALONG = DISTANCE == DISTANCE_MIXED;
 const int FLIGHT_TRAITS = FREE_FLIGHT_TRAITS(FREE_FLIGHT);
 const int SHADOW_TRAITS = TRANSMITTANCE_TRAITS(TRANSMITTANCE);
 const bool NULL_FLIGHT = (FLIGHT_TRAITS & TRAIT_NULL) != 0;

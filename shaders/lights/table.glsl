@@ -56,10 +56,10 @@ LightSample sample_light(MediumParams v, LightRow light, vec3 from, vec3 travel,
 
 // Light that reaches `from`, over the density with which its direction was drawn: to be multiplied by the phase function,
 // whose density of that direction is phase_pdf, and by weight_of_look. `travel`: how the path came there.
-LightSample look_for_light(MediumParams v, vec3 from, vec3 travel, inout Rng rng) {
+LightSample look_for_light(MediumParams v, vec3 from, vec3 travel, inout Rng rng, out LightRow light) {
     uvec4 words = next_words(rng);
     float chance;
-    LightRow light = lights[choose_light(from, words, rng, chance)];
+    light = lights[choose_light(from, words, rng, chance)];
     LightSample drawn = sample_light(v, light, from, travel, words, rng);
     drawn.pdf *= chance;
     drawn.light /= drawn.pdf > 0.0 ? drawn.pdf : chance;

@@ -10,11 +10,10 @@ float double_hg_eval(PhaseParams p, vec3 before, vec3 after) {
 
 // Each after each: see phase_eval_twice.
 float double_hg_eval_twice(PhaseParams p, vec3 before, vec3 after) {
-    vec3 g = vec3(p.g * p.g, p.g * p.g2, p.g2 * p.g2);
-    vec3 value;
-    for (int i = 0; i < 3; ++i)
-        value[i] = hg_eval(g[i], hg_from_peak(g[i], before, after));
-    return mix(mix(value.x, value.y, p.share), mix(value.y, value.z, p.share), p.share);
+    float first = p.g * p.g, both = p.g * p.g2, second = p.g2 * p.g2;
+    float one = hg_eval(both, hg_from_peak(both, before, after));
+    return mix(mix(hg_eval(first, hg_from_peak(first, before, after)), one, p.share),
+               mix(one, hg_eval(second, hg_from_peak(second, before, after)), p.share), p.share);
 }
 
 vec3 double_hg_sample(PhaseParams p, vec3 before, vec2 u) {

@@ -68,7 +68,8 @@
 #define SPEC_PHASE 16
 #define SPEC_LIGHTS 17
 #define SPEC_MIS 18
-#define SPEC_COUNT 19
+#define SPEC_DISTANCE 19
+#define SPEC_COUNT 20
 
 #define SHAPE_NONE 0 // background only
 #define SHAPE_SPHERE 1
@@ -126,6 +127,10 @@
 #define MIS_POWER 1
 #define MIS_LIGHT 2 // all by looks
 #define MIS_PHASE 3 // all by flights; but for lights without extent
+
+// How the distances are found from which light is scattered that comes from near.
+#define DISTANCE_FLIGHTS 0 // by free flights alone
+#define DISTANCE_MIXED 1   // and by looks from along them; see equiangular.glsl
 
 #define EMISSION_NONE 0
 #define EMISSION_CONSTANT 1

@@ -103,6 +103,7 @@ struct MediumParams {
     float control;    // likewise a control density
     float residual;   // and the bound of what differs from it
     float sigma_t;    // extinction at density 1, of the channel where it is largest [1 / world unit], > 0
+    float usual_sigma_t; // what it comes to with the usual density, roughly
     vec3 sigma_ratio; // of the channels to that, in [0, 1]
     vec3 albedo;      // sigma_s / sigma_t
     PhaseParams phase;

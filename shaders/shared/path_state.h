@@ -12,6 +12,11 @@
 #define TODO_END 5u    // the path is over
 #define TODO_DONE 6u   // the pixel has its samples
 #define TODO_BEGIN 7u  // a path, at the camera
+#define TODO_SET_OUT 8u // from a vertex, where it has scattered and looked along its way
+
+// Of a look from along a flight.
+#define LEG_ALONG 0u // to where it begins
+#define LEG_LOOK 1u  // toward the light, as all other looks
 
 // ROW(type, name). Of every path, at its last vertex: the camera, or a real collision. Its throughput beta is in a buffer
 // of its own, since its type depends on the scene; at a collision it includes that collision's albedo.
@@ -33,11 +38,12 @@
     WALK_ROW(walk, under_way)                                                                                         \
     WALK_ROW(flight, seeing && flight_rests) /* to come back to from a shadow ray that was sent amid it */            \
     SPECTRUM_ROW(T, seeing)                  /* of the shadow ray so far */                                           \
-    SPECTRUM_ROW(lit, looking && flight_rests) /* throughput of what it lights, */                                    \
-    ROW(vec3, position, looking && flight_rests) /* and where that is, render space */                                \
-    ROW(uint, resume, looking && flight_rests) /* what to do after it */                                              \
+    SPECTRUM_ROW(lit, looking && keeps_place) /* throughput of what it lights, */                                     \
+    ROW(vec3, position, looking && keeps_place) /* and where that is, render space */                                 \
+    ROW(uint, resume, looking && keeps_place) /* what to do after it */                                               \
+    ROW(uint, leg, looking && looks_along) /* LEG_... */                                                              \
     ROW(uint, steps, under_way)                /* of the segment */                                                   \
-    ROW(float, phase_pdf, under_way && sees_sky) /* with which the flight's direction was drawn; 0 at the camera */     \
+    ROW(float, phase_pdf, (under_way || sets_out) && sees_sky) /* with which the flight's direction was drawn; 0 at the camera */     \
     ROW(vec3, to_light, looking && chooses_light) /* unit */                                                          \
     ROW(float, light_distance, looking && chooses_light) /* world units */                                            \
     ROW(vec3, light, looking && chooses_light) /* what comes along the shadow ray if nothing is in between, per unit of the \

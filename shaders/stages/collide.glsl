@@ -3,19 +3,25 @@
 #define STAGE_COLLIDE_GLSL
 #include "field/emission.glsl"
 #include "lights/light.glsl"
+#include "lights/equiangular.glsl"
 #include "lights/light_cache.glsl"
 #include "lights/table.glsl"
 #include "lib/trace.glsl"
 
 // Likewise from one of many lights, which is drawn here.
-void gather_some_light(MediumParams v, vec3 position, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
-    LightSample drawn = look_for_light(v, position, lane.path.direction, rng);
+void gather_some_light(MediumParams v, vec3 position, float t, Spectrum lit, uint next, inout Lane lane,
+                       inout Rng rng) {
+    LightRow row;
+    LightSample drawn = look_for_light(v, position, lane.path.direction, rng, row);
     float phase = phase_eval(v, lane.path.direction, drawn.direction);
     vec3 light = drawn.light * phase * (drawn.pdf > 0.0 ? weight_of_look(drawn.pdf, phase) : 1.0);
+    if (LOOKS_ALONG)
+        light *= weight_of_collision(v, row, position - t * lane.path.direction, lane.path.direction, t);
     if (LOOKS) {
         lane.position = position;
         lane.lit = lit;
         lane.resume = next;
+        lane.leg = LEG_LOOK;
         lane.to_light = drawn.direction;
         lane.light_distance = drawn.distance;
         lane.light = light;
@@ -26,11 +32,11 @@ void gather_some_light(MediumParams v, vec3 position, Spectrum lit, uint next, i
     }
 }
 
-// Light at a point that an interaction of throughput `lit` there scatters into the path. Known at once in a homogeneous
+// Light at a point, t along a flight, that an interaction of throughput `lit` there scatters into the path. Known at once in a homogeneous
 // sphere or box, else the lane goes to look, or, by chance, makes do with the cache; and then does as `next` says.
-void gather_light(MediumParams v, vec3 position, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
+void gather_light(MediumParams v, vec3 position, float t, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
     if (LIGHTS != LIGHTS_SUN) {
-        gather_some_light(v, position, lit, next, lane, rng);
+        gather_some_light(v, position, t, lit, next, lane, rng);
     } else if (LOOKS) {
         lane.position = position;
         lane.lit = lit;
@@ -62,14 +68,15 @@ void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, i
     lane.todo = ended || SCATTERING == SCATTERING_SINGLE ? TODO_END : TODO_DEPART;
     if (NEE != NEE_NONE && !ended) {
         Spectrum lit = NEE == NEE_TENTATIVE ? deposit * to_spectrum(v.albedo) : lane.beta;
-        gather_light(v, lane.path.position, lit, lane.todo, lane, rng);
+        gather_light(v, lane.path.position, lane.walk.start + lane.walk.t, lit, lane.todo, lane, rng);
     }
     trace(TRACE_COLLISION, lane, lane.path.position, lane.path.direction);
 }
 
 // Amid a flight: a null collision, or a step of a march through.
 void touch(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng) {
-    vec3 position = lane.path.position + (lane.walk.start + lane.walk.at) * lane.path.direction;
+    float t = lane.walk.start + lane.walk.at;
+    vec3 position = lane.path.position + t * lane.path.direction;
     uint next = TODO_FLY;
     if (goes_through()) {
         if (EMISSION != EMISSION_NONE)
@@ -78,7 +85,7 @@ void touch(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng) {
     }
     lane.todo = next;
     if (NEE == NEE_TENTATIVE && lane.path.depth < frame.max_depth)
-        gather_light(v, position, deposit * to_spectrum(v.albedo), next, lane, rng);
+        gather_light(v, position, t, deposit * to_spectrum(v.albedo), next, lane, rng);
 }
 
 #endif

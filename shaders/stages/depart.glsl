@@ -3,6 +3,7 @@
 #define STAGE_DEPART_GLSL
 #include "lights/light_cache.glsl"
 #include "lib/trace.glsl"
+#include "stages/look_along.glsl"
 
 // Russian roulette on the throughput: unbiased, survivors are raised to the threshold.
 bool survives(inout Spectrum beta, float u) {
@@ -37,13 +38,16 @@ void scatter(MediumParams v, vec4 u, inout Lane lane) {
 
 void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     bool looks = at_shadow_ray(lane.todo == TODO_LOOK);
+    bool has_looked = LOOKS_ALONG && lane.todo == TODO_SET_OUT;
     bool at_camera = !looks && lane.path.depth == 0u;
     uvec4 words = first_words(looks, rng);
     lane.todo = looks ? TODO_SEE : TODO_FLY;
     if (SEES_SKY && at_camera)
         lane.phase_pdf = 0.0;
-    if (!looks && !at_camera)
+    if (!looks && !at_camera && !has_looked)
         scatter(v, to_uniform(words), lane);
+    if (LOOKS_ALONG && lane.todo == TODO_FLY && !has_looked && look_along(v, lane, rng, tally))
+        return;
     if (NEE == NEE_TENTATIVE && looks)
         lane.flight = lane.walk;
     float e = to_exponential(at_camera ? words.z : words.x, words);

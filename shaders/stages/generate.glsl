@@ -15,6 +15,7 @@ void look_at_lamps(MediumParams v, inout Lane lane, inout Rng rng) {
         lane.position = lane.path.position;
         lane.lit = to_spectrum(vec3(1.0));
         lane.resume = TODO_DEPART;
+        lane.leg = LEG_LOOK;
         lane.to_light = seen.direction;
         lane.light_distance = seen.distance;
         lane.light = seen.light;

@@ -28,12 +28,13 @@ bool at_shadow_ray(bool is) {
 
 // Whether a lane begins a segment, or goes on along one, of a kind that its pass has.
 bool departs(uint todo) {
+    bool sets_out = LOOKS_ALONG && todo == TODO_SET_OUT;
 #if defined(FLIGHTS_ONLY)
-    return todo == TODO_DEPART;
+    return todo == TODO_DEPART || sets_out;
 #elif defined(SHADOW_RAYS_ONLY)
     return todo == TODO_LOOK;
 #else
-    return todo == TODO_DEPART || todo == TODO_LOOK;
+    return todo == TODO_DEPART || todo == TODO_LOOK || sets_out;
 #endif
 }
 bool is_under_way(uint todo) {
@@ -47,22 +48,28 @@ bool is_under_way(uint todo) {
 }
 
 // What the shadow ray lights, and from where. At collisions that is the path's own vertex, and need not be kept.
+const bool KEEPS_PLACE = NEE == NEE_TENTATIVE || LOOKS_ALONG;
 Spectrum lit_beta(Lane lane) {
-    return NEE == NEE_TENTATIVE ? lane.lit : lane.beta;
+    return KEEPS_PLACE ? lane.lit : lane.beta;
+}
+bool is_along(Lane lane) {
+    return LOOKS_ALONG && lane.leg == LEG_ALONG;
 }
 vec3 looking_from(Lane lane) {
-    return NEE == NEE_TENTATIVE ? lane.position : lane.path.position;
+    return KEEPS_PLACE && !is_along(lane) ? lane.position : lane.path.position;
 }
 vec3 looking_along(Lane lane) {
-    return LIGHTS == LIGHTS_SUN ? frame.lights[LIGHT_SUN].direction : lane.to_light;
+    return LIGHTS == LIGHTS_SUN ? frame.lights[LIGHT_SUN].direction : is_along(lane) ? lane.path.direction : lane.to_light;
 }
 // World units, how far it is to the light.
 float looking_as_far_as(Lane lane) {
-    return LIGHTS == LIGHTS_SUN ? FAR : lane.light_distance;
+    return LIGHTS == LIGHTS_SUN ? FAR
+           : is_along(lane)     ? distance(lane.path.position, lane.position)
+                                : lane.light_distance;
 }
 uint after_looking(Lane lane) {
     bool at_camera = SEES_LAMPS && lane.path.depth == 0u;
-    return NEE == NEE_TENTATIVE                               ? lane.resume
+    return KEEPS_PLACE                                        ? lane.resume
            : SCATTERING == SCATTERING_SINGLE && !at_camera ? TODO_END
                                                               : TODO_DEPART;
 }
@@ -72,6 +79,9 @@ uint after_looking(Lane lane) {
     bool seeing = LOOKS && amid && next == TODO_SEE;                                                                  \
     bool looking = seeing || (LOOKS && next == TODO_LOOK);                                                            \
     bool flight_rests = NEE == NEE_TENTATIVE;                                                                         \
+    bool keeps_place = KEEPS_PLACE;                                                                                   \
+    bool looks_along = LOOKS_ALONG;                                                                                   \
+    bool sets_out = LOOKS_ALONG && (looking || next == TODO_SET_OUT);                                                 \
     bool sees_sky = SEES_SKY;                                                                             \
     bool chooses_light = LIGHTS != LIGHTS_SUN;                                                                        \
     bool has_cache = LOOKS && NEE == NEE_CACHED;                                                                      \
@@ -85,7 +95,7 @@ void lay_aside(uint slot, uint pixel, Rng rng, Lane lane, const bool amid) {
     paths[slot] = lane.path;
     betas[slot] = lane.beta;
     STATE_CONDITIONS(lane.todo, amid)
-    if (!under_way && !looking && !has_cache)
+    if (!under_way && !looking && !sets_out && !has_cache)
         return;
 #define LAY_ASIDE(type, name, when)                                                                                   \
     if (when)                                                                                                         \
@@ -105,7 +115,7 @@ void take_up(uint slot, inout Lane lane, out Rng rng, const bool amid) {
     lane.todo = lane.path.todo;
     rng = pixel_rng(lane.path.place, lane.path.sample_index, lane.path.draw);
     STATE_CONDITIONS(lane.todo, amid)
-    if (!under_way && !looking && !has_cache)
+    if (!under_way && !looking && !sets_out && !has_cache)
         return;
 #define TAKE_UP(type, name, when)                                                                                     \
     if (when)                                                                                                         \

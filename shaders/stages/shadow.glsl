@@ -6,6 +6,12 @@
 
 void end_shadow(MediumParams v, uint event, inout Lane lane) {
     Spectrum T = event == EVENT_LEFT ? end_transmittance(v, lane.walk, lane.T) : to_spectrum(vec3(0.0));
+    if (is_along(lane)) { // the other leg follows
+        lane.lit *= T;
+        lane.leg = LEG_LOOK;
+        lane.todo = largest(lane.lit) > 0.0 ? TODO_LOOK : lane.resume;
+        return;
+    }
     Spectrum more = NEE == NEE_CACHED ? (T - lane.cached) / lane.chance : T;
     lane.path.radiance +=
         LIGHTS == LIGHTS_SUN ? sun_contribution(v, frame.lights[LIGHT_SUN], lane.path.direction, lit_beta(lane) * more)

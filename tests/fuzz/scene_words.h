@@ -86,7 +86,7 @@ inline constexpr Words grammar[] = {
      "decompositionTracking|spectralTracking|unbiasedRayMarching|regularTracking|rayMarching|adaptiveRayMarching|"
      "densitySampling|homogeneousRayMarcherNEE|homogeneousRayMarcherImproved|heterogeneousPerlinNoise|nanoVDBSimple|"
      "nanoVDBEmission",
-     {"scattering", "flight", "transmittance", "nee", "emission", "mis"}},
+     {"scattering", "flight", "transmittance", "nee", "emission", "mis", "distance"}},
     {"march", "", {"step", "shadowStep", "opticalStep", "jitter", "unit"}},
     {"filter", "nearest|trilinear|stochastic", {}},
     {"russianRoulette", "", {"threshold"}},

@@ -12,7 +12,8 @@ void main() {
     if (i >= push.lanes)
         return;
     Rng rng = Rng(inputs[i].key, 0u, 0u, frame.seed);
-    LightSample drawn = look_for_light(frame.media[0], inputs[i].position, vec3(0.0, 0.0, -1.0), rng);
+    LightRow light;
+    LightSample drawn = look_for_light(frame.media[0], inputs[i].position, vec3(0.0, 0.0, -1.0), rng, light);
     Rng again = Rng(inputs[i].key, 0u, 0u, frame.seed);
     uvec4 words = next_words(again);
     float chance;

@@ -1,0 +1,71 @@
+// Distances along a flight, drawn for the sake of a light that has a place (Kulla and Fajardo, "Importance Sampling
+// Techniques for Path Tracing in Participating Media", 2012). What a flight meets near such a light has no bound, since light
+// falls with the square of the distance, and free flights do not seek it; these distances do.
+//
+// Both find the same light, and share it by weights that add up to 1 at every distance t: multiple importance sampling with, for
+// the free flight's density, which is not known, that of a medium of constant density. Any positive function would do.
+//
+// Drawn is not evenly by angle, for which tan and its inverse have to be each other's to the last digit, of which Vulkan
+// says little, but, with x = (t - foot) / off, by the density 1 / (1 + |x|)^2, at most twice and at least once 1 / (1 + x^2).
+#ifndef EQUIANGULAR_GLSL
+#define EQUIANGULAR_GLSL
+#include "lib/interval.glsl"
+
+// What of a flight may be within the medium, as a light sees it.
+struct Stretch {
+    vec2 t;     // from where to where, from the flight's beginning [world units]
+    float foot; // where it is nearest to the light
+    float off;  // how far that is
+    vec2 y;     // 1 / (1 + |x|) at its ends
+    vec2 mass;  // of its part before the foot, and of that behind
+};
+
+Stretch stretch_of(MediumParams v, LightRow light, vec3 position, vec3 direction) {
+    Stretch s;
+    if (!medium_interval(v, to_medium(v, position, direction), s.t))
+        s.t = vec2(0.0);
+    vec3 apart = light.position - position;
+    s.foot = dot(apart, direction);
+    // Lamps are no points: nearer than half their size nothing grows any more. Nor are rays that hit a point meant.
+    float least = max(0.3 * sqrt(light.kind >= LIGHT_SPHERE ? light.area : 0.0), 1.0e-5 * (s.t.y - s.t.x));
+    s.off = max(length(apart - s.foot * direction), max(least, 1.0e-30));
+    vec2 x = (s.t - s.foot) / s.off;
+    s.y = 1.0 / (1.0 + abs(x));
+    s.mass = vec2(x.x < 0.0 ? (x.y < 0.0 ? s.y.y : 1.0) - s.y.x : 0.0, x.y > 0.0 ? (x.x > 0.0 ? s.y.x : 1.0) - s.y.y : 0.0);
+    return s;
+}
+
+// Whether there is anything to draw from; else there is no density either.
+bool is_open(Stretch s) {
+    return s.mass.x + s.mass.y > 0.0;
+}
+
+float distance_in(Stretch s, float u) {
+    float m = u * (s.mass.x + s.mass.y);
+    bool before = m < s.mass.x;
+    float from_foot = before ? s.y.x + m : (s.foot < s.t.x ? s.y.x : 1.0) - (m - s.mass.x);
+    float x = 1.0 / from_foot - 1.0;
+    return clamp(s.foot + (before ? -x : x) * s.off, s.t.x, s.t.y);
+}
+
+// Densities of t, per world unit: of distance_in, and about that of a free flight.
+float equiangular_pdf(Stretch s, float t) {
+    float y = 1.0 / (1.0 + abs(t - s.foot) / s.off);
+    return y * y / (s.off * (s.mass.x + s.mass.y));
+}
+float assumed_flight_pdf(MediumParams v, Stretch s, float t) {
+    return v.usual_sigma_t * exp(-v.usual_sigma_t * max(t - s.t.x, 0.0));
+}
+
+bool has_place(LightRow light) {
+    return light.kind >= LIGHT_POINT && light.kind != LIGHT_MAP;
+}
+
+// Of a collision at distance t of a flight, from where this light is looked at.
+float weight_of_collision(MediumParams v, LightRow light, vec3 position, vec3 direction, float t) {
+    Stretch s = stretch_of(v, light, position, direction);
+    float flown = assumed_flight_pdf(v, s, t);
+    return has_place(light) && is_open(s) ? flown / max(flown + equiangular_pdf(s, t), 1.0e-30) : 1.0;
+}
+
+#endif

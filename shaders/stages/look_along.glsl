@@ -1,0 +1,59 @@
+// A look toward a light from along the flight that comes next: see equiangular.glsl.
+#ifndef STAGE_LOOK_ALONG_GLSL
+#define STAGE_LOOK_ALONG_GLSL
+#include "field/density.glsl"
+#include "lights/equiangular.glsl"
+#include "lights/table.glsl"
+#include "stages/lane.glsl"
+
+// One of those that have a place. Where there are many, one that is bright where a free flight might end; which one that is is
+// the look's own chance, and weights do not depend on it.
+LightRow choose_placed(MediumParams v, vec3 position, vec3 direction, float u, inout Rng rng, out float chance) {
+    uint i = frame.choices - 1u;
+    chance = 1.0;
+    if (HAS_TREE) {
+        vec2 t;
+        if (!medium_interval(v, to_medium(v, position, direction), t))
+            t = vec2(0.0);
+        float flown = min(t.x - log(1.0 - u) / v.usual_sigma_t, t.y);
+        i = descend(position + flown * direction, rng, chance);
+    }
+    return lights[i];
+}
+
+// Where shadow rays are walks, the lane goes to look, first along its way and then toward the light: true. Else what it
+// would see is added here.
+bool look_along(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
+    uvec4 words = next_words(rng);
+    vec4 u = to_uniform(words);
+    float chance;
+    LightRow light = choose_placed(v, lane.path.position, lane.path.direction, u.x, rng, chance);
+    Stretch s = stretch_of(v, light, lane.path.position, lane.path.direction);
+    if (!is_open(s) || lane.path.depth >= frame.max_depth)
+        return false;
+    float t = distance_in(s, u.y);
+    vec3 position = lane.path.position + t * lane.path.direction;
+    LightSample drawn = sample_light(v, light, position, lane.path.direction, next_words(rng), rng);
+    // Over the density t was drawn with, times its weight.
+    float per_pdf = 1.0 / (chance * (equiangular_pdf(s, t) + assumed_flight_pdf(v, s, t)));
+    tally.lookups += 1u;
+    float sigma_t = v.sigma_t * density(v, to_medium(v, position, lane.path.direction).origin, to_tap(words));
+    lane.lit = lane.beta * (per_pdf * sigma_t) * to_spectrum(v.sigma_ratio * v.albedo);
+    lane.light = drawn.light * phase_eval(v, lane.path.direction, drawn.direction);
+    if (largest(lane.lit) == 0.0 || largest(lane.light) == 0.0)
+        return false;
+    if (!LOOKS) {
+        lane.path.radiance += lane.lit * analytic_shadow(v, lane.path.position, lane.path.direction, t) *
+                              analytic_shadow(v, position, drawn.direction, drawn.distance) * lane.light;
+        return false;
+    }
+    lane.position = position;
+    lane.to_light = drawn.direction;
+    lane.light_distance = drawn.distance;
+    lane.leg = LEG_ALONG;
+    lane.resume = TODO_SET_OUT;
+    lane.todo = TODO_LOOK;
+    return true;
+}
+
+#endif
