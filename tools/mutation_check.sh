@@ -66,7 +66,7 @@ a step ahead judged by the next density ~ shaders/estimators/ahead.glsl ~ Collis
 roulette in closed form ~ shaders/estimators/flight/analytic_flight.glsl ~ w.t = event == ~ beta = march_roulette(0.0, beta);\n    w.t = event == ~ [closed_form]
 march roulette weight missing ~ shaders/estimators/march.glsl ~ MARCH_ROULETTE / m : 0.0 ~ 1.0 : 0.0 ~ [closed_form]
 cache corrected without its chance ~ shaders/stages/shadow.glsl ~ (T - lane.cached) / lane.chance ~ (T - lane.cached) ~ [light_cache]
-foreseen light off its mean ~ shaders/phase/phase.glsl ~ hg_eval(v.g * v.g, ~ hg_eval(v.g, ~ [agreement]
+foreseen light off its mean ~ shaders/phase/phase.glsl ~ hg_eval(v.phase.g * v.phase.g, ~ hg_eval(v.phase.g, ~ [agreement]
 lattice a node off ~ shaders/lights/lattice.glsl ~ uint i = lattice_index(which, node); ~ uint i = lattice_index(which, node) + 1u; ~ [light_cache]
 samples lost to a driver's loops ~ shaders/passes/sky.comp ~ if (hit || tally.paths < push.sample_end - push.sample_begin) { ~ if (hit) { ~ [determinism]
 no further part of a mesh ~ shaders/shapes/segment.glsl ~ event == EVENT_LEFT && search.stage == SEARCH_OVER; ~ false; ~ [closed_form]

@@ -208,8 +208,11 @@ double distance_to(const Volume& volume, const LoadedMedium& loaded, const glm::
     return glm::length(glm::dmat3(to_world) * (inside - glm::clamp(inside, bounds.low, bounds.high)));
 }
 
-// Near enough that what it lights differs much from place to place.
-bool has_near_light(const Scene& scene, Media media) {
+// Near enough that what it lights differs much from place to place, and where shadow rays cost next to nothing:
+// elsewhere they take more time than they save, see tools/results/README.md.
+bool gains_by_looks_along(const Scene& scene, Media media) {
+    if (density_kind(scene) != FIELD_CONSTANT)
+        return false;
     constexpr double near = 0.1; // of the medium's diagonal
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         for (const Light& light : scene.lights)
@@ -312,7 +315,7 @@ Specialization specialize(const Scene& scene, Media media, const Method& method)
     constants[SPEC_LIGHTS] = seen == LIGHTS_TABLE && method.nee == NEE_NONE ? LIGHTS_SUN : seen;
     constants[SPEC_MIS] = method.mis;
     constants[SPEC_DISTANCE] =
-        method.distance.value_or(has_near_light(scene, media) ? DISTANCE_MIXED : DISTANCE_FLIGHTS);
+        method.distance.value_or(gains_by_looks_along(scene, media) ? DISTANCE_MIXED : DISTANCE_FLIGHTS);
     return constants;
 }
 

@@ -38,20 +38,20 @@ uint choose_light(vec3 from, uvec4 words, inout Rng rng, out float chance) {
 
 LightSample sample_light(MediumParams v, LightRow light, vec3 from, vec3 travel, uvec4 words, inout Rng rng) {
     vec2 u = to_uniform(words).zw;
+    LightSample drawn;
     if (SEES_LAMPS && light.kind >= LIGHT_SPHERE)
-        return sample_lamp(v, light, from, travel, u, to_tap(words).z);
-    if (SEES_SKY && light.kind == LIGHT_MAP)
-        return sample_sky(u, rng);
-    switch (light.kind) {
-    case LIGHT_DISC:
-        return sample_disc(light, u);
-    case LIGHT_POINT:
-        return sample_point(light, from);
-    case LIGHT_SPOT:
-        return sample_spot(light, from);
-    default:
-        return sample_directional(light);
-    }
+        drawn = sample_lamp(v, light, from, travel, u, to_tap(words).z);
+    else if (SEES_SKY && light.kind == LIGHT_MAP)
+        drawn = sample_sky(u, rng);
+    else if (light.kind == LIGHT_DISC)
+        drawn = sample_disc(light, u);
+    else if (light.kind == LIGHT_POINT)
+        drawn = sample_point(light, from);
+    else if (light.kind == LIGHT_SPOT)
+        drawn = sample_spot(light, from);
+    else
+        drawn = sample_directional(light);
+    return drawn;
 }
 
 // Light that reaches `from`, over the density with which its direction was drawn: to be multiplied by the phase function,

@@ -9,22 +9,24 @@
 #include "phase/phase_table.glsl"
 #include "phase/rayleigh.glsl"
 
+// (One `return` each: a `switch` of them would leave a loop behind, see tools/results/README.md.)
+
 // Per steradian; integrates to 1 over `after`.
 float phase_eval(MediumParams v, vec3 before, vec3 after) {
-    switch (PHASE) {
-    case PHASE_RAYLEIGH:
-        return rayleigh_eval(dot(before, after));
-    case PHASE_DOUBLE_HENYEY_GREENSTEIN:
-        return double_hg_eval(v.phase, before, after);
-    case PHASE_DRAINE:
-        return draine_eval(v.phase.g, v.phase.alpha, hg_from_peak(v.phase.g, before, after));
-    case PHASE_DROPLETS:
-        return droplets_eval(v.phase, before, after);
-    case PHASE_TABLE:
-        return table_eval(v.phase, before, after);
-    default:
-        return hg_eval(v.phase.g, hg_from_peak(v.phase.g, before, after));
-    }
+    float p = 0.0;
+    if (PHASE == PHASE_HENYEY_GREENSTEIN)
+        p = hg_eval(v.phase.g, hg_from_peak(v.phase.g, before, after));
+    else if (PHASE == PHASE_RAYLEIGH)
+        p = rayleigh_eval(dot(before, after));
+    else if (PHASE == PHASE_DOUBLE_HENYEY_GREENSTEIN)
+        p = double_hg_eval(v.phase, before, after);
+    else if (PHASE == PHASE_DRAINE)
+        p = draine_eval(v.phase.g, v.phase.alpha, hg_from_peak(v.phase.g, before, after));
+    else if (PHASE == PHASE_DROPLETS)
+        p = droplets_eval(v.phase, before, after);
+    else if (PHASE == PHASE_TABLE)
+        p = table_eval(v.phase, before, after);
+    return p;
 }
 
 // Whether there is a closed form of two scatterings.
@@ -33,32 +35,32 @@ const bool PHASE_HAS_TWICE = PHASE <= PHASE_DOUBLE_HENYEY_GREENSTEIN;
 // After two scatterings: the mean of phase_eval(drawn, after) over what phase_sample draws from `before`. Henyey and
 // Greenstein's functions are closed under convolution, asymmetries multiply.
 float phase_eval_twice(MediumParams v, vec3 before, vec3 after) {
-    switch (PHASE) {
-    case PHASE_RAYLEIGH:
-        return rayleigh_eval_twice(dot(before, after));
-    case PHASE_DOUBLE_HENYEY_GREENSTEIN:
-        return double_hg_eval_twice(v.phase, before, after);
-    default:
-        return hg_eval(v.phase.g * v.phase.g, hg_from_peak(v.phase.g * v.phase.g, before, after));
-    }
+    float p = 0.0;
+    if (PHASE == PHASE_HENYEY_GREENSTEIN)
+        p = hg_eval(v.phase.g * v.phase.g, hg_from_peak(v.phase.g * v.phase.g, before, after));
+    else if (PHASE == PHASE_RAYLEIGH)
+        p = rayleigh_eval_twice(dot(before, after));
+    else if (PHASE == PHASE_DOUBLE_HENYEY_GREENSTEIN)
+        p = double_hg_eval_twice(v.phase, before, after);
+    return p;
 }
 
 // A direction distributed as phase_eval; u in [0, 1)^2.
 vec3 phase_sample(MediumParams v, vec3 before, vec2 u) {
-    switch (PHASE) {
-    case PHASE_RAYLEIGH:
-        return turned(before, 1.0 - rayleigh_sample_cosine(u.x), u.y);
-    case PHASE_DOUBLE_HENYEY_GREENSTEIN:
-        return double_hg_sample(v.phase, before, u);
-    case PHASE_DRAINE:
-        return draine_sample(v.phase.g, v.phase.alpha, before, u);
-    case PHASE_DROPLETS:
-        return droplets_sample(v.phase, before, u);
-    case PHASE_TABLE:
-        return table_sample(v.phase, before, u);
-    default:
-        return hg_sample(v.phase.g, before, u);
-    }
+    vec3 after = before;
+    if (PHASE == PHASE_HENYEY_GREENSTEIN)
+        after = hg_sample(v.phase.g, before, u);
+    else if (PHASE == PHASE_RAYLEIGH)
+        after = turned(before, 1.0 - rayleigh_sample_cosine(u.x), u.y);
+    else if (PHASE == PHASE_DOUBLE_HENYEY_GREENSTEIN)
+        after = double_hg_sample(v.phase, before, u);
+    else if (PHASE == PHASE_DRAINE)
+        after = draine_sample(v.phase.g, v.phase.alpha, before, u);
+    else if (PHASE == PHASE_DROPLETS)
+        after = droplets_sample(v.phase, before, u);
+    else if (PHASE == PHASE_TABLE)
+        after = table_sample(v.phase, before, u);
+    return after;
 }
 
 #endif

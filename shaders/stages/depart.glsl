@@ -36,18 +36,9 @@ void scatter(MediumParams v, vec4 u, inout Lane lane) {
                               foreseen_light(v, lane.cached, before, lane.path.direction);
 }
 
-void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
-    bool looks = at_shadow_ray(lane.todo == TODO_LOOK);
-    bool has_looked = LOOKS_ALONG && lane.todo == TODO_SET_OUT;
-    bool at_camera = !looks && lane.path.depth == 0u;
-    uvec4 words = first_words(looks, rng);
-    lane.todo = looks ? TODO_SEE : TODO_FLY;
-    if (SEES_SKY && at_camera)
-        lane.phase_pdf = 0.0;
-    if (!looks && !at_camera && !has_looked)
-        scatter(v, to_uniform(words), lane);
-    if (LOOKS_ALONG && lane.todo == TODO_FLY && !has_looked && look_along(v, lane, rng, tally))
-        return;
+// The flight or shadow ray itself.
+void begin_going(MediumParams v, uvec4 words, bool looks, bool at_camera, inout Lane lane, inout Rng rng,
+                 inout Tally tally) {
     if (NEE == NEE_TENTATIVE && looks)
         lane.flight = lane.walk;
     float e = to_exponential(at_camera ? words.z : words.x, words);
@@ -63,6 +54,23 @@ void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     lane.steps = 0u;
     if (!looks)
         trace(TRACE_DEPART, lane, lane.path.position, lane.path.direction);
+}
+
+void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
+    bool looks = at_shadow_ray(lane.todo == TODO_LOOK);
+    bool has_looked = LOOKS_ALONG && lane.todo == TODO_SET_OUT;
+    bool at_camera = !looks && lane.path.depth == 0u;
+    uvec4 words = first_words(looks, rng);
+    lane.todo = looks ? TODO_SEE : TODO_FLY;
+    if (SEES_SKY && at_camera)
+        lane.phase_pdf = 0.0;
+    if (!looks && !at_camera && !has_looked)
+        scatter(v, to_uniform(words), lane);
+    bool goes_to_look = false;
+    if (LOOKS_ALONG && lane.todo == TODO_FLY && !has_looked)
+        goes_to_look = look_along(v, lane, rng, tally);
+    if (!goes_to_look)
+        begin_going(v, words, looks, at_camera, lane, rng, tally);
 }
 
 #endif

@@ -29,8 +29,6 @@ bool look_along(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tall
     float chance;
     LightRow light = choose_placed(v, lane.path.position, lane.path.direction, u.x, rng, chance);
     Stretch s = stretch_of(v, light, lane.path.position, lane.path.direction);
-    if (!is_open(s) || lane.path.depth >= frame.max_depth)
-        return false;
     float t = distance_in(s, u.y);
     vec3 position = lane.path.position + t * lane.path.direction;
     LightSample drawn = sample_light(v, light, position, lane.path.direction, next_words(rng), rng);
@@ -40,20 +38,19 @@ bool look_along(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tall
     float sigma_t = v.sigma_t * density(v, to_medium(v, position, lane.path.direction).origin, to_tap(words));
     lane.lit = lane.beta * (per_pdf * sigma_t) * to_spectrum(v.sigma_ratio * v.albedo);
     lane.light = drawn.light * phase_eval(v, lane.path.direction, drawn.direction);
-    if (largest(lane.lit) == 0.0 || largest(lane.light) == 0.0)
-        return false;
-    if (!LOOKS) {
+    bool is_lit = is_open(s) && lane.path.depth < frame.max_depth && largest(lane.lit) > 0.0 && largest(lane.light) > 0.0;
+    if (is_lit && LOOKS) {
+        lane.position = position;
+        lane.to_light = drawn.direction;
+        lane.light_distance = drawn.distance;
+        lane.leg = LEG_ALONG;
+        lane.resume = TODO_SET_OUT;
+        lane.todo = TODO_LOOK;
+    } else if (is_lit) {
         lane.path.radiance += lane.lit * analytic_shadow(v, lane.path.position, lane.path.direction, t) *
                               analytic_shadow(v, position, drawn.direction, drawn.distance) * lane.light;
-        return false;
     }
-    lane.position = position;
-    lane.to_light = drawn.direction;
-    lane.light_distance = drawn.distance;
-    lane.leg = LEG_ALONG;
-    lane.resume = TODO_SET_OUT;
-    lane.todo = TODO_LOOK;
-    return true;
+    return is_lit && LOOKS;
 }
 
 #endif

@@ -4,14 +4,14 @@
 #include "lights/light.glsl"
 #include "lib/trace.glsl"
 
-void end_shadow(MediumParams v, uint event, inout Lane lane) {
-    Spectrum T = event == EVENT_LEFT ? end_transmittance(v, lane.walk, lane.T) : to_spectrum(vec3(0.0));
-    if (is_along(lane)) { // the other leg follows
-        lane.lit *= T;
-        lane.leg = LEG_LOOK;
-        lane.todo = largest(lane.lit) > 0.0 ? TODO_LOOK : lane.resume;
-        return;
-    }
+// At the end of the first leg of a look from along a flight, where the second begins.
+void turn_to_light(Spectrum T, inout Lane lane) {
+    lane.lit *= T;
+    lane.leg = LEG_LOOK;
+    lane.todo = largest(lane.lit) > 0.0 ? TODO_LOOK : lane.resume;
+}
+
+void end_look(MediumParams v, Spectrum T, inout Lane lane) {
     Spectrum more = NEE == NEE_CACHED ? (T - lane.cached) / lane.chance : T;
     lane.path.radiance +=
         LIGHTS == LIGHTS_SUN ? sun_contribution(v, frame.lights[LIGHT_SUN], lane.path.direction, lit_beta(lane) * more)
@@ -23,6 +23,14 @@ void end_shadow(MediumParams v, uint event, inout Lane lane) {
         lane.walk = lane.flight;
         lane.search.stage = SEARCH_OVER;
     }
+}
+
+void end_shadow(MediumParams v, uint event, inout Lane lane) {
+    Spectrum T = event == EVENT_LEFT ? end_transmittance(v, lane.walk, lane.T) : to_spectrum(vec3(0.0));
+    if (is_along(lane))
+        turn_to_light(T, lane);
+    else
+        end_look(v, T, lane);
 }
 
 #endif
