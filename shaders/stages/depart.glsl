@@ -67,8 +67,9 @@ void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     if (!looks && !at_camera && !has_looked)
         scatter(v, to_uniform(words), lane);
     bool goes_to_look = false;
-    if (LOOKS_ALONG && lane.todo == TODO_FLY && !has_looked)
-        goes_to_look = look_along(v, lane, rng, tally);
+    if (LOOKS_ALONG) // in an `if` of its own, which the compiler leaves out with all it leads to
+        if (lane.todo == TODO_FLY && !has_looked)
+            goes_to_look = look_along(v, lane, rng, tally);
     if (!goes_to_look)
         begin_going(v, words, looks, at_camera, lane, rng, tally);
 }

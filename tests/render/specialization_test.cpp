@@ -186,6 +186,16 @@ TEST_CASE("every feature costs instructions only where a scene has it", "[gpu][s
     CHECK(count({nee, ratio, noise}) < count({nee, noise, {SPEC_TRANSMITTANCE, TRANSMITTANCE_RESIDUAL}}));
 }
 
+TEST_CASE("what few scenes have is compiled in a form of its own", "[cpu][specialization]") {
+    const Kernel plain = read_kernel(Words(std::begin(fused_spv), std::end(fused_spv)));
+    const Kernel full = read_kernel(Words(std::begin(fused_full_spv), std::end(fused_full_spv)));
+    for (const int binding : {BINDING_LIGHTS, BINDING_LIGHT_TREE, BINDING_SKY, BINDING_SKY_ALIAS, BINDING_PHASE}) {
+        CAPTURE(binding);
+        CHECK(!plain.elements.contains(binding));
+        CHECK(full.elements.contains(binding));
+    }
+}
+
 TEST_CASE("a grey path's throughput is one number, and its state holds nothing of other features",
           "[gpu][specialization]") {
     CHECK(read_kernel(Words(std::begin(fused_spv), std::end(fused_spv))).elements.at(BINDING_BETAS) == 1);
