@@ -135,6 +135,7 @@ RenderIdentity identify(const shared::FrameParams& frame, const Specialization& 
             digest.add_all(medium.majorants->bounds);
         digest.add_all(medium.controls);
         digest.add_all(medium.blackbody);
+        digest.add_all(medium.phase_nodes);
         if (medium.bvh)
             digest.add_all(medium.bvh->triangles);
     }

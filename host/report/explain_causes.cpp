@@ -271,7 +271,8 @@ Answer phase_peak(const Evidence& e) {
     if (e.odd != Odd::black || !e.sight || !sees_light(e) || e.emits)
         return {};
     const double g = volume_of(e.scene)->g;
-    if (std::abs(g) < 0.8 || phase_to_camera(e) > 0.05 || !only_directional(e.scene.lights))
+    if (volume_of(e.scene)->phase != PhaseFunction::henyey_greenstein || std::abs(g) < 0.8 ||
+        phase_to_camera(e) > 0.05 || !only_directional(e.scene.lights))
         return {};
     return fmt::format("the medium scatters the light past the camera: with heyneygreenstein_g {:g}, {:.1g} of what "
                        "it would be by even scattering comes this way; lower it, or let the light shine {} the camera",

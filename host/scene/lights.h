@@ -91,6 +91,14 @@ struct SkyLight {
 using Light =
     std::variant<DirectionalLight, SunLight, PointLight, SpotLight, SkyLight, SphereLight, DiskLight, RectangleLight>;
 
+// What a light sends out in all, for each unit of its intensity or radiance: the solid angle into which it shines, of a
+// spot with half of its rim, times the area that does, seen from each direction as it is [world units squared].
+double power_per_unit(const PointLight& light);
+double power_per_unit(const SpotLight& light);
+double power_per_unit(const SphereLight& light);
+double power_per_unit(const DiskLight& light);
+double power_per_unit(const RectangleLight& light);
+
 // The light if there is but one and it has neither place nor extent: such a scene needs no choice of lights.
 inline const DirectionalLight* only_directional(const std::vector<Light>& lights) {
     return lights.size() == 1 ? std::get_if<DirectionalLight>(&lights.front()) : nullptr;

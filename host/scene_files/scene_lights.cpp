@@ -109,6 +109,23 @@ Rgb SceneReader::light_color(const XmlElement& element) const {
     return tint;
 }
 
+// Where `power` is given in place of multiplier it is what the light sends out in all, times its colour.
+template <class Kind> Light SceneReader::of_power(const XmlElement& element, Kind light, Rgb Kind::*shine) const {
+    if (!element.has("power"))
+        return light;
+    if (element.has("multiplier"))
+        element.fail_attribute(
+            "power", fmt::format("<{}> power: multiplier says how bright it is; remove one of them", element.name()));
+    Rgb& color = light.*shine;
+    color *= element.attribute_number("power", 1.0, not_negative) / power_per_unit(light);
+    if (std::max({color.x, color.y, color.z}) > brightest_light)
+        element.fail_attribute("power",
+                               fmt::format("<{}> power: comes to {:.3g} from so small a light, but {:g} is the most; "
+                                           "lower it, or widen the light",
+                                           element.name(), std::max({color.x, color.y, color.z}), brightest_light));
+    return light;
+}
+
 Light SceneReader::light(const XmlElement& element) const {
     const std::string kind = element.name();
     if (kind == "directional") {
@@ -124,11 +141,11 @@ Light SceneReader::light(const XmlElement& element) const {
         return sun;
     }
     if (kind == "point") {
-        element.allow(with_colors({"x", "y", "z"}));
-        return PointLight{xyz(element, coordinate), light_color(element)};
+        element.allow(with_colors({"x", "y", "z", "power"}));
+        return of_power(element, PointLight{xyz(element, coordinate), light_color(element)}, &PointLight::intensity);
     }
     if (kind == "spot") {
-        element.allow(with_colors({"x", "y", "z", "lookAt", "angle", "blend"}));
+        element.allow(with_colors({"x", "y", "z", "lookAt", "angle", "blend", "power"}));
         SpotLight spot;
         spot.position = xyz(element, coordinate);
         spot.direction = looking_at(element, spot.position);
@@ -136,22 +153,24 @@ Light SceneReader::light(const XmlElement& element) const {
         spot.angle =
             element.attribute_number("angle", spot.angle, {0.1, 180.0, true, true, "an angle from 0.1 to 180 degrees"});
         spot.blend = element.attribute_number("blend", spot.blend, {0.0, 1.0, true, true, "a number from 0 to 1"});
-        return spot;
+        return of_power(element, spot, &SpotLight::intensity);
     }
     if (kind == "sphere") {
-        element.allow(with_colors({"x", "y", "z", "radius"}));
-        return SphereLight{xyz(element, coordinate), element.attribute_number("radius", 1.0, length),
-                           light_color(element)};
+        element.allow(with_colors({"x", "y", "z", "radius", "power"}));
+        const double radius = element.attribute_number("radius", 1.0, length);
+        return of_power(element, SphereLight{xyz(element, coordinate), radius, light_color(element)},
+                        &SphereLight::radiance);
     }
     if (kind == "disk") {
-        element.allow(with_colors({"x", "y", "z", "lookAt", "radius"}));
+        element.allow(with_colors({"x", "y", "z", "lookAt", "radius", "power"}));
         const glm::dvec3 center = xyz(element, coordinate);
-        return DiskLight{center, looking_at(element, center), element.attribute_number("radius", 1.0, length),
-                         light_color(element)};
+        const double radius = element.attribute_number("radius", 1.0, length);
+        return of_power(element, DiskLight{center, looking_at(element, center), radius, light_color(element)},
+                        &DiskLight::radiance);
     }
     if (kind == "rectangle") {
-        element.allow(with_colors({"x", "y", "z", "lookAt", "up", "width", "height"}));
-        return rectangle(element, light_color(element));
+        element.allow(with_colors({"x", "y", "z", "lookAt", "up", "width", "height", "power"}));
+        return of_power(element, rectangle(element, light_color(element)), &RectangleLight::radiance);
     }
     element.allow(with_colors({"baseDir", "rotation"}), true);
     SkyLight sky;

@@ -44,6 +44,7 @@ private:
     void read_daylight(const XmlElement& element, Scene& scene) const;
     Light light(const XmlElement& element) const;
     Rgb light_color(const XmlElement& element) const;
+    template <class Kind> Light of_power(const XmlElement& element, Kind light, Rgb Kind::*shine) const;
     std::optional<Volume> volume(const std::string& integrator) const;
     std::optional<Shape> shape(const std::string& integrator, std::string& place) const;
     XmlElement shape_element(const std::string& integrator) const;

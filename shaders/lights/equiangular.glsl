@@ -6,7 +6,7 @@
 // the free flight's density, which is not known, that of a medium of constant density. Any positive function would do.
 //
 // Drawn is not evenly by angle, for which tan and its inverse have to be each other's to the last digit, of which Vulkan
-// says little, but, with x = (t - foot) / off, by the density 1 / (1 + |x|)^2, at most twice and at least once 1 / (1 + x^2).
+// says little, but, with x = (t - foot) / off, by the density 1 / (1 + |x|)^2, which is half to all of 1 / (1 + x^2).
 #ifndef EQUIANGULAR_GLSL
 #define EQUIANGULAR_GLSL
 #include "lib/interval.glsl"
@@ -26,7 +26,7 @@ Stretch stretch_of(MediumParams v, LightRow light, vec3 position, vec3 direction
         s.t = vec2(0.0);
     vec3 apart = light.position - position;
     s.foot = dot(apart, direction);
-    // Lamps are no points: nearer than half their size nothing grows any more. Nor are rays that hit a point meant.
+    // Lamps are no points: nearer than half their size nothing grows any more. And no ray hits a point.
     float least = max(0.3 * sqrt(light.kind >= LIGHT_SPHERE ? light.area : 0.0), 1.0e-5 * (s.t.y - s.t.x));
     s.off = max(length(apart - s.foot * direction), max(least, 1.0e-30));
     vec2 x = (s.t - s.foot) / s.off;

@@ -103,10 +103,10 @@ inline constexpr Words grammar[] = {
 inline constexpr Words light_grammar[] = {
     {"directional", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier"}},
     {"sun", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier", "angle"}},
-    {"point", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier"}},
+    {"point", "", {"x", "y", "z", "r", "g", "b", "kelvin", "power"}},
     {"spot", "", {"x", "y", "z", "lookAt", "angle", "blend", "kelvin", "multiplier"}},
     {"sphere", "", {"x", "y", "z", "radius", "kelvin", "multiplier"}},
-    {"disk", "", {"x", "y", "z", "lookAt", "radius", "r", "multiplier"}},
+    {"disk", "", {"x", "y", "z", "lookAt", "radius", "r", "power"}},
     {"rectangle", "", {"x", "y", "z", "lookAt", "up", "width", "height", "b", "multiplier"}},
     {"daylight", "", {"x", "y", "z", "turbidity", "ground", "multiplier"}},
     {"sky", "sky.exr|none.exr", {"baseDir", "rotation", "kelvin", "multiplier"}}};

@@ -1,5 +1,7 @@
 // <lights>: what is read of it, and what is refused.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <numbers>
 
 #include "daylight.h"
@@ -48,6 +50,40 @@ TEST_CASE("lights of every kind are read", "[cpu][xml]") {
     CHECK(glm::length(rectangle.edge_u) == Approx(1.5));
     CHECK(rectangle.edge_v == glm::dvec3(0, 2, 0));
     CHECK(scene.warnings.empty());
+}
+
+// Integrated over directions and surfaces, by midpoints where there is no closed form.
+TEST_CASE("power is what a light sends out in all", "[cpu][xml]") {
+    constexpr double pi = std::numbers::pi;
+    const Scene scene = parse(R"(<sphere/><lights>
+        <point x="1" power="100" r="1" g=".5" b="0"/>
+        <spot y="5" lookAt="0 0 0" angle="90" blend=".6" power="100"/>
+        <sphere radius="2" power="100"/>
+        <disk y="2" lookAt="0 0 0" radius=".5" power="100"/>
+        <rectangle z="-2" lookAt="0 0 0" width="3" height="4" power="100"/></lights>)");
+    REQUIRE(scene.lights.size() == 5);
+    const Rgb point = std::get<PointLight>(scene.lights[0]).intensity;
+    CHECK(point.x * 4.0 * pi == Approx(100.0));
+    CHECK(point.y * 4.0 * pi == Approx(50.0));
+    const auto& spot = std::get<SpotLight>(scene.lights[1]);
+    double sent = 0.0;
+    constexpr int steps = 20000;
+    for (int i = 0; i < steps; ++i) {
+        const double mu = 1.0 - (1.0 - std::cos(pi / 4.0)) * (i + 0.5) / steps;
+        const double edge = std::cos(pi / 4.0), full = std::cos(pi / 4.0 * 0.4);
+        const double t = std::clamp((mu - edge) / (full - edge), 0.0, 1.0);
+        sent += spot.intensity.x * t * t * (3.0 - 2.0 * t) * 2.0 * pi * (1.0 - edge) / steps;
+    }
+    CHECK(sent == Approx(100.0).epsilon(1e-6));
+    CHECK(std::get<SphereLight>(scene.lights[2]).radiance.x * pi * 4.0 * pi * 4.0 == Approx(100.0));
+    CHECK(std::get<DiskLight>(scene.lights[3]).radiance.x * pi * pi * 0.25 == Approx(100.0));
+    CHECK(std::get<RectangleLight>(scene.lights[4]).radiance.x * pi * 12.0 == Approx(100.0));
+    CHECK(error_of(R"(<lights><point power="1" multiplier="2"/></lights>)").find("remove one of them") !=
+          std::string::npos);
+    CHECK(error_of(R"(<lights><sphere radius="1e-9" power="1"/></lights>)").find("widen the light") !=
+          std::string::npos);
+    CHECK(error_of(R"(<lights><sun power="1"/></lights>)") != "no error");
+    CHECK(parse(R"(<sphere/><lights><point power="0"/></lights>)").lights.empty());
 }
 
 TEST_CASE("what is wrong with a light is said at its place", "[cpu][xml]") {
