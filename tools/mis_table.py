@@ -39,7 +39,8 @@ def efficiency(vkvol, scene, mis, seed, spp, folder):
                "-q", "-o", folder / "a.exr", "--report", folder / "report.json"]
     subprocess.run(command, check=True, capture_output=True)
     report = json.loads((folder / "report.json").read_text())
-    return 1 / (report["noise"] ** 2 * report["seconds"]["render"]), report["device"]
+    noise = report["noise"] or float("inf")  # none is known where no light was found
+    return 1 / (noise**2 * report["seconds"]["render"]), report["device"]
 
 
 def main():
