@@ -182,24 +182,6 @@ double diagonal_of(const Volume& volume, const LoadedMedium& loaded) {
     return glm::length(glm::dmat3(medium_to_world(volume, loaded)) * (bounds.high - bounds.low));
 }
 
-} // namespace
-
-namespace {
-
-std::optional<glm::dvec3> place_of(const Light& light) {
-    if (const auto* point = std::get_if<PointLight>(&light))
-        return point->position;
-    if (const auto* spot = std::get_if<SpotLight>(&light))
-        return spot->position;
-    if (const auto* sphere = std::get_if<SphereLight>(&light))
-        return sphere->center;
-    if (const auto* disk = std::get_if<DiskLight>(&light))
-        return disk->center;
-    if (const auto* rectangle = std::get_if<RectangleLight>(&light))
-        return rectangle->center;
-    return std::nullopt;
-}
-
 // World units, from the box around the medium; 0 within.
 double distance_to(const Volume& volume, const LoadedMedium& loaded, const glm::dvec3& position) {
     const glm::dmat4 to_world = medium_to_world(volume, loaded);

@@ -7,6 +7,20 @@ namespace vkvol {
 
 using std::numbers::pi;
 
+std::optional<glm::dvec3> place_of(const Light& light) {
+    if (const auto* point = std::get_if<PointLight>(&light))
+        return point->position;
+    if (const auto* spot = std::get_if<SpotLight>(&light))
+        return spot->position;
+    if (const auto* sphere = std::get_if<SphereLight>(&light))
+        return sphere->center;
+    if (const auto* disk = std::get_if<DiskLight>(&light))
+        return disk->center;
+    if (const auto* rectangle = std::get_if<RectangleLight>(&light))
+        return rectangle->center;
+    return std::nullopt;
+}
+
 double power_per_unit(const PointLight&) {
     return 4.0 * pi;
 }

@@ -115,9 +115,11 @@ inline bool is_lamp(const Light& light) {
            std::holds_alternative<RectangleLight>(light);
 }
 
-// One that is somewhere, near or far.
+// Of one that is somewhere, near or far: its middle.
+std::optional<glm::dvec3> place_of(const Light& light);
+
 inline bool has_place(const Light& light) {
-    return is_lamp(light) || std::holds_alternative<PointLight>(light) || std::holds_alternative<SpotLight>(light);
+    return place_of(light).has_value();
 }
 
 } // namespace vkvol

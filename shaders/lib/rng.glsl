@@ -18,6 +18,8 @@
 //   light from the cache   x: whether a shadow ray corrects it
 //   choice of a light      x, y: which; z, w: where on it; select: whether by the phase function instead. Then, down a tree,
 //                          a draw for each four levels, a word each; of a map of the sky x, y: row; z, w: column
+//   look along a flight    x: how far on a light counts that is chosen down a tree; y: the distance; tap: its density. Then
+//                          the light's own draw, as of a choice. The flight takes a draw of its own after that
 //   lamp before the camera w of the camera's draw: which of those that the ray meets. After its shadow ray the first
 //                          flight takes a draw of its own, e_z as from the camera's
 //   scattering             e_x: next free flight; y, z: phase function; w: roulette; select

@@ -19,7 +19,7 @@ float lamp_pdf(LightRow light, vec3 from, vec3 direction, float t) {
 }
 
 // c: next to nothing for what is small as seen from here, against the narrowest that the phase function draws; most for what is
-// large, but never all (0.5 in place of 0.85: a quarter to a third less efficient there, see tools/results/mis.txt).
+// large, but never all. What 0.85 is worth: tools/results/README.md.
 float phase_share(MediumParams v, LightRow light, vec3 from) {
     vec3 apart = light.position - from;
     vec3 along = vec3(0.0, 1.0, 0.0);

@@ -63,6 +63,23 @@ Scene lit_by(const Volume& volume, double width, const std::vector<Light>& light
     return scene;
 }
 
+// Of the scene's one light, by quadrature along rays through `across` by `across` points of each pixel.
+std::vector<Rgb> single_scattering(const Scene& scene, int across) {
+    const reference::Medium medium = reference::load(scene.volumes.front(), Filter::trilinear);
+    std::vector<Rgb> means;
+    for (int y = 0; y < scene.picture.height; ++y)
+        for (int x = 0; x < scene.picture.width; ++x) {
+            Rgb sum(0.0);
+            for (int k = 0; k < across * across; ++k)
+                sum += reference::single_scattering_quadrature(medium, scene.lights.front(),
+                                                               reference::camera_ray(scene.camera, scene.picture,
+                                                                                     x + (k % across + 0.5) / across,
+                                                                                     y + (k / across + 0.5) / across));
+            means.push_back(sum / double(across * across));
+        }
+    return means;
+}
+
 Volume cloud(double g = 0.5) {
     return medium(cloud_file(), 2.0, 0.9, g);
 }
@@ -156,21 +173,8 @@ TEST_CASE("single scattering from a lamp in the fog equals the quadrature", "[gp
     scene.lights = {PointLight{{0.1, 0.9, 0.2}, Rgb(20.0)}};
     scene.settings.spp = 1024;
     scene.settings.max_depth = 1;
-    const reference::Medium medium = reference::load(scene.volumes.front(), Filter::trilinear);
-    std::vector<Rgb> means;
-    for (int y = 0; y < scene.picture.height; ++y)
-        for (int x = 0; x < scene.picture.width; ++x) {
-            constexpr int along = 4;
-            Rgb sum(0.0);
-            for (int k = 0; k < along * along; ++k)
-                sum += reference::single_scattering_quadrature(medium, scene.lights.front(),
-                                                               reference::camera_ray(scene.camera, scene.picture,
-                                                                                     x + (k % along + 0.5) / along,
-                                                                                     y + (k / along + 0.5) / along));
-            means.push_back(sum / double(along * along));
-        }
-    CHECK_AGREEMENT(
-        agree_with_means(render_here(scene, 55).film, means, fmt::format("a lamp in the fog, tau {}", tau)));
+    CHECK_AGREEMENT(agree_with_means(render_here(scene, 55).film, single_scattering(scene, 4),
+                                     fmt::format("a lamp in the fog, tau {}", tau)));
 }
 
 TEST_CASE("single scattering from lamps equals the quadrature", "[gpu][lights][closed_form]") {
@@ -183,19 +187,8 @@ TEST_CASE("single scattering from lamps equals the quadrature", "[gpu][lights][c
     scene.lights = {light};
     scene.settings.spp = 2048;
     scene.settings.max_depth = 1;
-    const reference::Medium medium = reference::load(scene.volumes.front(), Filter::trilinear);
-    std::vector<Rgb> means;
-    for (int y = 0; y < scene.picture.height; ++y)
-        for (int x = 0; x < scene.picture.width; ++x) {
-            Rgb sum(0.0);
-            for (int k = 0; k < 4; ++k)
-                sum += reference::single_scattering_quadrature(
-                    medium, light,
-                    reference::camera_ray(scene.camera, scene.picture, x + (k % 2 + 0.5) / 2, y + (k / 2 + 0.5) / 2));
-            means.push_back(sum / 4.0);
-        }
-    CHECK_AGREEMENT(
-        agree_with_means(render_here(scene, 9).film, means, fmt::format("lamp {}, tau {}", light.index(), tau)));
+    CHECK_AGREEMENT(agree_with_means(render_here(scene, 9).film, single_scattering(scene, 2),
+                                     fmt::format("lamp {}, tau {}", light.index(), tau)));
 }
 
 // Looks are weighted by phase_eval and flights drawn by phase_sample: their sum tells whether these agree.

@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""Looks from along flights against free flights alone: errors and seconds of `distance="mixed"` over those of `flights`.
+
+    tools/distance_table.py [--build build] [--spp 256] [--runs 3] [--reference 8192] > tools/results/distance.txt
+
+Errors are relMSE against a render of many samples by `mixed`: what free flights find near a light has no variance that an
+estimate could be trusted with, and a few pixels may decide. Read them as orders of magnitude.
+"""
+
+import argparse
+import json
+import pathlib
+import statistics
+import subprocess
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+FOG = """<options><box width="20" height="20" depth="20"/>{noise}<sigma_a>0</sigma_a><sigma_s>{sigma}</sigma_s>
+<camera z="30" fov="35"/><lights><point x="1" y="1.5" multiplier="10"/></lights><maxDepth>{depth}</maxDepth>
+<width>64</width><height>64</height></options>"""
+NOISE = '<noise frequency="0.3" octaves="3"/>'
+CASES = {
+    "single, depth 0.2": {"sigma": 0.01, "depth": 1, "noise": ""},
+    "single, depth 2": {"sigma": 0.1, "depth": 1, "noise": ""},
+    "single, depth 10": {"sigma": 0.5, "depth": 1, "noise": ""},
+    "all, depth 2": {"sigma": 0.1, "depth": 100, "noise": ""},
+    "all, depth 10": {"sigma": 0.5, "depth": 100, "noise": ""},
+    "noise, single, depth 2": {"sigma": 0.2, "depth": 1, "noise": NOISE},
+    "noise, all, depth 2": {"sigma": 0.2, "depth": 100, "noise": NOISE},
+}
+
+
+def render(vkvol, scene, way, seed, spp, picture):
+    report = picture.with_suffix(".json")
+    subprocess.run([vkvol, scene, "--integrator", f"ratioTracking:distance={way}", "--seed", str(seed), "--spp", str(spp), "-q",
+                    "-o", picture, "--report", report], check=True, capture_output=True)
+    return json.loads(report.read_text())
+
+
+def error(vkvol, picture, reference):
+    compared = subprocess.run([vkvol, "compare", picture, reference, "--json"], capture_output=True, text=True)
+    return json.loads(compared.stdout)["relMSE"]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", default=ROOT / "build")
+    parser.add_argument("--spp", type=int, default=256)
+    parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--reference", type=int, default=8192)
+    options = parser.parse_args()
+    vkvol = str(pathlib.Path(options.build).resolve() / "vkvol")
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        scene, picture, reference = folder / "scene.xml", folder / "a.exr", folder / "reference.exr"
+        for number, (case, values) in enumerate(CASES.items()):
+            scene.write_text(FOG.format(**values))
+            report = render(vkvol, scene, "mixed", 1000, options.reference, reference)
+            if number == 0:
+                device = report["device"]
+                print(f"{device['name']}, {device['driver']}; a point light in fog, {options.spp} samples; means of "
+                      f"{options.runs} errors, medians of as many seconds, in alternation")
+                print(f"{'':24} {'error':>8} {'seconds':>8} {'efficiency':>10}   mixed over flights")
+            errors, seconds = {"flights": [], "mixed": []}, {"flights": [], "mixed": []}
+            for run in range(options.runs):
+                for way in errors:
+                    seconds[way].append(render(vkvol, scene, way, run + 1, options.spp, picture)["seconds"]["render"])
+                    errors[way].append(error(vkvol, picture, reference))
+            less = statistics.mean(errors["flights"]) / statistics.mean(errors["mixed"])
+            longer = statistics.median(seconds["mixed"]) / statistics.median(seconds["flights"])
+            print(f"{case:24} {1 / less:8.4f} {longer:8.2f} {less / longer:10.2f}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
