@@ -14,7 +14,7 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
       buffers_(device, commands, assets.media, most_grid_bytes, most_texel_bytes),
       form_(is_chromatic(scene) ? form_chromatic : 0),
       text_(kernel_text(specialization_, assets.media, is_chromatic(scene))),
-      origin_(render_origin(scene, assets.media)) {
+      origin_(render_origin(scene, assets.media)), cache_directions_(cache_layout(scene.lights).directions) {
     specialization_[SPEC_TEXELS] = buffers_.texels() ? 1 : 0;
     if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN)
         make_lights(scene, assets);
@@ -34,6 +34,9 @@ void DeviceScene::make_lights(const Scene& scene, const Assets& assets) {
     frame_.lamp_first = lights_.lamp_first;
     frame_.lamp_count = lights_.lamp_count;
     frame_.sky = make_sky_params(scene, assets);
+    cache_directions_.insert(cache_directions_.end(), lights_.suns.begin(), lights_.suns.end());
+    std::copy(lights_.suns.begin(), lights_.suns.end(), frame_.cache_suns);
+    frame_.fluence = lights_.fluence;
     buffers_.upload_lights(device_, commands_, lights_, assets.sky ? &*assets.sky : nullptr);
 }
 
@@ -46,7 +49,7 @@ void DeviceScene::make_light_cache() {
     if (specialization_[SPEC_NEE] != NEE_CACHED || specialization_[SPEC_SHAPE] == SHAPE_NONE)
         return;
     buffers_.set_frame(commands_, frame_);
-    light_cache_.emplace(device_, buffers_.bound(), frame_.lattice);
+    light_cache_.emplace(device_, buffers_.bound(), frame_.lattice, cache_directions_);
 }
 
 void DeviceScene::compile_light_cache(VkPipelineCache cache) {

@@ -50,6 +50,7 @@ private:
     unsigned form_;
     std::string text_;
     glm::dvec3 origin_;
+    std::vector<glm::vec3> cache_directions_;
 };
 
 } // namespace vkvol

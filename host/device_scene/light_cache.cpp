@@ -10,8 +10,6 @@ namespace vkvol {
 
 namespace {
 
-constexpr double most_nodes = 64.0; // along an edge: twice as many were no better
-
 std::uint64_t count(const shared::LatticeParams& lattice) {
     return std::uint64_t(lattice.dims.x) * std::uint64_t(lattice.dims.y) * std::uint64_t(lattice.dims.z);
 }
@@ -23,12 +21,13 @@ BoundBuffers with_lattice(BoundBuffers scene, const Buffer& lattice) {
 
 } // namespace
 
-shared::LatticeParams make_lattice(glm::dvec3 low, glm::dvec3 high, glm::dvec3 edges, glm::ivec3 voxels) {
+shared::LatticeParams make_lattice(glm::dvec3 low, glm::dvec3 high, glm::dvec3 edges, glm::ivec3 voxels,
+                                   int most_nodes) {
     shared::LatticeParams lattice{};
-    const double spacing = std::max({edges.x, edges.y, edges.z}) / (most_nodes - 1.0);
+    const double spacing = std::max({edges.x, edges.y, edges.z}) / (most_nodes - 1);
     for (int axis = 0; axis < 3; ++axis) {
         const double wanted = std::ceil(edges[axis] / spacing) + 1.0;
-        const double most = voxels == glm::ivec3(0) ? most_nodes : std::min(most_nodes, voxels[axis] + 2.0);
+        const double most = voxels == glm::ivec3(0) ? most_nodes : std::min(most_nodes, voxels[axis] + 2);
         lattice.dims[axis] = static_cast<int>(std::clamp(wanted, 2.0, most));
         lattice.spacing[axis] = static_cast<float>((high[axis] - low[axis]) / (lattice.dims[axis] - 1));
     }
@@ -36,11 +35,29 @@ shared::LatticeParams make_lattice(glm::dvec3 low, glm::dvec3 high, glm::dvec3 e
     return lattice;
 }
 
-LightCache::LightCache(const Device& device, const BoundBuffers& scene, const shared::LatticeParams& lattice)
+CacheLayout cache_layout(const std::vector<Light>& lights) {
+    if (const DirectionalLight* sun = only_directional(lights))
+        return {{glm::vec3(sun->direction)}, 64}; // twice as many nodes were no better
+    CacheLayout all{{}, 32};
+    for (int axis = 0; axis < 3; ++axis)
+        for (const float sign : {1.0f, -1.0f}) {
+            all.directions.emplace_back(0.0f);
+            all.directions.back()[axis] = sign;
+        }
+    for (int signs = 0; signs < 8; ++signs) {
+        const glm::vec3 negative(signs & 1, signs >> 1 & 1, signs >> 2);
+        all.directions.push_back((1.0f - 2.0f * negative) / std::sqrt(3.0f));
+    }
+    return all;
+}
+
+LightCache::LightCache(const Device& device, const BoundBuffers& scene, const shared::LatticeParams& lattice,
+                       std::vector<glm::vec3> directions)
     : device_(device),
-      buffer_(device, "light cache", 2 * count(lattice) * sizeof(glm::vec4),
+      buffer_(device, "light cache", (1 + directions.size()) * count(lattice) * sizeof(glm::vec4),
               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, BufferPlace::device),
-      bindings_(device, with_lattice(scene, buffer_)), nodes_(static_cast<std::uint32_t>(count(lattice))) {}
+      bindings_(device, with_lattice(scene, buffer_)), directions_(std::move(directions)),
+      nodes_(static_cast<std::uint32_t>(count(lattice))) {}
 
 void LightCache::compile(const Specialization& specialization, unsigned form, VkPipelineCache cache) {
     for (const std::span<const std::uint32_t> spirv : {average_forms[form], std::span<const std::uint32_t>(shade_spv)})
@@ -49,12 +66,19 @@ void LightCache::compile(const Specialization& specialization, unsigned form, Vk
 
 void LightCache::fill(Commands& commands) {
     commands.fill(buffer_, 0); // the corners beyond the border are read, with weight 0
-    const shared::PassPush push{};
-    for (const std::unique_ptr<ComputePass>& pass : passes_)
+    const auto run = [&](const ComputePass& pass, const shared::PassPush& push) {
         commands.run([&](VkCommandBuffer recorded) {
-            pass->record(recorded, push, nodes_);
+            pass.record(recorded, push, nodes_);
             record_barrier(recorded);
         });
+    };
+    run(*passes_.front(), {});
+    for (std::size_t i = 0; i < directions_.size(); ++i) {
+        shared::PassPush push{};
+        push.lattice = static_cast<std::uint32_t>(1 + i);
+        push.towards = directions_[i];
+        run(*passes_.back(), push);
+    }
     passes_.clear();
 }
 

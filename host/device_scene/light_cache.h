@@ -11,13 +11,23 @@
 namespace vkvol {
 
 // Nodes over the box from `low` to `high` (medium space), whose edges are `edges` world units long: cubes in world
-// space where they can be, at most 64 along an edge, and at most two for each voxel of `voxels` along it (0: no grid).
-shared::LatticeParams make_lattice(glm::dvec3 low, glm::dvec3 high, glm::dvec3 edges, glm::ivec3 voxels);
+// space where they can be, at most `most` along an edge, and at most two for each voxel of `voxels` along it (0: no
+// grid).
+shared::LatticeParams make_lattice(glm::dvec3 low, glm::dvec3 high, glm::dvec3 edges, glm::ivec3 voxels, int most);
+
+// Directions in which it knows optical depths, unit, and nodes along its longest edge. Towards a single directional
+// light, or all around, see CACHE_DIRECTIONS.
+struct CacheLayout {
+    std::vector<glm::vec3> directions;
+    int most_nodes = 0;
+};
+CacheLayout cache_layout(const std::vector<Light>& lights);
 
 class LightCache {
 public:
     // Of a scene whose buffers and frame are on the device.
-    LightCache(const Device& device, const BoundBuffers& scene, const shared::LatticeParams& lattice);
+    LightCache(const Device& device, const BoundBuffers& scene, const shared::LatticeParams& lattice,
+               std::vector<glm::vec3> directions);
 
     void compile(const Specialization& specialization, unsigned form, VkPipelineCache cache);
     // Once compiled, and before it is read. The kernels go.
@@ -29,6 +39,7 @@ private:
     const Device& device_;
     Buffer buffer_;
     Bindings bindings_;
+    std::vector<glm::vec3> directions_;
     std::uint32_t nodes_;
     std::vector<std::unique_ptr<ComputePass>> passes_; // in their order
 };

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "alias_table.h"
 #include "light_tree.h"
@@ -164,6 +165,20 @@ void set_chances(std::vector<shared::LightRow>& rows, const std::vector<double>&
     }
 }
 
+// The brightest first.
+std::vector<glm::vec3> find_suns(std::vector<Entry> entries, double fluence) {
+    constexpr double least = 0.05; // of all
+    std::erase_if(entries, [&](const Entry& entry) {
+        return (entry.row.kind != LIGHT_DIRECTIONAL && entry.row.kind != LIGHT_DISC) || entry.fluence < least * fluence;
+    });
+    std::stable_sort(entries.begin(), entries.end(),
+                     [](const Entry& a, const Entry& b) { return a.fluence > b.fluence; });
+    std::vector<glm::vec3> suns;
+    for (std::size_t i = 0; i < std::min<std::size_t>(entries.size(), CACHE_SUNS); ++i)
+        suns.push_back(entries[i].row.direction);
+    return suns;
+}
+
 // Power as seen from a unit of distance, and never none: every light is to have a chance.
 PlacedLight placed(const Entry& entry, std::uint32_t row) {
     const glm::vec3 radiance = entry.row.radiance;
@@ -230,6 +245,8 @@ LightTable make_light_table(const Scene& scene, const Assets& assets, const glm:
     }
     table.choices = static_cast<std::uint32_t>(fluences.size());
     set_chances(table.rows, fluences);
+    table.fluence = static_cast<float>(std::max(std::accumulate(fluences.begin(), fluences.end(), 0.0), 1e-30));
+    table.suns = find_suns(entries, table.fluence);
     if (has_tree)
         table.tree = make_light_tree(somewhere);
     return table;

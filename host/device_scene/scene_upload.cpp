@@ -342,14 +342,14 @@ shared::MarchParams make_march(const Scene& scene, Media media, const Method& me
     return params;
 }
 
-shared::LatticeParams make_lattice_of(const Volume& volume, const LoadedMedium& loaded) {
+shared::LatticeParams make_lattice_of(const Volume& volume, const LoadedMedium& loaded, int most_nodes) {
     const Bounds bounds = medium_bounds(loaded);
     const glm::dmat3 to_world(medium_to_world(volume, loaded));
     glm::dvec3 edges;
     for (int axis = 0; axis < 3; ++axis)
         edges[axis] = glm::length(to_world[axis]) * (bounds.high[axis] - bounds.low[axis]);
     const glm::ivec3 voxels = loaded.field ? loaded.field->voxel_max - loaded.field->voxel_min + 1 : glm::ivec3(0);
-    return make_lattice(bounds.low, bounds.high, edges, voxels);
+    return make_lattice(bounds.low, bounds.high, edges, voxels, most_nodes);
 }
 
 glm::dvec3 middle_of(const Volume& volume, const LoadedMedium& loaded) {
@@ -372,7 +372,7 @@ shared::FrameParams make_frame(const Scene& scene, Media media, const Method& me
     for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
         frame.media[i] = make_medium(scene, scene.volumes[i], media[i], method, origin);
         if (method.nee == NEE_CACHED)
-            frame.lattice = make_lattice_of(scene.volumes[i], media[i]);
+            frame.lattice = make_lattice_of(scene.volumes[i], media[i], cache_layout(scene.lights).most_nodes);
     }
     frame.sensors[0] = make_pinhole(
         scene, origin, std::max(0.5 * longest_diagonal(scene, media), reach_of_lamps(scene.lights, origin)));

@@ -123,8 +123,9 @@ void Resolution::choose_nee() {
         nee = NEE_COLLISIONS;
     } else if (nee == NEE_CACHED && (field_ == FIELD_CONSTANT || !can_cache_light(scene_))) {
         if (choices_.nee)
-            warn("a cache of transmittances is for grids, and for noise in spheres and boxes, under one directional "
-                 "light; shadow rays start at every collision");
+            warn("a cache of transmittances is for grids, and for noise in spheres and boxes; shadow rays start at "
+                 "every "
+                 "collision");
         nee = NEE_COLLISIONS;
     }
 }
@@ -250,7 +251,7 @@ int density_kind(const Scene& scene) {
 
 bool can_cache_light(const Scene& scene) {
     const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
-    return only_directional(scene.lights) && density_kind(scene) != FIELD_CONSTANT && !any_medium(scene, is_mesh);
+    return !scene.lights.empty() && density_kind(scene) != FIELD_CONSTANT && !any_medium(scene, is_mesh);
 }
 
 bool has_chromatic_extinction(const Scene& scene) {

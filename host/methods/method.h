@@ -43,8 +43,7 @@ bool is_through(const Method& method);
 // FIELD_..., FIELD_CONSTANT without a volume.
 int density_kind(const Scene& scene);
 bool has_chromatic_extinction(const Scene& scene); // sigma_t differs between channels
-// Where transmittances towards a light can be cached: there is but one, directional; the density varies, and the shape
-// is no mesh.
+// Where transmittances towards lights can be cached: there are any, the density varies, and the shape is no mesh.
 bool can_cache_light(const Scene& scene);
 bool emits(const Scene& scene); // judged by coefficients: the temperature grid may be missing
 

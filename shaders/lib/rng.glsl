@@ -15,7 +15,7 @@
 //   emission along a step  x: position in the step; after the step's own draw; none in an empty cell
 //   shadow ray             e_x: first distance; y, z, select: telescoping's level, offset and residue; none is drawn
 //                          for one known in closed form
-//   light from the cache   x: whether a shadow ray corrects it
+//   light from the cache   x: whether a shadow ray corrects it; after the choice of a light, where there is one
 //   choice of a light      x, y: which; z, w: where on it; select: whether by the phase function instead. Then, down a tree,
 //                          a draw for each four levels, a word each; of a map of the sky x, y: row; z, w: column
 //   look along a flight    x: how far on a light counts that is chosen down a tree; y: the distance; tap: its density. Then

@@ -5,7 +5,7 @@
 #include "lib/buffers.glsl"
 
 #define LATTICE_DENSITY 0u // mean around each node
-#define LATTICE_DEPTH 1u   // optical depth towards the light, of the channel where extinction is largest
+#define LATTICE_DEPTH 1u   // and on: optical depths, of the channel where extinction is largest
 
 uint lattice_index(uint which, ivec3 node) {
     ivec3 dims = frame.lattice.dims;

@@ -9,13 +9,42 @@
 #include "phase/phase.glsl"
 #include "shapes/shape.glsl"
 
-const float LOOKING = 4.0; // measured: the chance of a doubtful isotropic collision is 1 then
+// Measured: the chance of a doubtful isotropic collision is 1 with 4; what is known of many directions is known less well.
+const float LOOKING = LIGHTS == LIGHTS_SUN ? 4.0 : 16.0;
 const float LEAST_CHANCE = 0.05; // bounds the weight of what the cache has wrong
 const float DOUBT_AT_ENDS = 0.02;
 
-// T~ from a point of render space.
+// T~ from a point of render space, towards the sun.
 Spectrum cached_transmittance(MediumParams v, vec3 position) {
     float depth = lattice_value(LATTICE_DEPTH, to_medium(v, position, vec3(0.0)).origin);
+    return exp(-to_spectrum(v.sigma_ratio) * depth);
+}
+
+const float NEAR_SUN = 0.99; // cosine: about 8 degrees
+
+// Depth in any direction: of the sun that is there, or between those of the axis and the diagonal that are nearest.
+float cached_depth(MediumParams v, vec3 position, vec3 direction) {
+    vec3 p = to_medium(v, position, vec3(0.0)).origin;
+    vec3 a = abs(direction);
+    float most = max(a.x, max(a.y, a.z));
+    int axis = a.x == most ? 0 : a.y == most ? 1 : 2;
+    uvec3 negative = uvec3(lessThan(direction, vec3(0.0)));
+    uint first = 2u * uint(axis) + negative[axis];
+    uint diagonal = CACHE_AXES + (negative.x | negative.y << 1u | negative.z << 2u);
+    float share = clamp((1.0 - most) / (1.0 - inversesqrt(3.0)), 0.0, 1.0);
+    [[unroll]] for (uint i = 0u; i < CACHE_SUNS; ++i) {
+        bool at_sun = dot(direction, frame.cache_suns[i]) > NEAR_SUN;
+        first = at_sun ? CACHE_DIRECTIONS + i : first;
+        share = at_sun ? 0.0 : share;
+    }
+    return mix(lattice_value(LATTICE_DEPTH + first, p), lattice_value(LATTICE_DEPTH + diagonal, p), share);
+}
+
+// T~ towards a light of a table: of one that is not infinitely far, without what is behind it.
+Spectrum cached_transmittance_to(MediumParams v, vec3 position, vec3 direction, float reach) {
+    float depth = cached_depth(v, position, direction);
+    if (reach < FAR)
+        depth = max(depth - cached_depth(v, position + reach * direction, direction), 0.0);
     return exp(-to_spectrum(v.sigma_ratio) * depth);
 }
 

@@ -1,4 +1,4 @@
-// The optical depth from each node of the lattice towards the light, marched through the lattice of densities from cell to
+// The optical depth from each node of the lattice towards a light, marched through the lattice of densities from cell to
 // cell. It need not be exact: estimators that use it correct it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -16,7 +16,7 @@ void main() {
         return;
     ivec3 node = lattice_node(i);
     MediumParams v = frame.media[0];
-    Ray ray = Ray(node_position(node), to_medium(v, vec3(0.0), frame.lights[LIGHT_SUN].direction).direction);
+    Ray ray = Ray(node_position(node), to_medium(v, vec3(0.0), push.towards).direction);
     vec3 cells = abs(ray.direction) / l.spacing; // per world unit
     float dt = 1.0 / max(cells.x, max(cells.y, cells.z));
     vec3 high = l.low + vec3(l.dims - 1) * l.spacing;
@@ -27,5 +27,5 @@ void main() {
         float step = min(dt, end - from);
         depth += v.sigma_t * step * lattice_value(LATTICE_DENSITY, ray.origin + (from + 0.5 * step) * ray.direction);
     }
-    store_node(LATTICE_DEPTH, node, depth);
+    store_node(push.lattice, node, depth);
 }

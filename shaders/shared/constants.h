@@ -99,6 +99,12 @@
 #define NEE_TENTATIVE 2  // at every tentative collision, weighted by sigma_t / sigma_maj
 #define NEE_CACHED 3     // at real collisions, by chance: they correct a cached transmittance
 
+// In which a cache for lights of a table knows optical depths: along the axes, x first, + before -; and between any three of
+// them, by signs: bit 0 of x, set for -.
+#define CACHE_DIRECTIONS 14
+#define CACHE_AXES 6
+#define CACHE_SUNS 2 // and at most so many besides, from where much of the light comes
+
 // As numbered in the scene: vkvol::PhaseFunction.
 #define PHASE_HENYEY_GREENSTEIN 0
 #define PHASE_RAYLEIGH 1

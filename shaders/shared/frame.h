@@ -112,8 +112,8 @@ struct MediumParams {
     uint bvh_nodes; // of a mesh
 };
 
-// Nodes over the medium's box, z fastest. Two lattices of these dimensions lie one after the other: of the density, and
-// of optical depths towards the light. See lattice.glsl.
+// Nodes over the medium's box, z fastest. Lattices of these dimensions lie one after the other: of the density, and of
+// optical depths, towards the sun or in each of CACHE_DIRECTIONS directions. See lattice.glsl.
 struct LatticeParams {
     vec3 low;     // medium space, the first node
     vec3 spacing; // medium space
@@ -176,6 +176,8 @@ struct FrameParams {
     SkyParams sky;
     MarchParams march;
     LatticeParams lattice; // NEE_CACHED only
+    float fluence;         // of all lights of a table, amid the medium, roughly
+    vec3 cache_suns[CACHE_SUNS]; // unit; 0: none
     float roulette_threshold;
     uint max_depth;
     uint seed;
@@ -200,6 +202,8 @@ struct PassPush {
     uint places;     // staged: pixels whose samples may wait to be added to the film
     uint budget;     // loop iterations after which a lane takes no further item
     uint step_limit; // steps after which a flight is cut, counted as a cap
+    uint lattice;    // shade: which one is filled, and towards where (unit)
+    vec3 towards;
 };
 
 SHARED_END

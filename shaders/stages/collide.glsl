@@ -26,6 +26,12 @@ void gather_some_light(MediumParams v, vec3 position, float t, Spectrum lit, uin
         lane.light_distance = drawn.distance;
         lane.light = light;
         lane.todo = largest(light) > 0.0 && largest(lit) > 0.0 ? TODO_LOOK : next;
+        if (NEE == NEE_CACHED) {
+            lane.cached = cached_transmittance_to(v, position, drawn.direction, drawn.distance);
+            lane.path.radiance += lit * lane.cached * light;
+            lane.chance = looking_chance(largest(lit * light) / (INV_4PI * frame.fluence), lane.cached);
+            lane.todo = to_uniform(next_words(rng)).x < lane.chance ? lane.todo : next;
+        }
     } else {
         lane.path.radiance += lit * analytic_shadow(v, position, drawn.direction, drawn.distance) * light;
         lane.todo = next;

@@ -31,8 +31,9 @@ void scatter(MediumParams v, vec4 u, inout Lane lane) {
     if (SEES_SKY)
         lane.phase_pdf = phase_eval(v, before, lane.path.direction);
     lane.todo = survives(lane.beta, u.w) ? TODO_FLY : TODO_END;
-    if (LOOKS && NEE == NEE_CACHED && PHASE_HAS_TWICE && lane.path.depth < frame.max_depth)
-        lane.path.radiance -= lane.beta * frame.lights[LIGHT_SUN].radiance *
+    if (LIGHTS == LIGHTS_SUN) // in an `if` of its own, as below
+        if (LOOKS && NEE == NEE_CACHED && PHASE_HAS_TWICE && lane.path.depth < frame.max_depth)
+            lane.path.radiance -= lane.beta * frame.lights[LIGHT_SUN].radiance *
                               foreseen_light(v, lane.cached, before, lane.path.direction);
 }
 

@@ -19,6 +19,7 @@ void look_at_lamps(MediumParams v, inout Lane lane, inout Rng rng) {
         lane.to_light = seen.direction;
         lane.light_distance = seen.distance;
         lane.light = seen.light;
+        look_in_full(lane);
         lane.todo = TODO_LOOK;
     } else {
         lane.path.radiance = analytic_shadow(v, lane.path.position, seen.direction, seen.distance) * seen.light;

@@ -67,6 +67,11 @@ float looking_as_far_as(Lane lane) {
            : is_along(lane)     ? distance(lane.path.position, lane.position)
                                 : lane.light_distance;
 }
+// One that corrects no cache.
+void look_in_full(inout Lane lane) {
+    lane.cached = to_spectrum(vec3(0.0));
+    lane.chance = 1.0;
+}
 uint after_looking(Lane lane) {
     bool at_camera = SEES_LAMPS && lane.path.depth == 0u;
     return KEEPS_PLACE                                        ? lane.resume

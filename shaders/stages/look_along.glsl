@@ -46,6 +46,7 @@ bool look_along(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tall
         lane.leg = LEG_ALONG;
         lane.resume = TODO_SET_OUT;
         lane.todo = TODO_LOOK;
+        look_in_full(lane);
     } else if (is_lit) {
         lane.path.radiance += lane.lit * analytic_shadow(v, lane.path.position, lane.path.direction, t) *
                               analytic_shadow(v, position, drawn.direction, drawn.distance) * lane.light;

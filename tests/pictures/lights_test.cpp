@@ -120,8 +120,8 @@ TEST_CASE("shadow rays end at a lamp within the medium", "[gpu][lights]") {
     const Film reference = render_reference(scene, 7);
     for (const int transmittance : {TRANSMITTANCE_REGULAR, TRANSMITTANCE_DELTA, TRANSMITTANCE_RATIO,
                                     TRANSMITTANCE_RESIDUAL, TRANSMITTANCE_TELESCOPING})
-        for (const int nee : {NEE_COLLISIONS, NEE_TENTATIVE}) {
-            if (nee == NEE_TENTATIVE && transmittance != TRANSMITTANCE_RATIO)
+        for (const int nee : {NEE_COLLISIONS, NEE_TENTATIVE, NEE_CACHED}) {
+            if (nee != NEE_COLLISIONS && transmittance != TRANSMITTANCE_RATIO)
                 continue;
             scene.settings.choices.transmittance = transmittance;
             scene.settings.choices.nee = nee;

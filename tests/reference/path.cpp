@@ -133,9 +133,11 @@ Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng
         if (last)
             return L;
         beta *= medium.albedo;
-        if (method.nee == NEE_COLLISIONS)
+        // Its own cache knows one sun; of other lights there is no need for one.
+        const bool cached = method.nee == NEE_CACHED && vkvol::only_directional(world.scene.lights);
+        if (method.nee == NEE_COLLISIONS || (method.nee == NEE_CACHED && !cached))
             L += beta * direct_light(world, ray.origin, ray.direction, rng);
-        if (method.nee == NEE_CACHED)
+        if (cached)
             L += beta * cached_light(world, ray.origin, ray.direction, beta, rng);
         if (method.scattering == SCATTERING_SINGLE)
             return L;
@@ -152,7 +154,7 @@ Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng
         const glm::dvec3 before = ray.direction;
         ray.direction = phase_sample(medium, before, draw.y(), draw.z());
         const bool next_is_lit = !settings.max_depth || depth + 1 < *settings.max_depth;
-        if (method.nee == NEE_CACHED && next_is_lit)
+        if (cached && next_is_lit)
             L -= beta * foreseen_light(world, ray.origin, before, ray.direction);
         exponential = draw.exponential(0);
         select = draw.select();

@@ -97,8 +97,7 @@ vkvol::Volume preset_volume(const std::string& integrator, vkvol::Volume volume)
 Method resolve_method(const vkvol::Scene& scene, Medium& medium) {
     const vkvol::RenderSettings& settings = scene.settings;
     const vkvol::AxisChoices& choices = settings.choices;
-    const bool cached =
-        vkvol::only_directional(scene.lights) && !medium.homogeneous() && !std::holds_alternative<Mesh>(medium.shape);
+    const bool cached = !scene.lights.empty() && !medium.homogeneous() && !std::holds_alternative<Mesh>(medium.shape);
     const std::string best = scene.lights.empty() ? "deltaTracking" : cached ? "cachedRatioTracking" : "ratioTracking";
     const Preset& preset = find_preset(settings.integrator.empty() ? best : settings.integrator);
     Method method{preset.name,

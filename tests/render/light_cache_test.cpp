@@ -13,8 +13,9 @@ using namespace vkvol;
 
 namespace {
 
-// Optical depths towards the light at the nodes, as the device finds them.
-std::vector<float> depths_at_nodes(const TestScene& scene, const shared::LatticeParams& lattice, bool texels) {
+// Optical depths at the nodes, as the device finds them, in one direction after the other.
+std::vector<float> depths_at_nodes(const TestScene& scene, const shared::LatticeParams& lattice,
+                                   const std::vector<glm::vec3>& directions, bool texels) {
     Commands commands(test_device());
     SceneBuffers buffers(test_device(), commands, Media(scene.kernel.volume, 1), std::uint64_t{1} << 27,
                          texels ? std::uint64_t{4} * test_device().limits().maxTexelBufferElements : 1);
@@ -23,13 +24,13 @@ std::vector<float> depths_at_nodes(const TestScene& scene, const shared::Lattice
     buffers.set_frame(commands, frame);
     Specialization constants = scene.specialization;
     constants[SPEC_TEXELS] = buffers.texels() ? 1 : 0;
-    LightCache cache(test_device(), buffers.bound(), lattice);
+    LightCache cache(test_device(), buffers.bound(), lattice, directions);
     cache.compile(constants, 0, VK_NULL_HANDLE);
     cache.fill(commands);
     std::vector<glm::vec4> entries(cache.buffer().bytes() / sizeof(glm::vec4));
     commands.download(cache.buffer(), std::as_writable_bytes(std::span(entries)));
     std::vector<float> depths;
-    for (std::size_t i = entries.size() / 2; i < entries.size(); ++i)
+    for (std::size_t i = entries.size() / (1 + directions.size()); i < entries.size(); ++i)
         depths.push_back(entries[i].x);
     return depths;
 }
@@ -37,13 +38,13 @@ std::vector<float> depths_at_nodes(const TestScene& scene, const shared::Lattice
 } // namespace
 
 TEST_CASE("lattices are cubes where they can be, and no finer than the grid", "[cpu][light_cache]") {
-    const auto same = make_lattice({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0}, {8.0, 4.0, 2.0}, glm::ivec3(0));
+    const auto same = make_lattice({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0}, {8.0, 4.0, 2.0}, glm::ivec3(0), 64);
     CHECK(same.dims == glm::ivec3(64, 33, 17));
     for (int axis = 0; axis < 3; ++axis)
         CHECK(same.spacing[axis] * float(same.dims[axis] - 1) == Approx(2.0));
-    const auto small = make_lattice({-1.0, -1.0, -1.0}, {10.0, 1.0, 5.0}, {1.1, 0.2, 0.6}, {10, 1, 5});
+    const auto small = make_lattice({-1.0, -1.0, -1.0}, {10.0, 1.0, 5.0}, {1.1, 0.2, 0.6}, {10, 1, 5}, 64);
     CHECK(small.dims == glm::ivec3(12, 3, 7));
-    const auto flat = make_lattice({0.0, 0.0, 0.0}, {100.0, 1.0, 100.0}, {100.0, 1e-9, 100.0}, glm::ivec3(0));
+    const auto flat = make_lattice({0.0, 0.0, 0.0}, {100.0, 1.0, 100.0}, {100.0, 1e-9, 100.0}, glm::ivec3(0), 64);
     CHECK(flat.dims == glm::ivec3(64, 2, 64));
 }
 
@@ -58,28 +59,32 @@ TEST_CASE("the cache knows the depth of a uniform block to a cell of the lattice
     volume.sigma_a = volume.sigma_s = Rgb(0.05);
     volume.unit = CoefficientUnit::world;
     TestScene scene = make_test_scene(grid.volume, volume, Filter::trilinear);
-    const glm::dvec3 light = glm::normalize(glm::dvec3(0.3, 1.0, -0.2));
-    scene.kernel.frame.lights[LIGHT_SUN].direction = light;
+    const DirectionalLight sun{glm::normalize(glm::dvec3(0.3, 1.0, -0.2)), Rgb(1.0)};
+    const std::vector<Light> lights = GENERATE_COPY(std::vector<Light>{sun}, std::vector<Light>{sun, PointLight{}});
+    const std::vector<glm::vec3> directions = cache_layout(lights).directions;
+    REQUIRE(directions.size() == (lights.size() == 1 ? 1 : CACHE_DIRECTIONS));
     const glm::dvec3 low(-1.0), high(40.0, 30.0, 20.0);
-    const auto lattice = make_lattice(low, high, high - low, {12, 9, 6});
+    const auto lattice = make_lattice(low, high, high - low, {12, 9, 6}, 64);
     const double spacing = lattice.spacing.x;
     const bool texels = GENERATE(false, true);
-    const std::vector<float> depths = depths_at_nodes(scene, lattice, texels);
+    const std::vector<float> depths = depths_at_nodes(scene, lattice, directions, texels);
     const double per_voxel = double(scene.kernel.frame.media[0].sigma_t) *
                              glm::length(glm::dmat3(grid.field().index_to_world) * glm::dvec3(1.0, 0.0, 0.0));
     std::size_t i = 0;
-    for (int x = 0; x < lattice.dims.x; ++x)
-        for (int y = 0; y < lattice.dims.y; ++y)
-            for (int z = 0; z < lattice.dims.z; ++z, ++i) {
-                const glm::dvec3 p = low + glm::dvec3(x, y, z) * glm::dvec3(lattice.spacing);
-                double end = 1e300; // to the faces of the voxels, in voxels
-                for (int axis = 0; axis < 3; ++axis) {
-                    const double face = light[axis] > 0.0 ? high[axis] - 0.5 : -0.5;
-                    end = std::min(end, std::max((face - p[axis]) / light[axis], 0.0));
+    for (const glm::dvec3 light : directions)
+        for (int x = 0; x < lattice.dims.x; ++x)
+            for (int y = 0; y < lattice.dims.y; ++y)
+                for (int z = 0; z < lattice.dims.z; ++z, ++i) {
+                    const glm::dvec3 p = low + glm::dvec3(x, y, z) * glm::dvec3(lattice.spacing);
+                    double end = 1e300; // to the faces of the voxels, in voxels
+                    for (int axis = 0; axis < 3; ++axis) {
+                        const double face = light[axis] > 0.0 ? high[axis] - 0.5 : -0.5;
+                        if (light[axis] != 0.0)
+                            end = std::min(end, std::max((face - p[axis]) / light[axis], 0.0));
+                    }
+                    CAPTURE(x, y, z, light.x, light.y, light.z, texels);
+                    CHECK(std::abs(depths[i] - per_voxel * end) <= per_voxel * 2.0 * (std::sqrt(3.0) * spacing + 1.0));
                 }
-                CAPTURE(x, y, z, texels);
-                CHECK(std::abs(depths[i] - per_voxel * end) <= per_voxel * 2.0 * (std::sqrt(3.0) * spacing + 1.0));
-            }
     REQUIRE(i == depths.size());
 }
 
