@@ -53,12 +53,11 @@ public:
         return entry;
     }
 
-    // The irradiance of a disc of radiance L and half angle a is pi L sin^2 a.
     Entry operator()(const SunLight& light) const {
-        const double half = radians(0.5 * light.angle);
-        Entry entry = begin(LIGHT_DISC, light.irradiance / (pi * std::pow(std::sin(half), 2.0)));
+        Entry entry = begin(LIGHT_DISC, peak_radiance(light));
         entry.row.direction = light.direction;
-        entry.row.extent = static_cast<float>(versine(half));
+        entry.row.extent = static_cast<float>(versine(radians(0.5 * light.angle)));
+        entry.row.darkening = static_cast<float>(light.limb_darkening);
         entry.fluence = mean(light.irradiance);
         entry.place = Entry::Place::sky;
         return entry;

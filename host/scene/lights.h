@@ -22,12 +22,18 @@ struct DirectionalLight {
     Rgb irradiance{0.0};                 // on a plane perpendicular to `direction`
 };
 
-// A disc of even radiance in the sky, which the camera sees.
+// A disc in the sky, a ball far away, which the camera sees. From middle to rim its radiance falls by the linear law of
+// limb darkening, I(mu) = I(1) (1 - u (1 - mu)), with mu the cosine at which light leaves the ball (Milne, "Radiative
+// Equilibrium in the Outer Layers of a Star", 1921: 0.6 of the sun in visible light).
 struct SunLight {
     glm::dvec3 direction{0.0, 1.0, 0.0}; // unit, towards its middle
-    Rgb irradiance{0.0};                 // on a plane perpendicular to `direction`
+    Rgb irradiance{0.0};                 // of all of it, on a plane perpendicular to `direction`
     double angle = 0.53;                 // degrees, its whole diameter, in (0, 180]
+    double limb_darkening = 0.0;         // u, in [0, 1]; 0: even radiance
 };
+
+// Of the disc's middle, where it is brightest.
+Rgb peak_radiance(const SunLight& sun);
 
 struct PointLight {
     glm::dvec3 position{0.0};

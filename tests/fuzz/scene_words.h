@@ -102,7 +102,7 @@ inline constexpr Words grammar[] = {
 // Within <lights>.
 inline constexpr Words light_grammar[] = {
     {"directional", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier"}},
-    {"sun", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier", "angle"}},
+    {"sun", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier", "angle", "limbDarkening"}},
     {"point", "", {"x", "y", "z", "r", "g", "b", "kelvin", "power"}},
     {"spot", "", {"x", "y", "z", "lookAt", "angle", "blend", "kelvin", "multiplier"}},
     {"sphere", "", {"x", "y", "z", "radius", "kelvin", "multiplier"}},

@@ -45,6 +45,7 @@ std::vector<NamedLights> all_lights() {
          {sunlight({3.0, 2.5, 1.5}), DirectionalLight{glm::normalize(glm::dvec3(-2.0, 1.0, -0.5)), {1.0, 2.0, 4.0}}}},
         {"sun", {sun}},
         {"wide sun", {SunLight{sun.direction, sun.irradiance, 120.0}}},
+        {"wide sun of a dark limb", {SunLight{sun.direction, sun.irradiance, 120.0, 1.0}}},
         {"point", {point}},
         {"spot", {spot}},
         {"sky", {sunset()}},
@@ -246,8 +247,8 @@ TEST_CASE("a furnace of a map of ones", "[gpu][lights][furnace]") {
 }
 
 TEST_CASE("a sky is seen where no medium is", "[gpu][lights]") {
-    Scene scene =
-        lit_by(cloud(), 40.0, {sunset(), SunLight{glm::normalize(glm::dvec3(-1.0, 0.2, -2.0)), Rgb(2.0), 20.0}}, 64);
+    Scene scene = lit_by(cloud(), 40.0,
+                         {sunset(), SunLight{glm::normalize(glm::dvec3(-1.0, 0.2, -2.0)), Rgb(2.0), 20.0, 0.8}}, 64);
     scene.camera.fov = 120.0;
     CHECK_AGREEMENT(agree(render_here(scene, 11).film, render_reference(scene, 12), "a sky around a cloud"));
     scene.volumes.clear();
@@ -296,7 +297,7 @@ TEST_CASE("no lamp of many is lost, however long a lane works", "[gpu][lights]")
 }
 
 TEST_CASE("looks and flights find the same light", "[gpu][lights][agreement]") {
-    const SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {5.0, 4.0, 3.0}, 60.0};
+    const SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {5.0, 4.0, 3.0}, 60.0, 0.8};
     for (const double g : {0.0, 0.85}) {
         std::vector<Estimate> estimates;
         std::uint32_t seed = 20;

@@ -31,7 +31,7 @@ struct Ask {
     std::optional<Towards> operator()(const vkvol::SunLight& sun) const {
         const double rim = std::cos(radians(0.5 * sun.angle));
         const glm::dvec3 direction = turned(sun.direction, 1.0 - u * (1.0 - rim), v);
-        return Towards{{p, direction}, disc_radiance(sun, sun.direction) * (2.0 * pi * (1.0 - rim))};
+        return Towards{{p, direction}, disc_radiance(sun, direction) * (2.0 * pi * (1.0 - rim))};
     }
     std::optional<Towards> operator()(const vkvol::PointLight& light) const {
         const double distance = glm::distance(light.position, p);
@@ -84,10 +84,15 @@ Rgb disc_radiance(const vkvol::Light& light, const glm::dvec3& direction) {
     const auto* sun = std::get_if<vkvol::SunLight>(&light);
     if (!sun)
         return Rgb(0.0);
-    const double half = radians(0.5 * sun->angle);
-    const bool inside = glm::length(glm::cross(direction, sun->direction)) < std::sin(half) &&
-                        glm::dot(direction, sun->direction) > 0.0;
-    return inside ? sun->irradiance / (pi * std::sin(half) * std::sin(half)) : Rgb(0.0);
+    // Where a line of sight meets a ball of radius sin(half) at a distance of 1, and at what angle to its surface.
+    const double radius = std::sin(radians(0.5 * sun->angle));
+    const double miss = glm::length(glm::cross(direction, sun->direction)) / radius;
+    if (miss >= 1.0 || glm::dot(direction, sun->direction) <= 0.0)
+        return Rgb(0.0);
+    const double mu = std::cos(std::asin(miss)), u = sun->limb_darkening;
+    // Of u = 1 a disc gives two thirds of what an even one of its middle's radiance does.
+    const Rgb even = sun->irradiance / (pi * radius * radius);
+    return even * ((1.0 - u + u * mu) / std::lerp(1.0, 2.0 / 3.0, u));
 }
 
 std::optional<double> lamp_distance(const vkvol::Light& light, const Ray& ray) {
