@@ -177,9 +177,13 @@ int lights_kind(const std::vector<Light>& lights) {
     const auto any = [&](bool (*is)(const Light&)) { return std::any_of(lights.begin(), lights.end(), is); };
     if (lights.empty() || only_directional(lights))
         return LIGHTS_SUN;
+    const auto is_square = [](const Light& light) {
+        const auto* sky = std::get_if<SkyLight>(&light);
+        return sky && sky->mapping == SkyMapping::equal_area;
+    };
     const auto somewhere = std::count_if(lights.begin(), lights.end(), has_place);
     return LIGHTS_TABLE | (any(is_met_by_chance) ? LIGHTS_SKY : 0) | (any(is_lamp) ? LIGHTS_LAMPS : 0) |
-           (somewhere > 1 ? LIGHTS_TREE : 0);
+           (somewhere > 1 ? LIGHTS_TREE : 0) | (any(is_square) ? LIGHTS_EQUAL_AREA : 0);
 }
 
 std::uint32_t loop_iterations(const std::vector<Light>& lights) {

@@ -141,6 +141,8 @@ void add_light(Writer& writer, const SkyLight& light) {
     } else {
         add_file(writer, light.file);
     }
+    if (light.mapping == SkyMapping::equal_area)
+        writer.add("mapping", 1);
     writer.add("rotation", light.rotation);
     writer.add("scale", light.scale);
 }

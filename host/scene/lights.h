@@ -83,15 +83,27 @@ struct Daylight {
     double ground = 0.2;           // albedo of what is below the horizon, in [0, 1]
 };
 
-// A map of the radiance that comes from every direction: columns are longitudes, rows latitudes, the zenith (y) on top.
-// The middle column is where a camera looks that is not turned, and the map is seen from within: further right is
-// further to that camera's right. Between the middles of texels radiance is interpolated linearly.
+// What directions the places of a map are.
+enum class SkyMapping {
+    // Columns are longitudes, rows latitudes, the zenith (y) on top. The middle column is where a camera looks that is
+    // not turned, and the map is seen from within: further right is further to that camera's right.
+    equirectangular,
+    // Square, of texels that all take the same solid angle, as pbrt-v4's (Clarberg, "Fast Equal-Area Mapping of the
+    // (Hemi)Sphere Using SIMD", 2008). The zenith is its middle, the nadir its corners, and the horizon the diamond
+    // between the middles of its edges: -z at the top, +x at the right. pbrt's coordinates are left-handed and its maps
+    // have z upwards: their (x, y, z) is (x, z, y) here, which is `Rotate -90 1 0 0` seen along pbrt's +z.
+    equal_area
+};
+
+// A map of the radiance that comes from every direction. Between the middles of texels radiance is interpolated
+// linearly.
 struct SkyLight {
     std::filesystem::path file;
     std::string place;                // of the element, "file:line:column", for messages; or empty
     std::optional<Daylight> daylight; // in place of the file
-    double rotation = 0.0;            // degrees, positive turns it counter-clockwise as seen from above
-    Rgb scale{1.0};                   // multiplies the map
+    SkyMapping mapping = SkyMapping::equirectangular;
+    double rotation = 0.0; // degrees, positive turns it counter-clockwise as seen from above
+    Rgb scale{1.0};        // multiplies the map
 };
 
 using Light =

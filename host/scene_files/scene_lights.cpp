@@ -76,6 +76,16 @@ RectangleLight rectangle(const XmlElement& element, const Rgb& radiance) {
     return light;
 }
 
+SkyMapping sky_mapping(const XmlElement& element) {
+    const std::string name = element.attribute("mapping", "equirectangular");
+    if (name == "equalArea")
+        return SkyMapping::equal_area;
+    if (name != "equirectangular")
+        element.fail_attribute(
+            "mapping", fmt::format("<sky> mapping: '{}' is unknown; expected equirectangular or equalArea", name));
+    return SkyMapping::equirectangular;
+}
+
 // The camera may see it.
 void check_disc(const XmlElement& element, const SunLight& sun) {
     const Rgb peak = peak_radiance(sun);
@@ -172,8 +182,9 @@ Light SceneReader::light(const XmlElement& element) const {
         element.allow(with_colors({"x", "y", "z", "lookAt", "up", "width", "height", "power"}));
         return of_power(element, rectangle(element, light_color(element)), &RectangleLight::radiance);
     }
-    element.allow(with_colors({"baseDir", "rotation"}), true);
+    element.allow(with_colors({"baseDir", "mapping", "rotation"}), true);
     SkyLight sky;
+    sky.mapping = sky_mapping(element);
     sky.file = file_path(element, "sky.exr");
     sky.place = element.place();
     sky.rotation = element.attribute_number("rotation", 0.0, any_number);

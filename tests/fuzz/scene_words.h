@@ -109,7 +109,7 @@ inline constexpr Words light_grammar[] = {
     {"disk", "", {"x", "y", "z", "lookAt", "radius", "r", "power"}},
     {"rectangle", "", {"x", "y", "z", "lookAt", "up", "width", "height", "b", "multiplier"}},
     {"daylight", "", {"x", "y", "z", "turbidity", "ground", "multiplier"}},
-    {"sky", "sky.exr|none.exr", {"baseDir", "rotation", "kelvin", "multiplier"}}};
+    {"sky", "sky.exr|none.exr", {"baseDir", "mapping", "rotation", "kelvin", "multiplier"}}};
 
 inline constexpr const char* ordinary_numbers[] = {"0.5",
                                                    "0.25",

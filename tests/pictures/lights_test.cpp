@@ -25,6 +25,11 @@ const SkyLight& sunset() {
     return sky;
 }
 
+const SkyLight& square_sky() {
+    static const SkyLight sky = write_sky(square_map(), SkyMapping::equal_area);
+    return sky;
+}
+
 struct NamedLights {
     std::string name;
     std::vector<Light> lights;
@@ -49,6 +54,7 @@ std::vector<NamedLights> all_lights() {
         {"point", {point}},
         {"spot", {spot}},
         {"sky", {sunset()}},
+        {"square sky", {square_sky()}},
         {"ball", {ball}},
         {"disk", {disk}},
         {"rectangle", {rectangle}},
@@ -253,6 +259,10 @@ TEST_CASE("a sky is seen where no medium is", "[gpu][lights]") {
     CHECK_AGREEMENT(agree(render_here(scene, 11).film, render_reference(scene, 12), "a sky around a cloud"));
     scene.volumes.clear();
     CHECK_AGREEMENT(agree(render_here(scene, 13).film, render_reference(scene, 14), "a sky alone"));
+    SkyLight turned = square_sky();
+    turned.rotation = 100.0;
+    scene.lights = {turned};
+    CHECK_AGREEMENT(agree(render_here(scene, 17).film, render_reference(scene, 18), "a square sky alone"));
 }
 
 // Before, within and behind the medium, one before another, through it and past it.

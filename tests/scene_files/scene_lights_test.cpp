@@ -43,6 +43,7 @@ TEST_CASE("lights of every kind are read", "[cpu][xml]") {
     const auto& sky = std::get<SkyLight>(scene.lights[5]);
     CHECK(sky.file.filename() == "sky.exr");
     CHECK(sky.rotation == -30.0);
+    CHECK(sky.mapping == SkyMapping::equirectangular);
     CHECK(sky.scale == Rgb(0.5));
     CHECK(std::get<SphereLight>(scene.lights[6]).radiance == Rgb(3.0));
     CHECK(std::get<DiskLight>(scene.lights[7]).normal == glm::dvec3(0, -1, 0));
@@ -119,6 +120,7 @@ TEST_CASE("what is wrong with a light is said at its place", "[cpu][xml]") {
              {"<daylight x=\"1\" y=\"-0.1\"/>", "below the horizon"},
              {"<daylight/>", "<daylight> has no direction"},
              {"<daylight y=\"1\" turbidity=\"1\"/>", "from 1.7 (clear)"},
+             {"<sky mapping=\"square\">a.exr</sky>", "expected equirectangular or equalArea"},
              {"<sky colour=\"1\">a.exr</sky>", "colour"}}) {
         CAPTURE(light, words);
         CHECK_THAT(error(light), Catch::Contains(words));
@@ -217,4 +219,17 @@ TEST_CASE("a map of the sky without light is refused, and what is no number coun
     CHECK(assets.sky->mended == 5);
     REQUIRE(assets.warnings.size() == 1);
     CHECK_THAT(assets.warnings[0], Catch::Contains("5 texels were negative or not finite"));
+}
+
+TEST_CASE("a map of equal areas is square, and another picture", "[cpu][xml]") {
+    const auto scene = [](const std::string& mapping) {
+        return parse("<sphere/><lights><sky" + mapping + ">a.exr</sky></lights>");
+    };
+    CHECK(std::get<SkyLight>(scene(R"( mapping="equalArea")").lights[0]).mapping == SkyMapping::equal_area);
+    CHECK(scene_hash(scene(R"( mapping="equalArea")")) != scene_hash(scene("")));
+    CHECK(scene_hash(scene(R"( mapping="equirectangular")")) == scene_hash(scene("")));
+    Scene oblong;
+    oblong.lights = {write_sky(make_map(4, 2, [](int, int) { return Rgb(1.0); }), SkyMapping::equal_area)};
+    CHECK_THROWS_WITH(load_assets(oblong, choose_method(oblong)),
+                      Catch::Contains("4 x 2 texels") && Catch::Contains("leave out mapping=\"equalArea\""));
 }
