@@ -15,27 +15,55 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
+// A map as its texels lie: which is next to which, and what part of the sky each takes.
+struct Layout {
+    int width, height;
+    SkyMapping mapping;
+
+    // Of a texel, or of the one that is next over the map's edge.
+    std::size_t at(int x, int y) const {
+        if (mapping == SkyMapping::equal_area) {
+            // Over an edge is the same edge again, the other way around.
+            if (x < 0 || x == width) {
+                x = std::clamp(x, 0, width - 1);
+                y = height - 1 - y;
+            }
+            if (y < 0 || y == height) {
+                x = width - 1 - x;
+                y = std::clamp(y, 0, height - 1);
+            }
+        } else {
+            x = (x + width) % width;
+            y = std::clamp(y, 0, height - 1);
+        }
+        return std::size_t(y) * width + x;
+    }
+
+    // Of a texel in this row.
+    double solid_angle(int row) const {
+        if (mapping == SkyMapping::equal_area)
+            return largest_angle();
+        return 2.0 * pi / width * (std::cos(pi * row / height) - std::cos(pi * (row + 1) / height));
+    }
+
+    // Of a texel, as if it were where texels take most: at the horizon of an equirectangular map.
+    double largest_angle() const {
+        return (mapping == SkyMapping::equal_area ? 4.0 * pi : 2.0 * pi * pi) / (double(width) * height);
+    }
+};
+
 // Mean over each texel of what is interpolated between the middles of texels: across a texel a neighbour counts for an
 // eighth.
-std::vector<double> interpolated_means(const std::vector<double>& values, int width, int height) {
-    std::vector<double> across(values.size()), means(values.size());
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const double* row = &values[std::size_t(y) * width];
-            across[std::size_t(y) * width + x] =
-                0.75 * row[x] + 0.125 * (row[(x + 1) % width] + row[(x + width - 1) % width]);
-        }
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const auto at = [&](int row) { return across[std::size_t(std::clamp(row, 0, height - 1)) * width + x]; };
-            means[std::size_t(y) * width + x] = 0.75 * at(y) + 0.125 * (at(y - 1) + at(y + 1));
-        }
+std::vector<double> interpolated_means(const std::vector<double>& values, const Layout& layout) {
+    const auto across = [&](int x, int y) {
+        return 0.75 * values[layout.at(x, y)] + 0.125 * (values[layout.at(x + 1, y)] + values[layout.at(x - 1, y)]);
+    };
+    std::vector<double> means;
+    means.reserve(values.size());
+    for (int y = 0; y < layout.height; ++y)
+        for (int x = 0; x < layout.width; ++x)
+            means.push_back(0.75 * across(x, y) + 0.125 * (across(x, y - 1) + across(x, y + 1)));
     return means;
-}
-
-// Of a texel in this row.
-double solid_angle(int row, int width, int height) {
-    return 2.0 * pi / width * (std::cos(pi * row / height) - std::cos(pi * (row + 1) / height));
 }
 
 void append(std::vector<shared::AliasEntry>& table, std::span<const double> weights) {
@@ -59,11 +87,16 @@ void check(const RadianceMap& map, const SkyLight& light) {
         throw InputError(fmt::format("{}: its brightest texel times multiplier is {:.3g}, but {:g} is the most; lower "
                                      "the multiplier",
                                      light.file.string(), most, brightest_light));
+    if (light.mapping == SkyMapping::equal_area && map.width != map.height)
+        throw InputError(fmt::format("{}: has {} x {} texels, but a map of equal areas is square; leave out "
+                                     "mapping=\"equalArea\" if its columns are longitudes and its rows latitudes",
+                                     light.file.string(), map.width, map.height));
 }
 
 } // namespace
 
-SkyMap make_sky(const RadianceMap& map, const Rgb& scale) {
+SkyMap make_sky(const RadianceMap& map, const Rgb& scale, SkyMapping mapping) {
+    const Layout layout{map.width, map.height, mapping};
     SkyMap sky;
     sky.width = static_cast<std::uint32_t>(map.width);
     sky.height = static_cast<std::uint32_t>(map.height);
@@ -75,10 +108,10 @@ SkyMap make_sky(const RadianceMap& map, const Rgb& scale) {
         sky.texels.emplace_back(glm::vec3(radiance), 0.0f);
         values.push_back((radiance.x + radiance.y + radiance.z) / 3.0);
     }
-    std::vector<double> weights = interpolated_means(values, map.width, map.height), rows;
+    std::vector<double> weights = interpolated_means(values, layout), rows;
     double sum = 0.0;
     for (int y = 0; y < map.height; ++y) {
-        const double angle = solid_angle(y, map.width, map.height);
+        const double angle = layout.solid_angle(y);
         double row = 0.0;
         for (int x = 0; x < map.width; ++x) {
             double& weight = weights[std::size_t(y) * map.width + x];
@@ -92,16 +125,15 @@ SkyMap make_sky(const RadianceMap& map, const Rgb& scale) {
     append(sky.alias, rows);
     for (int y = 0; y < map.height; ++y)
         append(sky.alias, std::span(weights).subspan(std::size_t(y) * map.width, map.width));
-    const double per_angle = double(map.width) * map.height / (2.0 * pi * pi);
     for (std::size_t i = 0; i < weights.size(); ++i)
-        sky.texels[i].w = static_cast<float>(weights[i] / sum * per_angle);
+        sky.texels[i].w = static_cast<float>(weights[i] / sum / layout.largest_angle());
     return sky;
 }
 
 SkyMap load_sky(const SkyLight& light) {
     const RadianceMap map = light.daylight ? make_daylight(*light.daylight) : read_radiance_map(light.file);
     check(map, light);
-    return make_sky(map, light.scale);
+    return make_sky(map, light.scale, light.mapping);
 }
 
 } // namespace vkvol

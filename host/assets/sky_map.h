@@ -10,7 +10,7 @@ namespace vkvol {
 struct SkyMap {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    std::vector<glm::vec4> texels;         // radiance; and the density that is drawn with, per steradian at the horizon
+    std::vector<glm::vec4> texels; // radiance; and the density that is drawn with, per steradian (at the horizon)
     std::vector<shared::AliasEntry> alias; // of rows, then of the columns of each row
     Rgb fluence{0.0};                      // integral of the radiance over all directions
     std::size_t mended = 0;                // texels that were negative or not finite
@@ -19,7 +19,7 @@ struct SkyMap {
 // Opens the file. Throws InputError, also for a map without light.
 SkyMap load_sky(const SkyLight& light);
 
-// Of a map with some light, times `scale`.
-SkyMap make_sky(const RadianceMap& map, const Rgb& scale);
+// Of a map with some light, times `scale`; of equal areas: a square one.
+SkyMap make_sky(const RadianceMap& map, const Rgb& scale, SkyMapping mapping = SkyMapping::equirectangular);
 
 } // namespace vkvol

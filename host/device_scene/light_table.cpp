@@ -54,12 +54,11 @@ public:
         return entry;
     }
 
-    // The irradiance of a disc of radiance L and half angle a is pi L sin^2 a.
     Entry operator()(const SunLight& light) const {
-        const double half = radians(0.5 * light.angle);
-        Entry entry = begin(LIGHT_DISC, light.irradiance / (pi * std::pow(std::sin(half), 2.0)));
+        Entry entry = begin(LIGHT_DISC, peak_radiance(light));
         entry.row.direction = light.direction;
-        entry.row.extent = static_cast<float>(versine(half));
+        entry.row.extent = static_cast<float>(versine(radians(0.5 * light.angle)));
+        entry.row.darkening = static_cast<float>(light.limb_darkening);
         entry.fluence = mean(light.irradiance);
         entry.place = Entry::Place::sky;
         return entry;
@@ -193,9 +192,13 @@ int lights_kind(const std::vector<Light>& lights) {
     const auto any = [&](bool (*is)(const Light&)) { return std::any_of(lights.begin(), lights.end(), is); };
     if (lights.empty() || only_directional(lights))
         return LIGHTS_SUN;
+    const auto is_square = [](const Light& light) {
+        const auto* sky = std::get_if<SkyLight>(&light);
+        return sky && sky->mapping == SkyMapping::equal_area;
+    };
     const auto somewhere = std::count_if(lights.begin(), lights.end(), has_place);
     return LIGHTS_TABLE | (any(is_met_by_chance) ? LIGHTS_SKY : 0) | (any(is_lamp) ? LIGHTS_LAMPS : 0) |
-           (somewhere > 1 ? LIGHTS_TREE : 0);
+           (somewhere > 1 ? LIGHTS_TREE : 0) | (any(is_square) ? LIGHTS_EQUAL_AREA : 0);
 }
 
 std::uint32_t loop_iterations(const std::vector<Light>& lights) {

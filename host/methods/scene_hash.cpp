@@ -98,6 +98,8 @@ void add_light(Writer& writer, const SunLight& light) {
     writer.add("sun", light.direction);
     writer.add("irradiance", light.irradiance);
     writer.add("angle", light.angle);
+    if (light.limb_darkening > 0.0)
+        writer.add("limb", light.limb_darkening);
 }
 
 void add_light(Writer& writer, const PointLight& light) {
@@ -139,6 +141,8 @@ void add_light(Writer& writer, const SkyLight& light) {
     } else {
         add_file(writer, light.file);
     }
+    if (light.mapping == SkyMapping::equal_area)
+        writer.add("mapping", 1);
     writer.add("rotation", light.rotation);
     writer.add("scale", light.scale);
 }

@@ -21,6 +21,13 @@ std::optional<glm::dvec3> place_of(const Light& light) {
     return std::nullopt;
 }
 
+// The irradiance of a disc of half angle a is the integral of I cos(t) over directions, which is pi sin^2(a) times that
+// of I over s = (sin(t) / sin(a))^2 in [0, 1]; and the mean of mu = sqrt(1 - s) is 2/3.
+Rgb peak_radiance(const SunLight& sun) {
+    const double sine = std::sin(0.5 * sun.angle * pi / 180.0);
+    return sun.irradiance / (pi * sine * sine * (1.0 - sun.limb_darkening / 3.0));
+}
+
 double power_per_unit(const PointLight&) {
     return 4.0 * pi;
 }

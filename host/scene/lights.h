@@ -22,12 +22,18 @@ struct DirectionalLight {
     Rgb irradiance{0.0};                 // on a plane perpendicular to `direction`
 };
 
-// A disc of even radiance in the sky, which the camera sees.
+// A disc in the sky, a ball far away, which the camera sees. From middle to rim its radiance falls by the linear law of
+// limb darkening, I(mu) = I(1) (1 - u (1 - mu)), with mu the cosine at which light leaves the ball (Milne, "Radiative
+// Equilibrium in the Outer Layers of a Star", 1921: 0.6 of the sun in visible light).
 struct SunLight {
     glm::dvec3 direction{0.0, 1.0, 0.0}; // unit, towards its middle
-    Rgb irradiance{0.0};                 // on a plane perpendicular to `direction`
+    Rgb irradiance{0.0};                 // of all of it, on a plane perpendicular to `direction`
     double angle = 0.53;                 // degrees, its whole diameter, in (0, 180]
+    double limb_darkening = 0.0;         // u, in [0, 1]; 0: even radiance
 };
+
+// Of the disc's middle, where it is brightest.
+Rgb peak_radiance(const SunLight& sun);
 
 struct PointLight {
     glm::dvec3 position{0.0};
@@ -77,15 +83,27 @@ struct Daylight {
     double ground = 0.2;           // albedo of what is below the horizon, in [0, 1]
 };
 
-// A map of the radiance that comes from every direction: columns are longitudes, rows latitudes, the zenith (y) on top.
-// The middle column is where a camera looks that is not turned, and the map is seen from within: further right is
-// further to that camera's right. Between the middles of texels radiance is interpolated linearly.
+// What directions the places of a map are.
+enum class SkyMapping {
+    // Columns are longitudes, rows latitudes, the zenith (y) on top. The middle column is where a camera looks that is
+    // not turned, and the map is seen from within: further right is further to that camera's right.
+    equirectangular,
+    // Square, of texels that all take the same solid angle, as pbrt-v4's (Clarberg, "Fast Equal-Area Mapping of the
+    // (Hemi)Sphere Using SIMD", 2008). The zenith is its middle, the nadir its corners, and the horizon the diamond
+    // between the middles of its edges: -z at the top, +x at the right. pbrt's coordinates are left-handed and its maps
+    // have z upwards: their (x, y, z) is (x, z, y) here, which is `Rotate -90 1 0 0` seen along pbrt's +z.
+    equal_area
+};
+
+// A map of the radiance that comes from every direction. Between the middles of texels radiance is interpolated
+// linearly.
 struct SkyLight {
     std::filesystem::path file;
     std::string place;                // of the element, "file:line:column", for messages; or empty
     std::optional<Daylight> daylight; // in place of the file
-    double rotation = 0.0;            // degrees, positive turns it counter-clockwise as seen from above
-    Rgb scale{1.0};                   // multiplies the map
+    SkyMapping mapping = SkyMapping::equirectangular;
+    double rotation = 0.0; // degrees, positive turns it counter-clockwise as seen from above
+    Rgb scale{1.0};        // multiplies the map
 };
 
 using Light =

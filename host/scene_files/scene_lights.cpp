@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <numbers>
 
 #include "blackbody.h"
 #include "daylight.h"
@@ -15,6 +14,7 @@ namespace {
 const std::vector<std::string> kinds = {"directional", "sun",       "point", "spot",    "sphere",
                                         "disk",        "rectangle", "sky",   "daylight"};
 const std::vector<std::string> light_colors = {"r", "g", "b", "kelvin", "multiplier"};
+constexpr Limits part{0.0, 1.0, true, true, "a number from 0 to 1"};
 constexpr Limits flame{500.0, 40000.0, true, true, "a temperature from 500 to 40000 kelvin"};
 
 std::vector<std::string> with_colors(std::vector<std::string> attributes) {
@@ -76,11 +76,20 @@ RectangleLight rectangle(const XmlElement& element, const Rgb& radiance) {
     return light;
 }
 
+SkyMapping sky_mapping(const XmlElement& element) {
+    const std::string name = element.attribute("mapping", "equirectangular");
+    if (name == "equalArea")
+        return SkyMapping::equal_area;
+    if (name != "equirectangular")
+        element.fail_attribute(
+            "mapping", fmt::format("<sky> mapping: '{}' is unknown; expected equirectangular or equalArea", name));
+    return SkyMapping::equirectangular;
+}
+
 // The camera may see it.
 void check_disc(const XmlElement& element, const SunLight& sun) {
-    const double sine = std::sin(0.5 * sun.angle * std::numbers::pi / 180.0);
-    const double radiance =
-        std::max({sun.irradiance.x, sun.irradiance.y, sun.irradiance.z}) / (std::numbers::pi * sine * sine);
+    const Rgb peak = peak_radiance(sun);
+    const double radiance = std::max({peak.x, peak.y, peak.z});
     if (radiance > brightest_light)
         element.fail_attribute("angle", fmt::format("<sun> angle: a disc of {:g} degrees and of this irradiance has a "
                                                     "radiance of {:.3g}, but {:g} is the most; widen or dim it",
@@ -133,10 +142,11 @@ Light SceneReader::light(const XmlElement& element) const {
         return DirectionalLight{direction(element), light_color(element)};
     }
     if (kind == "sun") {
-        element.allow(with_colors({"x", "y", "z", "angle"}));
+        element.allow(with_colors({"x", "y", "z", "angle", "limbDarkening"}));
         SunLight sun{direction(element), light_color(element)};
         sun.angle = element.attribute_number("angle", sun.angle,
                                              {0.01, 180.0, true, true, "an angle from 0.01 to 180 degrees"});
+        sun.limb_darkening = element.attribute_number("limbDarkening", sun.limb_darkening, part);
         check_disc(element, sun);
         return sun;
     }
@@ -152,7 +162,7 @@ Light SceneReader::light(const XmlElement& element) const {
         spot.intensity = light_color(element);
         spot.angle =
             element.attribute_number("angle", spot.angle, {0.1, 180.0, true, true, "an angle from 0.1 to 180 degrees"});
-        spot.blend = element.attribute_number("blend", spot.blend, {0.0, 1.0, true, true, "a number from 0 to 1"});
+        spot.blend = element.attribute_number("blend", spot.blend, part);
         return of_power(element, spot, &SpotLight::intensity);
     }
     if (kind == "sphere") {
@@ -172,8 +182,9 @@ Light SceneReader::light(const XmlElement& element) const {
         element.allow(with_colors({"x", "y", "z", "lookAt", "up", "width", "height", "power"}));
         return of_power(element, rectangle(element, light_color(element)), &RectangleLight::radiance);
     }
-    element.allow(with_colors({"baseDir", "rotation"}), true);
+    element.allow(with_colors({"baseDir", "mapping", "rotation"}), true);
     SkyLight sky;
+    sky.mapping = sky_mapping(element);
     sky.file = file_path(element, "sky.exr");
     sky.place = element.place();
     sky.rotation = element.attribute_number("rotation", 0.0, any_number);

@@ -37,6 +37,7 @@ const int DISTANCE = DISTANCE_FLIGHTS;
 layout(constant_id = SPEC_MIS) const int MIS = MIS_BALANCE;
 
 const bool SEES_SKY = (LIGHTS & LIGHTS_SKY) != 0;
+const bool EQUAL_AREA = (LIGHTS & LIGHTS_EQUAL_AREA) != 0;
 const bool SEES_LAMPS = (LIGHTS & LIGHTS_LAMPS) != 0;
 const bool HAS_TREE = (LIGHTS & LIGHTS_TREE) != 0;
 const bool LOOKS_ALONG = DISTANCE == DISTANCE_MIXED;

@@ -1,47 +1,65 @@
-// The sky as a map of radiance: columns are longitudes, rows latitudes, the zenith above the first row. Radiance is
-// interpolated linearly between the middles of texels, around the whole horizon and up to the poles, where the outermost
-// rows' values hold.
+// The sky as a map of radiance, interpolated linearly between the middles of texels, over the map's edges too.
 //
-// A direction is drawn by texel, in proportion to the light that comes through it, and evenly in longitude and latitude within it.
-// So the light over the density is bounded, at the poles too: the radiance that the choice of a texel goes by is the mean over
-// it as interpolated, into which its neighbours reach.
+// A direction is drawn by texel, in proportion to the light that comes through it, and evenly over the map within it.
+// So the light over the density is bounded, also where the map is narrow, as at poles: the radiance that the choice of a texel goes
+// by is the mean over it as interpolated, into which its neighbours reach.
 #ifndef SKY_GLSL
 #define SKY_GLSL
 #include "lib/alias.glsl"
 #include "lib/buffers.glsl"
 #include "lib/rng.glsl"
+#include "lights/equal_area.glsl"
+#include "lights/equirectangular.glsl"
 #include "lights/sample.glsl"
 
-const float PI = 3.14159265358979;
-
-// Column and row, in texels from the map's top left corner. The latitude by atan, since near the poles the cosine says little.
+// Column and row, in texels from the map's top left corner.
 vec2 sky_place(vec3 direction) {
-    SkyParams sky = frame.sky;
-    float longitude = fract(atan(direction.x, -direction.z) * (0.5 / PI) + 0.5 + sky.turn);
-    float latitude = atan(length(direction.xz), direction.y) / PI; // from the zenith
-    return vec2(longitude * float(sky.width), latitude * float(sky.height));
+    vec2 place;
+    if (EQUAL_AREA)
+        place = equal_area_place(direction);
+    else
+        place = equirectangular_place(direction);
+    return place;
 }
 
-vec4 sky_entry(uint column, uint row) {
-    return sky_texels[row * frame.sky.width + column];
+// `breadth`: of a texel there, by that where texels take most.
+vec3 sky_direction(vec2 place, out float breadth) {
+    vec3 direction;
+    breadth = 1.0;
+    if (EQUAL_AREA)
+        direction = equal_area_direction(place);
+    else
+        direction = equirectangular_direction(place, breadth);
+    return direction;
+}
+
+vec4 sky_entry(uvec2 texel) {
+    return sky_texels[texel.y * frame.sky.width + texel.x];
+}
+
+// Of a texel, or of what is next to one over the map's edge.
+vec3 sky_near(ivec2 texel) {
+    if (EQUAL_AREA)
+        texel = equal_area_texel(texel);
+    else
+        texel = equirectangular_texel(texel);
+    return sky_entry(uvec2(texel)).rgb;
 }
 
 vec3 sky_radiance(vec2 place) {
-    SkyParams sky = frame.sky;
     vec2 corner = floor(place - 0.5);
     vec2 f = place - 0.5 - corner;
-    uint left = uint(int(corner.x) + int(sky.width)) % sky.width;
-    uint right = (left + 1u) % sky.width;
-    uint top = uint(max(corner.y, 0.0));
-    uint bottom = min(uint(max(corner.y + 1.0, 0.0)), sky.height - 1u);
-    return mix(mix(sky_entry(left, top).rgb, sky_entry(right, top).rgb, f.x),
-               mix(sky_entry(left, bottom).rgb, sky_entry(right, bottom).rgb, f.x), f.y);
+    ivec2 at = ivec2(corner);
+    return mix(mix(sky_near(at), sky_near(at + ivec2(1, 0)), f.x),
+               mix(sky_near(at + ivec2(0, 1)), sky_near(at + ivec2(1, 1)), f.x), f.y);
 }
 
-// Per steradian. A texel's entry has it for the horizon; elsewhere an interval of latitude and longitude is a smaller angle.
+// Per steradian. A texel's entry has it for where texels take most, as equirectangular ones do at the horizon.
 float sky_pdf(vec2 place, vec3 direction) {
-    uvec2 texel = min(uvec2(place), uvec2(frame.sky.width, frame.sky.height) - 1u);
-    return sky_entry(texel.x, texel.y).a / max(length(direction.xz), 1.0e-12);
+    float pdf = sky_entry(min(uvec2(place), uvec2(frame.sky.width, frame.sky.height) - 1u)).a;
+    if (!EQUAL_AREA)
+        pdf /= max(length(direction.xz), 1.0e-12);
+    return pdf;
 }
 
 // `u`: of the place within a texel.
@@ -53,11 +71,9 @@ LightSample sample_sky(vec2 u, inout Rng rng) {
     uint column = below(sky.width, words.z);
     column = choose(sky_alias[sky.height + row * sky.width + column], column, words.w);
     vec2 place = vec2(column, row) + u;
-    float longitude = (fract(place.x / float(sky.width) - sky.turn) - 0.5) * (2.0 * PI);
-    float latitude = place.y * (PI / float(sky.height));
-    float sine = sin(latitude);
-    vec3 direction = normalize(vec3(sine * sin(longitude), cos(latitude), -sine * cos(longitude)));
-    return LightSample(direction, FAR, sky_radiance(place), sky_entry(column, row).a / max(sine, 1.0e-12));
+    float breadth;
+    vec3 direction = sky_direction(place, breadth);
+    return LightSample(direction, FAR, sky_radiance(place), sky_entry(uvec2(column, row)).a / max(breadth, 1.0e-12));
 }
 
 #endif

@@ -78,8 +78,9 @@ vec3 light_from_beyond(vec3 direction, float phase_pdf) {
             vec2 place = sky_place(direction);
             shown = sky_radiance(place);
             pdf *= sky_pdf(place, direction);
-        } else if (disc_shows(light, direction)) {
-            shown = light.radiance;
+        } else {
+            float place = disc_place(light, direction);
+            shown = place < light.extent ? disc_radiance(light, place) : vec3(0.0);
             pdf *= disc_pdf(light);
         }
         radiance += shown * (phase_pdf > 0.0 ? weight_of_flight(phase_pdf, pdf) : 1.0);

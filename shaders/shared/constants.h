@@ -118,6 +118,7 @@
 #define LIGHTS_SKY 2   // some that flights meet by themselves when they leave
 #define LIGHTS_LAMPS 4 // some that have a shape and a place
 #define LIGHTS_TREE 8  // several that have a place
+#define LIGHTS_EQUAL_AREA 16 // a map of the sky, and that a square one; see equal_area.glsl
 
 #define LIGHT_DIRECTIONAL 0
 #define LIGHT_DISC 1 // in the sky

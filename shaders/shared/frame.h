@@ -136,8 +136,10 @@ struct LightRow {
     vec3 direction; // unit: towards the light, where it is infinitely far; of a spot, along its axis; of what is flat, its normal
     vec3 edge_u;    // halves of the edges of a rectangle, or radii of a disk; across each other
     vec3 edge_v;
-    vec3 radiance;  // from everywhere on it; of a directional light its irradiance, of a point the radiant intensity
+    vec3 radiance;  // from everywhere on it, of a disc from its middle; of a directional light its irradiance, of a point the
+                    // radiant intensity
     float extent;   // of a disc: 1 - cos of the angle from its middle to its rim; of a sphere its radius
+    float darkening; // of a disc toward its rim, in [0, 1]
     float area;     // of a lamp, as seen from in front
     float full_within; // of a spot, 1 - cos of angles to its axis: full intensity within,
     float none_beyond; // none beyond

@@ -62,6 +62,8 @@ std::string attribute_value(std::string_view name, Source& random) {
         return one_of("collisions|steps", random);
     if (name == "mis")
         return one_of("balance|power|light|phase", random);
+    if (name == "mapping")
+        return one_of("equirectangular|equalArea", random);
     if (name == "distance")
         return one_of("flights|mixed", random);
     if (name == "lookAt" || name == "up")

@@ -102,14 +102,14 @@ inline constexpr Words grammar[] = {
 // Within <lights>.
 inline constexpr Words light_grammar[] = {
     {"directional", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier"}},
-    {"sun", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier", "angle"}},
+    {"sun", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier", "angle", "limbDarkening"}},
     {"point", "", {"x", "y", "z", "r", "g", "b", "kelvin", "power"}},
     {"spot", "", {"x", "y", "z", "lookAt", "angle", "blend", "kelvin", "multiplier"}},
     {"sphere", "", {"x", "y", "z", "radius", "kelvin", "multiplier"}},
     {"disk", "", {"x", "y", "z", "lookAt", "radius", "r", "power"}},
     {"rectangle", "", {"x", "y", "z", "lookAt", "up", "width", "height", "b", "multiplier"}},
     {"daylight", "", {"x", "y", "z", "turbidity", "ground", "multiplier"}},
-    {"sky", "sky.exr|none.exr", {"baseDir", "rotation", "kelvin", "multiplier"}}};
+    {"sky", "sky.exr|none.exr", {"baseDir", "mapping", "rotation", "kelvin", "multiplier"}}};
 
 inline constexpr const char* ordinary_numbers[] = {"0.5",
                                                    "0.25",

@@ -15,6 +15,8 @@ void main() {
     vec2 u = to_uniform(next_words(rng)).xy;
     LightSample drawn = sample_sky(u, rng);
     vec2 place = sky_place(drawn.direction), given = sky_place(inputs[i].direction);
+    float breadth;
+    vec3 again = sky_direction(given, breadth);
     outputs[i] = SkyOutput(drawn.direction, drawn.light, drawn.pdf, sky_radiance(place), sky_pdf(place, drawn.direction),
-                           sky_radiance(given), sky_pdf(given, inputs[i].direction));
+                           sky_radiance(given), sky_pdf(given, inputs[i].direction), again);
 }

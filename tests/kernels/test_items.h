@@ -143,6 +143,7 @@ struct SkyOutput {
     float pdf_there;
     vec3 given_radiance; // and in the given one
     float given_pdf;
+    vec3 given_again; // the direction of that one's place
 };
 
 struct LookInput {

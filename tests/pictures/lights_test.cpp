@@ -25,6 +25,11 @@ const SkyLight& sunset() {
     return sky;
 }
 
+const SkyLight& square_sky() {
+    static const SkyLight sky = write_sky(square_map(), SkyMapping::equal_area);
+    return sky;
+}
+
 struct NamedLights {
     std::string name;
     std::vector<Light> lights;
@@ -45,9 +50,11 @@ std::vector<NamedLights> all_lights() {
          {sunlight({3.0, 2.5, 1.5}), DirectionalLight{glm::normalize(glm::dvec3(-2.0, 1.0, -0.5)), {1.0, 2.0, 4.0}}}},
         {"sun", {sun}},
         {"wide sun", {SunLight{sun.direction, sun.irradiance, 120.0}}},
+        {"wide sun of a dark limb", {SunLight{sun.direction, sun.irradiance, 120.0, 1.0}}},
         {"point", {point}},
         {"spot", {spot}},
         {"sky", {sunset()}},
+        {"square sky", {square_sky()}},
         {"ball", {ball}},
         {"disk", {disk}},
         {"rectangle", {rectangle}},
@@ -246,12 +253,16 @@ TEST_CASE("a furnace of a map of ones", "[gpu][lights][furnace]") {
 }
 
 TEST_CASE("a sky is seen where no medium is", "[gpu][lights]") {
-    Scene scene =
-        lit_by(cloud(), 40.0, {sunset(), SunLight{glm::normalize(glm::dvec3(-1.0, 0.2, -2.0)), Rgb(2.0), 20.0}}, 64);
+    Scene scene = lit_by(cloud(), 40.0,
+                         {sunset(), SunLight{glm::normalize(glm::dvec3(-1.0, 0.2, -2.0)), Rgb(2.0), 20.0, 0.8}}, 64);
     scene.camera.fov = 120.0;
     CHECK_AGREEMENT(agree(render_here(scene, 11).film, render_reference(scene, 12), "a sky around a cloud"));
     scene.volumes.clear();
     CHECK_AGREEMENT(agree(render_here(scene, 13).film, render_reference(scene, 14), "a sky alone"));
+    SkyLight turned = square_sky();
+    turned.rotation = 100.0;
+    scene.lights = {turned};
+    CHECK_AGREEMENT(agree(render_here(scene, 17).film, render_reference(scene, 18), "a square sky alone"));
 }
 
 // Before, within and behind the medium, one before another, through it and past it.
@@ -296,7 +307,7 @@ TEST_CASE("no lamp of many is lost, however long a lane works", "[gpu][lights]")
 }
 
 TEST_CASE("looks and flights find the same light", "[gpu][lights][agreement]") {
-    const SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {5.0, 4.0, 3.0}, 60.0};
+    const SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {5.0, 4.0, 3.0}, 60.0, 0.8};
     for (const double g : {0.0, 0.85}) {
         std::vector<Estimate> estimates;
         std::uint32_t seed = 20;

@@ -31,7 +31,7 @@ struct Ask {
     std::optional<Towards> operator()(const vkvol::SunLight& sun) const {
         const double rim = std::cos(radians(0.5 * sun.angle));
         const glm::dvec3 direction = turned(sun.direction, 1.0 - u * (1.0 - rim), v);
-        return Towards{{p, direction}, disc_radiance(sun, sun.direction) * (2.0 * pi * (1.0 - rim))};
+        return Towards{{p, direction}, disc_radiance(sun, direction) * (2.0 * pi * (1.0 - rim))};
     }
     std::optional<Towards> operator()(const vkvol::PointLight& light) const {
         const double distance = glm::distance(light.position, p);
@@ -84,10 +84,15 @@ Rgb disc_radiance(const vkvol::Light& light, const glm::dvec3& direction) {
     const auto* sun = std::get_if<vkvol::SunLight>(&light);
     if (!sun)
         return Rgb(0.0);
-    const double half = radians(0.5 * sun->angle);
-    const bool inside = glm::length(glm::cross(direction, sun->direction)) < std::sin(half) &&
-                        glm::dot(direction, sun->direction) > 0.0;
-    return inside ? sun->irradiance / (pi * std::sin(half) * std::sin(half)) : Rgb(0.0);
+    // Where a line of sight meets a ball of radius sin(half) at a distance of 1, and at what angle to its surface.
+    const double radius = std::sin(radians(0.5 * sun->angle));
+    const double miss = glm::length(glm::cross(direction, sun->direction)) / radius;
+    if (miss >= 1.0 || glm::dot(direction, sun->direction) <= 0.0)
+        return Rgb(0.0);
+    const double mu = std::cos(std::asin(miss)), u = sun->limb_darkening;
+    // Of u = 1 a disc gives two thirds of what an even one of its middle's radiance does.
+    const Rgb even = sun->irradiance / (pi * radius * radius);
+    return even * ((1.0 - u + u * mu) / std::lerp(1.0, 2.0 / 3.0, u));
 }
 
 std::optional<double> lamp_distance(const vkvol::Light& light, const Ray& ray) {
@@ -122,7 +127,58 @@ Rgb lamp_radiance(const vkvol::Light& light) {
     return std::get<vkvol::RectangleLight>(light).radiance;
 }
 
+// By eighths of the sphere: in each the mapping is the same but for signs (Clarberg 2008, sections 3 and 4).
+glm::dvec2 equal_area_place(const glm::dvec3& direction) {
+    const glm::dvec3 a = glm::abs(direction);
+    const double r = std::sqrt(std::max(1.0 - a.z, 0.0));
+    const double quarter = a.x + a.y > 0.0 ? std::atan2(a.y, a.x) / (0.5 * pi) : 0.0;
+    glm::dvec2 q(r * (1.0 - quarter), r * quarter);
+    if (direction.z < 0.0)
+        q = {1.0 - q.y, 1.0 - q.x};
+    return 0.5 + 0.5 * glm::dvec2(std::copysign(q.x, direction.x), std::copysign(q.y, direction.y));
+}
+
+glm::dvec3 equal_area_direction(const glm::dvec2& place) {
+    const glm::dvec2 signs = 2.0 * place - 1.0;
+    glm::dvec2 q = glm::abs(signs);
+    const bool below = q.x + q.y > 1.0;
+    if (below)
+        q = {1.0 - q.y, 1.0 - q.x};
+    const double r = q.x + q.y, phi = r > 0.0 ? 0.5 * pi * q.y / r : 0.0, cosine = 1.0 - r * r;
+    const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
+    return {std::copysign(sine * std::cos(phi), signs.x), std::copysign(sine * std::sin(phi), signs.y),
+            below ? -cosine : cosine};
+}
+
+namespace {
+
+// The place of the neighbour's middle, if need be beyond the map's edge, is wrapped as a place.
+Rgb equal_area_radiance(const Sky& sky, const glm::dvec3& direction) {
+    const double angle = radians(sky.rotation);
+    const glm::dvec3 turned_back(direction.x * std::cos(angle) - direction.z * std::sin(angle), direction.y,
+                                 direction.z * std::cos(angle) + direction.x * std::sin(angle));
+    const glm::dvec2 place =
+        equal_area_place({turned_back.x, turned_back.z, turned_back.y}) * double(sky.width) - glm::dvec2(0.5);
+    const glm::dvec2 corner = glm::floor(place), f = place - corner;
+    Rgb sum(0.0);
+    for (const glm::dvec2 next : {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(0, 1), glm::dvec2(1, 1)}) {
+        glm::dvec2 at = (corner + next + 0.5) / double(sky.width);
+        for (const int axis : {0, 1})
+            if (at[axis] < 0.0 || at[axis] > 1.0) {
+                at[axis] = at[axis] < 0.0 ? -at[axis] : 2.0 - at[axis];
+                at[1 - axis] = 1.0 - at[1 - axis];
+            }
+        const glm::dvec2 weights = next * f + (1.0 - next) * (1.0 - f), texel = glm::floor(at * double(sky.width));
+        sum += weights.x * weights.y * sky.texels[static_cast<std::size_t>(texel.y * sky.width + texel.x)];
+    }
+    return sum;
+}
+
+} // namespace
+
 Rgb Sky::radiance(const glm::dvec3& direction) const {
+    if (mapping == vkvol::SkyMapping::equal_area)
+        return equal_area_radiance(*this, direction);
     const double longitude = std::atan2(direction.x, -direction.z) + radians(rotation); // of the map's middle: 0
     const double latitude = std::acos(std::clamp(direction.y, -1.0, 1.0));
     const double x = (longitude / (2.0 * pi) + 0.5) * width - 0.5, y = latitude / pi * height - 0.5;
@@ -142,7 +198,7 @@ std::optional<Sky> load_sky(const std::vector<vkvol::Light>& lights) {
             OIIO::ImageBuf image(authored->file.string());
             if (!image.read(0, 0, true, OIIO::TypeDesc::FLOAT))
                 throw std::runtime_error(image.geterror());
-            Sky sky{image.spec().width, image.spec().height, {}, authored->rotation};
+            Sky sky{image.spec().width, image.spec().height, {}, authored->rotation, authored->mapping};
             for (int y = 0; y < sky.height; ++y)
                 for (int x = 0; x < sky.width; ++x) {
                     float texel[3];

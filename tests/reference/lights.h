@@ -17,9 +17,15 @@ struct Sky {
     int width = 0, height = 0;
     std::vector<vkvol::Rgb> texels; // times the light's scale
     double rotation = 0.0;          // degrees
+    vkvol::SkyMapping mapping = vkvol::SkyMapping::equirectangular;
 
     vkvol::Rgb radiance(const glm::dvec3& direction) const;
 };
+
+// A place in the unit square, from its top left corner, of a map of equal areas; of the direction as such maps have it:
+// z upwards, x to the right of the middle, y below it.
+glm::dvec2 equal_area_place(const glm::dvec3& direction);
+glm::dvec3 equal_area_direction(const glm::dvec2& place);
 
 // That of the scene's lights which is a map. Throws std::runtime_error.
 std::optional<Sky> load_sky(const std::vector<vkvol::Light>& lights);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <fmt/format.h>
 #include <map>
 
 #include "merge.h"
@@ -90,6 +91,29 @@ TEST_CASE("the sizes of the machine change no bit", "[gpu][determinism]") {
                     CHECK(same_bits(render_here(scene, 30, with_tuning(slots, lanes, budget, steps)).film, usual));
                 }
     }
+}
+
+// llvmpipe ends all loops of an invocation after 65535 iterations, and says nothing: a lane that goes on for so long
+// loses what it was searching for, and its sample has other bits. A table of 65000 nodes is searched by 16 halvings and
+// a look at whether that was all; seven times a turn, to draw and to evaluate for the lamp, for the sun, and for the
+// next flight. A thousand turns, as lanes may have where nothing loops, would take twice what there is.
+TEST_CASE("no search in a phase function is cut short, however long a lane works", "[gpu][determinism][phase]") {
+    constexpr int nodes = 65000;
+    std::string table;
+    for (int i = 0; i < nodes; ++i)
+        table += fmt::format("{:.6f} {:.6f}\n", 180.0 * i / (nodes - 1), 1.0 + 50.0 * std::exp(-i / 2000.0));
+    Volume volume = medium(Sphere{{0, 0, 0}, 1.0}, 8.0, 1.0);
+    volume.phase = PhaseFunction::table;
+    volume.phase_details.file = write_text(table);
+    Scene scene = scene_of(volume, 2.0, 8);
+    scene.lights = {SphereLight{{0.0, 3.0, 0.0}, 0.5, Rgb(5.0)}, SunLight{{1.0, 0.0, 0.0}, Rgb(1.0), 20.0}};
+    scene.settings.spp = 256;
+    RenderJob patient; // submits are as long as they may be
+    patient.plan.submit_seconds = 1e3;
+    const RenderResult longest = render_here(scene, 45, patient);
+    CAPTURE(longest.plan.budget);
+    CHECK(longest.plan.budget * 7 * 17 <= 65535);
+    CHECK(same_bits(longest.film, render_here(scene, 45, with_tuning(0, 0, 16, 0)).film));
 }
 
 TEST_CASE("samples wanted in several goes are those of one", "[gpu][determinism]") {

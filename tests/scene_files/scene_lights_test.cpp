@@ -18,7 +18,7 @@ using namespace vkvol;
 TEST_CASE("lights of every kind are read", "[cpu][xml]") {
     const Scene scene = parse(R"(<sphere/><light y="2" r="3"/><lights>
         <directional x="1" r="2" g="1" b=".5" multiplier="2"/>
-        <sun z="4" angle="2"/>
+        <sun z="4" angle="2" limbDarkening=".6"/>
         <point x="1" y="2" z="3" multiplier="7"/>
         <spot y="5" lookAt="0 0 0" angle="30" blend="0" kelvin="2700"/>
         <sky rotation="-30" multiplier=".5">a/sky.exr</sky>
@@ -31,6 +31,7 @@ TEST_CASE("lights of every kind are read", "[cpu][xml]") {
     CHECK(std::get<DirectionalLight>(scene.lights[1]).direction == glm::dvec3(1, 0, 0));
     CHECK(std::get<SunLight>(scene.lights[2]).irradiance == Rgb(1.0));
     CHECK(std::get<SunLight>(scene.lights[2]).angle == 2.0);
+    CHECK(std::get<SunLight>(scene.lights[2]).limb_darkening == 0.6);
     CHECK(std::get<PointLight>(scene.lights[3]).position == glm::dvec3(1, 2, 3));
     CHECK(std::get<PointLight>(scene.lights[3]).intensity == Rgb(7.0));
     const auto& spot = std::get<SpotLight>(scene.lights[4]);
@@ -42,6 +43,7 @@ TEST_CASE("lights of every kind are read", "[cpu][xml]") {
     const auto& sky = std::get<SkyLight>(scene.lights[5]);
     CHECK(sky.file.filename() == "sky.exr");
     CHECK(sky.rotation == -30.0);
+    CHECK(sky.mapping == SkyMapping::equirectangular);
     CHECK(sky.scale == Rgb(0.5));
     CHECK(std::get<SphereLight>(scene.lights[6]).radiance == Rgb(3.0));
     CHECK(std::get<DiskLight>(scene.lights[7]).normal == glm::dvec3(0, -1, 0));
@@ -94,6 +96,10 @@ TEST_CASE("what is wrong with a light is said at its place", "[cpu][xml]") {
              {"<sun r=\"1\"/>", "<sun> has no direction"},
              {"<sun y=\"1\" angle=\"0\"/>", "from 0.01 to 180"},
              {"<sun y=\"1\" angle=\"0.01\" multiplier=\"1e12\"/>", "widen or dim it"},
+             {"<sun y=\"1\" limbDarkening=\"1.5\"/>", "<sun> limbDarkening"},
+             // pi sin^2 of half a degree is 2.39e-4: 1e12 of 2.4e8 with an even disc, half as much again with a dark
+             // limb
+             {"<sun y=\"1\" angle=\"1\" limbDarkening=\"1\" multiplier=\"2e8\"/>", "widen or dim it"},
              {"<point x=\"nan\"/>", "<point> x"},
              {"<point kelvin=\"2700\" r=\"1\"/>", "remove one of them"},
              {"<point kelvin=\"100\"/>", "from 500 to 40000"},
@@ -114,6 +120,7 @@ TEST_CASE("what is wrong with a light is said at its place", "[cpu][xml]") {
              {"<daylight x=\"1\" y=\"-0.1\"/>", "below the horizon"},
              {"<daylight/>", "<daylight> has no direction"},
              {"<daylight y=\"1\" turbidity=\"1\"/>", "from 1.7 (clear)"},
+             {"<sky mapping=\"square\">a.exr</sky>", "expected equirectangular or equalArea"},
              {"<sky colour=\"1\">a.exr</sky>", "colour"}}) {
         CAPTURE(light, words);
         CHECK_THAT(error(light), Catch::Contains(words));
@@ -212,4 +219,17 @@ TEST_CASE("a map of the sky without light is refused, and what is no number coun
     CHECK(assets.sky->mended == 5);
     REQUIRE(assets.warnings.size() == 1);
     CHECK_THAT(assets.warnings[0], Catch::Contains("5 texels were negative or not finite"));
+}
+
+TEST_CASE("a map of equal areas is square, and another picture", "[cpu][xml]") {
+    const auto scene = [](const std::string& mapping) {
+        return parse("<sphere/><lights><sky" + mapping + ">a.exr</sky></lights>");
+    };
+    CHECK(std::get<SkyLight>(scene(R"( mapping="equalArea")").lights[0]).mapping == SkyMapping::equal_area);
+    CHECK(scene_hash(scene(R"( mapping="equalArea")")) != scene_hash(scene("")));
+    CHECK(scene_hash(scene(R"( mapping="equirectangular")")) == scene_hash(scene("")));
+    Scene oblong;
+    oblong.lights = {write_sky(make_map(4, 2, [](int, int) { return Rgb(1.0); }), SkyMapping::equal_area)};
+    CHECK_THROWS_WITH(load_assets(oblong, choose_method(oblong)),
+                      Catch::Contains("4 x 2 texels") && Catch::Contains("leave out mapping=\"equalArea\""));
 }

@@ -75,7 +75,7 @@ GridFile write_grid(const GridRecipe& grid) {
     return write_grids({grid});
 }
 
-SkyLight write_sky(const RadianceMap& map) {
+SkyLight write_sky(const RadianceMap& map, SkyMapping mapping) {
     Film film;
     film.picture_width = map.width;
     film.picture_height = map.height;
@@ -85,6 +85,7 @@ SkyLight write_sky(const RadianceMap& map) {
     film.samples.resize(map.texels.size());
     SkyLight sky;
     sky.file = temporary_file("exr");
+    sky.mapping = mapping;
     write_exr(sky.file, film, {});
     return sky;
 }

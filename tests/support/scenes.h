@@ -15,7 +15,7 @@ GridFile write_grid(const GridRecipe& grid);
 MeshFiles write_mesh(const Mesh& mesh);
 
 // Likewise a map of the sky, as .exr.
-SkyLight write_sky(const RadianceMap& map);
+SkyLight write_sky(const RadianceMap& map, SkyMapping mapping = SkyMapping::equirectangular);
 
 // Likewise a text.
 std::filesystem::path write_text(const std::string& text);

@@ -14,4 +14,8 @@ RadianceMap make_map(int width, int height, const std::function<Rgb(int, int)>& 
 // A ground, a horizon and a bright corner of the sky, in colours.
 RadianceMap sunset_map();
 
+// Square: bright from one side, dark below, in colours; with bright texels at two edges, beside others over the
+// fold.
+RadianceMap square_map();
+
 } // namespace vkvol

@@ -25,6 +25,7 @@ const std::vector<Recipe>& recipes() {
         {"ramp-440", "the ramp, larger than a storage buffer of Mesa's software driver", 440, make_ramp},
         {"cumulus", "a cumulus cloud, about 60 units wide, in a box SIZE samples wide", 464, make_cumulus},
         {"explosion", "a rising fireball: density and temperature, SIZE samples wide", 160, make_explosion},
+        {"broken_cloud", "a layer of broken cloud over haze, SIZE samples wide", 320, make_broken_cloud},
         {"bunny_cloud", "a cumulus where the thesis' scenes look for a bunny, SIZE samples wide", 256,
          make_bunny_cloud},
         {"fire", "a fireball where the thesis' scenes look for one: density and temperature, SIZE samples wide", 160,
