@@ -81,6 +81,7 @@ class Measured:
     def calibrate(self, target, seed):
         """Finds the number of samples that take `target` seconds."""
         self.renderer.warm_up()
+        self.renderer.render(self.samples, seed)  # the first with caches may have to fill them
         while True:
             _, seconds, _ = self.renderer.render(self.samples, seed)
             if seconds >= min(SHORTEST, target / 2) or self.samples >= 1 << 20:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the map of the sky of scenes/peers: bright at the horizon, blue above, brown below, and a small sun that is 10,000 times
-as bright as what is around it.
+"""Makes the map of the sky of scenes/peers: bright at the horizon, blue above, brown below, and a small sun, from which half
+of the light comes.
 
     tools/peers/make_sky.py                 writes scenes/peers/sky.exr"""
 import pathlib
@@ -22,7 +22,7 @@ def texels():
     towards = sky.directions(*np.mgrid[:HEIGHT, :WIDTH], HEIGHT, WIDTH)
     y = towards[..., 1:2]
     above = np.array([0.08, 0.2, 0.5]) + np.array([0.6, 0.55, 0.4]) * np.exp(-6 * np.maximum(y, 0))
-    below = np.array([0.12, 0.09, 0.06]) * (1 + y)
+    below = np.array([0.12, 0.09, 0.06]) * (1.2 + y)
     radiance = np.where(y > 0, above, below)
     angle = np.degrees(np.arccos(np.clip(towards @ (SUN / np.linalg.norm(SUN)), -1, 1)))[..., None]
     for colour, radius in (((8000.0, 7000.0, 5500.0), SUN_RADIUS), ((3.0, 2.4, 1.6), HALO_RADIUS)):

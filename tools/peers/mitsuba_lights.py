@@ -67,8 +67,8 @@ class Lights:
         return self.lamp(light.radiance, type="sphere", center=light.center.tolist(), radius=light.radius)
 
     def disk(self, light):
-        place = self.look_at(light.center, light.target)
-        return self.lamp(light.radiance, type="disk", to_world=place @ self.mi.ScalarTransform4f().scale(light.radius))
+        place, radius = self.look_at(light.center, light.target), float(light.radius)
+        return self.lamp(light.radiance, type="disk", to_world=place @ self.mi.ScalarTransform4f().scale([radius] * 3))
 
     def rectangle(self, light):
         place = self.look_at(light.center, light.target, light.up)
