@@ -81,6 +81,7 @@ class Measured:
     def calibrate(self, target, seed):
         """Finds the number of samples that take `target` seconds."""
         self.renderer.warm_up()
+        self.renderer.render(self.samples, seed)  # the first with caches may have to fill them
         while True:
             _, seconds, _ = self.renderer.render(self.samples, seed)
             if seconds >= min(SHORTEST, target / 2) or self.samples >= 1 << 20:
@@ -177,7 +178,7 @@ class Contest:
         mean, variance = passes.mean(axis=0), passes.var(axis=0, ddof=1) / count
         path = f"{self.name}.{self.measured.index(measured)}.exr"
         exr.write(path, mean, variance, samples * count)
-        command = [self.options.vkvol, "compare", path, self.reference_file, "--json", "--significance", "0.001"]
+        command = [self.options.vkvol.resolve(), "compare", path, self.reference_file, "--json", "--significance", "0.001"]
         done = subprocess.run(command, capture_output=True, text=True)
         verdict = json.loads(done.stdout) if done.stdout else sys.exit(done.stderr)
         measured.agreement = dict(mean_agreement(mean, self.reference, variance + self.variance),

@@ -1,4 +1,4 @@
-"""OpenEXR files as vkvol, Mitsuba and pbrt write them. Reading is the report page's; vkvol's films are written here."""
+"""OpenEXR files as vkvol, Mitsuba and pbrt write them. Reading is the report page's; films and maps are written here."""
 import struct
 import sys
 import zlib
@@ -33,28 +33,48 @@ def read_rgb(path):
     return stack(""), stack("variance."), images.get("samples")
 
 
-def write(path, mean, variance, samples):
-    """The channels of vkvol's films: mean, variance of the mean, samples of each pixel."""
-    height, width, _ = mean.shape
-    images = {c: mean[..., i] for i, c in enumerate("RGB")}
-    images.update({"variance." + c: variance[..., i] for i, c in enumerate("RGB")})
-    images["samples"] = np.full((height, width), samples)
+KINDS = {"u4": 0, "f2": 1, "f4": 2}
+ZIP_LINES = 16  # in a block
+
+
+def zipped(raw):
+    """The format's own: even bytes before odd ones, their differences, zlib; as it is where that would not be shorter."""
+    data = np.frombuffer(raw, np.uint8)
+    data = np.concatenate([data[0::2], data[1::2]])
+    data = np.concatenate([data[:1], np.diff(data) + np.uint8(128)])
+    packed = zlib.compress(data.tobytes(), 9)
+    return packed if len(packed) < len(raw) else raw
+
+
+def write_channels(path, images, compress=False):
+    """Scan lines of channels by name, each [row, column] of u4, f2 or f4."""
     names = sorted(images)
+    height, width = images[names[0]].shape
+    step = ZIP_LINES if compress else 1
 
     def attribute(name, kind, value):
         return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<I", len(value)) + value
-    channels = b"".join(name.encode() + b"\0" + struct.pack("<IIII", 0 if name == "samples" else 2, 0, 1, 1) for name in names) + b"\0"
+    channels = b"".join(name.encode() + b"\0" + struct.pack("<IIII", KINDS[images[name].dtype.str[1:]], 0, 1, 1)
+                        for name in names) + b"\0"
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
     header = b"v/1\x01" + struct.pack("<I", 2) + b"".join((
-        attribute("channels", "chlist", channels), attribute("compression", "compression", b"\0"),
+        attribute("channels", "chlist", channels), attribute("compression", "compression", b"\3" if compress else b"\0"),
         attribute("dataWindow", "box2i", window), attribute("displayWindow", "box2i", window),
         attribute("lineOrder", "lineOrder", b"\0"), attribute("pixelAspectRatio", "float", struct.pack("<f", 1)),
         attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)),
         attribute("screenWindowWidth", "float", struct.pack("<f", 1)))) + b"\0"
-    row_bytes = 4 * width * len(names)
-    first = len(header) + 8 * height
-    with open(path, "wb") as file:
-        file.write(header + struct.pack(f"<{height}Q", *(first + y * (8 + row_bytes) for y in range(height))))
-        for y in range(height):
-            file.write(struct.pack("<iI", y, row_bytes))
-            file.write(b"".join(images[name][y].astype("<u4" if name == "samples" else "<f4").tobytes() for name in names))
+    blocks = []
+    for y in range(0, height, step):
+        raw = b"".join(images[name][row].tobytes() for row in range(y, min(y + step, height)) for name in names)
+        data = zipped(raw) if compress else raw
+        blocks.append(struct.pack("<iI", y, len(data)) + data)
+    places = len(header) + 8 * len(blocks) + np.cumsum([0] + [len(block) for block in blocks[:-1]])
+    Path(path).write_bytes(header + places.astype("<u8").tobytes() + b"".join(blocks))
+
+
+def write(path, mean, variance, samples):
+    """The channels of vkvol's films: mean, variance of the mean, samples of each pixel."""
+    images = {c: mean[..., i].astype("<f4") for i, c in enumerate("RGB")}
+    images.update({"variance." + c: variance[..., i].astype("<f4") for i, c in enumerate("RGB")})
+    images["samples"] = np.full(mean.shape[:2], samples, "<u4")
+    write_channels(path, images)

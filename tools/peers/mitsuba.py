@@ -22,6 +22,8 @@ except ModuleNotFoundError:
 
 import contest
 import grid as grids
+import lights
+import mitsuba_lights
 import scene as scenes
 import vkvol
 
@@ -32,8 +34,13 @@ NEVER = 1 << 30  # a depth that no path reaches
 LARGEST_PASS = 1 << 24  # paths in flight; each takes some 100 bytes
 
 
-def rgb(values):
-    return {"type": "rgb", "value": [float(v) for v in values]}
+def phase(function):
+    if function.name == "rayleigh":
+        return {"type": "rayleigh"}
+    first = {"type": "hg", "g": function.g}
+    if function.name == "henyeyGreenstein":
+        return first
+    return {"type": "blendphase", "weight": function.share, "first": first, "second": {"type": "hg", "g": function.second}}
 
 
 class Description:
@@ -41,19 +48,26 @@ class Description:
 
     def __init__(self, scene, mi, options):
         self.scene, self.mi, self.options = scene, mi, options
+        # Mitsuba has one map or constant background.
+        self.maps = [light for light in scene.lights if isinstance(light, lights.Sky)]
+        for light in self.maps:
+            light.texels = light.texels + scene.background
 
     def dictionary(self, integrator):
         scene = self.scene
         result = {"type": "scene", "integrator": self.integrator(integrator), "sensor": self.sensor(),
                   "boundary": self.boundary()}
-        if scene.background.any():
-            result["sky"] = {"type": "constant", "radiance": rgb(scene.background)}
-            if self.options.sky == "escape" and scene.light_direction is not None:
+        if scene.background.any() and not self.maps:
+            result["sky"] = {"type": "constant", "radiance": mitsuba_lights.rgb(scene.background)}
+            if self.options.sky == "escape" and scene.lights:
                 result["sky"]["sampling_weight"] = 0.0  # of shadow rays
-        if scene.light_direction is not None:
-            result["sun"] = {"type": "directional", "direction": [float(v) for v in -scene.light_direction],
-                             "irradiance": rgb(scene.irradiance)}
+        corners = scene.medium.shape.corners()
+        translate = mitsuba_lights.Lights(self.mi, corners.mean(axis=0), np.linalg.norm(np.ptp(corners, axis=0)), self.fail)
+        result.update((f"light{i}", translate.entry(light)) for i, light in enumerate(scene.lights))
         return result
+
+    def fail(self, what):
+        sys.exit(f"{self.scene.path}: {what}")
 
     def integrator(self, name):
         # Mitsuba counts path segments up to the light, vkvol the collisions between them.
@@ -67,12 +81,13 @@ class Description:
             sys.exit("the picture starts or its reference frame ends within a pixel, which Mitsuba cannot render; take "
                      "a --width and --height that divide the frame evenly")
         distance = np.linalg.norm(self.scene.medium.shape.corners() - camera.position, axis=1).max()
+        farthest = 1e3 * distance + 2 * mitsuba_lights.FAR * distance  # beyond the sun
         sensor = {
             "type": "perspective", "fov": camera.fov, "fov_axis": "y",
             "to_world": self.mi.ScalarTransform4f().look_at(
                 camera.position.tolist(), (camera.position + camera.forward).tolist(), camera.up.tolist()),
             # Rays begin at the near plane: within the rounding of what they meet.
-            "near_clip": float(1e-6 * distance), "far_clip": float(1e3 * distance),
+            "near_clip": float(1e-6 * distance), "far_clip": float(farthest),
             "sampler": {"type": "independent"},
             "film": {"type": "hdrfilm", "pixel_format": "rgb", "component_format": "float32", "rfilter": {"type": "box"},
                      "width": int(picture.reference[0]), "height": int(picture.reference[1]),
@@ -108,10 +123,10 @@ class Description:
         grey = np.ptp(medium.sigma_t) == 0
         strength = float(medium.sigma_t.max())
         albedo = np.divide(medium.sigma_s, medium.sigma_t, out=np.zeros(3), where=medium.sigma_t > 0)
-        result = {"type": "homogeneous", "albedo": float(albedo[0]) if np.ptp(albedo) == 0 else rgb(albedo),
-                  "scale": strength, "sigma_t": 1.0 if grey else rgb(medium.sigma_t / strength),
-                  "has_spectral_extinction": not grey, "phase": {"type": "hg", "g": medium.g},
-                  "sample_emitters": self.options.sky == "sampled" or self.scene.light_direction is not None}
+        result = {"type": "homogeneous", "albedo": float(albedo[0]) if np.ptp(albedo) == 0 else mitsuba_lights.rgb(albedo),
+                  "scale": strength, "sigma_t": 1.0 if grey else mitsuba_lights.rgb(medium.sigma_t / strength),
+                  "has_spectral_extinction": not grey, "phase": phase(medium.phase),
+                  "sample_emitters": self.options.sky == "sampled" or bool(self.scene.lights)}
         if isinstance(medium.shape, grids.Grid):
             result.update(type="heterogeneous", sigma_t=self.field(None if grey else medium.sigma_t / strength))
         return result
@@ -145,7 +160,11 @@ class Mitsuba:
 
     def warm_up(self):
         start = time.monotonic()
-        self.mi_scene = self.mi.load_dict(Description(self.scene, self.mi, self.options).dictionary(self.integrator))
+        description = Description(self.scene, self.mi, self.options)
+        self.mi_scene = self.mi.load_dict(description.dictionary(self.integrator))
+        for light in description.maps:
+            if not mitsuba_lights.map_agrees(self.mi, self.mi_scene.environment(), light):
+                description.fail(f"<sky>: Mitsuba {self.mi.__version__} has texels in other places; take 3.9.1")
         self.load_seconds = self.read_seconds + time.monotonic() - start
         if self.jit:
             self.dr.set_flag(self.dr.JitFlag.KernelHistory, True)

@@ -23,6 +23,7 @@ except ModuleNotFoundError:
 import contest
 import exr
 import grid as grids
+import lights
 import scene as scenes
 import vkvol
 
@@ -70,7 +71,7 @@ def medium_lines(medium):
             yield f'  "spectrum {name}" [ 200 {sigma[0]:.9g} 900 {sigma[0]:.9g} ]'
         else:
             yield f'  "rgb {name}" [ {numbers(sigma)} ]'
-    yield f'  "float g" [ {medium.g:.9g} ]'
+    yield f'  "float g" [ {medium.phase.g:.9g} ]'
 
 
 def grid_lines(grid):
@@ -102,8 +103,10 @@ def boundary_lines(shape):
 def light_lines(scene):
     if scene.background.any():
         yield f'LightSource "infinite" "rgb L" [ {numbers(scene.background)} ]'
-    if scene.light_direction is not None:
-        yield (f'LightSource "distant" "rgb L" [ {numbers(scene.irradiance)} ] "point3 from" [ {numbers(scene.light_direction)} ] '
+    for light in scene.lights:
+        if not isinstance(light, lights.Directional):
+            sys.exit(f"{scene.path}: <{type(light).__name__.lower()}> is not translated for pbrt; take a <directional> light")
+        yield (f'LightSource "distant" "rgb L" [ {numbers(light.irradiance)} ] "point3 from" [ {numbers(light.direction)} ] '
                '"point3 to" [ 0 0 0 ]')
 
 
@@ -114,6 +117,8 @@ def scene_lines(scene, options):
         sys.exit(f"{scene.path}: pbrt always interpolates; remove <filter>nearest</filter>")
     if is_grid and shape.values.size > LARGE:
         sys.exit(f"{shape.path}: has {shape.values.size} voxels, too many for a text file; crop the grid")
+    if medium.phase.name != "henyeyGreenstein":
+        sys.exit(f"{scene.path}: <phase> {medium.phase.name} is not translated for pbrt; take henyeyGreenstein")
     yield f"# {scene.path.name}, made by pbrt_scene.py"
     yield from camera_lines(scene, options)
     # Between Camera and WorldBegin: pbrt places media relative to the camera, and a camera inside wants its medium by then.

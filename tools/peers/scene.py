@@ -1,6 +1,7 @@
 """Reads vkvol's scene files for other renderers: what scenes/README.md says, as far as they can follow.
 
-What they cannot, such as emission, noise or meshes, is an error here, so that no comparison is of different scenes."""
+What they cannot, such as emission, noise or meshes, is an error here, so that no comparison is of different scenes. Lights:
+lights.py."""
 import dataclasses
 import math
 import pathlib
@@ -11,11 +12,13 @@ import xml.etree.ElementTree as ET
 import numpy as np
 
 import grid as grids
+import lights
 
 # Paths that scatter once, or not at all: no path tracer has them.
 NOT_MULTIPLE = ("densitySampling", "homogeneousRayMarcherNEE", "homogeneousRayMarcherImproved",
                 "heterogeneousPerlinNoise", "nanoVDBSimple", "nanoVDBEmission")
 WITHOUT_LIGHT = ("deltaTracking", "densitySampling")
+PHASES = ("henyeyGreenstein", "doubleHenyeyGreenstein", "rayleigh")
 LEFT_OUT = {"noise": "procedural noise", "models": "a medium in a mesh"}
 
 
@@ -36,11 +39,19 @@ class Picture:
 
 
 @dataclasses.dataclass
+class Phase:
+    name: str  # one of PHASES
+    g: float
+    second: float = 0.0  # of two of Henyey and Greenstein's
+    share: float = 0.5  # of the second
+
+
+@dataclasses.dataclass
 class Medium:
     shape: object  # grids.Grid, Sphere or Box
     sigma_a: np.ndarray  # per world unit, density scale included
     sigma_s: np.ndarray
-    g: float
+    phase: object  # Phase
     nearest: bool  # no interpolation
 
     @property
@@ -78,8 +89,7 @@ class Scene:
     camera: Camera
     picture: Picture
     medium: Medium
-    light_direction: np.ndarray  # towards the light; None without one
-    irradiance: np.ndarray
+    lights: list  # of what lights.py has
     background: np.ndarray
     max_depth: int  # scattering events; None: unlimited
 
@@ -100,13 +110,17 @@ class Reader:
         sys.exit(f"{self.path}: {what}")
 
     def filled(self, text):
-        """With $key and ${key} replaced."""
+        """With $key, ${key} and ${key:-default} replaced."""
         def value(match):
-            name = match[1] or match[2]
-            if name is None:
+            if match[0] == "$$":
                 return "$"
-            return self.keys[name] if name in self.keys else self.fail(f"${name} has no value; give one with -D {name}=VALUE")
-        return re.sub(r"\$(?:\$|(\w+)|\{(\w+)\})", value, text).strip()
+            name, default = match[1] or match[2], match[3]
+            if name is None:
+                return self.fail(f"'{text}' computes, which is not translated; give the number")
+            if name in self.keys and not (self.keys[name] == "" and default is not None):
+                return self.keys[name]
+            return default if default is not None else self.fail(f"${name} has no value; give one with -D {name}=VALUE")
+        return re.sub(r"\$(?:\$|(\w+)|\{(\w+)(?::-([^{}$]*))?\}|)", value, text).strip()
 
     def find(self, *names):
         return next((e for e in map(self.root.find, names) if e is not None), None)
@@ -128,6 +142,11 @@ class Reader:
     def vector(self, element, names="xyz"):
         return np.array([self.number(element, name, 0.0) for name in names])
 
+    def numbers(self, element, name, default=None):
+        """Three of them, in one attribute."""
+        values = [self.to_number(word) for word in self.filled(element.get(name, default) or "").split()]
+        return np.array(values) if len(values) == 3 else self.fail(f"<{element.tag}> {name}: expected three numbers, x y z")
+
     def color(self, name):
         element = self.find(name)
         return self.vector(element, "rgb") * self.number(element, "multiplier", 1.0)
@@ -142,20 +161,26 @@ class Reader:
         choices = {} if self.find("integrator") is None else self.find("integrator").attrib
         if integrator in NOT_MULTIPLE or choices.get("scattering", "multiple") != "multiple":
             self.fail("the integrator leaves multiple scattering out, which the peers cannot; take another one")
-        irradiance = self.color("light")
-        has_light = irradiance.any() and integrator not in WITHOUT_LIGHT and choices.get("nee") != "none"
-        direction = self.vector(self.find("light"))
+        found = lights.Lights(self).read()
+        if integrator in WITHOUT_LIGHT or choices.get("nee") == "none":
+            found = [light for light in found if isinstance(light, lights.MET_BY_CHANCE)]
         depth = self.text("maxDepth")
         return Scene(path=self.path, camera=self.camera(), picture=self.picture(), medium=self.medium(grid_override),
-                     light_direction=direction / np.linalg.norm(direction) if has_light else None,
-                     irradiance=irradiance, background=self.color("backgroundColor"),
+                     lights=found, background=self.color("backgroundColor"),
                      max_depth=int(depth) if depth else None)
 
     def camera(self):
         element = self.find("camera")
+        fov = self.number(element, "fov", 90.0)
+        if element is not None and element.get("lookAt") is not None:
+            if element.get("distance") is not None:
+                self.fail("<camera> distance: orbits are not translated; say where the camera is by x, y, z")
+            place = self.vector(element)
+            forward = lights.unit(self.numbers(element, "lookAt") - place)
+            return Camera(place, forward, self.numbers(element, "up", "0 1 0"), fov)
         pitch, yaw, roll = (math.radians(self.number(element, name, 0.0)) for name in ("pitch", "yaw", "roll"))
         rotation = rotation_about(2, roll) @ rotation_about(1, yaw) @ rotation_about(0, pitch)
-        return Camera(self.vector(element), rotation @ [0, 0, -1], rotation @ [0, 1, 0], self.number(element, "fov", 90.0))
+        return Camera(self.vector(element), rotation @ [0, 0, -1], rotation @ [0, 1, 0], fov)
 
     def picture(self):
         size, start, reference = [], [], []
@@ -186,6 +211,13 @@ class Reader:
             return Box(self.vector(box), np.array([self.number(box, name, 1.0) for name in ("width", "height", "depth")]))
         return self.fail("has no medium; there is nothing to compare")
 
+    def phase(self):
+        element, name = self.find("phase"), self.text("phase", PHASES[0])
+        if name not in PHASES:
+            self.fail(f"<phase> {name} is not translated; take {', '.join(PHASES)}")
+        g = self.to_number(self.text("heyneygreenstein_g") or self.text("heynegreenstein_g") or "0")
+        return Phase(name, g, self.number(element, "second", 0.0), self.number(element, "share", 0.5))
+
     def medium(self, grid_override):
         shape = self.shape(grid_override)
         sigma_a, sigma_s = self.coefficient("sigma_a"), self.coefficient("sigma_s")
@@ -193,9 +225,7 @@ class Reader:
         units = {e.get("unit", "voxel") for e in (self.find("sigma_a"), self.find("sigma_s")) if e is not None}
         if isinstance(shape, grids.Grid) and units != {"world"}:
             scale /= shape.voxel_size
-        element = self.find("heyneygreenstein_g", "heynegreenstein_g")
-        g = self.to_number(element.text) if element is not None else 0.0
-        return Medium(shape, sigma_a * scale, sigma_s * scale, g, self.text("filter") == "nearest")
+        return Medium(shape, sigma_a * scale, sigma_s * scale, self.phase(), self.text("filter") == "nearest")
 
 
 def rotation_about(axis, angle):

@@ -32,7 +32,7 @@ def add_options(parser):
 
 class Vkvol:
     def __init__(self, options, folder):
-        self.program, self.folder = options.vkvol, pathlib.Path(folder)
+        self.program, self.folder = options.vkvol.resolve(), pathlib.Path(folder)
         if not self.program.exists():
             sys.exit(f"{self.program}: no such program; build it, or name it with --vkvol")
         self.arguments = [str(options.scene), "-q"]
