@@ -52,6 +52,8 @@ telescoping with wrong chances ~ shaders/estimators/transmittance/telescoping_tr
 control density not seen ~ shaders/estimators/transmittance/residual_transmittance.glsl ~ T *= exp(-c.sigma_c * c.flown * ratio); ~ ; ~ [transmittance]
 null collisions lit in full ~ shaders/estimators/free_flight.glsl ~ : c.sigma_t / c.sigma_maj; ~ : 1.0; ~ [agreement]
 march without albedo ~ shaders/stages/collide.glsl ~ gather_light(v, position, t, deposit * to_spectrum(v.albedo), ~ gather_light(v, position, t, deposit, ~ [agreement]
+known light not added ~ shaders/stages/collide.glsl ~ lane.path.radiance += lit * lane.cached * light; ~ ; ~ [light_cache]
+cache of one direction only ~ host/device_scene/light_cache.cpp ~ push.towards = directions_[i]; ~ push.towards = directions_[0]; ~ [light_cache]
 rays begin at far eyes ~ host/device_scene/scene_upload.cpp ~ return depth > 16.0 * radius ? depth : 0.0; ~ return 0.0 * depth; ~ [precision]
 far indices stay far ~ host/device_scene/scene_upload.cpp ~ longest(middle) < std::max(4096, 4 * size) ~ longest(middle) >= -size ~ [precision]
 faces a millionth too far ~ shaders/majorants/majorant.glsl ~ return max(w.t, min( ~ return max(w.t, 1.000001 * min( ~ [precision]

@@ -76,14 +76,18 @@ TEST_CASE("the cache knows the depth of a uniform block to a cell of the lattice
             for (int y = 0; y < lattice.dims.y; ++y)
                 for (int z = 0; z < lattice.dims.z; ++z, ++i) {
                     const glm::dvec3 p = low + glm::dvec3(x, y, z) * glm::dvec3(lattice.spacing);
-                    double end = 1e300; // to the faces of the voxels, in voxels
+                    double end = 1e300;  // to the faces of the voxels, in voxels
+                    bool grazes = false; // goes along a face, where nodes' means are of less than there is within
                     for (int axis = 0; axis < 3; ++axis) {
                         const double face = light[axis] > 0.0 ? high[axis] - 0.5 : -0.5;
-                        if (light[axis] != 0.0)
+                        if (light[axis] == 0.0)
+                            grazes = grazes || p[axis] < spacing || p[axis] > high[axis] - 1.0 - spacing;
+                        else
                             end = std::min(end, std::max((face - p[axis]) / light[axis], 0.0));
                     }
                     CAPTURE(x, y, z, light.x, light.y, light.z, texels);
-                    CHECK(std::abs(depths[i] - per_voxel * end) <= per_voxel * 2.0 * (std::sqrt(3.0) * spacing + 1.0));
+                    CHECK((grazes || std::abs(depths[i] - per_voxel * end) <=
+                                         per_voxel * 2.0 * (std::sqrt(3.0) * spacing + 1.0)));
                 }
     REQUIRE(i == depths.size());
 }
@@ -92,6 +96,8 @@ TEST_CASE("few collisions look at the light, and the picture is the same whateve
           "[gpu][light_cache][determinism]") {
     Scene scene = scene_of(medium(write_grid(cloud_grid()), 4.0, 0.99, 0.3), 11.0, 24);
     scene.lights = {sunlight()};
+    if (GENERATE(false, true))
+        scene.lights.push_back(PointLight{{2.0, 6.0, 3.0}, Rgb(40.0, 20.0, 10.0)});
     scene.settings.spp = 8;
     scene.settings.integrator = "cachedRatioTracking";
     RenderJob job;
@@ -112,11 +118,14 @@ TEST_CASE("a cache that is wrong everywhere is corrected by the few that look", 
     columns.linear = glm::dmat3(0.05);
     columns.translation = -center_of(columns);
     Scene scene = scene_of(medium(write_grid(columns), 2.0, 0.2), 4.0, 24);
-    scene.lights = {DirectionalLight{{0.0, 1.0, 0.0}, Rgb(3.0, 2.0, 1.0)}};
+    const DirectionalLight above{{0.0, 1.0, 0.0}, Rgb(3.0, 2.0, 1.0)};
+    scene.lights = GENERATE_COPY(std::vector<Light>{above},
+                                 std::vector<Light>{above, PointLight{{0.3, 9.0, -0.2}, Rgb(80.0, 100.0, 120.0)}});
     scene.settings.spp = 256;
     scene.settings.integrator = "cachedRatioTracking";
     const RenderResult cached = render_here(scene, 3);
-    CHECK(2 * cached.counts.shadow_rays < cached.counts.real_collisions);
+    // Of a table more do: what is known of it is known less well.
+    CHECK((scene.lights.size() == 1 ? 2 : 1) * cached.counts.shadow_rays < cached.counts.real_collisions);
     scene.settings.integrator = "ratioTracking";
     CHECK_AGREEMENT(agree(cached.film, render_here(scene, 4).film, "columns of light"));
 }
