@@ -26,4 +26,10 @@ vec3 turned(vec3 peak, float from_peak, float u) {
     return normalize(peak * (1.0 - from_peak) + (tangent * around.x + bitangent * around.y) * sine);
 }
 
+// About y, from -z towards +x, in radians. Straight up and down, of which atan says nothing, it is 0.
+float longitude_of(vec3 direction) {
+    bool has_one = direction.x != 0.0 || direction.z != 0.0;
+    return atan(direction.x, has_one ? -direction.z : 1.0);
+}
+
 #endif

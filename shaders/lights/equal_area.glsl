@@ -6,6 +6,7 @@
 #ifndef EQUAL_AREA_GLSL
 #define EQUAL_AREA_GLSL
 #include "lib/buffers.glsl"
+#include "lib/directions.glsl"
 
 const float TURN = 6.283185307179586;
 
@@ -17,7 +18,7 @@ vec2 folded(vec2 q) {
 // Column and row, in texels from the map's top left corner. At the horizon -z is in the middle of the top edge, +x of the right.
 vec2 equal_area_place(vec3 direction) {
     float r = length(direction.xz) * inversesqrt(1.0 + abs(direction.y)); // sqrt(1 - |y|), with all digits near 0
-    float turns = fract(atan(direction.x, -direction.z) / TURN + frame.sky.turn);
+    float turns = fract(longitude_of(direction) / TURN + frame.sky.turn);
     vec2 q = r * (1.0 - abs(4.0 * vec2(fract(turns + 0.25), turns) - 2.0));
     q = direction.y < 0.0 ? folded(q) : q;
     return clamp(0.5 * q + 0.5, 0.0, 1.0) * float(frame.sky.width);

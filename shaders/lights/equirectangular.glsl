@@ -2,13 +2,14 @@
 #ifndef EQUIRECTANGULAR_GLSL
 #define EQUIRECTANGULAR_GLSL
 #include "lib/buffers.glsl"
+#include "lib/directions.glsl"
 
 const float PI = 3.14159265358979;
 
 // Column and row, in texels from the map's top left corner. The latitude by atan, since near the poles the cosine says little.
 vec2 equirectangular_place(vec3 direction) {
     SkyParams sky = frame.sky;
-    float longitude = fract(atan(direction.x, -direction.z) * (0.5 / PI) + 0.5 + sky.turn);
+    float longitude = fract(longitude_of(direction) * (0.5 / PI) + 0.5 + sky.turn);
     float latitude = atan(length(direction.xz), direction.y) / PI; // from the zenith
     return vec2(longitude * float(sky.width), latitude * float(sky.height));
 }

@@ -141,14 +141,16 @@ void save_input(Target& target, const Range& range, std::uint64_t k, const std::
     waitpid(child, nullptr, 0);
 }
 
-// Removed with all that is in it.
+// Removed with all that is in it. Two folders deep: what inputs call "../density_fields" is to be here, and not there
+// by chance.
 struct Scratch {
-    std::filesystem::path path =
+    std::filesystem::path own =
         std::filesystem::temp_directory_path() / fmt::format("vkvol_fuzz_{}", static_cast<long>(getpid()));
+    std::filesystem::path path = own / "inputs";
     Scratch() { std::filesystem::create_directories(path); }
     ~Scratch() {
         std::error_code ignored;
-        std::filesystem::remove_all(path, ignored);
+        std::filesystem::remove_all(own, ignored);
     }
 };
 
