@@ -146,10 +146,20 @@ void check_integrator(const std::string& name) {
         throw InputError(fmt::format("unknown integrator '{}'{}", name, name_hint(name, integrator_names())));
 }
 
+namespace {
+
+// Towards a light that is near, transmittances are differences of what is cached, and take as long as shadow rays do:
+// see tools/results/README.md.
+bool gains_by_cache(const Scene& scene) {
+    return can_cache_light(scene) && std::none_of(scene.lights.begin(), scene.lights.end(), has_place);
+}
+
+} // namespace
+
 const Integrator& choose_integrator(const Scene& scene) {
     const std::string name = !scene.settings.integrator.empty() ? scene.settings.integrator
                              : scene.lights.empty()             ? "deltaTracking"
-                             : !can_cache_light(scene)          ? "ratioTracking"
+                             : !gains_by_cache(scene)           ? "ratioTracking"
                                                                 : "cachedRatioTracking";
     check_integrator(name);
     return *find_integrator(name);

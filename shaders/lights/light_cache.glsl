@@ -9,8 +9,9 @@
 #include "phase/phase.glsl"
 #include "shapes/shape.glsl"
 
-// Measured: the chance of a doubtful isotropic collision is 1 with 4; what is known of many directions is known less well.
-const float LOOKING = LIGHTS == LIGHTS_SUN ? 4.0 : 16.0;
+// Measured: the chance of a doubtful isotropic collision is 1 with 4. Between the directions of a lattice less is known.
+const float LOOKING = 4.0;
+const float LOOKING_BETWEEN = 16.0;
 const float LEAST_CHANCE = 0.05; // bounds the weight of what the cache has wrong
 const float DOUBT_AT_ENDS = 0.02;
 
@@ -23,7 +24,7 @@ Spectrum cached_transmittance(MediumParams v, vec3 position) {
 const float NEAR_SUN = 0.99; // cosine: about 8 degrees
 
 // Depth in any direction: of the sun that is there, or between those of the axis and the diagonal that are nearest.
-float cached_depth(MediumParams v, vec3 position, vec3 direction) {
+float cached_depth(MediumParams v, vec3 position, vec3 direction, out float looking) {
     vec3 p = to_medium(v, position, vec3(0.0)).origin;
     vec3 a = abs(direction);
     float most = max(a.x, max(a.y, a.z));
@@ -32,27 +33,29 @@ float cached_depth(MediumParams v, vec3 position, vec3 direction) {
     uint first = 2u * uint(axis) + negative[axis];
     uint diagonal = CACHE_AXES + (negative.x | negative.y << 1u | negative.z << 2u);
     float share = clamp((1.0 - most) / (1.0 - inversesqrt(3.0)), 0.0, 1.0);
+    looking = LOOKING_BETWEEN;
     [[unroll]] for (uint i = 0u; i < CACHE_SUNS; ++i) {
         bool at_sun = dot(direction, frame.cache_suns[i]) > NEAR_SUN;
         first = at_sun ? CACHE_DIRECTIONS + i : first;
         share = at_sun ? 0.0 : share;
+        looking = at_sun ? LOOKING : looking;
     }
     return mix(lattice_value(LATTICE_DEPTH + first, p), lattice_value(LATTICE_DEPTH + diagonal, p), share);
 }
 
 // T~ towards a light of a table: of one that is not infinitely far, without what is behind it.
-Spectrum cached_transmittance_to(MediumParams v, vec3 position, vec3 direction, float reach) {
-    float depth = cached_depth(v, position, direction);
+Spectrum cached_transmittance_to(MediumParams v, vec3 position, vec3 direction, float reach, out float looking) {
+    float depth = cached_depth(v, position, direction, looking);
     if (reach < FAR)
-        depth = max(depth - cached_depth(v, position + reach * direction, direction), 0.0);
+        depth = max(depth - cached_depth(v, position + reach * direction, direction, looking), 0.0);
     return exp(-to_spectrum(v.sigma_ratio) * depth);
 }
 
 // q. `share`: of the light that an isotropic collision at throughput 1 would scatter into the path.
-float looking_chance(float share, Spectrum T) {
+float looking_chance(float share, Spectrum T, float looking) {
     float t = largest(T);
     float doubt = sqrt(t * (1.0 - t)) + DOUBT_AT_ENDS;
-    return clamp(LOOKING * share * doubt, LEAST_CHANCE, 1.0);
+    return clamp(looking * share * doubt, LEAST_CHANCE, 1.0);
 }
 
 // A control variate for the direction in which a path departs: what a collision at its end would scatter towards the path, less

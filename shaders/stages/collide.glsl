@@ -27,9 +27,10 @@ void gather_some_light(MediumParams v, vec3 position, float t, Spectrum lit, uin
         lane.light = light;
         lane.todo = largest(light) > 0.0 && largest(lit) > 0.0 ? TODO_LOOK : next;
         if (NEE == NEE_CACHED) {
-            lane.cached = cached_transmittance_to(v, position, drawn.direction, drawn.distance);
+            float looking;
+            lane.cached = cached_transmittance_to(v, position, drawn.direction, drawn.distance, looking);
             lane.path.radiance += lit * lane.cached * light;
-            lane.chance = looking_chance(largest(lit * light) / (INV_4PI * frame.fluence), lane.cached);
+            lane.chance = looking_chance(largest(lit * light) / (INV_4PI * frame.fluence), lane.cached, looking);
             lane.todo = to_uniform(next_words(rng)).x < lane.chance ? lane.todo : next;
         }
     } else {
@@ -52,7 +53,7 @@ void gather_light(MediumParams v, vec3 position, float t, Spectrum lit, uint nex
             lane.cached = cached_transmittance(v, position);
             Spectrum scattered = lit * phase_eval(v, lane.path.direction, frame.lights[LIGHT_SUN].direction);
             lane.path.radiance += scattered * lane.cached * frame.lights[LIGHT_SUN].radiance;
-            lane.chance = looking_chance(largest(scattered) / INV_4PI, lane.cached);
+            lane.chance = looking_chance(largest(scattered) / INV_4PI, lane.cached, LOOKING);
             lane.todo = to_uniform(next_words(rng)).x < lane.chance ? TODO_LOOK : next;
         }
     } else {

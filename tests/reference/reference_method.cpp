@@ -98,7 +98,10 @@ Method resolve_method(const vkvol::Scene& scene, Medium& medium) {
     const vkvol::RenderSettings& settings = scene.settings;
     const vkvol::AxisChoices& choices = settings.choices;
     const bool cached = !scene.lights.empty() && !medium.homogeneous() && !std::holds_alternative<Mesh>(medium.shape);
-    const std::string best = scene.lights.empty() ? "deltaTracking" : cached ? "cachedRatioTracking" : "ratioTracking";
+    const bool far = std::none_of(scene.lights.begin(), scene.lights.end(), vkvol::has_place);
+    const std::string best = scene.lights.empty() ? "deltaTracking"
+                             : cached && far      ? "cachedRatioTracking"
+                                                  : "ratioTracking";
     const Preset& preset = find_preset(settings.integrator.empty() ? best : settings.integrator);
     Method method{preset.name,
                   choices.scattering.value_or(preset.scattering),
