@@ -49,7 +49,7 @@ def draw(results, path, columns):
         else:
             axis.text(0.5, 0.5, text, transform=axis.transAxes, ha="center", va="center", fontsize=6)
     figure.subplots_adjust(left=0.01, right=0.99, top=0.995, bottom=0.16 / rows, wspace=0.04, hspace=0.2)
-    figure.savefig(path, dpi=105)
+    figure.savefig(path, dpi=90)
 
 
 def main():
