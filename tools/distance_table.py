@@ -7,14 +7,15 @@ Errors are relMSE against a render of many samples by `mixed`: what free flights
 estimate could be trusted with, and a few pixels may decide. Read them as orders of magnitude.
 """
 
-import argparse
 import json
 import pathlib
 import statistics
 import subprocess
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+import table_runs
+
+WAYS = {way: f"ratioTracking:distance={way}" for way in ("flights", "mixed")}
 FOG = """<options><box width="20" height="20" depth="20"/>{noise}<sigma_a>0</sigma_a><sigma_s>{sigma}</sigma_s>
 <camera z="30" fov="35"/><lights><point x="1" y="1.5" multiplier="10"/></lights><maxDepth>{depth}</maxDepth>
 <width>64</width><height>64</height></options>"""
@@ -30,32 +31,20 @@ CASES = {
 }
 
 
-def render(vkvol, scene, way, seed, spp, picture):
-    report = picture.with_suffix(".json")
-    subprocess.run([vkvol, scene, "--integrator", f"ratioTracking:distance={way}", "--seed", str(seed), "--spp", str(spp), "-q",
-                    "-o", picture, "--report", report], check=True, capture_output=True)
-    return json.loads(report.read_text())
-
-
 def error(vkvol, picture, reference):
     compared = subprocess.run([vkvol, "compare", picture, reference, "--json"], capture_output=True, text=True)
     return json.loads(compared.stdout)["relMSE"]
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", default=ROOT / "build")
-    parser.add_argument("--spp", type=int, default=256)
-    parser.add_argument("--runs", type=int, default=3)
-    parser.add_argument("--reference", type=int, default=8192)
-    options = parser.parse_args()
-    vkvol = str(pathlib.Path(options.build).resolve() / "vkvol")
+    options = table_runs.options(__doc__, spp=256, runs=3, reference=8192)
+    vkvol = options.vkvol
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         scene, picture, reference = folder / "scene.xml", folder / "a.exr", folder / "reference.exr"
         for number, (case, values) in enumerate(CASES.items()):
             scene.write_text(FOG.format(**values))
-            report = render(vkvol, scene, "mixed", 1000, options.reference, reference)
+            report = table_runs.render(vkvol, scene, WAYS["mixed"], 1000, options.reference, reference)
             if number == 0:
                 device = report["device"]
                 print(f"{device['name']}, {device['driver']}; a point light in fog, {options.spp} samples; means of "
@@ -64,7 +53,8 @@ def main():
             errors, seconds = {"flights": [], "mixed": []}, {"flights": [], "mixed": []}
             for run in range(options.runs):
                 for way in errors:
-                    seconds[way].append(render(vkvol, scene, way, run + 1, options.spp, picture)["seconds"]["render"])
+                    report = table_runs.render(vkvol, scene, WAYS[way], run + 1, options.spp, picture)
+                    seconds[way].append(report["seconds"]["render"])
                     errors[way].append(error(vkvol, picture, reference))
             less = statistics.mean(errors["flights"]) / statistics.mean(errors["mixed"])
             longer = statistics.median(seconds["mixed"]) / statistics.median(seconds["flights"])

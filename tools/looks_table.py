@@ -7,20 +7,21 @@ which correct a cache of transmittances. Efficiency, 1 / (error x seconds), over
 Errors are relMSE against a render of many samples by every collision's shadow rays, less that render's own. Needs NumPy.
 """
 
-import argparse
-import json
 import pathlib
 import re
 import statistics
-import subprocess
 import sys
 import tempfile
 
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+import table_runs
+
+ROOT = table_runs.ROOT
 sys.path.insert(0, str(ROOT / "tools/peers"))
 import exr  # noqa: E402
+
+SIZE = ("--width", "128")
 
 SUN_TEXEL = (36, 158)  # of 128 x 256
 LIT = {
@@ -56,13 +57,6 @@ def scenes(folder):
         yield name, ROOT / f"scenes/gallery/{name}.xml", False
 
 
-def render(vkvol, scene, way, seed, spp, picture):
-    report = picture.with_suffix(".json")
-    subprocess.run([vkvol, scene, "--integrator", way, "--seed", str(seed), "--spp", str(spp), "--width", "128", "-q", "-o",
-                    picture, "--report", report], check=True, capture_output=True)
-    return json.loads(report.read_text())
-
-
 def error(picture, reference):
     mean, _, _ = exr.read_rgb(picture)
     right, variance, _ = exr.read_rgb(reference)
@@ -70,18 +64,13 @@ def error(picture, reference):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", default=ROOT / "build")
-    parser.add_argument("--spp", type=int, default=64)
-    parser.add_argument("--runs", type=int, default=3)
-    parser.add_argument("--reference", type=int, default=1024)
-    options = parser.parse_args()
-    vkvol = str(pathlib.Path(options.build).resolve() / "vkvol")
+    options = table_runs.options(__doc__, spp=64, runs=3, reference=1024)
+    vkvol = options.vkvol
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         picture, reference = folder / "a.exr", folder / "reference.exr"
         for number, (case, scene, by_chance) in enumerate(scenes(folder)):
-            report = render(vkvol, scene, WAYS["collisions"], 1000, options.reference, reference)
+            report = table_runs.render(vkvol, scene, WAYS["collisions"], 1000, options.reference, reference, *SIZE)
             if number == 0:
                 print(f"{report['device']['name']}, {report['device']['driver']}; width 128, {options.spp} samples; means of "
                       f"{options.runs} errors, medians of as many seconds, in alternation")
@@ -90,8 +79,8 @@ def main():
             found = {way: [] for way in WAYS if way != "phase" or by_chance}
             for run in range(options.runs):
                 for way in found:
-                    seconds = render(vkvol, scene, WAYS[way], run + 1, options.spp, picture)["seconds"]["render"]
-                    found[way].append((error(picture, reference), seconds))
+                    report = table_runs.render(vkvol, scene, WAYS[way], run + 1, options.spp, picture, *SIZE)
+                    found[way].append((error(picture, reference), report["seconds"]["render"]))
             means = {way: (statistics.mean(e for e, _ in rows), statistics.median(s for _, s in rows)) for way, rows in found.items()}
             line = f"{case:36}"
             for way in ("phase", "cached"):

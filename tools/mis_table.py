@@ -7,14 +7,12 @@ A cloud of noise under one light at a time, by one phase function at a time. Var
 a single technique seldom finds what it looks for they are too low, and it looks better than it is.
 """
 
-import argparse
-import json
 import pathlib
 import statistics
-import subprocess
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+import table_runs
+
 LIGHTS = {
     "sun, 0.53 degrees": '<sun x="0.4" y="1" z="0.5" r="8" g="8" b="8"/>',
     "sun, 10 degrees": '<sun x="0.4" y="1" z="0.5" r="8" g="8" b="8" angle="10"/>',
@@ -35,21 +33,14 @@ SCENE = """<options><sphere radius="2.5"/><noise frequency="0.8" octaves="3"/><s
 
 
 def efficiency(vkvol, scene, mis, seed, spp, folder):
-    command = [vkvol, scene, "--integrator", f"ratioTracking:distance=flights:mis={mis}", "--seed", str(seed), "--spp", str(spp),
-               "-q", "-o", folder / "a.exr", "--report", folder / "report.json"]
-    subprocess.run(command, check=True, capture_output=True)
-    report = json.loads((folder / "report.json").read_text())
+    report = table_runs.render(vkvol, scene, f"ratioTracking:distance=flights:mis={mis}", seed, spp, folder / "a.exr")
     noise = report["noise"] or float("inf")  # none is known where no light was found
     return 1 / (noise**2 * report["seconds"]["render"]), report["device"]
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", default=ROOT / "build")
-    parser.add_argument("--spp", type=int, default=256)
-    parser.add_argument("--runs", type=int, default=3)
-    options = parser.parse_args()
-    vkvol = str(pathlib.Path(options.build).resolve() / "vkvol")
+    options = table_runs.options(__doc__, spp=256, runs=3)
+    vkvol = options.vkvol
     ways = ["light", "phase", "balance", "power"]
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)

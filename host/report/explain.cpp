@@ -1,8 +1,10 @@
 #include "explain.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "explain_causes.h"
+#include "shared/constants.h"
 
 namespace vkvol {
 
@@ -68,6 +70,16 @@ std::optional<Explanation> find_cause(const Evidence& evidence) {
 }
 
 } // namespace
+
+// Flights meet the sky by themselves, and the camera sees lamps.
+bool sees_light(const Scene& scene, const Method& method) {
+    const auto any = [&](bool (*is)(const Light&)) {
+        return std::any_of(scene.lights.begin(), scene.lights.end(), is);
+    };
+    if (any(is_met_by_chance) || (any(is_lamp) && method.nee != NEE_NONE))
+        return true;
+    return !scene.lights.empty() && method.nee != NEE_NONE && scene.settings.max_depth != 0u;
+}
 
 std::optional<Explanation> foresee(const Scene& authored) {
     const Scene scene = with_preset(authored);

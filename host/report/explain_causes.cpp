@@ -360,16 +360,6 @@ Answer overexposed(const Evidence& e) {
 
 } // namespace
 
-// Flights meet the sky by themselves, and the camera sees lamps.
-bool sees_light(const Scene& scene, const Method& method) {
-    const auto any = [&](bool (*is)(const Light&)) {
-        return std::any_of(scene.lights.begin(), scene.lights.end(), is);
-    };
-    if (any(is_met_by_chance) || (any(is_lamp) && method.nee != NEE_NONE))
-        return true;
-    return !scene.lights.empty() && method.nee != NEE_NONE && scene.settings.max_depth != 0u;
-}
-
 const std::vector<Cause>& causes() {
     static const std::vector<Cause> table = {
         {"unfinished", unfinished},

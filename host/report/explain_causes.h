@@ -35,7 +35,7 @@ struct Cause {
     std::optional<std::string> (*explain)(const Evidence&);
 };
 
-// Whether paths get light from a directional light.
+// Whether paths get light from any of the lights.
 bool sees_light(const Scene& scene, const Method& method);
 
 // In the order in which they are asked: what would hide the next comes first.

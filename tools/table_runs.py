@@ -1,0 +1,27 @@
+"""What the tables of one way of rendering over another have in common: their options, and one render."""
+
+import argparse
+import json
+import pathlib
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def options(description, **defaults):
+    """--build, and an integer for each of `defaults`. `vkvol` is the program."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", default=ROOT / "build")
+    for name, value in defaults.items():
+        parser.add_argument(f"--{name}", type=int, default=value)
+    found = parser.parse_args()
+    found.vkvol = str(pathlib.Path(found.build).resolve() / "vkvol")
+    return found
+
+
+def render(vkvol, scene, integrator, seed, spp, picture, *more):
+    """Writes `picture` (.exr); what --report says."""
+    report = picture.with_suffix(".json")
+    subprocess.run([vkvol, scene, "--integrator", integrator, "--seed", str(seed), "--spp", str(spp), "-q", "-o", picture,
+                    "--report", report, *more], check=True, capture_output=True)
+    return json.loads(report.read_text())
