@@ -105,6 +105,11 @@ distances drawn otherwise than stated ~ shaders/lights/equiangular.glsl ~ float 
 way to where a look from along a flight begins not attenuated ~ shaders/stages/shadow.glsl ~ lane.lit *= T; ~ ; ~ [lights]
 density of a direction forgotten in a queue ~ shaders/shared/path_state.h ~ (under_way || sets_out) && sees_sky ~ under_way && sees_sky ~ [lights]
 spot without its rim ~ shaders/lights/point.glsl ~ t * t * (3.0 - 2.0 * t) ~ t ~ [lights]
+albedos end with the grid's box ~ shaders/field/albedo.glsl ~ index = clamp(index, vec3(a.grid.voxel_min), vec3(a.grid.voxel_max)); ~ ; ~ [color_grids]
+albedos above 1 ~ shaders/field/albedo.glsl ~ min(lookup_color(a.grid, ALBEDO_TYPE, index), vec3(1.0)) ~ lookup_color(a.grid, ALBEDO_TYPE, index) ~ [color_grids]
+glow without the grid's albedo ~ shaders/field/emission.glsl ~ radiance *= 1.0 - albedo_at(v, position); ~ ; ~ [color_grids]
+colours a word off in a leaf ~ shaders/field/density.glsl ~ LEAF_COLORS = 32u ~ LEAF_COLORS = 33u ~ [color_grids]
+a third grid at the second's place ~ host/device_scene/scene_upload.cpp ~ params.first_word += static_cast ~ params.first_word = static_cast ~ [color_grids]
 lamps before a mesh seen through it ~ shaders/shapes/segment.glsl ~ t.x = min(t.x, t.y); // the first ~ // the first ~ [lights]
 END
 }

@@ -19,6 +19,14 @@ Rgb world_sigma_t(const Volume& volume, const DensityField* field) {
     return field && volume.unit == CoefficientUnit::voxel ? sigma_t / field->voxel_size() : sigma_t;
 }
 
+std::vector<const DensityField*> grids_of(const LoadedMedium& medium) {
+    std::vector<const DensityField*> grids;
+    for (const auto* grid : {&medium.field, &medium.temperature, &medium.albedo})
+        if (*grid)
+            grids.push_back(&**grid);
+    return grids;
+}
+
 double largest(const Rgb& color) {
     return std::max({color.x, color.y, color.z});
 }
@@ -40,24 +48,37 @@ glm::dvec3 box_center(const Mesh& mesh) {
 
 namespace {
 
-DensityField load_field(const GridFile& file, FieldCache* kept) {
-    return kept ? kept->take(file) : load_density_field(file);
+DensityField load_field(const GridFile& file, FieldCache* kept, GridValues values = GridValues::numbers) {
+    return kept ? kept->take(file, values) : load_density_field(file, values);
+}
+
+void load_albedo(const Volume& volume, const GridFile& file, FieldCache* kept, LoadedMedium& loaded) {
+    if (volume.albedo_grid.empty())
+        return;
+    DensityField field = load_field({file.path, volume.albedo_grid}, kept, GridValues::numbers_or_colors);
+    if (field.active_voxels == 0)
+        throw InputError(
+            fmt::format("{}: \"{}\" has no active voxel, and would make the medium black; leave <albedo> out",
+                        file.path.string(), volume.albedo_grid));
+    loaded.albedo = std::move(field);
 }
 
 // A file without that grid, or one that holds no heat, does not glow: a warning, no error.
 void load_temperature(const Volume& volume, const GridFile& file, FieldCache* kept, LoadedMedium& loaded) {
     const TemperatureEmission& emission = volume.temperature;
-    if (emission.color * volume.sigma_a == Rgb(0.0))
+    if (emission.color * most_sigma_a(volume) == Rgb(0.0))
         return;
     if (!has_grid({file.path, emission.grid})) {
         loaded.warnings.push_back(
             fmt::format("{}: has no grid \"{}\": <emission> is without effect", file.path.string(), emission.grid));
         return;
     }
-    DensityField field = load_field({file.path, emission.grid}, kept);
+    const bool by_kelvin = emission.model == TemperatureEmission::Model::blackbody;
+    DensityField field =
+        load_field({file.path, emission.grid}, kept, by_kelvin ? GridValues::numbers : GridValues::numbers_or_colors);
     if (field.active_voxels == 0)
         return;
-    if (emission.model == TemperatureEmission::Model::blackbody) {
+    if (by_kelvin) {
         loaded.hottest = std::max(emission.scale * field.max_value(), 0.0) + std::max(emission.offset, 0.0);
         if (loaded.hottest < 500.0 || loaded.hottest > 40000.0)
             loaded.warnings.push_back(fmt::format("{}: \"{}\" reaches {:.0f} kelvin by temperatureScale and "
@@ -130,6 +151,7 @@ void load_grid(const Scene& scene, const Volume& volume, const Method& method, c
         cell.residual *= static_cast<float>(scale);
     loaded.field = std::move(field);
     load_temperature(volume, file, kept, loaded);
+    load_albedo(volume, file, kept, loaded);
 }
 
 void load_files(const Scene& scene, const Volume& volume, const Method& method, FieldCache* kept,
@@ -193,6 +215,8 @@ void keep_fields(FieldCache& kept, const Scene& scene, Assets assets) {
             kept.keep(*file, std::move(*medium.field));
         if (file && medium.temperature)
             kept.keep({file->path, scene.volumes[i].temperature.grid}, std::move(*medium.temperature));
+        if (file && medium.albedo)
+            kept.keep({file->path, scene.volumes[i].albedo_grid}, std::move(*medium.albedo));
     }
 }
 

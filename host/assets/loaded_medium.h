@@ -21,7 +21,8 @@ struct LoadedMedium {
     std::optional<DensityField> field;
     std::optional<MajorantGrid> majorants;
     std::vector<shared::ControlCell> controls;  // per majorant cell, for the estimators that use them
-    std::optional<DensityField> temperature;    // only if the scene wants its glow
+    std::optional<DensityField> temperature;    // or colours, only if the scene wants their glow
+    std::optional<DensityField> albedo;         // likewise of what multiplies the albedo
     std::vector<glm::vec3> blackbody;           // BLACKBODY_ENTRIES colours between 0 and the hottest kelvin, or none
     double hottest = 0.0;                       // kelvin
     std::vector<shared::PhaseNode> phase_nodes; // of a phase function that is a table
@@ -29,6 +30,9 @@ struct LoadedMedium {
     std::optional<Bvh> bvh;            // about the middle of the mesh
     std::vector<std::string> warnings; // what the scene asks for and its files do not hold
 };
+
+// Those it has, in the order in which they lie in the device's buffers.
+std::vector<const DensityField*> grids_of(const LoadedMedium& medium);
 
 // Of each of the scene's volumes, in their order.
 using Media = std::span<const LoadedMedium>;

@@ -18,7 +18,8 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
     specialization_[SPEC_TEXELS] = buffers_.texels() ? 1 : 0;
     if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN)
         make_lights(scene, assets);
-    if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN || specialization_[SPEC_PHASE] != PHASE_HENYEY_GREENSTEIN)
+    if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN || specialization_[SPEC_PHASE] != PHASE_HENYEY_GREENSTEIN ||
+        specialization_[SPEC_ALBEDO] != ALBEDO_CONSTANT || specialization_[SPEC_TEMPERATURE_TYPE] == GRID_COLOR)
         form_ |= form_full;
     if (const std::optional<std::uint32_t> bits = buffers_.window_bits()) {
         form_ |= form_windows;

@@ -12,7 +12,10 @@ std::string kernel_text(const Specialization& s, Media media, bool chromatic) {
     constexpr std::array types = {"float", "Fp4", "Fp8", "Fp16", "FpN"};
     constexpr std::array filters = {"nearest", "trilinear", "stochastic"};
     constexpr std::array scatterings = {", no scattering", ", single scattering", ""};
-    constexpr std::array emissions = {"", ", uniform emission", ", emission by temperature", ", black-body emission"};
+    const bool glows_in_color = s[SPEC_TEMPERATURE_TYPE] == GRID_COLOR;
+    const std::array emissions = {"", ", uniform emission",
+                                  glows_in_color ? ", emission by a grid of colours" : ", emission by temperature",
+                                  ", black-body emission"};
     const auto choice = [&](int axis, int id) { return axes()[std::size_t(axis)].names[std::size_t(id)]; };
     if (s[SPEC_SHAPE] == SHAPE_NONE)
         return shapes[SHAPE_NONE];
@@ -33,6 +36,8 @@ std::string kernel_text(const Specialization& s, Media media, bool chromatic) {
                             choice(2, s[SPEC_TRANSMITTANCE]));
     if (s[SPEC_DISTANCE] == DISTANCE_MIXED)
         text += ", and looks from along flights";
+    if (s[SPEC_ALBEDO] == ALBEDO_GRID)
+        text += ", albedo by a grid";
     text += emissions[s[SPEC_EMISSION]];
     return text + (s[SPEC_EMISSION_AT] == EMISSION_AT_STEPS ? " along flights" : "");
 }

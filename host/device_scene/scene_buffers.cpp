@@ -19,6 +19,13 @@ template <class T> std::span<const std::byte> bytes_of(const std::vector<T>& val
     return std::as_bytes(std::span(values));
 }
 
+template <class Parts> std::uint64_t total(const Parts& parts) {
+    std::uint64_t bytes = 0;
+    for (const std::span<const std::byte> part : parts)
+        bytes += part.size();
+    return bytes;
+}
+
 // The bytes [begin, end) of `parts` to the beginning of a buffer.
 template <class Parts>
 void upload_range(Commands& commands, const Buffer& buffer, const Parts& parts, std::uint64_t begin,
@@ -34,11 +41,11 @@ void upload_range(Commands& commands, const Buffer& buffer, const Parts& parts, 
 }
 
 void make_buffer(const Device& device, Commands& commands, std::optional<Buffer>& buffer, const char* name,
-                 std::span<const std::byte> first, std::span<const std::byte> second = {}) {
-    if (first.empty())
+                 std::span<const std::byte> bytes) {
+    if (bytes.empty())
         return;
-    buffer.emplace(device, name, first.size() + second.size(), storage_and_texels, BufferPlace::device);
-    upload_range(commands, *buffer, std::array{first, second}, 0, buffer->bytes());
+    buffer.emplace(device, name, bytes.size(), storage_and_texels, BufferPlace::device);
+    commands.upload(*buffer, bytes, 0);
 }
 
 } // namespace
@@ -53,9 +60,8 @@ SceneBuffers::SceneBuffers(const Device& device, Commands& commands, Media media
 
 void SceneBuffers::upload(const Device& device, Commands& commands, const LoadedMedium& medium,
                           std::uint64_t most_grid_bytes, std::uint64_t most_texel_bytes) {
-    const auto make = [&](std::optional<Buffer>& buffer, const char* name, std::span<const std::byte> first,
-                          std::span<const std::byte> second = {}) {
-        make_buffer(device, commands, buffer, name, first, second);
+    const auto make = [&](std::optional<Buffer>& buffer, const char* name, std::span<const std::byte> bytes) {
+        make_buffer(device, commands, buffer, name, bytes);
     };
     make(phase_, "phase function", bytes_of(medium.phase_nodes));
     if (medium.bvh) {
@@ -64,10 +70,14 @@ void SceneBuffers::upload(const Device& device, Commands& commands, const Loaded
     }
     if (!medium.field)
         return;
-    const DensityField nothing;
-    const DensityField& temperature = medium.temperature ? *medium.temperature : nothing;
-    make_grids(device, commands, {medium.field->bytes.span(), temperature.bytes.span()}, most_grid_bytes);
-    make(leaf_table_, "leaf table", bytes_of(medium.field->leaf_table), bytes_of(temperature.leaf_table));
+    Parts grids, tables;
+    for (const DensityField* grid : grids_of(medium)) {
+        grids.push_back(grid->bytes.span());
+        tables.push_back(bytes_of(grid->leaf_table));
+    }
+    make_grids(device, commands, grids, most_grid_bytes);
+    leaf_table_.emplace(device, "leaf table", total(tables), storage_and_texels, BufferPlace::device);
+    upload_range(commands, *leaf_table_, tables, 0, leaf_table_->bytes());
     make(majorants_, "majorant grid", bytes_of(walked_cells(*medium.majorants)));
     make(controls_, "control grid", bytes_of(medium.controls));
     make(blackbody_, "black-body table", bytes_of(medium.blackbody));
@@ -92,7 +102,7 @@ void SceneBuffers::upload_lights(const Device& device, Commands& commands, const
 }
 
 void SceneBuffers::make_grids(const Device& device, Commands& commands, const Parts& grids, std::uint64_t most_bytes) {
-    const std::uint64_t bytes = grids[0].size() + grids[1].size();
+    const std::uint64_t bytes = total(grids);
     if (bytes > most_bytes)
         return make_windows(device, commands, grids, bytes);
     grids_.emplace(device, "grids", bytes, storage_and_texels, BufferPlace::device);

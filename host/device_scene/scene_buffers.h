@@ -36,7 +36,7 @@ public:
     std::uint64_t bytes() const;
 
 private:
-    using Parts = std::array<std::span<const std::byte>, 2>; // one after another
+    using Parts = std::vector<std::span<const std::byte>>; // one after another
 
     void upload(const Device& device, Commands& commands, const LoadedMedium& medium, std::uint64_t most_grid_bytes,
                 std::uint64_t most_texel_bytes);

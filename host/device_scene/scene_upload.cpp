@@ -19,10 +19,11 @@ namespace vkvol {
 static_assert(std::is_standard_layout_v<shared::FrameParams>);
 static_assert(sizeof(shared::SensorParams) == 4 * 12 + 4);
 static_assert(sizeof(shared::GridParams) == 4 * 12 + 2 * 4);
+static_assert(sizeof(shared::AlbedoParams) == sizeof(shared::GridParams) + 3 * 16);
 static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 5 * 4);
 static_assert(sizeof(shared::MediumParams) == 3 * 16 + 3 * 12 + sizeof(shared::GridParams) + 12 + 6 * 4 + 2 * 12 +
-                                                  sizeof(shared::PhaseParams) + sizeof(shared::EmissionParams) +
-                                                  sizeof(shared::NoiseParams) + 4);
+                                                  sizeof(shared::PhaseParams) + sizeof(shared::AlbedoParams) +
+                                                  sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) + 4);
 static_assert(sizeof(shared::LatticeParams) == 3 * 12);
 static_assert(sizeof(shared::PassPush) <= 128, "the least push constant space that Vulkan promises");
 
@@ -78,16 +79,19 @@ Bounds medium_bounds(const LoadedMedium& loaded) {
     return {glm::dvec3(loaded.field->voxel_min - base) - 1.0, glm::dvec3(loaded.field->voxel_max - base) + 1.0};
 }
 
-// `before`: the grid that lies ahead of this one in the buffers, if any.
-shared::GridParams make_grid(const DensityField& field, const DensityField* before) {
+shared::GridParams make_grid(const DensityField& field, const LoadedMedium& loaded) {
     const glm::ivec3 base = index_base(field);
     shared::GridParams params{};
     params.voxel_min = field.voxel_min - base;
     params.voxel_max = field.voxel_max - base;
     params.leaf_min = field.leaf_min - (base >> 3);
     params.leaf_dims = field.leaf_dims;
-    params.first_word = before ? static_cast<std::uint32_t>(before->bytes.size() / 4) : 0;
-    params.first_entry = before ? static_cast<std::uint32_t>(before->leaf_table.size()) : 0;
+    for (const DensityField* grid : grids_of(loaded)) {
+        if (grid == &field)
+            break;
+        params.first_word += static_cast<std::uint32_t>(grid->bytes.size() / 4);
+        params.first_entry += static_cast<std::uint32_t>(grid->leaf_table.size());
+    }
     return params;
 }
 
@@ -105,14 +109,14 @@ Rgb constant_emission(const Volume& volume, const LoadedMedium& loaded, const Me
 
 shared::EmissionParams make_emission(const Volume& volume, const LoadedMedium& loaded, const Method& method,
                                      glm::dvec3 origin) {
-    const Rgb albedo = albedo_of(volume);
+    const Rgb absorbed = loaded.albedo ? Rgb(1.0) : 1.0 - albedo_of(volume);
     shared::EmissionParams params{};
-    params.constant = (1.0 - albedo) * constant_emission(volume, loaded, method);
+    params.constant = absorbed * constant_emission(volume, loaded, method);
     if (!loaded.temperature)
         return params;
     const TemperatureEmission& emission = volume.temperature;
-    params.color = (1.0 - albedo) * emission.color;
-    params.grid = make_grid(*loaded.temperature, &*loaded.field);
+    params.color = absorbed * emission.color;
+    params.grid = make_grid(*loaded.temperature, loaded);
     fill_rows(params.to_index, index_to_world(*loaded.temperature), origin);
     params.kelvin_scale = static_cast<float>(emission.scale);
     params.kelvin_offset = static_cast<float>(emission.offset);
@@ -156,7 +160,7 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
     params.bounds_min = bounds.low;
     params.bounds_max = bounds.high;
     if (loaded.field) {
-        params.density = make_grid(*loaded.field, nullptr);
+        params.density = make_grid(*loaded.field, loaded);
         params.cell_dims = loaded.majorants->dims;
         params.cell_size = static_cast<float>(loaded.majorants->cell);
     }
@@ -169,6 +173,10 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
     params.sigma_ratio = has_chromatic_extinction(scene) ? sigma_t / largest(sigma_t) : Rgb(1.0);
     params.usual_sigma_t = static_cast<float>(std::max(largest(sigma_t) * usual_density(volume, loaded), 1e-30));
     params.albedo = albedo_of(volume);
+    if (loaded.albedo) {
+        params.albedo_grid.grid = make_grid(*loaded.albedo, loaded);
+        fill_rows(params.albedo_grid.to_index, index_to_world(*loaded.albedo), origin);
+    }
     params.phase = phase_params(volume, loaded.phase_nodes);
     params.emission = make_emission(volume, loaded, method, origin);
     return params;
@@ -239,7 +247,8 @@ shared::SensorParams make_pinhole(const Scene& scene, glm::dvec3 origin, double 
 int emission_kind(const Volume& volume, const LoadedMedium& loaded, const Method& method) {
     if (loaded.temperature)
         return volume.temperature.model == TemperatureEmission::Model::color ? EMISSION_COLOR : EMISSION_BLACKBODY;
-    return volume.sigma_a * constant_emission(volume, loaded, method) != Rgb(0.0) ? EMISSION_CONSTANT : EMISSION_NONE;
+    return most_sigma_a(volume) * constant_emission(volume, loaded, method) != Rgb(0.0) ? EMISSION_CONSTANT
+                                                                                        : EMISSION_NONE;
 }
 
 } // namespace
@@ -254,6 +263,8 @@ Rgb albedo_of(const Volume& volume) {
 
 bool is_chromatic(const Scene& scene) {
     return has_chromatic_extinction(scene) || any_medium(scene, [](const Volume& volume) {
+               if (!volume.albedo_grid.empty())
+                   return true;
                const Rgb albedo = albedo_of(volume);
                const double most = largest(albedo);
                return glm::any(glm::greaterThan(Rgb(most) - albedo, Rgb(1e-9 * most)));
@@ -269,6 +280,8 @@ void specialize_medium(const Volume& volume, const LoadedMedium& loaded, const M
     constants[SPEC_PHASE] = static_cast<int>(volume.phase);
     constants[SPEC_GRID_TYPE] = loaded.field ? loaded.field->type : GRID_FLOAT;
     constants[SPEC_TEMPERATURE_TYPE] = loaded.temperature ? loaded.temperature->type : GRID_FLOAT;
+    constants[SPEC_ALBEDO] = loaded.albedo ? ALBEDO_GRID : ALBEDO_CONSTANT;
+    constants[SPEC_ALBEDO_TYPE] = loaded.albedo ? loaded.albedo->type : GRID_FLOAT;
     if (constants[SPEC_SHAPE] != SHAPE_NONE)
         constants[SPEC_EMISSION] = emission_kind(volume, loaded, method);
     constants[SPEC_LEAPS] = loaded.majorants && loaded.majorants->leaps ? 1 : 0;

@@ -21,8 +21,10 @@ namespace vkvol {
 
 namespace {
 
-std::optional<int> lookup_type(nanovdb::GridType type) {
+std::optional<int> lookup_type(nanovdb::GridType type, GridValues values) {
     switch (type) {
+    case nanovdb::GridType::Vec3f:
+        return values == GridValues::numbers ? std::nullopt : std::optional(GRID_COLOR);
     case nanovdb::GridType::Float:
     case nanovdb::GridType::Half: // NanoVDB 32.x keeps the values of half grids as floats
         return GRID_FLOAT;
@@ -53,12 +55,12 @@ std::string list_names(const std::vector<std::string>& names) {
                                           list_names(names))));
 }
 
-GridBytes read_grid(const GridFile& file) {
+GridBytes read_grid(const GridFile& file, GridValues values) {
     const std::vector<std::string> names = grid_names(file.path);
     if (std::find(names.begin(), names.end(), file.grid) == names.end())
         no_such_grid(file, names);
     if (file_ending(file.path) == ".vdb")
-        return read_vdb_grid(file.path, file.grid);
+        return read_vdb_grid(file.path, file.grid, values);
     const std::vector<GridEntry> entries = read_nvdb_entries(file.path);
     return read_nvdb_grid(file.path, *std::find_if(entries.begin(), entries.end(),
                                                    [&](const GridEntry& entry) { return entry.name == file.grid; }));
@@ -71,24 +73,44 @@ std::uint32_t block_entry(const DensityField& field, glm::ivec3 ijk) {
     const glm::ivec3 block = (ijk >> 3) - field.leaf_min;
     return field.leaf_table[(std::size_t(block.x) * field.leaf_dims.y + block.y) * field.leaf_dims.z + block.z];
 }
+
+unsigned place_in_leaf(glm::ivec3 ijk) {
+    const glm::ivec3 low = ijk & 7;
+    return static_cast<unsigned>(low.x << 6 | low.y << 3 | low.z);
+}
+
+float largest_channel(glm::vec3 color) {
+    return std::max({color.x, color.y, color.z});
+}
 } // namespace
 
 float DensityField::value(glm::ivec3 ijk) const {
+    if (type == GRID_COLOR)
+        return largest_channel(color(ijk));
     if (active_voxels == 0 || ijk != glm::clamp(ijk, voxel_min, voxel_max))
         return 0.0f;
     const std::uint32_t entry = block_entry(*this, ijk);
     const std::byte* at = bytes.data() + std::size_t{entry >> 1} * 4;
     if (!(entry & 1u))
         return read_float(at);
-    const glm::ivec3 low = ijk & 7;
-    return leaf_value(type, at, static_cast<unsigned>(low.x << 6 | low.y << 3 | low.z));
+    return leaf_value(type, at, place_in_leaf(ijk));
+}
+
+glm::vec3 DensityField::color(glm::ivec3 ijk) const {
+    if (type != GRID_COLOR)
+        return glm::vec3(value(ijk));
+    if (active_voxels == 0 || ijk != glm::clamp(ijk, voxel_min, voxel_max))
+        return glm::vec3(0.0f);
+    const std::uint32_t entry = block_entry(*this, ijk);
+    const std::byte* at = bytes.data() + std::size_t{entry >> 1} * 4;
+    return entry & 1u ? leaf_color(at, place_in_leaf(ijk)) : read_color(at);
 }
 
 DensityField::Block DensityField::block(glm::ivec3 block) const {
     const glm::ivec3 first = (leaf_min + block) * 8;
     Block result{glm::max(first, voxel_min), glm::min(first + 7, voxel_max), std::nullopt};
     if (const std::uint32_t entry = block_entry(*this, first); !(entry & 1u))
-        result.constant = read_float(bytes.data() + std::size_t{entry >> 1} * 4);
+        result.constant = value(result.low);
     return result;
 }
 
@@ -114,18 +136,24 @@ double DensityField::voxel_size() const {
     return std::cbrt(std::abs(glm::determinant(glm::dmat3(index_to_world))));
 }
 
-DensityField make_density_field(GridBytes bytes, const std::string& place) {
+DensityField make_density_field(GridBytes bytes, const std::string& place, GridValues values) {
     DensityField field;
     field.bytes = std::move(bytes);
     if (field.bytes.size() < sizeof(nanovdb::GridData) + sizeof(nanovdb::TreeData<3>))
         throw InputError(fmt::format("{}: too short for a grid: the file is damaged; copy or convert it again", place));
     nanovdb::GridData header;
     std::memcpy(static_cast<void*>(&header), field.bytes.data(), sizeof header);
-    const std::optional<int> type = lookup_type(header.mGridType);
+    const std::optional<int> type = lookup_type(header.mGridType, values);
+    if (!type && header.mGridType == nanovdb::GridType::Vec3f)
+        throw InputError(
+            fmt::format("{}: the grid's values are colours (Vec3f), and not numbers; <albedo> and <emission "
+                        "model=\"color\"> take such grids",
+                        place));
     if (!type)
-        throw InputError(fmt::format("{}: the grid's type is {}, but Float, Half, Fp4, Fp8, Fp16 and FpN are read; "
+        throw InputError(fmt::format("{}: the grid's type is {}, but Float, Half, Fp4, Fp8, Fp16 and FpN are read{}; "
                                      "convert it to one of these",
-                                     place, grid_type_name(static_cast<std::uint32_t>(header.mGridType))));
+                                     place, grid_type_name(static_cast<std::uint32_t>(header.mGridType)),
+                                     values == GridValues::numbers ? "" : ", and Vec3f for colours"));
     if (header.mGridClass == nanovdb::GridClass::LevelSet)
         throw InputError(fmt::format("{}: the grid is a level set, distances to a surface, not a density; convert it "
                                      "to a fog volume (vdb_tool -fog, or sdfToFogVolume in OpenVDB)",
@@ -156,8 +184,9 @@ bool is_empty_grid(const GridFile& file) {
     return load_density_field(file).active_voxels == 0;
 }
 
-DensityField load_density_field(const GridFile& file) {
-    return make_density_field(read_grid(file), one_line(fmt::format("{}: \"{}\"", file.path.string(), file.grid)));
+DensityField load_density_field(const GridFile& file, GridValues values) {
+    return make_density_field(read_grid(file, values),
+                              one_line(fmt::format("{}: \"{}\"", file.path.string(), file.grid)), values);
 }
 
 } // namespace vkvol

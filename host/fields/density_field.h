@@ -1,10 +1,12 @@
-// A density grid ready for lookup: NanoVDB bytes, checked and cleaned, with a table of its leaves.
+// A grid of densities, temperatures or colours ready for lookup: NanoVDB bytes, checked and cleaned, with a table of
+// its leaves.
 #pragma once
 
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
 
+#include "grid_values.h"
 #include "nvdb_file.h"
 #include "scene.h"
 
@@ -24,8 +26,9 @@ struct DensityField {
     float background = 0.0f;   // what voxels have that the file gives no value: it counts in the box, as all others do
     std::uint64_t cleaned = 0; // values that were NaN, infinite or negative and count as 0
 
-    // Decoded value of a voxel, >= 0; 0 outside the box of active voxels.
+    // Decoded value of a voxel, >= 0; 0 outside the box of active voxels. Of a colour its largest channel.
     float value(glm::ivec3 ijk) const;
+    glm::vec3 color(glm::ivec3 ijk) const; // of a grid of numbers: grey
     // The largest voxel value.
     float max_value() const;
     // Part of the box that the 8^3 block has, and its value if it is one constant, else none. `block`: from leaf_min.
@@ -39,7 +42,7 @@ struct DensityField {
 };
 
 // Throws InputError naming file, grid, what is wrong and the remedy.
-DensityField load_density_field(const GridFile& file);
+DensityField load_density_field(const GridFile& file, GridValues values = GridValues::numbers);
 
 // Of all grids in the file, in its order. Throws InputError if it cannot be read.
 std::vector<std::string> grid_names(const std::filesystem::path& file);
@@ -51,6 +54,6 @@ bool has_grid(const GridFile& file);
 bool is_empty_grid(const GridFile& file);
 
 // From a NanoVDB grid in memory; `place` stands in messages.
-DensityField make_density_field(GridBytes bytes, const std::string& place);
+DensityField make_density_field(GridBytes bytes, const std::string& place, GridValues values = GridValues::numbers);
 
 } // namespace vkvol

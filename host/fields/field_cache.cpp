@@ -10,7 +10,7 @@ FieldCache::Stamp FieldCache::stamp_of(const std::filesystem::path& path) {
     return {std::filesystem::file_size(path, ignored), std::filesystem::last_write_time(path, ignored)};
 }
 
-DensityField FieldCache::take(const GridFile& file) {
+DensityField FieldCache::take(const GridFile& file, GridValues values) {
     const Stamp stamp = stamp_of(file.path);
     const auto is_this = [&](const Entry& entry) {
         return entry.file.path == file.path && entry.file.grid == file.grid;
@@ -19,7 +19,7 @@ DensityField FieldCache::take(const GridFile& file) {
     if (entry != entries_.end() && entry->field && entry->stamp == stamp)
         return *std::exchange(entry->field, std::nullopt);
     std::erase_if(entries_, [&](const Entry& other) { return is_this(other) || other.file.path != file.path; });
-    DensityField field = load_density_field(file);
+    DensityField field = load_density_field(file, values);
     entries_.push_back({file, stamp, std::nullopt});
     return field;
 }

@@ -13,7 +13,7 @@ class FieldCache {
 public:
     // The grid that was kept, if its file has not changed since, else as load_density_field. Grids of other files are
     // let go of where this one has to be read: a sequence of files needs one at a time.
-    DensityField take(const GridFile& file);
+    DensityField take(const GridFile& file, GridValues values = GridValues::numbers);
     // Until the next `take` of it.
     void keep(const GridFile& file, DensityField field);
 

@@ -16,21 +16,20 @@ namespace vkvol {
 
 namespace {
 
-// Root and internal nodes have the same layout for all types read here, since their values are floats; only leaves
-// differ, and they are taken as bytes.
-using Root = nanovdb::NanoRoot<float>::DataType;
-using Upper = nanovdb::NanoUpper<float>::DataType;
-using Lower = nanovdb::NanoLower<float>::DataType;
-using Leaf = nanovdb::NanoLeaf<float>::DataType;
-static_assert(sizeof(Upper) == sizeof(nanovdb::NanoUpper<nanovdb::Fp8>::DataType));
-static_assert(sizeof(Lower) == sizeof(nanovdb::NanoLower<nanovdb::FpN>::DataType));
+// Root and internal nodes have the same layout for all types of numbers read here, since their values are floats; only
+// leaves differ, and they are taken as bytes.
+static_assert(sizeof(nanovdb::NanoUpper<float>::DataType) == sizeof(nanovdb::NanoUpper<nanovdb::Fp8>::DataType));
+static_assert(sizeof(nanovdb::NanoLower<float>::DataType) == sizeof(nanovdb::NanoLower<nanovdb::FpN>::DataType));
 
 // What density.glsl knows of a leaf, in bytes.
 constexpr std::size_t leaf_flags = 15;
 constexpr std::size_t leaf_minimum = 80;
 constexpr std::size_t leaf_quantum = 84;
 constexpr std::size_t leaf_values = 96;
-static_assert(offsetof(Leaf, mValues) == leaf_values);
+constexpr std::size_t leaf_colors = 128;
+static_assert(offsetof(nanovdb::NanoLeaf<float>::DataType, mValues) == leaf_values);
+static_assert(offsetof(nanovdb::NanoLeaf<nanovdb::Vec3f>::DataType, mValues) == leaf_colors);
+static_assert(sizeof(nanovdb::Vec3f) == 3 * sizeof(float));
 static_assert(sizeof(nanovdb::NanoLeaf<nanovdb::Fp4>::DataType) == leaf_values + 256);
 static_assert(sizeof(nanovdb::NanoLeaf<nanovdb::FpN>::DataType) == leaf_values);
 
@@ -61,6 +60,14 @@ float read_float(const std::byte* from) {
     return value;
 }
 
+glm::vec3 read_color(const std::byte* from) {
+    return {read_float(from), read_float(from + 4), read_float(from + 8)};
+}
+
+glm::vec3 leaf_color(const std::byte* leaf, unsigned n) {
+    return read_color(leaf + leaf_colors + 12 * n);
+}
+
 float leaf_value(int type, const std::byte* leaf, unsigned n) {
     if (type == GRID_FLOAT)
         return read_float(leaf + leaf_values + 4 * n);
@@ -74,8 +81,15 @@ float leaf_value(int type, const std::byte* leaf, unsigned n) {
 
 namespace {
 
-// Walks a grid's tree, never trusting an offset: fills the leaf table and sets unusable values to 0.
-class Builder {
+// Walks a grid's tree, never trusting an offset: fills the leaf table and sets unusable values to 0. Value: float, or a
+// colour.
+template <class Value> class Builder {
+    using Root = typename nanovdb::NanoRoot<Value>::DataType;
+    using Upper = typename nanovdb::NanoUpper<Value>::DataType;
+    using Lower = typename nanovdb::NanoLower<Value>::DataType;
+    using Leaf = typename nanovdb::NanoLeaf<Value>::DataType;
+    using Tile = typename Root::Tile;
+
 public:
     Builder(DensityField& field, const std::string& place) : field_(field), place_(place) {}
 
@@ -89,7 +103,7 @@ public:
         const auto* tree = at<nanovdb::TreeData<3>>(tree_offset);
         const std::size_t root_offset = tree_offset + tree->mNodeOffset[3];
         Root* root = at<Root>(root_offset);
-        if (root->mTableSize > field_.bytes.size() / sizeof(Root::Tile))
+        if (root->mTableSize > field_.bytes.size() / sizeof(Tile))
             damaged();
         bytes_left_ = field_.bytes.size();
         read_transform(*grid);
@@ -97,7 +111,7 @@ public:
         const nanovdb::CoordBBox box = root->mBBox;
         field_.voxel_min = {box.min()[0], box.min()[1], box.min()[2]};
         field_.voxel_max = {box.max()[0], box.max()[1], box.max()[2]};
-        field_.background = root->mBackground;
+        field_.background = most(root->mBackground);
         if (field_.active_voxels == 0 || box.empty()) {
             field_.active_voxels = 0;
             return;
@@ -106,10 +120,10 @@ public:
         size_table();
         bytes_left_ = field_.bytes.size();
         clean(root->mBackground);
-        field_.background = root->mBackground;
+        field_.background = most(root->mBackground);
         std::fill(field_.leaf_table.begin(), field_.leaf_table.end(), entry_of_value(&root->mBackground));
         for (std::uint32_t i = 0; i < root->mTableSize; ++i)
-            visit_root_tile(*at<Root::Tile>(root_offset + sizeof(Root) + i * sizeof(Root::Tile)), root_offset);
+            visit_root_tile(*at<Tile>(root_offset + sizeof(Root) + i * sizeof(Tile)), root_offset);
     }
 
 private:
@@ -161,7 +175,7 @@ private:
         glm::ivec3 low(std::numeric_limits<int>::max()), high(std::numeric_limits<int>::min());
         std::set<std::array<int, 3>> seen;
         for (std::uint32_t i = 0; i < root.mTableSize; ++i) {
-            const auto* tile = at<Root::Tile>(root_offset + sizeof(Root) + i * sizeof(Root::Tile));
+            const auto* tile = at<Tile>(root_offset + sizeof(Root) + i * sizeof(Tile));
             const nanovdb::Coord key = tile->origin();
             const glm::ivec3 origin(key[0], key[1], key[2]);
             if (!seen.insert({origin.x, origin.y, origin.z}).second)
@@ -227,17 +241,24 @@ private:
         field_.leaf_table.resize(static_cast<std::size_t>(blocks));
     }
 
+    static float most(float value) { return value; }
+    static float most(const nanovdb::Vec3f& color) { return std::max({color[0], color[1], color[2]}); }
+
     void clean(float& value) {
         if (!(value >= 0.0f) || !std::isfinite(value)) {
             value = 0.0f;
             ++field_.cleaned;
         }
     }
+    void clean(nanovdb::Vec3f& color) {
+        for (int i = 0; i < 3; ++i)
+            clean(color[i]);
+    }
 
     std::uint32_t word_offset(const void* p) const {
         return static_cast<std::uint32_t>((static_cast<const std::byte*>(p) - field_.bytes.data()) / 4);
     }
-    std::uint32_t entry_of_value(const float* value) const { return word_offset(value) << 1; }
+    std::uint32_t entry_of_value(const Value* value) const { return word_offset(value) << 1; }
 
     // Enters `entry` for the blocks of the cube [origin, origin + size) that the table covers.
     void enter(glm::ivec3 origin, int size, std::uint32_t entry) {
@@ -253,7 +274,7 @@ private:
         return parent + static_cast<std::size_t>(child); // wraps where it points outside, which at() finds
     }
 
-    void visit_root_tile(Root::Tile& tile, std::size_t root_offset) {
+    void visit_root_tile(Tile& tile, std::size_t root_offset) {
         const nanovdb::Coord key = tile.origin();
         const glm::ivec3 origin(key[0], key[1], key[2]);
         if (tile.isChild()) {
@@ -292,11 +313,10 @@ private:
 
     void visit_leaf(std::size_t offset, glm::ivec3 origin) {
         std::byte* leaf = at<std::byte>(offset, leaf_values);
-        if (field_.type == GRID_FLOAT) {
+        if (field_.type == GRID_FLOAT || field_.type == GRID_COLOR) {
             spend(sizeof(Leaf));
-            auto* values = reinterpret_cast<float*>(at<std::byte>(offset, sizeof(Leaf)) + leaf_values);
-            for (int n = 0; n < 512; ++n)
-                clean(values[n]);
+            for (Value& value : at<Leaf>(offset)->mValues)
+                clean(value);
         } else {
             const unsigned log2 = log2_bits(field_.type, leaf);
             if (log2 > 4)
@@ -329,7 +349,10 @@ private:
 } // namespace
 
 void read_tree(DensityField& field, const std::string& place) {
-    Builder(field, place).build();
+    if (field.type == GRID_COLOR)
+        Builder<nanovdb::Vec3f>(field, place).build();
+    else
+        Builder<float>(field, place).build();
 }
 
 } // namespace vkvol

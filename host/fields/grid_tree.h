@@ -14,7 +14,9 @@ void read_tree(DensityField& field, const std::string& place);
 
 // Value `n` (0..511, z fastest) of a leaf node of a GRID_... type; >= 0.
 float leaf_value(int type, const std::byte* leaf, unsigned n);
+glm::vec3 leaf_color(const std::byte* leaf, unsigned n); // of GRID_COLOR
 
 float read_float(const std::byte* from);
+glm::vec3 read_color(const std::byte* from);
 
 } // namespace vkvol

@@ -45,8 +45,11 @@ const std::map<std::string, std::uint32_t> map_doubles = {{"AffineMap", 16},
 // Grids of one name are told apart by what follows this character.
 constexpr char separator = '\x1e';
 
-bool holds_floats(const std::string& type) {
-    return type == "Tree_float_5_4_3" || type == "Tree_float_5_4_3_HalfFloat";
+// Of a float, or of three; 0 for other types of tree.
+std::uint64_t value_bytes(const std::string& type) {
+    if (type == "Tree_float_5_4_3" || type == "Tree_float_5_4_3_HalfFloat")
+        return sizeof(float);
+    return type == "Tree_vec3s_5_4_3" || type == "Tree_vec3s_5_4_3_HalfFloat" ? 3 * sizeof(float) : 0;
 }
 
 struct Descriptor {
@@ -97,10 +100,10 @@ public:
                 fmt::format("{}: cannot be opened: {}", file.string(), error ? error.message() : std::strerror(errno)));
     }
 
-    std::vector<VdbEntry> walk(const char* name) {
+    std::vector<VdbEntry> walk(const char* name, GridValues allowed) {
         const std::vector<Descriptor> grids = headers();
         if (const Descriptor* grid = name ? find(grids, name) : nullptr)
-            check(grids, *grid);
+            check(grids, *grid, allowed);
         std::vector<VdbEntry> entries;
         for (const Descriptor& grid : grids) {
             // The first of several is known by the plain name too.
@@ -120,10 +123,15 @@ private:
     }
 
     // The grid that OpenVDB will read, and the one that holds its tree.
-    void check(const std::vector<Descriptor>& grids, const Descriptor& grid) {
-        if (!holds_floats(grid.type))
-            throw InputError(fmt::format("{}: grid \"{}\" is not a grid of floats; only float and half are read",
-                                         file_.string(), one_line(shown_name(grid.name))));
+    void check(const std::vector<Descriptor>& grids, const Descriptor& grid, GridValues allowed) {
+        value_bytes_ = value_bytes(grid.type);
+        const bool colors = allowed == GridValues::numbers_or_colors;
+        if (value_bytes_ == 0 || (value_bytes_ > sizeof(float) && !colors))
+            throw InputError(fmt::format("{}: grid \"{}\" is not a grid of floats{}; {}", file_.string(),
+                                         one_line(shown_name(grid.name)), colors ? " or colours (vec3s)" : "",
+                                         value_bytes_ > 0
+                                             ? "<albedo> and <emission model=\"color\"> take grids of colours"
+                                             : "only float and half are read"));
         check_grid(grid);
         if (grid.parent.empty())
             return;
@@ -304,12 +312,12 @@ private:
         leaves_.clear();
         if (get<std::uint32_t>() != 1)
             damaged("the number of buffers");
-        skip(sizeof(float)); // background
+        skip(value_bytes_); // background
         const auto tiles = get<std::uint32_t>(), children = get<std::uint32_t>();
         std::set<std::array<std::int32_t, 3>> origins;
         for (std::uint32_t i = 0; i < tiles; ++i) {
             root_entry(origins);
-            skip(sizeof(float));
+            skip(value_bytes_);
             if (get<std::uint8_t>() > 1)
                 damaged("the state of a tile");
         }
@@ -353,14 +361,14 @@ private:
         if (kind < 0 || kind > ValuesKind::all)
             damaged("the kind of a node's values");
         if (kind == one_inactive || kind == mask_one_inactive || kind == mask_two_inactive)
-            skip(sizeof(float));
+            skip(value_bytes_);
         if (kind == mask_two_inactive)
-            skip(sizeof(float));
+            skip(value_bytes_);
         if (kind == mask || kind == mask_one_inactive || kind == mask_two_inactive)
             skip(sizeof(Mask));
         const bool packed = (compression_ & compress_active) != 0 && kind != ValuesKind::all;
         const std::uint64_t count = packed ? active.count() : active.size();
-        const std::uint64_t bytes = count * (half_ ? 2 : 4);
+        const std::uint64_t bytes = count * (half_ ? value_bytes_ / 2 : value_bytes_);
         if (half_ && count == 0)
             return; // and no size either
         if ((compression_ & (compress_zip | compress_blosc)) == 0)
@@ -381,14 +389,15 @@ private:
     std::ifstream stream_;
     std::uint64_t size_ = 0, position_ = 0;
     std::uint32_t compression_ = 0;
+    std::uint64_t value_bytes_ = 0;
     bool half_ = false;
     std::vector<std::bitset<512>> leaves_; // masks, in the order of the file
 };
 
 } // namespace
 
-std::vector<VdbEntry> check_vdb(const std::filesystem::path& file, const char* grid) {
-    return Walk(file).walk(grid);
+std::vector<VdbEntry> check_vdb(const std::filesystem::path& file, const char* grid, GridValues allowed) {
+    return Walk(file).walk(grid, allowed);
 }
 
 } // namespace vkvol

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "grid_values.h"
+
 namespace vkvol {
 
 // Name and type ("Tree_float_5_4_3") of a grid. Of several grids of one name, all but the first are "name[1]", ...
@@ -16,7 +18,7 @@ struct VdbEntry {
 
 // The grids of a file, in its order. Throws InputError where a count, a size or an offset of the file's headers, or of
 // the named grid (if `grid` is not null and the file has it), leads beyond the file or contradicts another, or where
-// that grid is not one of floats. What is wrong with other grids is no reason to refuse this one.
-std::vector<VdbEntry> check_vdb(const std::filesystem::path& file, const char* grid);
+// that grid's values are not `allowed`. What is wrong with other grids is no reason to refuse this one.
+std::vector<VdbEntry> check_vdb(const std::filesystem::path& file, const char* grid, GridValues allowed);
 
 } // namespace vkvol

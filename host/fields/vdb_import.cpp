@@ -50,47 +50,53 @@ private:
     std::vector<std::string> types_;
 };
 
-openvdb::FloatGrid::Ptr read_float_grid(const std::filesystem::path& path, const std::string& name) {
+openvdb::GridBase::Ptr read_grid(const std::filesystem::path& path, const std::string& name, GridValues allowed) {
     const std::vector<VdbEntry> entries = read_vdb_entries(path);
     std::string full_name = name;
     for (const VdbEntry& entry : entries)
         if (entry.name == name)
             full_name = entry.full_name;
-    check_vdb(path, full_name.c_str());
+    check_vdb(path, full_name.c_str(), allowed);
     try {
         openvdb::initialize();
         const StandIns stand_ins(entries);
         openvdb::io::File file(path.string());
         file.open(false); // all at once: no delayed loading from a file that may change
-        return openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(full_name));
+        return file.readGrid(full_name);
     } catch (const std::exception& e) {
         throw InputError(
             one_line(fmt::format("{}: not readable as OpenVDB: {}; copy or export it again", path.string(), e.what())));
     }
 }
 
+template <class Grid> GridBytes to_nanovdb(Grid& grid) {
+    if (grid.activeVoxelCount() == 0) // tiles that are not active are background
+        grid.tree().clear();
+    const auto handle = nanovdb::openToNanoVDB(grid);
+    GridBytes bytes(handle.size());
+    std::memcpy(bytes.data(), handle.data(), handle.size());
+    return bytes;
+}
+
 } // namespace
 
 std::vector<VdbEntry> read_vdb_entries(const std::filesystem::path& path) {
-    return check_vdb(path, nullptr);
+    return check_vdb(path, nullptr, GridValues::numbers);
 }
 
-GridBytes read_vdb_grid(const std::filesystem::path& path, const std::string& name) {
-    const openvdb::FloatGrid::Ptr grid = read_float_grid(path, name);
-    if (!grid)
-        throw InputError(fmt::format("{}: grid \"{}\" is not a grid of floats; only float and half are read",
-                                     path.string(), one_line(name)));
+GridBytes read_vdb_grid(const std::filesystem::path& path, const std::string& name, GridValues allowed) {
+    const openvdb::GridBase::Ptr grid = read_grid(path, name, allowed);
     try {
-        if (grid->activeVoxelCount() == 0) // tiles that are not active are background
-            grid->tree().clear();
-        const auto handle = nanovdb::openToNanoVDB(*grid);
-        GridBytes bytes(handle.size());
-        std::memcpy(bytes.data(), handle.data(), handle.size());
-        return bytes;
+        if (const auto numbers = openvdb::gridPtrCast<openvdb::FloatGrid>(grid))
+            return to_nanovdb(*numbers);
+        if (const auto colors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grid))
+            return to_nanovdb(*colors);
     } catch (const std::exception& e) {
         throw InputError(one_line(fmt::format("{}: grid \"{}\" cannot be converted: {}; copy or export it again",
                                               path.string(), name, e.what())));
     }
+    throw InputError(fmt::format("{}: grid \"{}\" is not a grid of floats; only float and half are read", path.string(),
+                                 one_line(name)));
 }
 
 } // namespace vkvol

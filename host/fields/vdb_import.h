@@ -12,7 +12,7 @@ namespace vkvol {
 
 // Both throw InputError naming the file, what is wrong, and the remedy.
 std::vector<VdbEntry> read_vdb_entries(const std::filesystem::path& file);
-// A float grid (stored as float or half) as NanoVDB; its class and transform are kept.
-GridBytes read_vdb_grid(const std::filesystem::path& file, const std::string& name);
+// A grid of floats or, if allowed, of colours (stored as float or half) as NanoVDB; its class and transform are kept.
+GridBytes read_vdb_grid(const std::filesystem::path& file, const std::string& name, GridValues allowed);
 
 } // namespace vkvol

@@ -265,7 +265,7 @@ bool has_chromatic_extinction(const Scene& scene) {
 
 bool emits(const Scene& scene) {
     return any_medium(scene, [](const Volume& volume) {
-        return volume.sigma_a * (volume.Le + volume.temperature.color) != Rgb(0.0);
+        return most_sigma_a(volume) * (volume.Le + volume.temperature.color) != Rgb(0.0);
     });
 }
 

@@ -80,6 +80,8 @@ void add_volume(Writer& writer, const Volume& volume) {
     writer.add("density_scale", volume.density_scale);
     writer.add("g", volume.g);
     add_phase(writer, volume);
+    if (!volume.albedo_grid.empty())
+        writer.add("albedo", volume.albedo_grid);
     writer.add("Le", volume.Le);
     const TemperatureEmission& emission = volume.temperature;
     writer.add("emission", emission.color);

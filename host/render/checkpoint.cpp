@@ -131,6 +131,7 @@ RenderIdentity identify(const shared::FrameParams& frame, const Specialization& 
     for (const LoadedMedium& medium : assets.media) {
         add_field(digest, medium.field);
         add_field(digest, medium.temperature);
+        add_field(digest, medium.albedo);
         if (medium.majorants)
             digest.add_all(medium.majorants->bounds);
         digest.add_all(medium.controls);

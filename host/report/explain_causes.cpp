@@ -82,7 +82,7 @@ Answer no_glow(const Evidence& e) {
     const Volume* volume = volume_of(e.authored);
     if (e.odd != Odd::black || e.emits || !wants_glow(e) || !is_dark_around(e) || !e.authored.lights.empty())
         return {};
-    if (volume->sigma_a == Rgb(0.0))
+    if (most_sigma_a(*volume) == Rgb(0.0))
         return "the medium glows by what it absorbs, and sigma_a is 0; raise sigma_a";
     if (emits(e.authored) && !emits(e.scene))
         return fmt::format("{} leaves emission out, and nothing else gives light; use nanoVDBEmission, or no "

@@ -73,7 +73,8 @@ struct TemperatureEmission {
     enum class Model { color, blackbody };
     Model model = Model::color;
     Rgb color{0.0};                   // 0: no such emission
-    std::string grid = "temperature"; // in the density field's file; a file without it does not glow
+    std::string grid = "temperature"; // in the density field's file; a file without it does not glow. Of colours: not
+                                      // for black bodies
     double scale = 1.0;
     double offset = 0.0;       // kelvin
     double cutoff = 0.0;       // kelvin
@@ -113,9 +114,16 @@ struct Volume {
     PhaseFunction phase = PhaseFunction::henyey_greenstein;
     double g = 0.0; // Henyey and Greenstein's, the first of two, and Draine's: in (-1, 1), + is forward
     PhaseDetails phase_details;
-    Rgb Le{0.0};                     // radiance emitted per absorption event: emission is sigma_a * Le
+    std::string
+        albedo_grid; // in the density field's file: its colours or numbers, at most 1, multiply the albedo; or none
+    Rgb Le{0.0};     // radiance emitted per absorption event: emission is sigma_a * Le
     TemperatureEmission temperature; // adds to Le
 };
+
+// sigma_a where it is largest, at density 1.
+inline Rgb most_sigma_a(const Volume& volume) {
+    return volume.albedo_grid.empty() ? volume.sigma_a : volume.sigma_a + volume.sigma_s;
+}
 
 // How the density between voxel centres is looked up. `stochastic` takes one of the eight corners with the
 // probability of its trilinear weight: exact in expectation wherever the density enters linearly.

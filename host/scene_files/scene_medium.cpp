@@ -47,7 +47,9 @@ void SceneReader::read_coefficients(Volume& volume) const {
     const XmlElement medium = one("medium");
     medium.allow(color_attributes);
     volume.Le = color(medium);
-    volume.temperature = temperature_emission(std::holds_alternative<GridFile>(volume.shape));
+    const bool is_grid = std::holds_alternative<GridFile>(volume.shape);
+    volume.temperature = temperature_emission(is_grid);
+    volume.albedo_grid = albedo_grid(is_grid);
 
     const XmlElement path_density = one("lightRayDensityMultiplier");
     const XmlElement shadow_density = one("shadowRayDensityMultiplier");
@@ -112,6 +114,21 @@ TemperatureEmission SceneReader::temperature_emission(bool is_grid) const {
     return emission;
 }
 
+std::string SceneReader::albedo_grid(bool is_grid) const {
+    const XmlElement element = one("albedo");
+    element.allow({"grid"});
+    if (!element.exists())
+        return {};
+    const std::string grid = element.attribute("grid");
+    if (grid.empty())
+        element.fail(
+            "<albedo> lacks grid, the name of a grid in the density field's file, such as Cd; a constant albedo "
+            "is sigma_s / (sigma_a + sigma_s)");
+    if (!is_grid)
+        element.warn("spheres, boxes and models have no grids: <albedo> is without effect");
+    return is_grid ? grid : "";
+}
+
 CoefficientUnit SceneReader::unit(const XmlElement& sigma_a, const XmlElement& sigma_s, bool is_grid) const {
     const auto read = [](const XmlElement& element) {
         const std::string name = element.attribute("unit", "voxel");
@@ -137,7 +154,7 @@ CoefficientUnit SceneReader::unit(const XmlElement& sigma_a, const XmlElement& s
 
 void SceneReader::warn_without_volume() const {
     for (const char* name :
-         {"sigma_a", "sigma_s", "heyneygreenstein_g", "heynegreenstein_g", "phase", "medium", "noise"})
+         {"sigma_a", "sigma_s", "heyneygreenstein_g", "heynegreenstein_g", "phase", "medium", "albedo", "noise"})
         if (const XmlElement element = one(name); element.exists()) {
             element.warn(
                 fmt::format("<{}> is without effect: the scene has no densityField, sphere, box or model", name));

@@ -13,8 +13,8 @@ namespace {
 
 const std::vector<std::string> vocabulary = {
     "densityField", "sphere", "box", "models", "noise", "sigma_a", "sigma_s", "heyneygreenstein_g", "phase", "medium",
-    "emission", "light", "lights", "backgroundColor", "camera", "width", "height", "rayPerPixelCount", "maxDepth",
-    "integrator", "march", "filter", "russianRoulette", "majorant", "lightRayDensityMultiplier",
+    "emission", "albedo", "light", "lights", "backgroundColor", "camera", "width", "height", "rayPerPixelCount",
+    "maxDepth", "integrator", "march", "filter", "russianRoulette", "majorant", "lightRayDensityMultiplier",
     "shadowRayDensityMultiplier", "stepSize", "importanceSampling", "fileName", "multiThreaded",
     "multiThreadedChunkSize", "diffuseRebounds", "expected",
     // Names that are read for old files' sake: a misspelling in the original's report, and the old name of integrator.

@@ -60,6 +60,7 @@ private:
     void read_phase(Volume& volume) const;
     void check_extinction(const Volume& volume) const;
     TemperatureEmission temperature_emission(bool is_grid) const;
+    std::string albedo_grid(bool is_grid) const;
     CoefficientUnit unit(const XmlElement& sigma_a, const XmlElement& sigma_s, bool is_grid) const;
     std::optional<Expected> expected() const;
     Rgb channels(const XmlElement& element, const char* attribute, const Rgb& fallback) const;

@@ -13,6 +13,7 @@ const uint LEAF_FLAGS = 3u;    // quantised: bits 29-31 are log2 of the bits per
 const uint LEAF_MINIMUM = 20u; // quantised: value of code 0
 const uint LEAF_QUANTUM = 21u; // quantised: value step per code
 const uint LEAF_VALUES = 24u;
+const uint LEAF_COLORS = 32u; // of GRID_COLOR
 
 float leaf_value(int type, uint leaf, uint n) {
     uint log2_bits = type == GRID_FP4    ? 2u
@@ -76,6 +77,31 @@ float lookup_trilinear(GridParams g, int type, vec3 p) {
         plane[x] = mix(low, high, f.y);
     }
     return mix(plane[0], plane[1], f.x);
+}
+
+vec3 voxel_color(GridParams g, ivec3 ijk) {
+    VoxelPlace place = find_voxel(g, ijk);
+    uint entry = leaf_entry(place.entry);
+    uint at = g.first_word + (entry >> 1u) + ((entry & 1u) != 0u ? LEAF_COLORS + 3u * place.n : 0u);
+    vec3 color = uintBitsToFloat(uvec3(grid_word(at), grid_word(at + 1u), grid_word(at + 2u)));
+    return place.inside ? color : vec3(0.0);
+}
+
+// Of a grid of colours; of numbers, grey.
+vec3 lookup_color(GridParams g, int type, vec3 p) {
+    vec3 result = vec3(0.0);
+    if (type == GRID_COLOR) {
+        vec3 base = floor(p);
+        vec3 f = p - base;
+        [[unroll]] for (int i = 0; i < 8; ++i) {
+            ivec3 corner = ivec3(i >> 2, i >> 1 & 1, i & 1);
+            vec3 weights = mix(1.0 - f, f, vec3(corner));
+            result += weights.x * weights.y * weights.z * voxel_color(g, ivec3(base) + corner);
+        }
+    } else {
+        result = vec3(lookup_trilinear(g, type, p));
+    }
+    return result;
 }
 
 // One corner, chosen with its trilinear weight (Pharr et al., "Filtering After Shading", 2024): the expectation is

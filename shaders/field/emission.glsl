@@ -1,9 +1,10 @@
-// Emission: the medium sends out sigma_a * density * Le per unit length, Le constant, or following a temperature grid.
+// Emission: the medium sends out sigma_a * density * Le per unit length, Le constant, or following a grid of temperatures or
+// colours.
 // Where density is 0 nothing is emitted, however hot. Estimated at real collisions, whose density is sigma_t * density:
 // each adds beta * (1 - albedo) * Le; or along flights, by one sample per step.
 #ifndef EMISSION_GLSL
 #define EMISSION_GLSL
-#include "field/density.glsl"
+#include "field/albedo.glsl"
 
 // Linear between the table's entries, the last of which is the hottest that the grid holds.
 vec3 blackbody_color(EmissionParams e, float kelvin) {
@@ -12,17 +13,27 @@ vec3 blackbody_color(EmissionParams e, float kelvin) {
     return mix(blackbody[i], blackbody[i + 1u], x - float(i));
 }
 
-// (1 - albedo) * Le at a point of render space.
-vec3 emitted_radiance(EmissionParams e, vec3 position) {
+// At a point of render space.
+vec3 emission_at(EmissionParams e, vec3 position) {
     if (EMISSION == EMISSION_NONE || EMISSION == EMISSION_CONSTANT)
         return e.constant;
     vec4 p = vec4(position, 1.0);
     vec3 index = vec3(dot(e.to_index[0], p), dot(e.to_index[1], p), dot(e.to_index[2], p));
+    if (GLOWS_IN_COLOR)
+        return e.constant + e.color * lookup_color(e.grid, GRID_COLOR, index);
     float value = lookup_trilinear(e.grid, TEMPERATURE_TYPE, index);
     if (EMISSION == EMISSION_COLOR)
         return e.constant + value * e.color;
     float kelvin = e.kelvin_scale * value + e.kelvin_offset;
     return kelvin < e.kelvin_cutoff ? e.constant : e.constant + e.color * blackbody_color(e, kelvin);
+}
+
+// (1 - albedo) * Le at a point of render space.
+vec3 emitted_radiance(MediumParams v, vec3 position) {
+    vec3 radiance = emission_at(v.emission, position);
+    if (ALBEDO == ALBEDO_GRID)
+        radiance *= 1.0 - albedo_at(v, position);
+    return radiance;
 }
 
 #endif

@@ -29,10 +29,16 @@ layout(constant_id = SPEC_LEAPS) const int LEAPS = 0;
 layout(constant_id = SPEC_PHASE) const int PHASE = PHASE_HENYEY_GREENSTEIN;
 layout(constant_id = SPEC_LIGHTS) const int LIGHTS = LIGHTS_TABLE;
 layout(constant_id = SPEC_DISTANCE) const int DISTANCE = DISTANCE_FLIGHTS;
+layout(constant_id = SPEC_ALBEDO) const int ALBEDO = ALBEDO_CONSTANT;
+layout(constant_id = SPEC_ALBEDO_TYPE) const int ALBEDO_TYPE = GRID_FLOAT;
+const bool GLOWS_IN_COLOR = TEMPERATURE_TYPE == GRID_COLOR;
 #else
 const int PHASE = PHASE_HENYEY_GREENSTEIN;
 const int LIGHTS = LIGHTS_SUN;
 const int DISTANCE = DISTANCE_FLIGHTS;
+const int ALBEDO = ALBEDO_CONSTANT;
+const int ALBEDO_TYPE = GRID_FLOAT;
+const bool GLOWS_IN_COLOR = false;
 #endif
 layout(constant_id = SPEC_MIS) const int MIS = MIS_BALANCE;
 

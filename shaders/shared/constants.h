@@ -69,7 +69,9 @@
 #define SPEC_LIGHTS 17
 #define SPEC_MIS 18
 #define SPEC_DISTANCE 19
-#define SPEC_COUNT 20
+#define SPEC_ALBEDO 20      // ALBEDO_...
+#define SPEC_ALBEDO_TYPE 21 // GRID_...
+#define SPEC_COUNT 22
 
 #define SHAPE_NONE 0 // background only
 #define SHAPE_SPHERE 1
@@ -85,6 +87,10 @@
 #define GRID_FP8 2
 #define GRID_FP16 3
 #define GRID_FPN 4
+#define GRID_COLOR 5 // three floats; not of densities
+
+#define ALBEDO_CONSTANT 0
+#define ALBEDO_GRID 1
 
 #define FILTER_NEAREST 0
 #define FILTER_TRILINEAR 1

@@ -29,12 +29,18 @@ struct GridParams {
     uint first_entry; // of its leaf table
 };
 
-// Radiance emitted per absorption event; see emission.glsl. All colours include the factor 1 - albedo, the chance that
-// a collision is an absorption.
+// A grid of colours that multiply the albedo; see albedo.glsl.
+struct AlbedoParams {
+    GridParams grid;
+    vec4 to_index[3]; // rows of the affine map render -> index space of that grid
+};
+
+// Radiance emitted per absorption event; see emission.glsl. Where the albedo is constant, all colours include the factor
+// 1 - albedo, the chance that a collision is an absorption.
 struct EmissionParams {
     vec3 constant;
     vec3 color;         // times temperature, or times the black body's colour
-    GridParams grid;    // of temperatures
+    GridParams grid;    // of temperatures or colours
     vec4 to_index[3];   // rows of the affine map render -> index space of that grid
     float kelvin_scale; // kelvin = scale * value + offset
     float kelvin_offset;
@@ -106,6 +112,7 @@ struct MediumParams {
     float usual_sigma_t; // what it comes to with the usual density, roughly
     vec3 sigma_ratio; // of the channels to that, in [0, 1]
     vec3 albedo;      // sigma_s / sigma_t
+    AlbedoParams albedo_grid;
     PhaseParams phase;
     EmissionParams emission;
     NoiseParams noise;

@@ -66,15 +66,16 @@ void gather_light(MediumParams v, vec3 position, float t, Spectrum lit, uint nex
 // At a real collision: emission, absorption, light. Then the path departs, or ends.
 void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, inout Tally tally) {
     if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_COLLISIONS)
-        lane.path.radiance += lane.beta * emitted_radiance(v.emission, lane.path.position);
-    lane.beta *= to_spectrum(v.albedo);
+        lane.path.radiance += lane.beta * emitted_radiance(v, lane.path.position);
+    vec3 albedo = albedo_at(v, lane.path.position);
+    lane.beta *= to_spectrum(albedo);
     bool capped = SCATTERING != SCATTERING_NONE && lane.path.depth >= frame.max_depth;
     tally.depth_caps += capped ? 1u : 0u;
     lane.path.depth += 1u;
     bool ended = capped || SCATTERING == SCATTERING_NONE || largest(lane.beta) == 0.0;
     lane.todo = ended || SCATTERING == SCATTERING_SINGLE ? TODO_END : TODO_DEPART;
     if (NEE != NEE_NONE && !ended) {
-        Spectrum lit = NEE == NEE_TENTATIVE ? deposit * to_spectrum(v.albedo) : lane.beta;
+        Spectrum lit = NEE == NEE_TENTATIVE ? deposit * to_spectrum(albedo) : lane.beta;
         gather_light(v, lane.path.position, lane.walk.start + lane.walk.t, lit, lane.todo, lane, rng);
     }
     trace(TRACE_COLLISION, lane, lane.path.position, lane.path.direction);
@@ -87,12 +88,12 @@ void touch(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng) {
     uint next = TODO_FLY;
     if (goes_through()) {
         if (EMISSION != EMISSION_NONE)
-            lane.path.radiance += deposit * emitted_radiance(v.emission, position);
+            lane.path.radiance += deposit * emitted_radiance(v, position);
         next = largest(lane.beta) == 0.0 ? TODO_END : TODO_FLY;
     }
     lane.todo = next;
     if (NEE == NEE_TENTATIVE && lane.path.depth < frame.max_depth)
-        gather_light(v, position, t, deposit * to_spectrum(v.albedo), next, lane, rng);
+        gather_light(v, position, t, deposit * to_spectrum(albedo_at(v, position)), next, lane, rng);
 }
 
 #endif

@@ -1,7 +1,7 @@
 // A look toward a light from along the flight that comes next: see equiangular.glsl.
 #ifndef STAGE_LOOK_ALONG_GLSL
 #define STAGE_LOOK_ALONG_GLSL
-#include "field/density.glsl"
+#include "field/albedo.glsl"
 #include "lights/equiangular.glsl"
 #include "lights/table.glsl"
 #include "stages/lane.glsl"
@@ -36,7 +36,7 @@ bool look_along(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tall
     float per_pdf = 1.0 / (chance * (equiangular_pdf(s, t) + assumed_flight_pdf(v, s, t)));
     tally.lookups += 1u;
     float sigma_t = v.sigma_t * density(v, to_medium(v, position, lane.path.direction).origin, to_tap(words));
-    lane.lit = lane.beta * (per_pdf * sigma_t) * to_spectrum(v.sigma_ratio * v.albedo);
+    lane.lit = lane.beta * (per_pdf * sigma_t) * to_spectrum(v.sigma_ratio * albedo_at(v, position));
     lane.light = drawn.light * phase_eval(v, lane.path.direction, drawn.direction);
     bool is_lit = is_open(s) && lane.path.depth < frame.max_depth && largest(lane.lit) > 0.0 && largest(lane.light) > 0.0;
     if (is_lit && LOOKS) {

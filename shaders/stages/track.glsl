@@ -12,7 +12,7 @@ vec3 emission_along(MediumParams v, Spectrum beta, float from, Walk w, PathState
     float t = mix(from, w.t, to_uniform(words).x);
     tally.lookups += 1u;
     float sigma_t = v.sigma_t * density(v, w.origin + t * w.direction, to_tap(words));
-    vec3 Le = emitted_radiance(v.emission, path.position + (w.start + t) * path.direction);
+    vec3 Le = emitted_radiance(v, path.position + (w.start + t) * path.direction);
     return beta * (w.t - from) * sigma_t * to_spectrum(v.sigma_ratio) * Le;
 }
 

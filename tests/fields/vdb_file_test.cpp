@@ -22,10 +22,12 @@ namespace {
 
 class VdbFile {
 public:
-    explicit VdbFile(const openvdb::GridPtrVec& grids, const char* ending = ".vdb")
+    explicit VdbFile(const openvdb::GridPtrVec& grids, const char* ending = ".vdb",
+                     std::uint32_t compression = openvdb::io::Archive::DEFAULT_COMPRESSION_FLAGS)
         : path_(std::filesystem::temp_directory_path() / fmt::format("vkvol_written_{}{}", getpid(), ending)) {
         openvdb::initialize();
         openvdb::io::File file(path_.string());
+        file.setCompression(compression);
         file.write(grids);
         file.close();
     }
@@ -83,6 +85,33 @@ TEST_CASE("a grid of tiles alone, without leaves, is read", "[cpu][density]") {
     CHECK(file.field().value({8, 16, 24}) == 0.5f);
     CHECK(file.field().value({15, 23, 31}) == 0.5f);
     CHECK(file.field().value({16, 23, 31}) == 0.0f);
+}
+
+TEST_CASE("grids of colours are read where colours are wanted, with every compression", "[cpu][density]") {
+    const auto colors = openvdb::Vec3SGrid::create(openvdb::Vec3s(0.25f, 0.5f, 0.75f));
+    colors->setName("Cd");
+    for (int i = 0; i < 20; ++i)
+        colors->tree().setValue({i, 1, 2}, openvdb::Vec3s(1.0f + float(i), 2.0f, i == 3 ? -1.0f : 0.125f * float(i)));
+    colors->tree().addTile(1, {32, 0, 0}, openvdb::Vec3s(4.0f, 5.0f, 6.0f), true);
+    colors->tree().addTile(2, {128, 0, 0}, openvdb::Vec3s(7.0f, 8.0f, 9.0f), true);
+    for (const bool half : {false, true})
+        for (const std::uint32_t compression : {0u, 2u, 3u, 6u}) {
+            colors->setSaveFloatAsHalf(half);
+            const VdbFile file({ramp("density"), colors}, ".vdb", compression);
+            const DensityField field = load_density_field({file.path(), "Cd"}, GridValues::numbers_or_colors);
+            CHECK(field.type == GRID_COLOR);
+            CHECK(field.color({7, 1, 2}) == glm::vec3(8.0f, 2.0f, 0.875f));
+            CHECK(field.value({7, 1, 2}) == 8.0f);
+            CHECK(field.color({3, 1, 2}) == glm::vec3(4.0f, 2.0f, 0.0f)); // cleaned
+            CHECK(field.cleaned == 1);
+            CHECK(field.color({33, 4, 5}) == glm::vec3(4.0f, 5.0f, 6.0f));
+            CHECK(field.color({200, 4, 5}) == glm::vec3(7.0f, 8.0f, 9.0f));
+            CHECK(field.color({7, 3, 3}) == glm::vec3(0.25f, 0.5f, 0.75f)); // the background, in the box
+            CHECK(field.color({-1, 1, 2}) == glm::vec3(0.0f));
+            CHECK(field.max_value() == 20.0f);
+            CHECK(file.field().color({7, 1, 2}) == glm::vec3(8.0f));
+            CHECK_THROWS_WITH(file.field("Cd"), Contains("not a grid of floats"));
+        }
 }
 
 TEST_CASE("a grid that shares another's tree is read with its own transform", "[cpu][density]") {

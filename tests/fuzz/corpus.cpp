@@ -92,6 +92,16 @@ std::vector<GridBytes> make_grids(const std::string& name) {
     return grids;
 }
 
+std::vector<GridBytes> make_color_grids(const std::string& name) {
+    std::vector<GridBytes> grids;
+    for (int kind = 0; kind < 5; ++kind) {
+        GridRecipe recipe = recipe_of(kind, Storage::float32, name);
+        recipe.color = [value = recipe.value](glm::ivec3 i) { return glm::vec3(value(i), 0.5f, 0.1f * value(i)); };
+        grids.push_back(make_grid_bytes(recipe));
+    }
+    return grids;
+}
+
 std::size_t nvdb_header_size(const std::vector<StoredGrid>& grids) {
     std::size_t size = sizeof(nanovdb::io::Header);
     for (const StoredGrid& grid : grids)
@@ -152,9 +162,10 @@ std::vector<std::string> make_objs() {
 void write_scene_files(const std::filesystem::path& directory) {
     const auto density = make_grid_bytes(recipe_of(0, Storage::fpn, "density"));
     const auto heat = make_grid_bytes(recipe_of(1, Storage::float32, "temperature"));
+    const auto color = make_color_grids("colour").front();
     write_file(directory / "cloud.nvdb", make_nvdb({{density, "density"}}, std::uint16_t(Codec::NONE)));
     write_file(directory / "fire.nvdb",
-               make_nvdb({{density, "density"}, {heat, "temperature"}}, std::uint16_t(Codec::ZIP)));
+               make_nvdb({{density, "density"}, {heat, "temperature"}, {color, "colour"}}, std::uint16_t(Codec::ZIP)));
     write_file(directory / "cloud.vdb", make_vdbs(directory).front());
     write_file(directory / "phase.txt", "0 10\n90 1\n180 2\n");
     write_file(directory / "ball.obj", make_objs().back());
@@ -193,7 +204,7 @@ std::vector<std::string> make_vdbs(const std::filesystem::path& scratch) {
     half->tree().addTile(1, {64, 0, 0}, 0.5f, true);
     half->tree().addTile(2, {4096, 0, 0}, 0.25f, true);
     const auto vectors = openvdb::Vec3SGrid::create();
-    vectors->setName("velocity");
+    vectors->setName("colour");
     vectors->tree().setValue({1, 2, 3}, openvdb::Vec3s(1, 2, 3));
     const auto heat = openvdb::FloatGrid::create(0.0f);
     heat->setName("temperature");
@@ -201,6 +212,10 @@ std::vector<std::string> make_vdbs(const std::filesystem::path& scratch) {
     heat->tree().setValue({1, 2, 3}, 5.0f);
     write({half, vectors, heat}, 6);
     write({half, heat}, 0);
+    const auto half_vectors = vectors->deepCopy();
+    half_vectors->setSaveFloatAsHalf(true);
+    half_vectors->tree().addTile(1, {64, 0, 0}, openvdb::Vec3s(0.5f), true);
+    write({half, half_vectors}, 5);
     const auto empty = openvdb::FloatGrid::create(0.5f);
     empty->setName("temperature");
     const auto instance = openvdb::FloatGrid::create(*grid); // shares the tree

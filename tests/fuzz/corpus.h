@@ -12,6 +12,9 @@ namespace vkvol::fuzz {
 // Grids of every type that is read, with noise, tiles, one voxel, a background, nothing.
 std::vector<GridBytes> make_grids(const std::string& name);
 
+// Likewise of colours.
+std::vector<GridBytes> make_color_grids(const std::string& name);
+
 struct StoredGrid {
     GridBytes bytes;
     std::string name; // in the container
@@ -23,8 +26,8 @@ std::string make_nvdb(const std::vector<StoredGrid>& grids, std::uint16_t codec)
 // Where the container's headers end and the first grid's data begins.
 std::size_t nvdb_header_size(const std::vector<StoredGrid>& grids);
 
-// cloud.nvdb, fire.nvdb (density and temperature), cloud.vdb, ball.obj, phase.txt: what the scenes of scene_target
-// name.
+// cloud.nvdb, fire.nvdb (density, temperature and colour), cloud.vdb, ball.obj, phase.txt: what the scenes of
+// scene_target name.
 void write_scene_files(const std::filesystem::path& directory);
 
 // .vdb files with every compression, of floats and halves, and of what is not read.

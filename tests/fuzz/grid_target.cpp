@@ -18,10 +18,6 @@ namespace vkvol::fuzz {
 
 namespace {
 
-using Root = nanovdb::NanoRoot<float>::DataType;
-using Upper = nanovdb::NanoUpper<float>::DataType;
-using Lower = nanovdb::NanoLower<float>::DataType;
-
 // Their sum, modulo 2^64: offsets in a damaged tree may be anything.
 std::int64_t beyond(std::int64_t a, std::int64_t b) {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
@@ -33,100 +29,108 @@ template <class Node> Node* node_at(std::span<std::byte> grid, std::int64_t offs
     return reinterpret_cast<Node*>(grid.data() + offset);
 }
 
-// A random way down the tree, as far as it leads: offsets of root, tile, upper, lower, leaf.
-struct Way {
-    std::int64_t root = -1, tile = -1, upper = -1, lower = -1, leaf = -1;
-};
+// Of a grid of numbers, whose internal nodes are alike in all types, or of colours.
+template <class Value> struct TreeDamage {
+    using Root = typename nanovdb::NanoRoot<Value>::DataType;
+    using Upper = typename nanovdb::NanoUpper<Value>::DataType;
+    using Lower = typename nanovdb::NanoLower<Value>::DataType;
+    using Tile = typename Root::Tile;
 
-template <class Node> constexpr std::uint32_t child_count = sizeof(Node::mTable) / sizeof(std::int64_t);
+    // A random way down the tree, as far as it leads: offsets of root, tile, upper, lower, leaf.
+    struct Way {
+        std::int64_t root = -1, tile = -1, upper = -1, lower = -1, leaf = -1;
+    };
 
-template <class Node> std::int64_t random_child(Node* node, std::int64_t offset, Random& random) {
-    for (int attempt = 0; attempt < 50000; ++attempt) { // few bits are set
-        const auto n = static_cast<std::uint32_t>(random.below(child_count<Node>));
-        if (node->mChildMask.isOn(n))
-            return beyond(offset, node->mTable[n].child);
-    }
-    return -1;
-}
+    template <class Node> static constexpr std::uint32_t child_count = std::extent_v<decltype(Node::mTable)>;
 
-Way random_way(std::span<std::byte> grid, Random& random) {
-    Way way;
-    const auto* tree = node_at<nanovdb::TreeData<3>>(grid, sizeof(nanovdb::GridData));
-    way.root = beyond(sizeof(nanovdb::GridData), static_cast<std::int64_t>(tree->mNodeOffset[3]));
-    const Root* root = node_at<Root>(grid, way.root);
-    if (!root || root->mTableSize == 0)
-        return way;
-    way.tile = way.root + static_cast<std::int64_t>(sizeof(Root) + random.below(root->mTableSize) * sizeof(Root::Tile));
-    const auto* tile = node_at<Root::Tile>(grid, way.tile);
-    if (!tile || tile->child == 0)
-        return way;
-    way.upper = beyond(way.root, tile->child);
-    if (auto* upper = node_at<Upper>(grid, way.upper))
-        way.lower = random_child(upper, way.upper, random);
-    if (auto* lower = node_at<Lower>(grid, way.lower))
-        way.leaf = random_child(lower, way.lower, random);
-    return way;
-}
-
-// Turns a child's slot of an internal node into another child: of the same node, of any place, or none.
-template <class Node> void redirect_child(std::span<std::byte> grid, std::int64_t offset, Random& random) {
-    Node* node = node_at<Node>(grid, offset);
-    if (!node)
-        return;
-    const std::int64_t child = random_child(node, offset, random);
-    const auto n = static_cast<std::uint32_t>(random.below(child_count<Node>));
-    if (random.one_in(2)) {
-        node->mChildMask.setOn(n);
-        node->mTable[n].child = random.one_in(2)
-                                    ? beyond(child, -offset)
-                                    : static_cast<std::int64_t>(random.below(grid.size())) / 32 * 32 - offset;
-    } else if (random.one_in(20)) { // the whole table: nothing but one child
-        for (std::uint32_t i = 0; i < child_count<Node>; ++i) {
-            node->mChildMask.setOn(i);
-            node->mTable[i].child = beyond(child, -offset);
+    template <class Node> static std::int64_t random_child(Node* node, std::int64_t offset, Random& random) {
+        for (int attempt = 0; attempt < 50000; ++attempt) { // few bits are set
+            const auto n = static_cast<std::uint32_t>(random.below(child_count<Node>));
+            if (node->mChildMask.isOn(n))
+                return beyond(offset, node->mTable[n].child);
         }
-    } else {
-        put_interesting(grid, static_cast<std::size_t>(reinterpret_cast<std::byte*>(&node->mTable[n]) - grid.data()),
-                        random);
-        if (random.one_in(4))
+        return -1;
+    }
+
+    static Way random_way(std::span<std::byte> grid, Random& random) {
+        Way way;
+        const auto* tree = node_at<nanovdb::TreeData<3>>(grid, sizeof(nanovdb::GridData));
+        way.root = beyond(sizeof(nanovdb::GridData), static_cast<std::int64_t>(tree->mNodeOffset[3]));
+        const Root* root = node_at<Root>(grid, way.root);
+        if (!root || root->mTableSize == 0)
+            return way;
+        way.tile = way.root + static_cast<std::int64_t>(sizeof(Root) + random.below(root->mTableSize) * sizeof(Tile));
+        const auto* tile = node_at<Tile>(grid, way.tile);
+        if (!tile || tile->child == 0)
+            return way;
+        way.upper = beyond(way.root, tile->child);
+        if (auto* upper = node_at<Upper>(grid, way.upper))
+            way.lower = random_child(upper, way.upper, random);
+        if (auto* lower = node_at<Lower>(grid, way.lower))
+            way.leaf = random_child(lower, way.lower, random);
+        return way;
+    }
+
+    // Turns a child's slot of an internal node into another child: of the same node, of any place, or none.
+    template <class Node> static void redirect_child(std::span<std::byte> grid, std::int64_t offset, Random& random) {
+        Node* node = node_at<Node>(grid, offset);
+        if (!node)
+            return;
+        const std::int64_t child = random_child(node, offset, random);
+        const auto n = static_cast<std::uint32_t>(random.below(child_count<Node>));
+        if (random.one_in(2)) {
             node->mChildMask.setOn(n);
+            node->mTable[n].child = random.one_in(2)
+                                        ? beyond(child, -offset)
+                                        : static_cast<std::int64_t>(random.below(grid.size())) / 32 * 32 - offset;
+        } else if (random.one_in(20)) { // the whole table: nothing but one child
+            for (std::uint32_t i = 0; i < child_count<Node>; ++i) {
+                node->mChildMask.setOn(i);
+                node->mTable[i].child = beyond(child, -offset);
+            }
+        } else {
+            put_interesting(
+                grid, static_cast<std::size_t>(reinterpret_cast<std::byte*>(&node->mTable[n]) - grid.data()), random);
+            if (random.one_in(4))
+                node->mChildMask.setOn(n);
+        }
     }
-}
 
-void put_within(std::span<std::byte> grid, std::int64_t offset, std::size_t size, Random& random) {
-    const std::int64_t at = offset + static_cast<std::int64_t>(random.below(size) / 4 * 4);
-    if (offset >= 0 && static_cast<std::size_t>(at) < grid.size())
-        put_interesting(grid, static_cast<std::size_t>(at), random);
-}
-
-void damage_tree(GridBytes& bytes, Random& random) {
-    const std::span<std::byte> grid(bytes.data(), bytes.size());
-    const Way way = random_way(grid, random);
-    switch (random.below(12)) {
-    case 0:
-        return put_within(grid, 0, sizeof(nanovdb::GridData), random);
-    case 1: // the affine map
-        return put_within(grid, offsetof(nanovdb::GridData, mMap), sizeof(nanovdb::Map), random);
-    case 2:
-        return put_within(grid, sizeof(nanovdb::GridData), sizeof(nanovdb::TreeData<3>), random);
-    case 3:
-    case 4: // the box, the table's size, the background
-        return put_within(grid, way.root, sizeof(Root), random);
-    case 5:
-        return put_within(grid, way.tile, sizeof(Root::Tile), random);
-    case 6:
-        return redirect_child<Upper>(grid, way.upper, random);
-    case 7:
-        return redirect_child<Lower>(grid, way.lower, random);
-    case 8: // box, flags, masks
-        return put_within(grid, random.one_in(2) ? way.upper : way.lower, 64, random);
-    case 9:
-    case 10: // flags, minimum, quantum, values
-        return put_within(grid, way.leaf, random.one_in(2) ? 96 : 160, random);
-    default:
-        put_within(grid, 0, grid.size(), random);
+    static void put_within(std::span<std::byte> grid, std::int64_t offset, std::size_t size, Random& random) {
+        const std::int64_t at = offset + static_cast<std::int64_t>(random.below(size) / 4 * 4);
+        if (offset >= 0 && static_cast<std::size_t>(at) < grid.size())
+            put_interesting(grid, static_cast<std::size_t>(at), random);
     }
-}
+
+    static void damage_tree(GridBytes& bytes, Random& random) {
+        const std::span<std::byte> grid(bytes.data(), bytes.size());
+        const Way way = random_way(grid, random);
+        switch (random.below(12)) {
+        case 0:
+            return put_within(grid, 0, sizeof(nanovdb::GridData), random);
+        case 1: // the affine map
+            return put_within(grid, offsetof(nanovdb::GridData, mMap), sizeof(nanovdb::Map), random);
+        case 2:
+            return put_within(grid, sizeof(nanovdb::GridData), sizeof(nanovdb::TreeData<3>), random);
+        case 3:
+        case 4: // the box, the table's size, the background
+            return put_within(grid, way.root, sizeof(Root), random);
+        case 5:
+            return put_within(grid, way.tile, sizeof(Tile), random);
+        case 6:
+            return redirect_child<Upper>(grid, way.upper, random);
+        case 7:
+            return redirect_child<Lower>(grid, way.lower, random);
+        case 8: // box, flags, masks
+            return put_within(grid, random.one_in(2) ? way.upper : way.lower, 64, random);
+        case 9:
+        case 10: // flags, minimum, quantum, values
+            return put_within(grid, way.leaf, random.one_in(2) ? 96 : 160, random);
+        default:
+            put_within(grid, 0, grid.size(), random);
+        }
+    }
+};
 
 // An eye around the field or within it, and a medium from nearly empty to opaque.
 PilotScene random_pilot(const DensityField& field, Random& random) {
@@ -186,7 +190,8 @@ void use_grid_file(const std::filesystem::path& file, Random& random) {
         return;
     }
     if (random.one_in(2)) {
-        const DensityField field = load_density_field({file, random.one_in(4) ? "temperature" : "density"});
+        const char* grid = random.one_in(4) ? "colour" : random.one_in(3) ? "temperature" : "density";
+        const DensityField field = load_density_field({file, grid}, GridValues::numbers_or_colors);
         check_field(field);
         if (field.active_voxels > 0) {
             check_majorants(field, random);
@@ -204,6 +209,8 @@ void use_grid_file(const std::filesystem::path& file, Random& random) {
             random.one_in(2) ? TemperatureEmission::Model::color : TemperatureEmission::Model::blackbody;
     }
     if (random.one_in(2))
+        scene.volumes.front().albedo_grid = random.one_in(2) ? "temperature" : "colour";
+    if (random.one_in(2))
         scene.settings.integrator = random.one_in(2) ? "decompositionTracking" : "rayMarching";
     use_scene(scene);
 }
@@ -218,16 +225,20 @@ public:
         file_ = directory / "input.nvdb";
         densities_ = make_grids("density");
         temperatures_ = make_grids("temperature");
+        colors_ = make_color_grids("colour");
     }
 
     std::string make(Random& random) override {
         std::vector<StoredGrid> grids = {{random.pick(densities_), "density"}};
         if (random.one_in(4))
             grids.push_back({random.pick(temperatures_), "temperature"});
+        if (random.one_in(3))
+            grids.push_back({random.pick(colors_), "colour"});
         const bool tree = !random.one_in(3);
         for (StoredGrid& grid : grids)
             for (std::uint64_t n = tree ? 1 + random.below(3) : 0; n > 0; --n)
-                damage_tree(grid.bytes, random);
+                grid.name == "colour" ? TreeDamage<nanovdb::Vec3f>::damage_tree(grid.bytes, random)
+                                      : TreeDamage<float>::damage_tree(grid.bytes, random);
         std::string file = make_nvdb(grids, static_cast<std::uint16_t>(random.below(3)));
         if (!tree && random.one_in(2)) // the container
             put_interesting(std::as_writable_bytes(std::span(file)), random.below(nvdb_header_size(grids)), random);
@@ -243,7 +254,7 @@ public:
 
 private:
     std::filesystem::path file_;
-    std::vector<GridBytes> densities_, temperatures_;
+    std::vector<GridBytes> densities_, temperatures_, colors_;
 };
 
 // OpenVDB's own reader does the work here, and its memory is not ours to bound as tightly.

@@ -43,7 +43,7 @@ std::string attribute_value(std::string_view name, Source& random) {
     if (name == "model")
         return one_of("color|blackbody", random);
     if (name == "grid")
-        return one_of("density|temperature|density|other", random);
+        return one_of("density|temperature|density|colour|other", random);
     if (name == "baseDir")
         return one_of(".|./|", random);
     if (name == "file")

@@ -53,6 +53,7 @@ void check_volume(const shared::MediumParams& v) {
     expect(std::isfinite(v.sigma_t) && v.sigma_t >= 0.0f, "the extinction is not finite");
     expect_finite(v.sigma_ratio, "the ratio of extinctions is not finite");
     expect_finite(v.albedo, "the albedo is not finite");
+    expect_finite(v.albedo_grid.to_index, "the map to the grid of albedos is not finite");
     expect(std::abs(v.phase.g) < 1.0f && std::abs(v.phase.g2) < 1.0f, "g is not between -1 and 1 in single precision");
     expect(v.phase.share >= 0.0f && v.phase.share <= 1.0f, "the share of the second phase function is out of range");
     expect(v.phase.alpha >= 0.0f && v.phase.alpha <= 250.0f, "alpha is out of range");
@@ -99,6 +100,8 @@ void check_loaded(const LoadedMedium& loaded) {
         check_field(*loaded.field);
     if (loaded.temperature)
         check_field(*loaded.temperature);
+    if (loaded.albedo)
+        check_field(*loaded.albedo);
     if (loaded.majorants)
         for (const float bound : loaded.majorants->bounds)
             expect(std::isfinite(bound) && bound >= 0.0f, "a majorant is not finite");
@@ -125,13 +128,14 @@ void check_field(const DensityField& field) {
            "the leaf table has another size than its dimensions say");
     expect((field.voxel_min >> 3) == field.leaf_min && (field.voxel_max >> 3) == field.leaf_min + n - 1,
            "the leaf table does not cover the active voxels");
-    constexpr std::size_t values_offset = 96; // of a leaf's values, as in density.glsl
+    const bool colors = field.type == GRID_COLOR;
+    const std::size_t values_offset = colors ? 128 : 96; // of a leaf's values, as in density.glsl
     const auto log2_bits = [&](std::size_t leaf) {
-        return field.type == GRID_FLOAT  ? 5u
-               : field.type == GRID_FP4  ? 2u
-               : field.type == GRID_FP8  ? 3u
-               : field.type == GRID_FP16 ? 4u
-                                         : std::to_integer<unsigned>(field.bytes.data()[leaf + 15]) >> 5u;
+        return field.type == GRID_FLOAT || colors ? 5u
+               : field.type == GRID_FP4           ? 2u
+               : field.type == GRID_FP8           ? 3u
+               : field.type == GRID_FP16          ? 4u
+                                                  : std::to_integer<unsigned>(field.bytes.data()[leaf + 15]) >> 5u;
     };
     std::uint32_t before = 0;
     for (const std::uint32_t entry : field.leaf_table) {
@@ -140,11 +144,11 @@ void check_field(const DensityField& field) {
         before = entry;
         const std::size_t at = std::size_t{entry >> 1} * 4;
         expect(at < field.bytes.size(), "an entry of the leaf table points outside the grid");
-        std::size_t size = 4;
+        std::size_t size = colors ? 12 : 4;
         if (entry & 1u) {
             expect(at + values_offset <= field.bytes.size(), "a leaf begins at the end of the grid");
             expect(log2_bits(at) <= 5u, "a leaf has too many bits per value");
-            size = values_offset + (std::size_t{64} << log2_bits(at));
+            size = values_offset + (colors ? std::size_t{512 * 12} : std::size_t{64} << log2_bits(at));
         }
         expect(at + size <= field.bytes.size(), "an entry of the leaf table reaches beyond the grid");
     }

@@ -42,6 +42,8 @@ Rgb blackbody(double kelvin, double reference) {
 }
 
 Rgb Emission::at(const glm::dvec3& world) const {
+    if (!colors.empty())
+        return constant + temperature.color * colors.trilinear(world);
     if (grid.empty())
         return constant;
     const double value = grid.trilinear(grid.to_index(world));
@@ -56,9 +58,13 @@ Rgb Emission::at(const glm::dvec3& world) const {
 }
 
 Emission load_emission(const vkvol::Volume& volume, const vkvol::GridFile* file) {
-    Emission emission{volume.Le, volume.temperature, {}, {}};
+    Emission emission{volume.Le, volume.temperature, {}, {}, {}};
     if (!file || volume.temperature.color == Rgb(0.0) || !has_grid(file->path, volume.temperature.grid))
         return emission;
+    if (has_colors(file->path, volume.temperature.grid)) {
+        emission.colors = load_color_grid(file->path, volume.temperature.grid);
+        return emission;
+    }
     emission.grid = load_grid(file->path, volume.temperature.grid);
     if (emission.temperature.model == vkvol::TemperatureEmission::Model::blackbody && !emission.grid.empty()) {
         const double warmest = *std::max_element(emission.grid.values.begin(), emission.grid.values.end());

@@ -1,4 +1,4 @@
-// Radiance emitted per absorption event: constant, or following a temperature grid.
+// Radiance emitted per absorption event: constant, or following a grid of temperatures or colours.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,8 @@ vkvol::Rgb blackbody(double kelvin, double reference);
 struct Emission {
     vkvol::Rgb constant{0.0};
     vkvol::TemperatureEmission temperature;
-    Grid grid;                           // of temperatures; empty: constant alone
+    Grid grid;                           // of temperatures; empty: constant alone,
+    ColorGrid colors;                    // or this
     std::vector<vkvol::Rgb> blackbodies; // every `spacing` kelvin from 0 on
 
     static constexpr double spacing = 0.5;

@@ -44,6 +44,20 @@ Grid make_grid(const glm::ivec3& first, const glm::ivec3& last, const std::funct
 
 bool has_grid(const std::filesystem::path& path, const std::string& name);
 
+// Channels by themselves, as a scalar grid each.
+struct ColorGrid {
+    Grid channels[3];
+
+    bool empty() const { return channels[0].empty(); }
+    vkvol::Rgb trilinear(const glm::dvec3& world) const; // in world space
+    vkvol::Rgb clamped(const glm::dvec3& world) const;   // likewise, going on outside of the box of active voxels
+};
+
+bool has_colors(const std::filesystem::path& path, const std::string& name);
+
+// Of a grid of colours, or grey ones of numbers.
+ColorGrid load_color_grid(const std::filesystem::path& path, const std::string& name);
+
 // The grid `name` of a .nvdb file: float, Fp4, Fp8, Fp16 or FpN. Throws std::runtime_error.
 Grid load_grid(const std::filesystem::path& path, const std::string& name);
 

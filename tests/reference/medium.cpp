@@ -73,6 +73,10 @@ double Medium::density(const glm::dvec3& p) const {
     return noise ? noise_density(*noise, p) : 1.0;
 }
 
+Rgb Medium::albedo_at(const glm::dvec3& world) const {
+    return albedo_grid.empty() ? albedo : albedo * glm::min(albedo_grid.clamped(world), Rgb(1.0));
+}
+
 double Medium::largest() const {
     return std::max({sigma_t.x, sigma_t.y, sigma_t.z});
 }
@@ -87,6 +91,8 @@ Medium load(const vkvol::Volume& volume, std::optional<vkvol::Filter> filter) {
     const auto& file = std::get<vkvol::GridFile>(volume.shape);
     Medium medium = with_shape(load_grid(file.path, file.grid), volume, filter);
     medium.emission = load_emission(volume, &file);
+    if (!volume.albedo_grid.empty())
+        medium.albedo_grid = load_color_grid(file.path, volume.albedo_grid);
     return medium;
 }
 

@@ -17,6 +17,7 @@ struct Medium {
     std::optional<vkvol::Noise> noise; // the density, but for grids; none: 1
     vkvol::Rgb sigma_t{0.0};           // extinction at density 1 [1/world unit], density_scale included
     vkvol::Rgb albedo{0.0};
+    ColorGrid albedo_grid; // multiplies it; or empty
     vkvol::PhaseFunction phase = vkvol::PhaseFunction::henyey_greenstein;
     double g = 0.0;
     double g2 = 0.0, share = 0.0, alpha = 0.0; // of a second function and its part
@@ -28,6 +29,8 @@ struct Medium {
     const Grid* grid() const { return std::get_if<Grid>(&shape); }
     bool homogeneous() const { return !grid() && !noise; } // density 1 throughout
     double density(const glm::dvec3& p) const;             // at index coordinates of a grid, else in world space
+
+    vkvol::Rgb albedo_at(const glm::dvec3& world) const;
 
     double largest() const; // of sigma_t's channels
     bool grey() const { return sigma_t == vkvol::Rgb(sigma_t.x); }

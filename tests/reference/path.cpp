@@ -100,12 +100,13 @@ Flight gathering_flight(const World& world, const Ray& ray, double exponential, 
     if (world.method.emission == EMISSION_AT_STEPS)
         events.piece = [&](double t0, double t1, const Rgb& weight) {
             const double t = t0 + rng.next().x() * (t1 - t0);
-            const Rgb emitted = medium.sigma_t * density(t) * (1.0 - medium.albedo) * medium.emission.at(ray.at(t));
+            const Rgb emitted =
+                medium.sigma_t * density(t) * (1.0 - medium.albedo_at(ray.at(t))) * medium.emission.at(ray.at(t));
             L += weight * (t1 - t0) * emitted;
         };
     if (world.method.nee == NEE_TENTATIVE && lit)
         events.tentative = [&](double t, const Rgb& weight) {
-            L += weight * medium.albedo * direct_light(world, ray.at(t), ray.direction, rng);
+            L += weight * medium.albedo_at(ray.at(t)) * direct_light(world, ray.at(t), ray.direction, rng);
         };
     return fly(medium, world.method.free_flight, ray, exponential, select, beta, world.method.march, rng, events);
 }
@@ -128,11 +129,12 @@ Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng
         if (!flight.t)
             return L + beta * light_from_beyond(world, ray.direction, depth == 0);
         ray.origin = ray.at(*flight.t);
+        const Rgb albedo = medium.albedo_at(ray.origin);
         if (method.emission == EMISSION_AT_COLLISIONS)
-            L += beta * (1.0 - medium.albedo) * medium.emission.at(ray.origin);
+            L += beta * (1.0 - albedo) * medium.emission.at(ray.origin);
         if (last)
             return L;
-        beta *= medium.albedo;
+        beta *= albedo;
         // Its own cache knows one sun; of other lights there is no need for one.
         const bool cached = method.nee == NEE_CACHED && vkvol::only_directional(world.scene.lights);
         if (method.nee == NEE_COLLISIONS || (method.nee == NEE_CACHED && !cached))

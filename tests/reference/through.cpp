@@ -32,7 +32,7 @@ Rgb march_through(const World& world, const Ray& ray, Rng& rng) {
     const auto pass = [&](double t, double length) { // all that the step adds, but the light scattered in it
         const Rgb T = glm::exp(-medium.sigma_t * density(t) * length);
         const Rgb alpha = beta * (1.0 - T);
-        L += alpha * (1.0 - medium.albedo) * medium.emission.at(ray.at(t));
+        L += alpha * (1.0 - medium.albedo_at(ray.at(t))) * medium.emission.at(ray.at(t));
         beta *= T;
         return alpha;
     };
@@ -47,7 +47,7 @@ Rgb march_through(const World& world, const Ray& ray, Rng& rng) {
         const double point = t + (march.jitter ? draw.x() : 0.5) * length;
         const Rgb alpha = pass(point, length);
         if (lit && density(point) > 0.0)
-            L += alpha * medium.albedo * direct_light(world, ray.at(point), ray.direction, rng);
+            L += alpha * medium.albedo_at(ray.at(point)) * direct_light(world, ray.at(point), ray.direction, rng);
         const double m = std::max({beta.x, beta.y, beta.z});
         if (m < roulette_threshold) {
             if (!(draw.y() * roulette_threshold < m)) {

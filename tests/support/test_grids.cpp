@@ -47,6 +47,20 @@ template <class Build> GridBytes build(const GridRecipe& recipe) {
     return bytes;
 }
 
+GridBytes build_colors(const GridRecipe& recipe) {
+    nanovdb::GridBuilder<nanovdb::Vec3f> builder(nanovdb::Vec3f(recipe.background));
+    builder(
+        [&](const nanovdb::Coord& c) {
+            const glm::vec3 color = recipe.color(to_ivec3(c));
+            return nanovdb::Vec3f(color.x, color.y, color.z);
+        },
+        nanovdb::CoordBBox(to_coord(recipe.first), to_coord(recipe.last)));
+    const auto handle = builder.getHandle(make_map(recipe.linear, recipe.translation), recipe.name);
+    GridBytes bytes(handle.size());
+    std::memcpy(bytes.data(), handle.data(), handle.size());
+    return bytes;
+}
+
 // Points `grid` at NanoVDB's view of `bytes`, a copy that nobody else writes.
 template <class Build> void attach(TestGrid& grid, const std::shared_ptr<GridBytes>& bytes) {
     const auto* nano = reinterpret_cast<const nanovdb::NanoGrid<Build>*>(bytes->data());
@@ -105,6 +119,8 @@ double TestGrid::trilinear(glm::dvec3 p) const {
 }
 
 GridBytes make_grid_bytes(const GridRecipe& recipe) {
+    if (recipe.color)
+        return build_colors(recipe);
     switch (recipe.storage) {
     case Storage::fp4:
         return build<nanovdb::Fp4>(recipe);

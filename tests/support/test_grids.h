@@ -24,6 +24,7 @@ struct GridRecipe {
     glm::dvec3 translation{0.0};
     std::string name = "density";
     int cell = 8; // of the majorants; 0: chosen for density 1 having extinction 1 per voxel
+    std::function<glm::vec3(glm::ivec3)> color = {}; // in place of `value`: a grid of colours
 };
 
 struct TestGrid {
