@@ -70,7 +70,6 @@ march roulette weight missing ~ shaders/estimators/march.glsl ~ MARCH_ROULETTE /
 cache corrected without its chance ~ shaders/stages/shadow.glsl ~ (T - lane.cached) / lane.chance ~ (T - lane.cached) ~ [light_cache]
 foreseen light off its mean ~ shaders/phase/phase.glsl ~ hg_eval(v.phase.g * v.phase.g, ~ hg_eval(v.phase.g, ~ [agreement]
 lattice a node off ~ shaders/lights/lattice.glsl ~ uint i = lattice_index(which, node); ~ uint i = lattice_index(which, node) + 1u; ~ [light_cache]
-samples lost to a driver's loops ~ shaders/passes/sky.comp ~ if (hit || tally.paths < push.sample_end - push.sample_begin) { ~ if (hit) { ~ [determinism]
 no further part of a mesh ~ shaders/shapes/segment.glsl ~ event == EVENT_LEFT && search.stage == SEARCH_OVER; ~ false; ~ [closed_form]
 a flight stays in its part after a shadow ray ~ shaders/stages/shadow.glsl ~ lane.search.stage = SEARCH_OVER; ~ ; ~ flights go on to the next body*
 a search laid aside forgets its crossings ~ shaders/shared/path_state.h ~ ROW(PartSearch, search, under_way && SHAPE == SHAPE_MESH) ~ ROW(PartSearch, search, false) ~ [closed_form]

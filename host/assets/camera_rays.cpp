@@ -1,23 +1,62 @@
 #include "camera_rays.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "camera_view.h"
 
 namespace vkvol {
 
+namespace {
+
+void set_angles(const Picture& picture, CameraRays& rays) {
+    rays.angle_step = {2.0 * std::numbers::pi / picture.reference_width, -std::numbers::pi / picture.reference_height};
+    rays.first_angle = glm::dvec2(-std::numbers::pi, std::numbers::pi / 2.0) +
+                       glm::dvec2(picture.start_x, picture.start_y) * rays.angle_step;
+}
+
+} // namespace
+
+glm::dvec3 CameraRays::origin(double x, double y) const {
+    return projection == Projection::orthographic ? position + corner + x * right + y * down : position;
+}
+
+glm::dvec3 CameraRays::direction(double x, double y) const {
+    if (projection == Projection::orthographic)
+        return forward;
+    if (projection == Projection::perspective)
+        return corner + x * right + y * down;
+    const glm::dvec2 angle = first_angle + glm::dvec2(x, y) * angle_step;
+    return std::cos(angle.y) * (std::cos(angle.x) * forward + std::sin(angle.x) * right) - std::sin(angle.y) * down;
+}
+
+double CameraRays::pixel_at(double distance) const {
+    return projection == Projection::perspective    ? distance * glm::length(down)
+           : projection == Projection::orthographic ? glm::length(down)
+                                                    : distance * -angle_step.y;
+}
+
 CameraRays camera_rays(const Camera& camera, const Picture& picture) {
-    const double s = std::tan(glm::radians(camera.fov) / 2.0);
+    const bool is_orthographic = camera.projection == Projection::orthographic;
+    // Half of the reference frame's height, on the plane at distance 1, or in the world.
+    const double s = is_orthographic ? camera.view_height / 2.0 : std::tan(glm::radians(camera.fov) / 2.0);
     const double aspect = picture.reference_width / picture.reference_height;
     const double dx = 2.0 * aspect * s / picture.reference_width;
     const double dy = -2.0 * s / picture.reference_height;
     const glm::dmat3 rotation = camera_rotation(camera);
     CameraRays rays{};
+    rays.projection = camera.projection;
     rays.position = camera.position;
     rays.forward = rotation * glm::dvec3(0.0, 0.0, -1.0);
-    rays.corner = rotation * glm::dvec3(-aspect * s + picture.start_x * dx, s + picture.start_y * dy, -1.0);
+    rays.corner = rotation * glm::dvec3(-aspect * s + picture.start_x * dx, s + picture.start_y * dy,
+                                        is_orthographic ? 0.0 : -1.0);
     rays.right = rotation * glm::dvec3(dx, 0.0, 0.0);
     rays.down = rotation * glm::dvec3(0.0, dy, 0.0);
+    if (camera.projection == Projection::equirectangular) {
+        set_angles(picture, rays);
+        rays.right = rotation * glm::dvec3(1.0, 0.0, 0.0);
+        rays.down = rotation * glm::dvec3(0.0, -1.0, 0.0);
+    }
     return rays;
 }
 

@@ -5,14 +5,21 @@
 
 namespace vkvol {
 
-// The ray through the point (x, y) of the picture, in pixels from its left and top edge, starts at `position` and has
-// the direction corner + x right + y down, which is 1 long along the view.
+// The ray through the point (x, y) of the picture, in pixels from its left and top edge, and the middle of the lens.
+// Perspective: it starts at `position` and has the direction corner + x right + y down, which is 1 long along the view.
+// Orthographic: it starts at position + corner + x right + y down and goes forward. Equirectangular: it starts at
+// `position` at angles first_angle + (x, y) * angle_step (radians: longitude to the right of `forward`, latitude);
+// right and down are unit vectors then.
 struct CameraRays {
+    Projection projection;
     glm::dvec3 position;
     glm::dvec3 forward; // unit
     glm::dvec3 corner, right, down;
+    glm::dvec2 first_angle, angle_step;
 
-    glm::dvec3 direction(double x, double y) const { return corner + x * right + y * down; }
+    glm::dvec3 origin(double x, double y) const;
+    glm::dvec3 direction(double x, double y) const;
+    double pixel_at(double distance) const; // world units: how high a pixel is, at that distance
 };
 
 CameraRays camera_rays(const Camera& camera, const Picture& picture);

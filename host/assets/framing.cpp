@@ -97,8 +97,32 @@ double diagonal_of(const Corners& corners) {
     return longest;
 }
 
+namespace {
+
+constexpr double filled = 0.94; // of the picture's width or height
+constexpr double nearest = 0.1; // diagonals of the medium, from the eye to the nearest corner
+
+// Of an orthographic view the height says how much is seen, and not the distance.
+void frame_flat(Camera& camera, const Picture& picture, const Corners& corners) {
+    const glm::dmat3 rotation = camera_rotation(camera);
+    const ViewWindow window = view_window(camera, picture);
+    const glm::dvec3 middle = middle_of(corners);
+    glm::dvec3 high(-std::numeric_limits<double>::infinity());
+    for (const glm::dvec3& corner : corners)
+        high = glm::max(high, glm::abs(glm::transpose(rotation) * (corner - middle)));
+    const double half =
+        std::max(2.0 * high.x / (window.right - window.left), 2.0 * high.y / (window.top - window.bottom)) / filled;
+    camera.view_height = 2.0 * half;
+    const glm::dvec3 aside(-0.5 * half * (window.left + window.right), -0.5 * half * (window.bottom + window.top),
+                           high.z + nearest * diagonal_of(corners));
+    camera.position = middle + rotation * aside;
+}
+
+} // namespace
+
 void frame(Camera& camera, const Picture& picture, const Corners& corners) {
-    constexpr double filled = 0.94; // of the picture's width or height
+    if (camera.projection == Projection::orthographic)
+        return frame_flat(camera, picture, corners);
     const glm::dmat3 rotation = camera_rotation(camera);
     const ViewWindow window = view_window(camera, picture);
     const auto narrowed = [](double from, double to) {
@@ -116,7 +140,6 @@ void frame(Camera& camera, const Picture& picture, const Corners& corners) {
         towards_eye = std::max(towards_eye, seen.z);
     }
     // A wide view could have the nearest corner in the eye itself.
-    constexpr double nearest = 0.1; // diagonals
     const double depth = std::max({across.depth(), upwards.depth(), towards_eye + nearest * diagonal_of(corners)});
     camera.position = middle + rotation * glm::dvec3(across.place(depth), upwards.place(depth), depth);
 }
@@ -128,6 +151,8 @@ void frame_medium(Scene& scene, FieldCache& fields) {
                              ? "--frame: the scene has no medium to frame; leave --frame out"
                              : "--frame: the medium is a grid without voxels, which has no box to frame; leave --frame "
                                "out, or give another grid with --grid FILE");
+    if (scene.camera.projection == Projection::equirectangular)
+        throw InputError("--frame: an equirectangular camera sees all around it, wherever it is; leave --frame out");
     frame(scene.camera, scene.picture, *corners);
 }
 

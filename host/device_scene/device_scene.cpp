@@ -19,7 +19,8 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
     if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN)
         make_lights(scene, assets);
     if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN || specialization_[SPEC_PHASE] != PHASE_HENYEY_GREENSTEIN ||
-        specialization_[SPEC_ALBEDO] != ALBEDO_CONSTANT || specialization_[SPEC_TEMPERATURE_TYPE] == GRID_COLOR)
+        specialization_[SPEC_ALBEDO] != ALBEDO_CONSTANT || specialization_[SPEC_TEMPERATURE_TYPE] == GRID_COLOR ||
+        specialization_[SPEC_SENSOR] != SENSOR_PINHOLE || specialization_[SPEC_PIXEL_FILTER] != 0)
         form_ |= form_full;
     if (const std::optional<std::uint32_t> bits = buffers_.window_bits()) {
         form_ |= form_windows;

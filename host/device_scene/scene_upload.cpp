@@ -6,18 +6,20 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "camera_rays.h"
+#include "camera_view.h"
 #include "error.h"
 #include "light_cache.h"
 #include "light_table.h"
 #include "noise.h"
 #include "phase_params.h"
+#include "pixel_filter.h"
 #include "shared/estimators.h"
 #include "shared/items.h"
 
 namespace vkvol {
 
 static_assert(std::is_standard_layout_v<shared::FrameParams>);
-static_assert(sizeof(shared::SensorParams) == 4 * 12 + 4);
+static_assert(sizeof(shared::SensorParams) == 6 * 12 + 4 * 4 + 2 * 8);
 static_assert(sizeof(shared::GridParams) == 4 * 12 + 2 * 4);
 static_assert(sizeof(shared::AlbedoParams) == sizeof(shared::GridParams) + 3 * 16);
 static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 5 * 4);
@@ -232,8 +234,7 @@ double ray_start(const Scene& scene, glm::dvec3 forward, glm::dvec3 center, doub
 }
 
 // `origin`: of render space, the middle of the medium. `radius`: of a ball about it that holds the medium.
-shared::SensorParams make_pinhole(const Scene& scene, glm::dvec3 origin, double radius) {
-    const CameraRays rays = camera_rays(scene.camera, scene.picture);
+shared::SensorParams make_pinhole(const Scene& scene, const CameraRays& rays, glm::dvec3 origin, double radius) {
     const double start = ray_start(scene, rays.forward, origin, radius);
     shared::SensorParams params{};
     params.position = rays.position - origin + start * rays.corner;
@@ -241,7 +242,43 @@ shared::SensorParams make_pinhole(const Scene& scene, glm::dvec3 origin, double 
     params.corner = rays.corner;
     params.right = rays.right;
     params.down = rays.down;
+    const Lens& lens = scene.camera.lens;
+    if (lens.radius > 0.0) {
+        const glm::dmat3 rotation = camera_rotation(scene.camera);
+        params.lens_u = lens.radius / lens.focus * rotation[0];
+        params.lens_v = lens.radius / lens.focus * rotation[1];
+        params.lens_lever = static_cast<float>(lens.focus - start);
+        params.blades = static_cast<std::uint32_t>(lens.blades);
+        params.blade_rotation = static_cast<float>(glm::radians(lens.rotation));
+    }
     return params;
+}
+
+shared::SensorParams make_sensor(const Scene& scene, glm::dvec3 origin, double radius) {
+    const CameraRays rays = camera_rays(scene.camera, scene.picture);
+    if (rays.projection == Projection::perspective)
+        return make_pinhole(scene, rays, origin, radius);
+    shared::SensorParams params{};
+    params.position = rays.origin(0.0, 0.0) - origin;
+    if (rays.projection == Projection::orthographic)
+        params.position += ray_start(scene, rays.forward, origin, radius) * rays.forward;
+    params.corner = rays.forward;
+    params.right = rays.right;
+    params.down = rays.down;
+    params.first_angle = rays.first_angle;
+    params.angle_step = rays.angle_step;
+    return params;
+}
+
+int sensor_kind(const Camera& camera) {
+    switch (camera.projection) {
+    case Projection::orthographic:
+        return SENSOR_ORTHOGRAPHIC;
+    case Projection::equirectangular:
+        return SENSOR_EQUIRECTANGULAR;
+    default:
+        return camera.lens.radius > 0.0 ? SENSOR_LENS : SENSOR_PINHOLE;
+    }
 }
 
 int emission_kind(const Volume& volume, const LoadedMedium& loaded, const Method& method) {
@@ -309,6 +346,8 @@ Specialization specialize(const Scene& scene, Media media, const Method& method)
     const int seen = method.nee == NEE_NONE ? lights & ~LIGHTS_LAMPS : lights;
     constants[SPEC_LIGHTS] = seen == LIGHTS_TABLE && method.nee == NEE_NONE ? LIGHTS_SUN : seen;
     constants[SPEC_MIS] = method.mis;
+    constants[SPEC_SENSOR] = sensor_kind(scene.camera);
+    constants[SPEC_PIXEL_FILTER] = has_plain_pixels(scene.settings) ? 0 : 1;
     constants[SPEC_DISTANCE] =
         method.distance.value_or(gains_by_looks_along(scene, media) ? DISTANCE_MIXED : DISTANCE_FLIGHTS);
     return constants;
@@ -387,11 +426,13 @@ shared::FrameParams make_frame(const Scene& scene, Media media, const Method& me
         if (method.nee == NEE_CACHED)
             frame.lattice = make_lattice_of(scene.volumes[i], media[i], cache_layout(scene.lights).most_nodes);
     }
-    frame.sensors[0] = make_pinhole(
+    frame.sensors[0] = make_sensor(
         scene, origin, std::max(0.5 * longest_diagonal(scene, media), reach_of_lamps(scene.lights, origin)));
     frame.lights[LIGHT_BACKGROUND].radiance = scene.background;
     if (const DirectionalLight* sun = only_directional(scene.lights))
         frame.lights[LIGHT_SUN] = {sun->direction, sun->irradiance};
+    const std::vector<double> quantiles = filter_quantiles(scene.settings, FILTER_QUANTILES);
+    std::copy(quantiles.begin(), quantiles.end(), frame.filter_quantiles);
     frame.march = make_march(scene, media, method);
     frame.roulette_threshold = static_cast<float>(scene.settings.roulette_threshold);
     // Beyond a million scatterings a path of any albedo that scenes have is worth nothing; the bound is counted.

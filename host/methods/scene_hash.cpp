@@ -152,7 +152,14 @@ void add_light(Writer& writer, const SkyLight& light) {
 void add_view(Writer& writer, const Camera& camera, const Picture& picture) {
     writer.add("position", camera.position);
     writer.add("rotation", glm::dvec3(camera.pitch, camera.yaw, camera.roll));
-    writer.add("fov", camera.fov);
+    if (camera.projection == Projection::perspective)
+        writer.add("fov", camera.fov);
+    else
+        writer.add("projection", static_cast<int>(camera.projection));
+    if (camera.projection == Projection::orthographic)
+        writer.add("view_height", camera.view_height);
+    if (camera.lens.radius > 0.0)
+        writer.add("lens", glm::dvec4(camera.lens.radius, camera.lens.focus, camera.lens.blades, camera.lens.rotation));
     writer.add("width", picture.width);
     writer.add("height", picture.height);
     writer.add("start", glm::dvec3(picture.start_x, picture.start_y, 0));
@@ -192,6 +199,9 @@ std::string scene_hash(const Scene& authored) {
     const Method method = choose_method(scene);
     Writer writer;
     add_view(writer, scene.camera, scene.picture);
+    if (scene.settings.pixel_filter != PixelFilter::box || scene.settings.pixel_filter_radius != 0.5)
+        writer.add("pixel",
+                   glm::dvec3(static_cast<int>(scene.settings.pixel_filter), scene.settings.pixel_filter_radius, 0.0));
     for (const Volume& volume : scene.volumes)
         add_volume(writer, volume);
     for (const Light& light : scene.lights)

@@ -159,9 +159,12 @@ Answer missed(const Evidence& e) {
                            100.0 * s.entering_frame);
     const std::string where =
         s.degrees_off > 90.0 ? "behind the camera" : fmt::format("{:.0f} degrees off the middle", s.degrees_off);
-    return fmt::format("no ray enters the medium, whose box {} is {}: the camera at {} looks along {} with a field of "
-                       "view of {:.3g} degrees; {}",
-                       box_text(s.box), where, text_of(s.eye), text_of(s.forward), e.scene.camera.fov, frame_advice(s));
+    return fmt::format("no ray enters the medium, whose box {} is {}: the camera at {} looks along {} with {}; {}",
+                       box_text(s.box), where, text_of(s.eye), text_of(s.forward),
+                       e.scene.camera.projection == Projection::orthographic
+                           ? fmt::format("a view {:.3g} high", e.scene.camera.view_height)
+                           : fmt::format("a field of view of {:.3g} degrees", e.scene.camera.fov),
+                       frame_advice(s));
 }
 
 Answer speck(const Evidence& e) {

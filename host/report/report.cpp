@@ -106,6 +106,7 @@ Json explanation_json(const std::optional<Explanation>& explanation, const Camer
                      {"camera",
                       {{"position", vector_json(sight->eye)},
                        {"direction", vector_json(sight->forward)},
+                       {"projection", projection_name(camera.projection)},
                        {"fov", camera.fov},
                        {"insideMediumBox", sight->inside}}},
                      {"raysEntering", sight->entering},

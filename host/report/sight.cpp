@@ -11,21 +11,23 @@ namespace {
 constexpr int usual_rows = 24; // of the lattice, and columns
 constexpr int fine_rows = 300;
 
-// Calls visit(direction) for points spread evenly over [x0, x1) x [y0, y1), pixel centres where these are few.
+// Calls visit(origin, direction) for points spread evenly over [x0, x1) x [y0, y1), pixel centres where these are few.
 template <class Visit>
 void for_lattice(const CameraRays& rays, double x0, double x1, double y0, double y1, int most_rows,
                  const Visit& visit) {
     const int columns = std::clamp(int(x1 - x0), 1, most_rows), rows = std::clamp(int(y1 - y0), 1, most_rows);
     for (int row = 0; row < rows; ++row)
-        for (int column = 0; column < columns; ++column)
-            visit(rays.direction(x0 + (x1 - x0) * (column + 0.5) / columns, y0 + (y1 - y0) * (row + 0.5) / rows));
+        for (int column = 0; column < columns; ++column) {
+            const double x = x0 + (x1 - x0) * (column + 0.5) / columns, y = y0 + (y1 - y0) * (row + 0.5) / rows;
+            visit(rays.origin(x, y), rays.direction(x, y));
+        }
 }
 
 double part_entering(const MediumOutline& outline, const CameraRays& rays, double x0, double x1, double y0, double y1,
                      int most_rows = usual_rows) {
     int entering = 0, all = 0;
-    for_lattice(rays, x0, x1, y0, y1, most_rows, [&](glm::dvec3 direction) {
-        entering += crossing(outline, rays.position, direction).has_value();
+    for_lattice(rays, x0, x1, y0, y1, most_rows, [&](glm::dvec3 origin, glm::dvec3 direction) {
+        entering += crossing(outline, origin, direction).has_value();
         ++all;
     });
     return double(entering) / all;
@@ -37,17 +39,21 @@ double degrees_between(glm::dvec3 a, glm::dvec3 b) {
 }
 
 // Whether a window, in pixels, has the box before it or a part of it: by the rectangle around its corners, and where
-// some of these are behind the eye, not.
+// some of these are behind the eye, not. A panorama has all around it before it.
 bool overlaps(const WorldBox& box, const CameraRays& rays, const Crop& window) {
+    if (rays.projection == Projection::equirectangular)
+        return true;
+    const bool is_flat = rays.projection == Projection::orthographic;
     glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
-    const glm::dmat3 to_picture = glm::inverse(glm::dmat3(rays.right, rays.down, rays.corner));
+    const glm::dmat3 to_picture = glm::inverse(glm::dmat3(rays.right, rays.down, is_flat ? rays.forward : rays.corner));
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 pick(corner & 1, corner >> 1 & 1, corner >> 2);
-        const glm::dvec3 p = to_picture * (glm::mix(box.low, box.high, pick) - rays.position);
+        const glm::dvec3 p = to_picture * (glm::mix(box.low, box.high, pick) - rays.origin(0.0, 0.0));
         if (!(p.z > 0.0))
             return false;
-        low = glm::min(low, glm::dvec2(p) / p.z);
-        high = glm::max(high, glm::dvec2(p) / p.z);
+        const glm::dvec2 seen = glm::dvec2(p) / (is_flat ? 1.0 : p.z);
+        low = glm::min(low, seen);
+        high = glm::max(high, seen);
     }
     return low.x < window.x1 && high.x > window.x0 && low.y < window.y1 && high.y > window.y0;
 }
@@ -69,10 +75,10 @@ Sight look(const Scene& scene, const MediumOutline& outline, const Crop& crop) {
         rays.direction(0.5 * picture.width, 0.5 * picture.height); // of the picture, not of its frame
     sight.degrees_off = degrees_between(middle, apart);
     if (!sight.inside && glm::length(apart) > 0.0)
-        sight.pixels = glm::length(sight.box.high - sight.box.low) / glm::length(apart) / glm::length(rays.down);
+        sight.pixels = glm::length(sight.box.high - sight.box.low) / rays.pixel_at(glm::length(apart));
     sight.least_depth = std::numeric_limits<double>::infinity();
-    for_lattice(rays, crop.x0, crop.x1, crop.y0, crop.y1, usual_rows, [&](glm::dvec3 direction) {
-        const double depth = depth_bound(outline, rays.position, direction);
+    for_lattice(rays, crop.x0, crop.x1, crop.y0, crop.y1, usual_rows, [&](glm::dvec3 origin, glm::dvec3 direction) {
+        const double depth = depth_bound(outline, origin, direction);
         sight.most_depth = std::max(sight.most_depth, depth);
         sight.least_depth = std::min(sight.least_depth, depth);
     });

@@ -64,8 +64,19 @@ void place_on_orbit(Camera& camera, const Orbit& orbit) {
     camera.position = orbit.target + orbit.distance * camera_rotation(camera)[2];
 }
 
+const char* projection_name(Projection projection) {
+    switch (projection) {
+    case Projection::orthographic:
+        return "orthographic";
+    case Projection::equirectangular:
+        return "equirectangular";
+    default:
+        return "perspective";
+    }
+}
+
 ViewWindow view_window(const Camera& camera, const Picture& picture) {
-    const double s = std::tan(glm::radians(camera.fov) / 2.0);
+    const double s = camera.projection == Projection::orthographic ? 1.0 : std::tan(glm::radians(camera.fov) / 2.0);
     const double aspect = picture.reference_width / picture.reference_height;
     const auto x = [&](double pixel) { return aspect * s * (2.0 * pixel / picture.reference_width - 1.0); };
     const auto y = [&](double pixel) { return s * (1.0 - 2.0 * pixel / picture.reference_height); };

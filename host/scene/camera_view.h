@@ -8,6 +8,9 @@ namespace vkvol {
 // Rz(roll) * Ry(yaw) * Rx(pitch): columns are the camera's right, up and back in world space.
 glm::dmat3 camera_rotation(const Camera& camera);
 
+// As scene files have it.
+const char* projection_name(Projection projection);
+
 // Turns the camera to look along `forward`, with `up` upwards in the picture. They may have any length, and must not be
 // parallel.
 void look_along(Camera& camera, glm::dvec3 forward, glm::dvec3 up);
@@ -28,6 +31,7 @@ struct Orbit {
 void place_on_orbit(Camera& camera, const Orbit& orbit);
 
 // The part of the image plane at distance 1 that the picture shows, camera space: x to the right, y upwards.
+// Orthographic: as if the reference frame were two world units high.
 struct ViewWindow {
     double left, right, bottom, top;
 };

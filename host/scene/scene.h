@@ -22,13 +22,29 @@ inline constexpr double largest_length = 1e11;
 // What is hotter is no flame but a slip of the unit.
 inline constexpr double hottest_kelvin = 1e9;
 
+// As SENSOR_... of shaders/shared/constants.h, where a lens makes a perspective one another. Equirectangular: longitude
+// across the picture, latitude down it, the middle of the reference frame straight ahead.
+enum class Projection { perspective, orthographic, equirectangular };
+
+// A thin lens across the eye, in its plane. Perspective only.
+struct Lens {
+    double radius = 0.0; // world units, >= 0; 0: a pinhole
+    double focus = 0.0;  // distance along the view of what is sharp, > 0 if the radius is
+    int blades = 0;      // of its aperture, a regular polygon within the circle: 0 (the circle itself), or from 3 on
+    double rotation =
+        0.0; // degrees, of the polygon: at 0 it has a corner on the right; + counter-clockwise as seen from behind
+};
+
 // Looks along -z at zero rotation. Direction of a camera-space d: Rz(roll) * Ry(yaw) * Rx(pitch) * d.
 struct Camera {
+    Projection projection = Projection::perspective;
     glm::dvec3 position{0.0};
-    double pitch = 0.0; // degrees, + looks up
-    double yaw = 0.0;   // degrees, + turns left
-    double roll = 0.0;  // degrees, + counter-clockwise about world z
-    double fov = 90.0;  // degrees, the full vertical angle of the reference frame, in (0, 180)
+    double pitch = 0.0;        // degrees, + looks up
+    double yaw = 0.0;          // degrees, + turns left
+    double roll = 0.0;         // degrees, + counter-clockwise about world z
+    double fov = 90.0;         // degrees, the full vertical angle of the reference frame, in (0, 180); perspective only
+    double view_height = 10.0; // world units, of the reference frame, > 0; orthographic only
+    Lens lens;
 };
 
 // The picture is a window of `width` x `height` pixels at (start_x, start_y) of a virtual reference frame.
@@ -129,6 +145,11 @@ inline Rgb most_sigma_a(const Volume& volume) {
 // probability of its trilinear weight: exact in expectation wherever the density enters linearly.
 enum class Filter { nearest, trilinear, stochastic };
 
+// The weight of a point of the picture in a pixel, by its distance from the pixel's middle along each axis; drawn from,
+// so that samples count alike. Box: 1 up to the radius. Tent: falls to 0 there. Gaussian: of deviation radius / 3.
+// Blackman and Harris's window of four terms, as wide.
+enum class PixelFilter { box, tent, gaussian, blackman_harris };
+
 // Choices along the axes of an integrator, as numbered in shaders/shared/constants.h. Set ones replace the preset's.
 struct AxisChoices {
     std::optional<int> scattering;    // SCATTERING_...
@@ -157,6 +178,8 @@ struct RenderSettings {
     std::optional<std::uint32_t> max_depth; // scattering events per path; none: a million
     double roulette_threshold = 0.1;        // path weight below which Russian roulette is played; 0: never
     std::optional<Filter> filter;           // none: stochastic, or trilinear where that would be biased
+    PixelFilter pixel_filter = PixelFilter::box;
+    double pixel_filter_radius = 0.5; // pixels, > 0
     double majorant_scale = 1.0; // >= 1 leaves every unbiased estimator unbiased; < 1 violates the majorant on purpose
     int majorant_cell = 0;       // voxels along an edge of a majorant cell; 0: automatic
 };

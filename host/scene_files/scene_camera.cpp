@@ -78,15 +78,68 @@ void look_at(const XmlElement& element, Camera& camera) {
     look_along(camera, forward, up);
 }
 
+Projection projection_of(const XmlElement& element) {
+    const std::string name = element.attribute("projection", "perspective");
+    const Projection projection = name == "orthographic"      ? Projection::orthographic
+                                  : name == "equirectangular" ? Projection::equirectangular
+                                                              : Projection::perspective;
+    if (projection == Projection::perspective && name != "perspective")
+        element.fail_attribute("projection", fmt::format("<camera> projection: '{}' is unknown; expected perspective, "
+                                                         "orthographic or equirectangular",
+                                                         name));
+    const auto refuse = [&](std::initializer_list<const char*> names, const char* remedy) {
+        if (const char* found = first_of(element, names))
+            element.fail_attribute(
+                found, fmt::format("<camera> {}: has no meaning with projection=\"{}\"; {}", found, name, remedy));
+    };
+    if (projection != Projection::perspective) {
+        refuse({"lensRadius", "focus", "blades", "bladeRotation"}, "only perspective cameras have a lens");
+        refuse({"fov"}, projection == Projection::orthographic ? "viewHeight says how much of the world is in view"
+                                                               : "all directions are in view");
+    }
+    if (projection != Projection::orthographic)
+        refuse({"viewHeight"}, "fov says how wide the view is");
+    return projection;
+}
+
+// `target`: what the camera looks at, if that was said.
+Lens lens_of(const XmlElement& element, const Camera& camera, const std::optional<glm::dvec3>& target) {
+    Lens lens;
+    lens.radius = element.attribute_number("lensRadius", 0.0, {0.0, largest_length, true, true, "a number from 0"});
+    if (lens.radius == 0.0) {
+        if (const char* name = first_of(element, {"focus", "blades", "bladeRotation"}))
+            element.warn(fmt::format("{} is without effect on a pinhole; add lensRadius, in world units", name));
+        return lens;
+    }
+    if (element.has("focus"))
+        lens.focus = element.attribute_number("focus", 0.0, length);
+    else if (target)
+        lens.focus = glm::dot(*target - camera.position, -camera_rotation(camera)[2]);
+    else
+        element.fail_attribute("lensRadius",
+                               "<camera> lensRadius: what is sharp? add focus, the distance along the view, "
+                               "or lookAt, the point that is");
+    lens.blades = static_cast<int>(element.attribute_integer("blades", 0, 0, 100));
+    if (lens.blades == 1 || lens.blades == 2)
+        element.fail_attribute("blades",
+                               "<camera> blades: fewer than three make no aperture; expected 3 to 100, or 0 for "
+                               "a round one");
+    lens.rotation = element.attribute_number("bladeRotation", 0.0, any_number);
+    return lens;
+}
+
 } // namespace
 
 Camera SceneReader::camera() const {
     const XmlElement element = one("camera");
-    element.allow({"x", "y", "z", "pitch", "yaw", "roll", "fov", "lookAt", "up", "distance", "azimuth", "elevation"});
+    element.allow({"x", "y", "z", "pitch", "yaw", "roll", "fov", "lookAt", "up", "distance", "azimuth", "elevation",
+                   "projection", "viewHeight", "lensRadius", "focus", "blades", "bladeRotation"});
     const auto number = [&](const char* name, const Limits& limits) {
         return element.attribute_number(name, 0.0, limits);
     };
     Camera camera;
+    camera.projection = projection_of(element);
+    camera.view_height = element.attribute_number("viewHeight", camera.view_height, length);
     camera.position = {number("x", coordinate), number("y", coordinate), number("z", coordinate)};
     camera.pitch = number("pitch", any_number);
     camera.yaw = number("yaw", any_number);
@@ -102,6 +155,9 @@ Camera SceneReader::camera() const {
     check_combination(element);
     if (element.has("lookAt"))
         look_at(element, camera);
+    const std::optional<glm::dvec3> target =
+        element.has("lookAt") ? std::optional(point(element, "lookAt", coordinate)) : std::nullopt;
+    camera.lens = lens_of(element, camera, target);
     return camera;
 }
 

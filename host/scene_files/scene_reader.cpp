@@ -14,9 +14,9 @@ namespace {
 const std::vector<std::string> vocabulary = {
     "densityField", "sphere", "box", "models", "noise", "sigma_a", "sigma_s", "heyneygreenstein_g", "phase", "medium",
     "emission", "albedo", "light", "lights", "backgroundColor", "camera", "width", "height", "rayPerPixelCount",
-    "maxDepth", "integrator", "march", "filter", "russianRoulette", "majorant", "lightRayDensityMultiplier",
-    "shadowRayDensityMultiplier", "stepSize", "importanceSampling", "fileName", "multiThreaded",
-    "multiThreadedChunkSize", "diffuseRebounds", "expected",
+    "maxDepth", "integrator", "march", "filter", "russianRoulette", "majorant", "pixelFilter",
+    "lightRayDensityMultiplier", "shadowRayDensityMultiplier", "stepSize", "importanceSampling", "fileName",
+    "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds", "expected",
     // Names that are read for old files' sake: a misspelling in the original's report, and the old name of integrator.
     "heynegreenstein_g", "intersectionHandler"};
 
@@ -97,7 +97,33 @@ RenderSettings SceneReader::settings() const {
     else if (filter.exists())
         filter.fail_text(
             fmt::format("unknown filter '{}'{}", name, name_hint(name, {"nearest", "trilinear", "stochastic"})));
+    read_pixel_filter(settings);
     return settings;
+}
+
+void SceneReader::read_pixel_filter(RenderSettings& settings) const {
+    const XmlElement element = one("pixelFilter");
+    element.allow({"radius"}, true);
+    if (!element.exists())
+        return;
+    struct Choice {
+        const char* name;
+        PixelFilter filter;
+        double radius; // unless another is asked for
+    };
+    constexpr Choice choices[] = {{"box", PixelFilter::box, 0.5},
+                                  {"tent", PixelFilter::tent, 1.0},
+                                  {"gaussian", PixelFilter::gaussian, 1.5},
+                                  {"blackmanHarris", PixelFilter::blackman_harris, 1.5}};
+    const std::string name = element.text();
+    const auto* choice =
+        std::find_if(std::begin(choices), std::end(choices), [&](const Choice& each) { return name == each.name; });
+    if (choice == std::end(choices))
+        return element.fail_text(fmt::format("unknown pixelFilter '{}'{}", name,
+                                             name_hint(name, {"box", "tent", "gaussian", "blackmanHarris"})));
+    settings.pixel_filter = choice->filter;
+    settings.pixel_filter_radius = element.attribute_number(
+        "radius", choice->radius, {0.01, 16.0, true, true, "a number from 0.01 to 16, in pixels"});
 }
 
 void SceneReader::read_edge(const char* name, int& size, double& start, double& reference) const {

@@ -30,6 +30,7 @@ private:
     XmlElement one(const char* name) const { return one({name}); }
 
     RenderSettings settings() const;
+    void read_pixel_filter(RenderSettings& settings) const;
     void read_integrator(RenderSettings& settings) const;
     March march() const;
     void check_method(const Scene& scene) const;

@@ -32,6 +32,8 @@ layout(constant_id = SPEC_DISTANCE) const int DISTANCE = DISTANCE_FLIGHTS;
 layout(constant_id = SPEC_ALBEDO) const int ALBEDO = ALBEDO_CONSTANT;
 layout(constant_id = SPEC_ALBEDO_TYPE) const int ALBEDO_TYPE = GRID_FLOAT;
 const bool GLOWS_IN_COLOR = TEMPERATURE_TYPE == GRID_COLOR;
+layout(constant_id = SPEC_SENSOR) const int SENSOR = SENSOR_PINHOLE;
+layout(constant_id = SPEC_PIXEL_FILTER) const int PIXEL_FILTER = 0;
 #else
 const int PHASE = PHASE_HENYEY_GREENSTEIN;
 const int LIGHTS = LIGHTS_SUN;
@@ -39,6 +41,8 @@ const int DISTANCE = DISTANCE_FLIGHTS;
 const int ALBEDO = ALBEDO_CONSTANT;
 const int ALBEDO_TYPE = GRID_FLOAT;
 const bool GLOWS_IN_COLOR = false;
+const int SENSOR = SENSOR_PINHOLE;
+const int PIXEL_FILTER = 0;
 #endif
 layout(constant_id = SPEC_MIS) const int MIS = MIS_BALANCE;
 

@@ -2,6 +2,7 @@
 #ifndef DIRECTIONS_GLSL
 #define DIRECTIONS_GLSL
 
+const float PI = 3.14159265358979;
 const float INV_4PI = 0.07957747154594767;
 
 // Two unit vectors that complete `n` to a right-handed frame (Duff et al., "Building an Orthonormal Basis,

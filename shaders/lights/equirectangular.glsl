@@ -4,8 +4,6 @@
 #include "lib/buffers.glsl"
 #include "lib/directions.glsl"
 
-const float PI = 3.14159265358979;
-
 // Column and row, in texels from the map's top left corner. The latitude by atan, since near the poles the cosine says little.
 vec2 equirectangular_place(vec3 direction) {
     SkyParams sky = frame.sky;

@@ -31,9 +31,7 @@ void main() {
             radiance += light_from_beyond(ray.direction, 0.0);
         film_add(entry, radiance, place, i, tally);
     }
-    // llvmpipe leaves loops early, see most_iterations in plan.cpp: what it did not look at is for paths to see.
-    // So they are counted, for a condition on `i` would be optimized away.
-    if (hit || tally.paths < push.sample_end - push.sample_begin) {
+    if (hit) {
         work[atomicAdd(counters.work_count, 1u)] = pixel;
     } else {
         film[pixel] = entry;

@@ -1,6 +1,7 @@
-// Pinhole camera.
+// Cameras: where the ray of a sample begins and goes. Each samples what it sees evenly, so that no ray has a weight.
 #ifndef CAMERA_GLSL
 #define CAMERA_GLSL
+#include "lib/directions.glsl"
 #include "lib/rng.glsl"
 
 // Of a film entry, in the picture: x | y << 16. It is the key of the pixel's random numbers, the same whatever the crop.
@@ -20,15 +21,66 @@ struct CameraRay {
     vec3 direction;
 };
 
-// The ray through a uniformly random point of the pixel (box filter).
+// Where in the picture a sample looks, pixels from its top left corner: evenly within its pixel, or about its middle as the
+// filter weights, by the inverse of the filter's distribution.
+vec2 picture_point(uint place, vec2 u) {
+    vec2 p = vec2(place & 0xffffu, place >> 16u) + u;
+    if (PIXEL_FILTER != 0) {
+        vec2 aside = 2.0 * u - 1.0;
+        vec2 x = min(abs(aside) * float(FILTER_QUANTILES), float(FILTER_QUANTILES) * 0.9999999);
+        uvec2 i = uvec2(x);
+        vec2 low = vec2(frame_block.filter_quantiles[i.x], frame_block.filter_quantiles[i.y]);
+        vec2 high = vec2(frame_block.filter_quantiles[i.x + 1u], frame_block.filter_quantiles[i.y + 1u]);
+        p += 0.5 - u + sign(aside) * mix(low, high, x - vec2(i));
+    }
+    return p;
+}
+
+// Evenly over the aperture, in units of the lens' radius.
+vec2 aperture_point(SensorParams s, vec2 u) {
+    float turn = 2.0 * PI * u.x;
+    vec2 p = sqrt(u.y) * vec2(cos(turn), sin(turn));
+    if (s.blades > 0u) { // in one of the triangles between the middle and an edge
+        float triangle = floor(u.x * float(s.blades));
+        float along = u.x * float(s.blades) - triangle;
+        float first = s.blade_rotation + 2.0 * PI * triangle / float(s.blades);
+        float second = first + 2.0 * PI / float(s.blades);
+        p = sqrt(u.y) * mix(vec2(cos(first), sin(first)), vec2(cos(second), sin(second)), along);
+    }
+    return p;
+}
+
+const uint LENS_DRAW = 0xffffffffu; // a number of its own, ahead of a path's first
+
+// The ray through the picture at (x, y) = p:
+// pinhole: along corner + x * right + y * down. It begins at position + start * (x * right + y * down): at the eye, with start
+// 0; or, for eyes far from the medium, on a plane between the two;
+// lens: through a point of the lens and the one of the plane that is sharp which the pinhole would see;
+// orthographic: from position + x * right + y * down along corner;
+// equirectangular: at angles that go evenly with p, from corner (ahead) to `right`, and away from `down`.
 CameraRay camera_ray(uint place, uint sample_index) {
     Rng rng = pixel_rng(place, sample_index, 0u);
-    vec2 corner = vec2(place & 0xffffu, place >> 16u);
-    vec2 p = corner + to_uniform(next_words(rng)).xy;
+    vec2 p = picture_point(place, to_uniform(next_words(rng)).xy);
     SensorParams camera = frame.sensors[0];
     vec3 aside = p.x * camera.right + p.y * camera.down;
-    return CameraRay(camera.position + camera.start * aside,
-                     normalize(camera.corner + p.x * camera.right + p.y * camera.down));
+    CameraRay ray = CameraRay(camera.position + camera.start * aside,
+                              normalize(camera.corner + p.x * camera.right + p.y * camera.down));
+    if (SENSOR == SENSOR_LENS) {
+        Rng lens_rng = pixel_rng(place, sample_index, LENS_DRAW);
+        vec2 at = aperture_point(camera, to_uniform(next_words(lens_rng)).xy);
+        vec3 slope = at.x * camera.lens_u + at.y * camera.lens_v;
+        ray.origin += camera.lens_lever * slope;
+        ray.direction = normalize(camera.corner + aside - slope);
+    }
+    if (SENSOR == SENSOR_ORTHOGRAPHIC)
+        ray = CameraRay(camera.position + aside, camera.corner);
+    if (SENSOR == SENSOR_EQUIRECTANGULAR) {
+        vec2 angle = camera.first_angle + p * camera.angle_step;
+        ray.origin = camera.position;
+        ray.direction = normalize(cos(angle.y) * (cos(angle.x) * camera.corner + sin(angle.x) * camera.right) -
+                                  sin(angle.y) * camera.down);
+    }
+    return ray;
 }
 
 #endif

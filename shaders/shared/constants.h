@@ -71,7 +71,9 @@
 #define SPEC_DISTANCE 19
 #define SPEC_ALBEDO 20      // ALBEDO_...
 #define SPEC_ALBEDO_TYPE 21 // GRID_...
-#define SPEC_COUNT 22
+#define SPEC_SENSOR 22       // SENSOR_...
+#define SPEC_PIXEL_FILTER 23 // 1: points in pixels are drawn by quantiles of a filter; 0: evenly
+#define SPEC_COUNT 24
 
 #define SHAPE_NONE 0 // background only
 #define SHAPE_SPHERE 1
@@ -88,6 +90,12 @@
 #define GRID_FP16 3
 #define GRID_FPN 4
 #define GRID_COLOR 5 // three floats; not of densities
+
+#define SENSOR_PINHOLE 0
+#define SENSOR_LENS 1
+#define SENSOR_ORTHOGRAPHIC 2
+#define SENSOR_EQUIRECTANGULAR 3
+#define FILTER_QUANTILES 64 // between 0 and the filter's radius
 
 #define ALBEDO_CONSTANT 0
 #define ALBEDO_GRID 1

@@ -7,15 +7,20 @@
 
 SHARED_BEGIN
 
-// The ray through the picture at (x, y) pixels from its top left corner goes along corner + x * right + y * down. It
-// begins at position + start * (x * right + y * down): at the eye, with start 0; or, for eyes far from the medium, on a
-// plane between the two.
+// How rays leave, by kind of sensor: see camera.glsl.
 struct SensorParams {
     vec3 position; // render space
-    float start;   // distance of that plane from the eye
+    float start;   // distance from the eye of the plane where rays begin
     vec3 corner;
     vec3 right; // per pixel
     vec3 down;  // per pixel
+    vec3 lens_u; // across the lens, its radius over the distance of what is sharp
+    vec3 lens_v;
+    float lens_lever;    // that distance less `start`
+    uint blades;         // of its aperture; 0: round
+    float blade_rotation; // radians
+    vec2 first_angle;    // longitude, latitude
+    vec2 angle_step;     // per pixel
 };
 
 // A grid within the buffers that hold all grids. Positions are in its index space, voxel centres at integers, counted
@@ -187,6 +192,7 @@ struct FrameParams {
     LatticeParams lattice; // NEE_CACHED only
     float fluence;         // of all lights of a table, amid the medium, roughly
     vec3 cache_suns[CACHE_SUNS]; // unit; 0: none
+    float filter_quantiles[FILTER_QUANTILES + 1]; // of a pixel's filter: distance from the middle, pixels
     float roulette_threshold;
     uint max_depth;
     uint seed;

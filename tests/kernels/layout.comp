@@ -17,6 +17,10 @@ void put(int i) {
 void put(float x) {
     put(floatBitsToUint(x));
 }
+void put(vec2 v) {
+    put(v.x);
+    put(v.y);
+}
 void put(vec3 v) {
     put(v.x);
     put(v.y);
@@ -54,6 +58,7 @@ void put(uvec4 v) {
 #define header queues[1]
 #define entry film[1]
 #define PUT(field) put(field);
+#define PUT_EACH(field, count) for (int k = 0; k < count; ++k) put(field[k]);
 
 void main() {
     if (gl_GlobalInvocationID.x != 0u)

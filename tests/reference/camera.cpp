@@ -17,18 +17,86 @@ glm::dvec3 rotate(const glm::dvec3& v, int axis, double degrees) {
     return r;
 }
 
+// Evenly over a disk, or a regular polygon within it by rejection: `u` and `v` are then where a sequence begins.
+glm::dvec2 on_aperture(const vkvol::Lens& lens, double u, double v) {
+    if (lens.blades == 0)
+        return std::sqrt(u) * glm::dvec2(std::cos(2.0 * std::numbers::pi * v), std::sin(2.0 * std::numbers::pi * v));
+    const double half = std::numbers::pi / lens.blades, turn = lens.rotation * std::numbers::pi / 180.0;
+    for (int i = 0;; ++i) {
+        const glm::dvec2 p =
+            2.0 * glm::fract(glm::dvec2(u, v) + double(i) * glm::dvec2(0.7548776662, 0.5698402909)) - 1.0;
+        // Within the edge whose middle is nearest in angle.
+        const double angle = std::atan2(p.y, p.x) - turn;
+        const double from_corner = angle - 2.0 * half * std::floor(angle / (2.0 * half));
+        if (glm::length(p) * std::cos(from_corner - half) <= std::cos(half))
+            return p;
+    }
+}
+
 } // namespace
 
-Ray camera_ray(const vkvol::Camera& camera, const vkvol::Picture& picture, double x, double y) {
-    const double s = std::tan(0.5 * camera.fov * std::numbers::pi / 180.0);
-    const double aspect = picture.reference_width / picture.reference_height;
+Ray camera_ray(const vkvol::Camera& camera, const vkvol::Picture& picture, double x, double y, double lens_u,
+               double lens_v) {
     const double u = (picture.start_x + x) / picture.reference_width;
     const double v = (picture.start_y + y) / picture.reference_height;
-    glm::dvec3 d = glm::normalize(glm::dvec3((2.0 * u - 1.0) * aspect * s, (1.0 - 2.0 * v) * s, -1.0));
-    d = rotate(d, 0, camera.pitch);
-    d = rotate(d, 1, camera.yaw);
-    d = rotate(d, 2, camera.roll);
-    return {camera.position, d};
+    const double aspect = picture.reference_width / picture.reference_height;
+    const auto turned = [&](glm::dvec3 d) {
+        return rotate(rotate(rotate(d, 0, camera.pitch), 1, camera.yaw), 2, camera.roll);
+    };
+    if (camera.projection == vkvol::Projection::orthographic) {
+        const double h = 0.5 * camera.view_height;
+        return {camera.position + turned({(2.0 * u - 1.0) * aspect * h, (1.0 - 2.0 * v) * h, 0.0}),
+                turned({0.0, 0.0, -1.0})};
+    }
+    if (camera.projection == vkvol::Projection::equirectangular) {
+        const double longitude = (2.0 * u - 1.0) * std::numbers::pi, latitude = (0.5 - v) * std::numbers::pi;
+        return {camera.position, turned({std::cos(latitude) * std::sin(longitude), std::sin(latitude),
+                                         -std::cos(latitude) * std::cos(longitude)})};
+    }
+    const double s = std::tan(0.5 * camera.fov * std::numbers::pi / 180.0);
+    const glm::dvec3 pinhole((2.0 * u - 1.0) * aspect * s, (1.0 - 2.0 * v) * s, -1.0);
+    const glm::dvec3 through = camera.lens.radius > 0.0
+                                   ? camera.lens.radius * glm::dvec3(on_aperture(camera.lens, lens_u, lens_v), 0.0)
+                                   : glm::dvec3(0.0);
+    const glm::dvec3 towards = (camera.lens.radius > 0.0 ? camera.lens.focus : 1.0) * pinhole - through;
+    return {camera.position + turned(through), turned(glm::normalize(towards))};
+}
+
+glm::dvec2 in_pixel(const vkvol::RenderSettings& settings, double u, double v) {
+    // Inverts the distribution by bisection, of densities written down once more.
+    const auto weight = [&](double x) {
+        const double pi = std::numbers::pi;
+        switch (settings.pixel_filter) {
+        case vkvol::PixelFilter::tent:
+            return 1.0 - std::abs(x);
+        case vkvol::PixelFilter::gaussian:
+            return std::exp(-4.5 * x * x);
+        case vkvol::PixelFilter::blackman_harris:
+            return 0.35875 + 0.48829 * std::cos(pi * x) + 0.14128 * std::cos(2 * pi * x) +
+                   0.01168 * std::cos(3 * pi * x);
+        default:
+            return 1.0;
+        }
+    };
+    const auto integral = [&](double x) { // from -1, by Simpson's rule
+        const int n = 16;
+        double sum = 0.0;
+        for (int i = 0; i < n; ++i) {
+            const double a = -1.0 + (x + 1.0) * i / n, b = -1.0 + (x + 1.0) * (i + 1) / n;
+            sum += (b - a) / 6.0 * (weight(a) + 4.0 * weight(0.5 * (a + b)) + weight(b));
+        }
+        return sum;
+    };
+    const auto place = [&](double share) {
+        double low = -1.0, high = 1.0;
+        const double target = share * integral(1.0);
+        for (int i = 0; i < 22; ++i)
+            (integral(0.5 * (low + high)) < target ? low : high) = 0.5 * (low + high);
+        return settings.pixel_filter_radius * low;
+    };
+    if (settings.pixel_filter == vkvol::PixelFilter::box)
+        return settings.pixel_filter_radius * (2.0 * glm::dvec2(u, v) - 1.0);
+    return {place(u), place(v)};
 }
 
 } // namespace reference

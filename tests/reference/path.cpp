@@ -166,7 +166,10 @@ Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng
 Rgb trace_path(const World& world, int x, int y, std::uint32_t sample, std::uint32_t seed) {
     Rng rng{static_cast<std::uint32_t>(x) | static_cast<std::uint32_t>(y) << 16, sample, seed};
     const Draw draw = rng.next();
-    const Ray ray = camera_ray(world.scene.camera, world.scene.picture, x + draw.x(), y + draw.y());
+    const glm::dvec2 aside = in_pixel(world.scene.settings, draw.x(), draw.y());
+    const Draw lens = world.scene.camera.lens.radius > 0.0 ? rng.next() : Draw{};
+    const Ray ray =
+        camera_ray(world.scene.camera, world.scene.picture, x + 0.5 + aside.x, y + 0.5 + aside.y, lens.x(), lens.y());
     const Rgb lamps = lamps_seen(world, ray, rng);
     return lamps + radiance(world, ray, draw.exponential(2), draw.select(), rng);
 }

@@ -48,8 +48,12 @@ std::vector<std::uint32_t> list_words(const Structs& all) {
     const auto& [path, laid_aside, waiting, control_cell, phase_node, light_row, light_node, bvh_node, header, entry,
                  counters, frame, push] = all;
 #define PUT(field) put(field);
+#define PUT_EACH(field, count)                                                                                         \
+    for (int k = 0; k < count; ++k)                                                                                    \
+        put(field[k]);
 #include "kernels/layout_fields.h"
 #undef PUT
+#undef PUT_EACH
     return words;
 }
 
