@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "shared/constants.h"
+
 namespace vkvol {
 
 FieldCache::Stamp FieldCache::stamp_of(const std::filesystem::path& path) {
@@ -16,7 +18,10 @@ DensityField FieldCache::take(const GridFile& file, GridValues values) {
         return entry.file.path == file.path && entry.file.grid == file.grid;
     };
     const auto entry = std::find_if(entries_.begin(), entries_.end(), is_this);
-    if (entry != entries_.end() && entry->field && entry->stamp == stamp)
+    const auto is_of = [&](const DensityField& field) {
+        return values == GridValues::numbers_or_colors || field.type != GRID_COLOR;
+    };
+    if (entry != entries_.end() && entry->field && entry->stamp == stamp && is_of(*entry->field))
         return *std::exchange(entry->field, std::nullopt);
     std::erase_if(entries_, [&](const Entry& other) { return is_this(other) || other.file.path != file.path; });
     DensityField field = load_density_field(file, values);

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "field_cache.h"
 #include "scene_xml.h"
+#include "shared/constants.h"
 #include "support/images.h"
 #include "support/scenes.h"
 
@@ -141,6 +143,14 @@ TEST_CASE("grids of colours where none can be, and grids that are missing", "[gp
     volume.temperature = {};
     std::get<GridFile>(volume.shape).grid = "Cd";
     CHECK_THAT(message(), Catch::Contains("values are colours"));
+}
+
+TEST_CASE("a kept grid of colours is none of numbers", "[cpu][color_grids]") {
+    const GridFile file{write_grids({cloud_grid(), colors("Cd")}).path, "Cd"};
+    FieldCache cache;
+    cache.keep(file, cache.take(file, GridValues::numbers_or_colors));
+    CHECK_THROWS_AS(cache.take(file), InputError);
+    CHECK(cache.take(file, GridValues::numbers_or_colors).type == GRID_COLOR);
 }
 
 TEST_CASE("grids of albedos in scene files", "[cpu][xml][color_grids]") {

@@ -162,6 +162,7 @@ TEST_CASE("sensors in scene files", "[cpu][xml][sensors]") {
     const std::pair<const char*, const char*> errors[] = {
         {R"(<camera lensRadius="1"/>)", "what is sharp?"},
         {R"(<camera lensRadius="1" focus="0"/>)", "focus"},
+        {R"(<camera lensRadius="1" focus=".0009"/>)", "raise focus"},
         {R"(<camera lensRadius="1" focus="2" blades="2"/>)", "no aperture"},
         {R"(<camera projection="fisheye"/>)", "'fisheye' is unknown"},
         {R"(<camera projection="orthographic" fov="30"/>)", "viewHeight says"},
