@@ -50,15 +50,22 @@ Corners corners_of(const DensityField& field) {
 
 namespace {
 
+Corners moved(const Volume& volume, Corners corners) {
+    for (glm::dvec3& corner : corners)
+        corner = glm::dvec3(volume.transform * glm::dvec4(corner, 1.0));
+    return corners;
+}
+
 std::optional<Corners> corners_of(const Volume& volume, FieldCache& fields) {
     if (const auto* sphere = std::get_if<Sphere>(&volume.shape))
-        return corners_between(sphere->center - sphere->radius, sphere->center + sphere->radius);
+        return moved(volume, corners_between(sphere->center - sphere->radius, sphere->center + sphere->radius));
     if (const auto* box = std::get_if<Box>(&volume.shape))
-        return corners_between(box->center - 0.5 * box->size, box->center + 0.5 * box->size);
+        return moved(volume, corners_between(box->center - 0.5 * box->size, box->center + 0.5 * box->size));
     if (const auto* files = std::get_if<MeshFiles>(&volume.shape))
-        return corners_of(load_mesh(*files));
+        return corners_of(load_mesh(*files, volume.transform));
     const GridFile& file = std::get<GridFile>(volume.shape);
     DensityField field = fields.take(file);
+    field.place(volume.transform);
     const std::optional<Corners> corners = field.active_voxels > 0 ? std::optional(corners_of(field)) : std::nullopt;
     fields.keep(file, std::move(field));
     return corners;

@@ -46,16 +46,23 @@ glm::dvec3 box_center(const Mesh& mesh) {
     return 0.5 * (low + high);
 }
 
+bool leaps(const Method& method) {
+    return method.flights_have(TRAIT_CELLS) && !method.shadow_rays_have(TRAIT_VOXELS | TRAIT_CONTROL);
+}
+
 namespace {
 
-DensityField load_field(const GridFile& file, FieldCache* kept, GridValues values = GridValues::numbers) {
-    return kept ? kept->take(file, values) : load_density_field(file, values);
+DensityField load_field(const Volume& volume, const GridFile& file, FieldCache* kept,
+                        GridValues values = GridValues::numbers) {
+    DensityField field = kept ? kept->take(file, values) : load_density_field(file, values);
+    field.place(volume.transform);
+    return field;
 }
 
 void load_albedo(const Volume& volume, const GridFile& file, FieldCache* kept, LoadedMedium& loaded) {
     if (volume.albedo_grid.empty())
         return;
-    DensityField field = load_field({file.path, volume.albedo_grid}, kept, GridValues::numbers_or_colors);
+    DensityField field = load_field(volume, {file.path, volume.albedo_grid}, kept, GridValues::numbers_or_colors);
     if (field.active_voxels == 0)
         throw InputError(
             fmt::format("{}: \"{}\" has no active voxel, and would make the medium black; leave <albedo> out",
@@ -74,8 +81,8 @@ void load_temperature(const Volume& volume, const GridFile& file, FieldCache* ke
         return;
     }
     const bool by_kelvin = emission.model == TemperatureEmission::Model::blackbody;
-    DensityField field =
-        load_field({file.path, emission.grid}, kept, by_kelvin ? GridValues::numbers : GridValues::numbers_or_colors);
+    DensityField field = load_field(volume, {file.path, emission.grid}, kept,
+                                    by_kelvin ? GridValues::numbers : GridValues::numbers_or_colors);
     if (field.active_voxels == 0)
         return;
     if (by_kelvin) {
@@ -93,12 +100,6 @@ void load_temperature(const Volume& volume, const GridFile& file, FieldCache* ke
         loaded.blackbody = make_blackbody_table(0.0, loaded.hottest, emission.reference, BLACKBODY_ENTRIES);
     }
     loaded.temperature = std::move(field);
-}
-
-// Walks over cells, of flights and of shadow rays, pass empty ones together; but not those voxel by voxel, nor over
-// residuals.
-bool leaps(const Method& method) {
-    return method.flights_have(TRAIT_CELLS) && !method.shadow_rays_have(TRAIT_VOXELS | TRAIT_CONTROL);
 }
 
 // A direction in which shadow rays go: any will do.
@@ -129,7 +130,7 @@ PilotScene pilot_scene(const Scene& scene, const Volume& volume, const Method& m
 // The cells' bounds are scaled after the controls are made: these bound the density itself.
 void load_grid(const Scene& scene, const Volume& volume, const Method& method, const GridFile& file, FieldCache* kept,
                LoadedMedium& loaded) {
-    DensityField field = load_field(file, kept);
+    DensityField field = load_field(volume, file, kept);
     if (field.active_voxels == 0)
         return;
     if (field.background > 0.0f)
@@ -164,7 +165,7 @@ void load_files(const Scene& scene, const Volume& volume, const Method& method, 
     if (const auto* file = std::get_if<GridFile>(&volume.shape))
         load_grid(scene, volume, method, *file, kept, loaded);
     if (const auto* files = std::get_if<MeshFiles>(&volume.shape)) {
-        loaded.mesh = load_mesh(*files);
+        loaded.mesh = load_mesh(*files, volume.transform);
         loaded.bvh = build_bvh(*loaded.mesh, box_center(*loaded.mesh));
         if (method.material_colour)
             loaded.warnings.insert(loaded.warnings.end(), loaded.mesh->warnings.begin(), loaded.mesh->warnings.end());
@@ -201,6 +202,8 @@ Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
             throw InputError(fmt::format("{}: {}", volume.place, error.what()));
         }
     }
+    if (is_superposition(scene))
+        assets.superposition = superpose(scene, assets.media, method);
     for (const Light& light : scene.lights)
         if (const auto* sky = std::get_if<SkyLight>(&light))
             load_sky(*sky, assets);

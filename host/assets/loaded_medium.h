@@ -12,6 +12,7 @@
 #include "majorant_grid.h"
 #include "method.h"
 #include "sky_map.h"
+#include "superposition.h"
 
 namespace vkvol {
 
@@ -38,9 +39,15 @@ std::vector<const DensityField*> grids_of(const LoadedMedium& medium);
 using Media = std::span<const LoadedMedium>;
 struct Assets {
     std::vector<LoadedMedium> media;
-    std::optional<SkyMap> sky; // the map of it, if the scene has one
+    std::optional<Superposition> superposition; // of them, if there are several
+    std::optional<SkyMap> sky;                  // the map of it, if the scene has one
     std::vector<std::string> warnings;
 };
+
+// Null where there is at most one medium.
+inline const Superposition* whole_of(const Assets& assets) {
+    return assets.superposition ? &*assets.superposition : nullptr;
+}
 
 // Opens the files, if the scene has any. Throws InputError, also for what is not supported. `kept`: grids that need not
 // be read again.
@@ -53,6 +60,10 @@ void keep_fields(FieldCache& kept, const Scene& scene, Assets assets);
 Rgb world_sigma_t(const Volume& volume, const DensityField* field);
 
 double largest(const Rgb& color);
+
+// Walks over cells, of flights and of shadow rays, pass empty ones together; but not those voxel by voxel, nor over
+// residuals.
+bool leaps(const Method& method);
 
 // Of the box around a mesh, world space.
 glm::dvec3 lowest_corner(const Mesh& mesh);

@@ -62,9 +62,9 @@ MediumOutline make_outline(const Scene& scene, const Volume& volume, LoadedMediu
     outline.hottest = loaded.hottest;
     if (const auto* sphere = std::get_if<Sphere>(&volume.shape)) {
         outline.is_ball = true;
-        outline.to_world = placed(sphere->center, glm::dvec3(sphere->radius));
+        outline.to_world = volume.transform * placed(sphere->center, glm::dvec3(sphere->radius));
     } else if (const auto* box = std::get_if<Box>(&volume.shape)) {
-        outline.to_world = placed(box->center, box->size / 2.0);
+        outline.to_world = volume.transform * placed(box->center, box->size / 2.0);
     } else if (loaded.mesh) {
         outline.fills = false;
         const glm::dvec3 center = box_center(*loaded.mesh);
@@ -76,6 +76,22 @@ MediumOutline make_outline(const Scene& scene, const Volume& volume, LoadedMediu
         outline.densest =
             outline.cell_scale * *std::max_element(outline.cells->bounds.begin(), outline.cells->bounds.end());
     }
+    return outline;
+}
+
+MediumOutline make_outline(const Superposition& whole, bool emits) {
+    MediumOutline outline;
+    outline.exists = !whole.cells.bounds.empty();
+    outline.fills = false;
+    outline.emits = emits;
+    if (!outline.exists)
+        return outline;
+    outline.sigma_t = 1.0;
+    outline.to_world = placed(whole.origin, glm::dvec3(whole.edge));
+    outline.low = whole.low();
+    outline.high = whole.high();
+    outline.cells = whole.cells;
+    outline.densest = *std::max_element(whole.cells.bounds.begin(), whole.cells.bounds.end());
     return outline;
 }
 

@@ -26,6 +26,8 @@ struct MediumOutline {
 
 // Takes the majorants with it.
 MediumOutline make_outline(const Scene& scene, const Volume& volume, LoadedMedium& loaded, bool emits);
+// Of several media.
+MediumOutline make_outline(const Superposition& whole, bool emits);
 
 struct WorldBox {
     glm::dvec3 low, high;

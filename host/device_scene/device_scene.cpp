@@ -9,12 +9,12 @@ namespace vkvol {
 DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& scene, const Method& method,
                          const Assets& assets, Crop crop, std::uint32_t seed, std::uint64_t most_grid_bytes,
                          std::uint64_t most_texel_bytes)
-    : device_(device), commands_(commands), specialization_(specialize(scene, assets.media, method)),
-      frame_(make_frame(scene, assets.media, method, crop, seed)),
-      buffers_(device, commands, assets.media, most_grid_bytes, most_texel_bytes),
-      form_(is_chromatic(scene) ? form_chromatic : 0),
-      text_(kernel_text(specialization_, assets.media, is_chromatic(scene))),
-      origin_(render_origin(scene, assets.media)), cache_directions_(cache_layout(scene.lights).directions) {
+    : device_(device), commands_(commands), specialization_(specialize(scene, assets.media, method, whole_of(assets))),
+      frame_(make_frame(scene, assets.media, method, crop, seed, whole_of(assets))),
+      buffers_(device, commands, assets.media, whole_of(assets), most_grid_bytes, most_texel_bytes),
+      form_(is_chromatic(scene) ? form_chromatic : 0), text_(kernel_text(specialization_, assets, is_chromatic(scene))),
+      origin_(render_origin(scene, assets.media, whole_of(assets))),
+      cache_directions_(cache_layout(scene.lights).directions) {
     specialization_[SPEC_TEXELS] = buffers_.texels() ? 1 : 0;
     if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN)
         make_lights(scene, assets);
@@ -22,6 +22,11 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
         specialization_[SPEC_ALBEDO] != ALBEDO_CONSTANT || specialization_[SPEC_TEMPERATURE_TYPE] == GRID_COLOR ||
         specialization_[SPEC_SENSOR] != SENSOR_PINHOLE || specialization_[SPEC_PIXEL_FILTER] != 0)
         form_ |= form_full;
+    if (assets.superposition) {
+        form_ |= form_full | form_several;
+        buffers_.upload_media(device, commands, make_media(scene, assets.media, method, origin_),
+                              *assets.superposition);
+    }
     if (const std::optional<std::uint32_t> bits = buffers_.window_bits()) {
         form_ |= form_windows;
         specialization_[SPEC_WINDOW_BITS] = static_cast<std::int32_t>(*bits);
@@ -30,7 +35,7 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
 }
 
 void DeviceScene::make_lights(const Scene& scene, const Assets& assets) {
-    lights_ = make_light_table(scene, assets, origin_, 0.5 * longest_diagonal(scene, assets.media));
+    lights_ = make_light_table(scene, assets, origin_, 0.5 * longest_diagonal(scene, assets.media, whole_of(assets)));
     frame_.choices = lights_.choices;
     frame_.sky_count = lights_.sky_count;
     frame_.lamp_first = lights_.lamp_first;

@@ -7,7 +7,18 @@
 
 namespace vkvol {
 
-std::string kernel_text(const Specialization& s, Media media, bool chromatic) {
+namespace {
+
+// `s` of the media that they have in common.
+std::string several_text(const Specialization& s, const Assets& assets) {
+    return fmt::format("{} media in cells of {:.3g} world units, at most {} of them in one{}", assets.media.size(),
+                       assets.superposition->edge, assets.superposition->most_overlaps,
+                       s[SPEC_LEAPS] ? ", empty ones leapt" : "");
+}
+
+} // namespace
+
+std::string kernel_text(const Specialization& s, const Assets& assets, bool chromatic) {
     constexpr std::array shapes = {"no medium", "sphere", "box", "mesh"};
     constexpr std::array types = {"float", "Fp4", "Fp8", "Fp16", "FpN"};
     constexpr std::array filters = {"nearest", "trilinear", "stochastic"};
@@ -20,9 +31,11 @@ std::string kernel_text(const Specialization& s, Media media, bool chromatic) {
     if (s[SPEC_SHAPE] == SHAPE_NONE)
         return shapes[SHAPE_NONE];
     std::string text = shapes[s[SPEC_SHAPE]];
-    if (s[SPEC_FIELD] == FIELD_GRID)
+    if (assets.superposition)
+        text = several_text(s, assets);
+    else if (s[SPEC_FIELD] == FIELD_GRID)
         text = fmt::format("grid {}, {} filter, majorant cells of {} voxels{}", types[s[SPEC_GRID_TYPE]],
-                           filters[s[SPEC_FILTER]], media.front().majorants->cell,
+                           filters[s[SPEC_FILTER]], assets.media.front().majorants->cell,
                            s[SPEC_LEAPS] ? ", empty ones leapt" : "");
     else
         text = (s[SPEC_FIELD] == FIELD_NOISE ? "noise in a " : "homogeneous ") + text;
@@ -38,7 +51,7 @@ std::string kernel_text(const Specialization& s, Media media, bool chromatic) {
         text += ", and looks from along flights";
     if (s[SPEC_ALBEDO] == ALBEDO_GRID)
         text += ", albedo by a grid";
-    text += emissions[s[SPEC_EMISSION]];
+    text += s[SPEC_EMISSION] == EACH ? ", emission" : emissions[s[SPEC_EMISSION]];
     return text + (s[SPEC_EMISSION_AT] == EMISSION_AT_STEPS ? " along flights" : "");
 }
 

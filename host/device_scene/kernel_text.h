@@ -8,6 +8,6 @@
 
 namespace vkvol {
 
-std::string kernel_text(const Specialization& specialization, Media media, bool chromatic);
+std::string kernel_text(const Specialization& specialization, const Assets& assets, bool chromatic);
 
 } // namespace vkvol

@@ -48,40 +48,62 @@ void make_buffer(const Device& device, Commands& commands, std::optional<Buffer>
     commands.upload(*buffer, bytes, 0);
 }
 
-} // namespace
-
-SceneBuffers::SceneBuffers(const Device& device, Commands& commands, Media media, std::uint64_t most_grid_bytes,
-                           std::uint64_t most_texel_bytes)
-    : frame_(device, "frame parameters", sizeof(shared::FrameParams), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
-             BufferPlace::host) {
-    for (const LoadedMedium& medium : media) // there is one at most, see supported.h
-        upload(device, commands, medium, most_grid_bytes, most_texel_bytes);
+// `parts`: one behind the other.
+template <class Parts>
+void make_parts(const Device& device, Commands& commands, std::optional<Buffer>& buffer, const char* name,
+                const Parts& parts) {
+    if (total(parts) == 0)
+        return;
+    buffer.emplace(device, name, total(parts), storage_and_texels, BufferPlace::device);
+    upload_range(commands, *buffer, parts, 0, buffer->bytes());
 }
 
-void SceneBuffers::upload(const Device& device, Commands& commands, const LoadedMedium& medium,
-                          std::uint64_t most_grid_bytes, std::uint64_t most_texel_bytes) {
-    const auto make = [&](std::optional<Buffer>& buffer, const char* name, std::span<const std::byte> bytes) {
-        make_buffer(device, commands, buffer, name, bytes);
-    };
-    make(phase_, "phase function", bytes_of(medium.phase_nodes));
-    if (medium.bvh) {
-        make(triangles_, "triangles", bytes_of(medium.bvh->triangles));
-        make(bvh_, "bounding volume hierarchy", bytes_of(medium.bvh->nodes));
+} // namespace
+
+SceneBuffers::SceneBuffers(const Device& device, Commands& commands, Media media, const Superposition* whole,
+                           std::uint64_t most_grid_bytes, std::uint64_t most_texel_bytes)
+    : frame_(device, "frame parameters", sizeof(shared::FrameParams), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
+             BufferPlace::host) {
+    Parts grids, tables, nodes, colors;
+    for (const LoadedMedium& medium : media) {
+        for (const DensityField* grid : grids_of(medium)) {
+            grids.push_back(grid->bytes.span());
+            tables.push_back(bytes_of(grid->leaf_table));
+        }
+        nodes.push_back(bytes_of(medium.phase_nodes));
+        colors.push_back(bytes_of(medium.blackbody));
     }
-    if (!medium.field)
-        return;
-    Parts grids, tables;
-    for (const DensityField* grid : grids_of(medium)) {
-        grids.push_back(grid->bytes.span());
-        tables.push_back(bytes_of(grid->leaf_table));
-    }
-    make_grids(device, commands, grids, most_grid_bytes);
-    leaf_table_.emplace(device, "leaf table", total(tables), storage_and_texels, BufferPlace::device);
-    upload_range(commands, *leaf_table_, tables, 0, leaf_table_->bytes());
-    make(majorants_, "majorant grid", bytes_of(walked_cells(*medium.majorants)));
-    make(controls_, "control grid", bytes_of(medium.controls));
-    make(blackbody_, "black-body table", bytes_of(medium.blackbody));
+    make_parts(device, commands, phase_, "phase functions", nodes);
+    make_parts(device, commands, blackbody_, "black-body tables", colors);
+    make_parts(device, commands, leaf_table_, "leaf tables", tables);
+    if (!grids.empty())
+        make_grids(device, commands, grids, most_grid_bytes);
+    if (whole)
+        make_cells(device, commands, whole->cells);
+    else if (!media.empty())
+        upload_alone(device, commands, media.front());
     texels_ = grids_ && std::max({grids_->bytes(), leaf_table_->bytes(), majorants_->bytes()}) <= most_texel_bytes;
+}
+
+void SceneBuffers::make_cells(const Device& device, Commands& commands, const MajorantGrid& cells) {
+    make_buffer(device, commands, majorants_, "majorant grid", bytes_of(walked_cells(cells)));
+}
+
+// What a medium has only where it is no part of several.
+void SceneBuffers::upload_alone(const Device& device, Commands& commands, const LoadedMedium& medium) {
+    if (medium.bvh) {
+        make_buffer(device, commands, triangles_, "triangles", bytes_of(medium.bvh->triangles));
+        make_buffer(device, commands, bvh_, "bounding volume hierarchy", bytes_of(medium.bvh->nodes));
+    }
+    if (medium.majorants)
+        make_cells(device, commands, *medium.majorants);
+    make_buffer(device, commands, controls_, "control grid", bytes_of(medium.controls));
+}
+
+void SceneBuffers::upload_media(const Device& device, Commands& commands, const std::vector<shared::MediumParams>& rows,
+                                const Superposition& whole) {
+    make_buffer(device, commands, media_, "media", bytes_of(rows));
+    make_buffer(device, commands, overlaps_, "lists of media", bytes_of(whole.overlaps));
 }
 
 void SceneBuffers::upload_lights(const Device& device, Commands& commands, const LightTable& table, const SkyMap* sky) {
@@ -155,6 +177,8 @@ BoundBuffers SceneBuffers::bound() const {
     buffers[BINDING_TRIANGLES] = place(triangles_);
     buffers[BINDING_BVH] = place(bvh_);
     buffers[BINDING_PHASE] = place(phase_);
+    buffers[BINDING_MEDIA] = place(media_);
+    buffers[BINDING_OVERLAPS] = place(overlaps_);
     buffers[BINDING_LIGHTS] = place(lights_);
     buffers[BINDING_LIGHT_TREE] = place(light_tree_);
     buffers[BINDING_SKY] = place(sky_);
@@ -165,7 +189,7 @@ BoundBuffers SceneBuffers::bound() const {
 std::uint64_t SceneBuffers::bytes() const {
     std::uint64_t total = frame_.bytes();
     for (const auto* buffer : {&grids_, &leaf_table_, &majorants_, &controls_, &blackbody_, &triangles_, &bvh_,
-                               &lights_, &light_tree_, &sky_, &sky_alias_, &phase_})
+                               &lights_, &light_tree_, &sky_, &sky_alias_, &phase_, &media_, &overlaps_})
         total += *buffer ? (*buffer)->bytes() : 0;
     for (const Buffer& window : windows_)
         total += window.bytes();

@@ -14,11 +14,15 @@ namespace vkvol {
 
 class SceneBuffers {
 public:
-    // Uploads what `media` hold. Grids of more than `most_grid_bytes` together are laid into windows; nothing that
-    // has more than `most_texel_bytes` is read as texels. Throws InputError if grids are too large for the device,
-    // naming the limit and the remedy.
-    SceneBuffers(const Device& device, Commands& commands, Media media, std::uint64_t most_grid_bytes,
-                 std::uint64_t most_texel_bytes);
+    // Uploads what `media` hold; `whole`: of several, else null. Grids of more than `most_grid_bytes` together are laid
+    // into windows; nothing that has more than `most_texel_bytes` is read as texels. Throws InputError if grids are too
+    // large for the device, naming the limit and the remedy.
+    SceneBuffers(const Device& device, Commands& commands, Media media, const Superposition* whole,
+                 std::uint64_t most_grid_bytes, std::uint64_t most_texel_bytes);
+
+    // Several media: a row for each.
+    void upload_media(const Device& device, Commands& commands, const std::vector<shared::MediumParams>& rows,
+                      const Superposition& whole);
 
     // `sky`: null without a map. Throws InputError if that is too large for the device.
     void upload_lights(const Device& device, Commands& commands, const LightTable& table, const SkyMap* sky);
@@ -38,14 +42,14 @@ public:
 private:
     using Parts = std::vector<std::span<const std::byte>>; // one after another
 
-    void upload(const Device& device, Commands& commands, const LoadedMedium& medium, std::uint64_t most_grid_bytes,
-                std::uint64_t most_texel_bytes);
+    void upload_alone(const Device& device, Commands& commands, const LoadedMedium& medium);
+    void make_cells(const Device& device, Commands& commands, const MajorantGrid& cells);
     void make_grids(const Device& device, Commands& commands, const Parts& grids, std::uint64_t most_bytes);
     void make_windows(const Device& device, Commands& commands, const Parts& grids, std::uint64_t bytes);
 
     Buffer frame_;
     std::optional<Buffer> grids_, leaf_table_, majorants_, controls_, blackbody_, triangles_, bvh_;
-    std::optional<Buffer> lights_, light_tree_, sky_, sky_alias_, phase_;
+    std::optional<Buffer> lights_, light_tree_, sky_, sky_alias_, phase_, media_, overlaps_;
     std::vector<Buffer> windows_;
     bool texels_ = false;
     std::optional<std::uint32_t> window_bits_;

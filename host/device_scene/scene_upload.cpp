@@ -13,6 +13,7 @@
 #include "noise.h"
 #include "phase_params.h"
 #include "pixel_filter.h"
+#include "placement.h"
 #include "shared/estimators.h"
 #include "shared/items.h"
 
@@ -22,10 +23,11 @@ static_assert(std::is_standard_layout_v<shared::FrameParams>);
 static_assert(sizeof(shared::SensorParams) == 6 * 12 + 4 * 4 + 2 * 8);
 static_assert(sizeof(shared::GridParams) == 4 * 12 + 2 * 4);
 static_assert(sizeof(shared::AlbedoParams) == sizeof(shared::GridParams) + 3 * 16);
-static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 5 * 4);
+static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 6 * 4);
 static_assert(sizeof(shared::MediumParams) == 3 * 16 + 3 * 12 + sizeof(shared::GridParams) + 12 + 6 * 4 + 2 * 12 +
                                                   sizeof(shared::PhaseParams) + sizeof(shared::AlbedoParams) +
-                                                  sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) + 4);
+                                                  sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) + 4 +
+                                                  sizeof(shared::MediumKinds));
 static_assert(sizeof(shared::LatticeParams) == 3 * 12);
 static_assert(sizeof(shared::PassPush) <= 128, "the least push constant space that Vulkan promises");
 
@@ -41,60 +43,30 @@ int shape_kind(const Volume& volume, const LoadedMedium& loaded) {
     return loaded.field || std::holds_alternative<Box>(volume.shape) ? SHAPE_BOX : SHAPE_NONE;
 }
 
-// Where the device counts a grid's voxels from. Some tools give grids far from the world's origin indices in the
-// millions, at which single precision knows a sixteenth of a voxel; below 4096 it knows half a thousandth, and grids
-// that reach as far as they are away would gain nothing. A multiple of 8, so that leaves stay leaves.
-glm::ivec3 index_base(const DensityField& field) {
-    const auto longest = [](glm::ivec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
-    const glm::ivec3 middle = (field.voxel_min >> 1) + (field.voxel_max >> 1);
-    const int size = longest(field.voxel_max - field.voxel_min);
-    return longest(middle) < std::max(4096, 4 * size) ? glm::ivec3(0) : middle & ~7;
-}
-
-glm::dmat4 index_to_world(const DensityField& field) {
-    return glm::translate(field.index_to_world, glm::dvec3(index_base(field)));
-}
-
-// Medium space -> world: a ball, a cube, the grid's own index space, or a mesh about its middle.
-glm::dmat4 medium_to_world(const Volume& volume, const LoadedMedium& loaded) {
-    const auto placed = [](glm::dvec3 center, glm::dvec3 half) {
-        return glm::scale(glm::translate(glm::dmat4(1.0), center), half);
-    };
-    if (const auto* sphere = std::get_if<Sphere>(&volume.shape))
-        return placed(sphere->center, glm::dvec3(sphere->radius));
-    if (const auto* box = std::get_if<Box>(&volume.shape))
-        return placed(box->center, box->size / 2.0);
-    if (loaded.mesh)
-        return placed(box_center(*loaded.mesh), glm::dvec3(1.0));
-    return loaded.field ? index_to_world(*loaded.field) : glm::dmat4(1.0);
-}
-
-struct Bounds {
-    glm::dvec3 low{-1.0}, high{1.0};
-};
-
-// Medium space, where the density can differ from 0: one voxel around the active ones, for interpolation.
-Bounds medium_bounds(const LoadedMedium& loaded) {
-    if (!loaded.field)
-        return {};
-    const glm::ivec3 base = index_base(*loaded.field);
-    return {glm::dvec3(loaded.field->voxel_min - base) - 1.0, glm::dvec3(loaded.field->voxel_max - base) + 1.0};
-}
-
-shared::GridParams make_grid(const DensityField& field, const LoadedMedium& loaded) {
+// `media`: in whose order grids lie in their buffers.
+shared::GridParams make_grid(const DensityField& field, Media media) {
     const glm::ivec3 base = index_base(field);
     shared::GridParams params{};
     params.voxel_min = field.voxel_min - base;
     params.voxel_max = field.voxel_max - base;
     params.leaf_min = field.leaf_min - (base >> 3);
     params.leaf_dims = field.leaf_dims;
-    for (const DensityField* grid : grids_of(loaded)) {
-        if (grid == &field)
-            break;
-        params.first_word += static_cast<std::uint32_t>(grid->bytes.size() / 4);
-        params.first_entry += static_cast<std::uint32_t>(grid->leaf_table.size());
-    }
+    for (const LoadedMedium& medium : media)
+        for (const DensityField* grid : grids_of(medium)) {
+            if (grid == &field)
+                return params;
+            params.first_word += static_cast<std::uint32_t>(grid->bytes.size() / 4);
+            params.first_entry += static_cast<std::uint32_t>(grid->leaf_table.size());
+        }
     return params;
+}
+
+// Of a table of each medium's own, laid one behind the other: where that of `loaded` begins.
+template <class Table> std::uint32_t first_of(Table LoadedMedium::*table, const LoadedMedium& loaded, Media media) {
+    std::size_t first = 0;
+    for (const LoadedMedium* medium = media.data(); medium != &loaded; ++medium)
+        first += (medium->*table).size();
+    return static_cast<std::uint32_t>(first);
 }
 
 // Rows of the affine map from render space, whose origin is at `origin` in the world. Composed in double precision.
@@ -109,8 +81,8 @@ Rgb constant_emission(const Volume& volume, const LoadedMedium& loaded, const Me
     return method.material_colour && loaded.mesh && loaded.mesh->diffuse ? *loaded.mesh->diffuse : volume.Le;
 }
 
-shared::EmissionParams make_emission(const Volume& volume, const LoadedMedium& loaded, const Method& method,
-                                     glm::dvec3 origin) {
+shared::EmissionParams make_emission(const Volume& volume, const LoadedMedium& loaded, Media media,
+                                     const Method& method, glm::dvec3 origin) {
     const Rgb absorbed = loaded.albedo ? Rgb(1.0) : 1.0 - albedo_of(volume);
     shared::EmissionParams params{};
     params.constant = absorbed * constant_emission(volume, loaded, method);
@@ -118,13 +90,14 @@ shared::EmissionParams make_emission(const Volume& volume, const LoadedMedium& l
         return params;
     const TemperatureEmission& emission = volume.temperature;
     params.color = absorbed * emission.color;
-    params.grid = make_grid(*loaded.temperature, loaded);
+    params.grid = make_grid(*loaded.temperature, media);
     fill_rows(params.to_index, index_to_world(*loaded.temperature), origin);
     params.kelvin_scale = static_cast<float>(emission.scale);
     params.kelvin_offset = static_cast<float>(emission.offset);
     params.kelvin_cutoff = static_cast<float>(emission.cutoff);
     params.table_low = 0.0f;
     params.table_high = static_cast<float>(loaded.hottest);
+    params.first_entry = first_of(&LoadedMedium::blackbody, loaded, media);
     return params;
 }
 
@@ -151,24 +124,50 @@ double usual_density(const Volume& volume, const LoadedMedium& loaded) {
     return 0.5 * sum / std::max<double>(1.0, double(loaded.majorants->bounds.size()));
 }
 
-// `origin`: of render space, in world coordinates.
-shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const LoadedMedium& loaded,
-                                 const Method& method, glm::dvec3 origin) {
+int emission_kind(const Volume& volume, const LoadedMedium& loaded, const Method& method) {
+    if (loaded.temperature)
+        return volume.temperature.model == TemperatureEmission::Model::color ? EMISSION_COLOR : EMISSION_BLACKBODY;
+    return most_sigma_a(volume) * constant_emission(volume, loaded, method) != Rgb(0.0) ? EMISSION_CONSTANT
+                                                                                        : EMISSION_NONE;
+}
+
+int density_kind(const Volume& volume, const LoadedMedium& loaded) {
+    return loaded.field ? FIELD_GRID : volume.noise ? FIELD_NOISE : FIELD_CONSTANT;
+}
+
+shared::MediumKinds kinds_of(const Volume& volume, const LoadedMedium& loaded, const Method& method) {
+    shared::MediumKinds kinds{};
+    kinds.shape = shape_kind(volume, loaded);
+    kinds.field = density_kind(volume, loaded);
+    kinds.grid_type = loaded.field ? loaded.field->type : GRID_FLOAT;
+    kinds.phase = static_cast<int>(volume.phase);
+    kinds.emission = kinds.shape != SHAPE_NONE ? emission_kind(volume, loaded, method) : EMISSION_NONE;
+    kinds.temperature_type = loaded.temperature ? loaded.temperature->type : GRID_FLOAT;
+    kinds.albedo = loaded.albedo ? ALBEDO_GRID : ALBEDO_CONSTANT;
+    kinds.albedo_type = loaded.albedo ? loaded.albedo->type : GRID_FLOAT;
+    return kinds;
+}
+
+// The i-th. `origin`: of render space, in world coordinates.
+shared::MediumParams make_medium(const Scene& scene, Media media, std::size_t i, const Method& method,
+                                 glm::dvec3 origin) {
+    const Volume& volume = scene.volumes[i];
+    const LoadedMedium& loaded = media[i];
     shared::MediumParams params{};
-    const glm::dmat4 to_world = medium_to_world(volume, loaded);
-    fill_rows(params.to_medium, to_world, origin);
-    params.extent = glm::vec3(to_world[0][0], to_world[1][1], to_world[2][2]);
-    const Bounds bounds = medium_bounds(loaded);
+    fill_rows(params.to_medium, medium_to_world(volume, loaded), origin);
+    const UnmovedShape shape = unmoved_shape(volume, loaded);
+    params.extent = shape.half;
+    const MediumBounds bounds = medium_bounds(loaded);
     params.bounds_min = bounds.low;
     params.bounds_max = bounds.high;
     if (loaded.field) {
-        params.density = make_grid(*loaded.field, loaded);
+        params.density = make_grid(*loaded.field, media);
         params.cell_dims = loaded.majorants->dims;
         params.cell_size = static_cast<float>(loaded.majorants->cell);
     }
     fill_density(volume, scene.settings.majorant_scale, method.flights_have(TRAIT_CONTROL), params);
     if (volume.noise)
-        params.noise = make_noise(*volume.noise, origin);
+        params.noise = make_noise(*volume.noise, shape.center);
     params.bvh_nodes = loaded.bvh ? static_cast<std::uint32_t>(loaded.bvh->nodes.size()) : 0;
     const Rgb sigma_t = world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr);
     params.sigma_t = static_cast<float>(largest(sigma_t));
@@ -176,28 +175,35 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
     params.usual_sigma_t = static_cast<float>(std::max(largest(sigma_t) * usual_density(volume, loaded), 1e-30));
     params.albedo = albedo_of(volume);
     if (loaded.albedo) {
-        params.albedo_grid.grid = make_grid(*loaded.albedo, loaded);
+        params.albedo_grid.grid = make_grid(*loaded.albedo, media);
         fill_rows(params.albedo_grid.to_index, index_to_world(*loaded.albedo), origin);
     }
     params.phase = phase_params(volume, loaded.phase_nodes);
-    params.emission = make_emission(volume, loaded, method, origin);
+    params.phase.first_node = first_of(&LoadedMedium::phase_nodes, loaded, media);
+    params.emission = make_emission(volume, loaded, media, method, origin);
+    params.kinds = kinds_of(volume, loaded, method);
     return params;
 }
 
-// Of the medium's box, in world units.
-double diagonal_of(const Volume& volume, const LoadedMedium& loaded) {
-    if (loaded.mesh)
-        return 2.0 * glm::length(box_center(*loaded.mesh) - lowest_corner(*loaded.mesh));
-    const Bounds bounds = medium_bounds(loaded);
-    return glm::length(glm::dmat3(medium_to_world(volume, loaded)) * (bounds.high - bounds.low));
-}
-
-// World units, from the box around the medium; 0 within.
-double distance_to(const Volume& volume, const LoadedMedium& loaded, const glm::dvec3& position) {
-    const glm::dmat4 to_world = medium_to_world(volume, loaded);
-    const glm::dvec3 inside = glm::inverse(to_world) * glm::dvec4(position, 1.0);
-    const Bounds bounds = medium_bounds(loaded);
-    return glm::length(glm::dmat3(to_world) * (inside - glm::clamp(inside, bounds.low, bounds.high)));
+// Of the superposition. What its parts have, collisions ask these for.
+shared::MediumParams make_whole(const Superposition& whole) {
+    shared::MediumParams params{};
+    fill_rows(params.to_medium, glm::scale(glm::translate(glm::dmat4(1.0), whole.origin), glm::dvec3(whole.edge)),
+              whole.origin);
+    params.bounds_min = whole.low();
+    params.bounds_max = whole.high();
+    params.extent = glm::vec3(static_cast<float>(whole.edge));
+    params.cell_dims = whole.cells.dims;
+    params.cell_size = 1.0f;
+    params.sigma_t = 1.0f;
+    double sum = 0.0;
+    for (const float bound : whole.cells.bounds)
+        sum += bound;
+    params.usual_sigma_t =
+        static_cast<float>(std::max(0.5 * sum / std::max<double>(1.0, double(whole.cells.bounds.size())), 1e-30));
+    params.sigma_ratio = glm::vec3(1.0f);
+    params.noise = make_noise(Noise{}, whole.origin); // its permutation is the same everywhere
+    return params;
 }
 
 // Near enough that what it lights differs much from place to place, and where shadow rays cost next to nothing:
@@ -216,7 +222,9 @@ bool gains_by_looks_along(const Scene& scene, Media media) {
 
 } // namespace
 
-double longest_diagonal(const Scene& scene, Media media) {
+double longest_diagonal(const Scene& scene, Media media, const Superposition* whole) {
+    if (whole)
+        return whole->diagonal();
     double longest = 0.0;
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         longest = std::max(longest, diagonal_of(scene.volumes[i], media[i]));
@@ -281,13 +289,6 @@ int sensor_kind(const Camera& camera) {
     }
 }
 
-int emission_kind(const Volume& volume, const LoadedMedium& loaded, const Method& method) {
-    if (loaded.temperature)
-        return volume.temperature.model == TemperatureEmission::Model::color ? EMISSION_COLOR : EMISSION_BLACKBODY;
-    return most_sigma_a(volume) * constant_emission(volume, loaded, method) != Rgb(0.0) ? EMISSION_CONSTANT
-                                                                                        : EMISSION_NONE;
-}
-
 } // namespace
 
 Rgb albedo_of(const Volume& volume) {
@@ -310,26 +311,48 @@ bool is_chromatic(const Scene& scene) {
 
 namespace {
 
-// What the kernels know of a medium; each of the scene's adds to it, and so far there is one.
-void specialize_medium(const Volume& volume, const LoadedMedium& loaded, const Method& method,
-                       Specialization& constants) {
-    constants[SPEC_SHAPE] = shape_kind(volume, loaded);
-    constants[SPEC_PHASE] = static_cast<int>(volume.phase);
-    constants[SPEC_GRID_TYPE] = loaded.field ? loaded.field->type : GRID_FLOAT;
-    constants[SPEC_TEMPERATURE_TYPE] = loaded.temperature ? loaded.temperature->type : GRID_FLOAT;
-    constants[SPEC_ALBEDO] = loaded.albedo ? ALBEDO_GRID : ALBEDO_CONSTANT;
-    constants[SPEC_ALBEDO_TYPE] = loaded.albedo ? loaded.albedo->type : GRID_FLOAT;
-    if (constants[SPEC_SHAPE] != SHAPE_NONE)
-        constants[SPEC_EMISSION] = emission_kind(volume, loaded, method);
-    constants[SPEC_LEAPS] = loaded.majorants && loaded.majorants->leaps ? 1 : 0;
+// What kernels know of a medium.
+void specialize_medium(const shared::MediumKinds& kinds, Specialization& constants) {
+    constants[SPEC_PHASE] = kinds.phase;
+    constants[SPEC_GRID_TYPE] = kinds.grid_type;
+    constants[SPEC_TEMPERATURE_TYPE] = kinds.temperature_type;
+    constants[SPEC_ALBEDO] = kinds.albedo;
+    constants[SPEC_ALBEDO_TYPE] = kinds.albedo_type;
+    constants[SPEC_EMISSION] = kinds.emission;
+}
+
+// Of several, what they have in common.
+void specialize_media(const Scene& scene, Media media, const Superposition& whole, const Method& method,
+                      Specialization& constants) {
+    constants[SPEC_LEAPS] = whole.cells.leaps ? 1 : 0;
+    bool first = true;
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+        const shared::MediumKinds kinds = kinds_of(scene.volumes[i], media[i], method);
+        if (kinds.shape == SHAPE_NONE)
+            continue;
+        Specialization its = constants;
+        specialize_medium(kinds, its);
+        its[SPEC_MEMBER_SHAPE] = kinds.shape;
+        its[SPEC_MEMBER_FIELD] = kinds.field;
+        for (std::size_t k = 0; k < its.size(); ++k)
+            constants[k] = first || its[k] == constants[k] ? its[k] : EACH;
+        constants[SPEC_SHAPE] = SHAPE_BOX;
+        first = false;
+    }
 }
 
 } // namespace
 
-Specialization specialize(const Scene& scene, Media media, const Method& method) {
+Specialization specialize(const Scene& scene, Media media, const Method& method, const Superposition* whole) {
     Specialization constants{}; // no medium, no emission
-    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-        specialize_medium(scene.volumes[i], media[i], method, constants);
+    if (whole) {
+        specialize_media(scene, media, *whole, method, constants);
+    } else if (!scene.volumes.empty()) {
+        const shared::MediumKinds kinds = kinds_of(scene.volumes.front(), media.front(), method);
+        specialize_medium(kinds, constants);
+        constants[SPEC_SHAPE] = kinds.shape;
+        constants[SPEC_LEAPS] = media.front().majorants && media.front().majorants->leaps ? 1 : 0;
+    }
     constants[SPEC_FIELD] = density_kind(scene);
     constants[SPEC_FILTER] = method.filter == Filter::nearest     ? FILTER_NEAREST
                              : method.filter == Filter::trilinear ? FILTER_TRILINEAR
@@ -373,7 +396,7 @@ double least_voxel(Media media) {
     return least;
 }
 
-shared::MarchParams make_march(const Scene& scene, Media media, const Method& method) {
+shared::MarchParams make_march(const Scene& scene, Media media, const Method& method, double diagonal) {
     const March& march = scene.settings.march;
     const double voxel = least_voxel(media);
     const double unit = march.unit == CoefficientUnit::voxel && voxel > 0.0 ? voxel : 1.0;
@@ -381,7 +404,6 @@ shared::MarchParams make_march(const Scene& scene, Media media, const Method& me
     // A series that ends unbiased does best from a coarse beginning.
     const double usual_shadow_step = method.transmittance == TRANSMITTANCE_TELESCOPING ? 16.0 * step : step;
     const double shadow_step = march.shadow_step > 0.0 ? march.shadow_step * unit : usual_shadow_step;
-    const double diagonal = longest_diagonal(scene, media);
     if (method.free_flight == FREE_FLIGHT_MARCH)
         check_step("step", step, diagonal, unit);
     if (method.shadow_rays_have(TRAIT_MARCH))
@@ -395,7 +417,7 @@ shared::MarchParams make_march(const Scene& scene, Media media, const Method& me
 }
 
 shared::LatticeParams make_lattice_of(const Volume& volume, const LoadedMedium& loaded, int most_nodes) {
-    const Bounds bounds = medium_bounds(loaded);
+    const MediumBounds bounds = medium_bounds(loaded);
     const glm::dmat3 to_world(medium_to_world(volume, loaded));
     glm::dvec3 edges;
     for (int axis = 0; axis < 3; ++axis)
@@ -404,36 +426,47 @@ shared::LatticeParams make_lattice_of(const Volume& volume, const LoadedMedium& 
     return make_lattice(bounds.low, bounds.high, edges, voxels, most_nodes);
 }
 
-glm::dvec3 middle_of(const Volume& volume, const LoadedMedium& loaded) {
-    const Bounds bounds = medium_bounds(loaded);
-    return glm::dvec3(medium_to_world(volume, loaded) * glm::dvec4((bounds.low + bounds.high) / 2.0, 1.0));
-}
-
 } // namespace
 
-glm::dvec3 render_origin(const Scene& scene, Media media) {
+glm::dvec3 render_origin(const Scene& scene, Media media, const Superposition* whole) {
+    if (whole && !whole->cells.bounds.empty())
+        return whole->origin;
     glm::dvec3 sum(0.0);
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         sum += middle_of(scene.volumes[i], media[i]);
     return scene.volumes.empty() ? scene.camera.position : sum / static_cast<double>(scene.volumes.size());
 }
 
-shared::FrameParams make_frame(const Scene& scene, Media media, const Method& method, Crop crop, std::uint32_t seed) {
+std::vector<shared::MediumParams> make_media(const Scene& scene, Media media, const Method& method, glm::dvec3 origin) {
+    std::vector<shared::MediumParams> rows;
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+        rows.push_back(make_medium(scene, media, i, method, origin));
+    return rows;
+}
+
+shared::FrameParams make_frame(const Scene& scene, Media media, const Method& method, Crop crop, std::uint32_t seed,
+                               const Superposition* whole) {
     shared::FrameParams frame{};
-    const glm::dvec3 origin = render_origin(scene, media);
-    for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
-        frame.media[i] = make_medium(scene, scene.volumes[i], media[i], method, origin);
+    const glm::dvec3 origin = render_origin(scene, media, whole);
+    const double diagonal = longest_diagonal(scene, media, whole);
+    const int nodes = cache_layout(scene.lights).most_nodes;
+    if (whole) {
+        frame.media[0] = make_whole(*whole);
+        if (method.nee == NEE_CACHED && !whole->cells.bounds.empty())
+            frame.lattice = make_lattice(whole->low(), whole->high(), whole->edge * glm::dvec3(whole->cells.dims),
+                                         whole->cells.dims, nodes);
+    } else if (!scene.volumes.empty()) {
+        frame.media[0] = make_medium(scene, media, 0, method, origin);
         if (method.nee == NEE_CACHED)
-            frame.lattice = make_lattice_of(scene.volumes[i], media[i], cache_layout(scene.lights).most_nodes);
+            frame.lattice = make_lattice_of(scene.volumes.front(), media.front(), nodes);
     }
-    frame.sensors[0] = make_sensor(
-        scene, origin, std::max(0.5 * longest_diagonal(scene, media), reach_of_lamps(scene.lights, origin)));
+    frame.sensors[0] = make_sensor(scene, origin, std::max(0.5 * diagonal, reach_of_lamps(scene.lights, origin)));
     frame.lights[LIGHT_BACKGROUND].radiance = scene.background;
     if (const DirectionalLight* sun = only_directional(scene.lights))
         frame.lights[LIGHT_SUN] = {sun->direction, sun->irradiance};
     const std::vector<double> quantiles = filter_quantiles(scene.settings, FILTER_QUANTILES);
     std::copy(quantiles.begin(), quantiles.end(), frame.filter_quantiles);
-    frame.march = make_march(scene, media, method);
+    frame.march = make_march(scene, media, method, diagonal);
     frame.roulette_threshold = static_cast<float>(scene.settings.roulette_threshold);
     // Beyond a million scatterings a path of any albedo that scenes have is worth nothing; the bound is counted.
     frame.max_depth = scene.settings.max_depth.value_or(1'000'000);

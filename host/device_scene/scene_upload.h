@@ -15,15 +15,20 @@ Rgb albedo_of(const Volume& volume);
 bool is_chromatic(const Scene& scene);
 
 // Value of every specialization constant. What the scene lacks is switched off here and compiles to nothing.
-Specialization specialize(const Scene& scene, Media media, const Method& method);
+// `whole`: of several media, here and below, else null.
+Specialization specialize(const Scene& scene, Media media, const Method& method, const Superposition* whole = nullptr);
 
 // World position of render space's origin: amid the media, or the camera where there is none.
-glm::dvec3 render_origin(const Scene& scene, Media media);
+glm::dvec3 render_origin(const Scene& scene, Media media, const Superposition* whole = nullptr);
 
 // Of the boxes around the media; world units, 0 where there is none.
-double longest_diagonal(const Scene& scene, Media media);
+double longest_diagonal(const Scene& scene, Media media, const Superposition* whole = nullptr);
 
 // All but the lights of a table, and the fields that change during a render (crop_y) or belong to the queues.
-shared::FrameParams make_frame(const Scene& scene, Media media, const Method& method, Crop crop, std::uint32_t seed);
+shared::FrameParams make_frame(const Scene& scene, Media media, const Method& method, Crop crop, std::uint32_t seed,
+                               const Superposition* whole = nullptr);
+
+// A row for each of the media, in their order. `origin`: of render space.
+std::vector<shared::MediumParams> make_media(const Scene& scene, Media media, const Method& method, glm::dvec3 origin);
 
 } // namespace vkvol

@@ -16,6 +16,7 @@ struct DensityField {
     GridBytes bytes;
     int type = 0; // GRID_FLOAT, GRID_FP4, ...
     glm::dmat4 index_to_world{1.0};
+    glm::dmat4 as_authored{1.0};     // the same as the file has it
     std::uint64_t active_voxels = 0; // 0: the field is 0 everywhere, and what follows is meaningless
     glm::ivec3 voxel_min{0};         // box of active voxels, inclusive; density outside is 0
     glm::ivec3 voxel_max{0};
@@ -39,6 +40,8 @@ struct DensityField {
     Block block(glm::ivec3 block) const;
     // World units per voxel: |det|^(1/3) of index_to_world.
     double voxel_size() const;
+    // To where `transform` moves it from where the file has it.
+    void place(const glm::dmat4& transform) { index_to_world = transform * as_authored; }
 };
 
 // Throws InputError naming file, grid, what is wrong and the remedy.

@@ -159,6 +159,7 @@ private:
             throw InputError(
                 fmt::format("{}: the grid's transform is singular; export it with a voxel size > 0", place_));
         // The kernels have both directions in single precision.
+        field_.as_authored = field_.index_to_world;
         const glm::dmat4 inverse = glm::inverse(field_.index_to_world);
         for (int column = 0; column < 4; ++column)
             for (int row = 0; row < 3; ++row)

@@ -141,13 +141,16 @@ void append(Mesh& mesh, const ObjFile& obj) {
 
 } // namespace
 
-Mesh load_mesh(const MeshFiles& files) {
+Mesh load_mesh(const MeshFiles& files, const glm::dmat4& transform) {
     if (files.paths.empty())
         throw InputError("a mesh needs at least one .obj file; name it in the scene");
     Mesh mesh;
     bool first = true;
     for (const std::filesystem::path& path : files.paths) {
         ObjFile obj = read_obj(path);
+        if (transform != glm::dmat4(1.0))
+            for (glm::dvec3& vertex : obj.vertices)
+                vertex = glm::dvec3(transform * glm::dvec4(vertex, 1.0));
         const std::string file = path.string();
         weld(obj);
         if (obj.triangles.empty())

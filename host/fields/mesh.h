@@ -20,6 +20,7 @@ struct Mesh {
 
 // Reads all files, with the .mtl files they name beside them, and welds equal positions within each. Bodies that are
 // inside out are turned. InputError for what is not closed, or not readable.
-Mesh load_mesh(const MeshFiles& files);
+// `transform`: of all of them.
+Mesh load_mesh(const MeshFiles& files, const glm::dmat4& transform = glm::dmat4(1.0));
 
 } // namespace vkvol

@@ -33,12 +33,14 @@ public:
 private:
     void choose_scattering();
     void choose_flight();
+    const char* without_voxels() const;
     void choose_nee();
     void choose_mis();
     void choose_distance();
     void choose_transmittance();
     void choose_emission();
     void choose_filter();
+    void check_channels() const;
     void find_biases();
     void warn(const std::string& message) { method_.warnings.push_back(method_.integrator + ": " + message); }
 
@@ -61,6 +63,7 @@ Method Resolution::resolve() {
     choose_transmittance();
     choose_emission();
     choose_filter();
+    check_channels();
     find_biases();
     method_.material_colour = (preset_.adjustments & adjust_material_colour) && method_.scattering == SCATTERING_NONE;
     return method_;
@@ -84,16 +87,23 @@ void Resolution::choose_flight() {
         throw InputError(fmt::format("{}: analytic flights need constant density, and this medium's varies; use "
                                      "flight delta, or integrator ratioTracking",
                                      method_.integrator));
-    } else if (flight == FREE_FLIGHT_REGULAR && field_ == FIELD_NOISE) {
-        throw InputError(fmt::format("{}: regular flights go from voxel to voxel, and noise has none; use flight "
+    } else if (flight == FREE_FLIGHT_REGULAR && field_ != FIELD_GRID) {
+        throw InputError(fmt::format("{}: regular flights go from voxel to voxel, and {}; use flight "
                                      "delta, or integrator ratioTracking",
-                                     method_.integrator));
+                                     method_.integrator, without_voxels()));
+    } else if (flight == FREE_FLIGHT_DECOMPOSITION && field_ == FIELD_SUPERPOSITION) {
+        warn("flights are delta: several volumes have no control density");
+        flight = FREE_FLIGHT_DELTA;
     }
     if (!chromatic_ || !flight_has(flight, TRAIT_GREY))
         return;
     if (choices_.free_flight)
         warn("flights are spectral, since the extinction differs between the colour channels");
     flight = FREE_FLIGHT_SPECTRAL;
+}
+
+const char* Resolution::without_voxels() const {
+    return field_ == FIELD_NOISE ? "noise has none" : "several volumes share none";
 }
 
 void Resolution::choose_nee() {
@@ -161,17 +171,23 @@ void Resolution::choose_transmittance() {
             transmittance = TRANSMITTANCE_ANALYTIC;
         return;
     }
+    if (transmittance == TRANSMITTANCE_RESIDUAL && field_ == FIELD_SUPERPOSITION) {
+        if (method_.nee != NEE_NONE)
+            warn("transmittance is by ratio tracking: several volumes have no control density");
+        transmittance = TRANSMITTANCE_RATIO;
+    }
     const bool impossible =
-        transmittance == TRANSMITTANCE_ANALYTIC || (transmittance == TRANSMITTANCE_REGULAR && field_ == FIELD_NOISE);
+        transmittance == TRANSMITTANCE_ANALYTIC || (transmittance == TRANSMITTANCE_REGULAR && field_ != FIELD_GRID);
     if (!impossible)
         return;
     if (method_.nee == NEE_NONE) {
         transmittance = TRANSMITTANCE_RATIO; // unused
         return;
     }
-    const char* why = transmittance == TRANSMITTANCE_ANALYTIC
-                          ? "analytic transmittance needs constant density, and this medium's varies"
-                          : "regular transmittance goes from voxel to voxel, and noise has none";
+    const std::string why =
+        transmittance == TRANSMITTANCE_ANALYTIC
+            ? "analytic transmittance needs constant density, and this medium's varies"
+            : fmt::format("regular transmittance goes from voxel to voxel, and {}", without_voxels());
     throw InputError(
         fmt::format("{}: {}; use transmittance ratio, or march with marched flights", method_.integrator, why));
 }
@@ -194,7 +210,8 @@ void Resolution::choose_filter() {
     const int transmittance = method_.transmittance;
     const bool linear_shadows = !method_.shadow_rays_have(TRAIT_VOXELS | TRAIT_MARCH);
     const bool linear = method_.flights_have(TRAIT_NULL) && linear_shadows;
-    if (field_ != FIELD_GRID || linear) {
+    const bool has_voxels = field_ == FIELD_GRID || field_ == FIELD_SUPERPOSITION;
+    if (!has_voxels || linear) {
         method_.filter = scene_.settings.filter.value_or(Filter::stochastic);
         return;
     }
@@ -208,6 +225,17 @@ void Resolution::choose_filter() {
                      "exponential is not the exponential of the mean",
                      name));
     method_.filter = Filter::trilinear;
+}
+
+// Estimators that know the density they have passed take the channels' extinctions for proportional everywhere.
+void Resolution::check_channels() const {
+    const bool knows_depth =
+        !method_.flights_have(TRAIT_NULL) || (method_.nee != NEE_NONE && !method_.shadow_rays_have(TRAIT_NULL));
+    if (field_ == FIELD_SUPERPOSITION && chromatic_ && knows_depth)
+        throw InputError(fmt::format("{}: in several volumes, of which some take away more of one colour than of "
+                                     "another, light is followed by null collisions only; use integrator "
+                                     "spectralTracking",
+                                     method_.integrator));
 }
 
 void Resolution::find_biases() {
@@ -239,8 +267,13 @@ bool is_through(const Method& method) {
     return method.scattering != SCATTERING_MULTIPLE && method.flights_have(TRAIT_MARCH);
 }
 
-// That of the medium whose density varies most.
+bool is_superposition(const Scene& scene) {
+    return scene.volumes.size() > 1;
+}
+
 int density_kind(const Scene& scene) {
+    if (is_superposition(scene))
+        return FIELD_SUPERPOSITION;
     int kind = FIELD_CONSTANT;
     for (const Volume& volume : scene.volumes) {
         const bool is_grid = std::holds_alternative<GridFile>(volume.shape);

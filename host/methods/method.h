@@ -40,6 +40,9 @@ struct Method {
 // A march (or, without scattering, one analytic step) through the whole medium that samples no collision.
 bool is_through(const Method& method);
 
+// Several media, whose extinctions add up.
+bool is_superposition(const Scene& scene);
+
 // FIELD_..., FIELD_CONSTANT without a volume.
 int density_kind(const Scene& scene);
 bool has_chromatic_extinction(const Scene& scene); // sigma_t differs between channels

@@ -75,6 +75,9 @@ void add_phase(Writer& writer, const Volume& volume) {
 
 void add_volume(Writer& writer, const Volume& volume) {
     add_shape(writer, volume);
+    if (volume.transform != glm::dmat4(1.0))
+        for (int column = 0; column < 4; ++column)
+            writer.add("transform", glm::dvec3(volume.transform[column]));
     writer.add("sigma_a", volume.sigma_a);
     writer.add("sigma_s", volume.sigma_s);
     writer.add("density_scale", volume.density_scale);

@@ -14,16 +14,17 @@ namespace {
 // without a word.
 constexpr std::uint32_t most_iterations = 65535;
 
-// Of all loops in a turn that are not unrolled, at most. Every step has up to four places for a sum over octaves, which
-// all lanes of a group pass under a mask: a flight's look-up, emission along it, and two of a shadow ray that marches
-// in several sets of samples; and a look from along a flight has one.
+// Of all loops in a turn that are not unrolled, at most. Every step has up to four places for a sum over octaves, or
+// media, which all lanes of a group pass under a mask: a flight's look-up, emission along it, and two of a shadow ray
+// that marches in several sets of samples; and a look from along a flight has one.
 std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
     constexpr std::uint32_t triangle = 2, node = 1 + (MESH_LEAF + 1) + MESH_LEAF * triangle;
     std::uint32_t iterations = 2 + (steps + 1);
     if (loops.mesh)
         iterations += 2 + 1 + MESH_NODES_PER_TURN * node;
-    if (loops.octaves > 0)
-        iterations += (4 * steps + 1) * (loops.octaves + 1);
+    const std::uint32_t octaves = loops.octaves > 0 ? loops.octaves + 1 : 0;
+    const std::uint32_t look_up = loops.media > 0 ? 1 + loops.media * (1 + octaves) : octaves;
+    iterations += (4 * steps + 1) * look_up;
     return iterations + loops.phase + loops.lights;
 }
 

@@ -50,7 +50,7 @@ void Session::load(const Device& device, const std::vector<std::string>& authore
         result_.counts.cleaned_voxels += medium.field ? medium.field->cleaned : 0;
         has_colour = has_colour || (method_.material_colour && medium.mesh && medium.mesh->diffuse);
     }
-    const Specialization specialization = specialize(scene_, assets.media, method_);
+    const Specialization specialization = specialize(scene_, assets.media, method_, whole_of(assets));
     find_wish(assets, specialization);
     result_.plan = plan_by(device, wish_.schedule);
     device_scene_.emplace(device, commands_, scene_, method_, assets, job_.crop, job_.seed,
@@ -82,6 +82,11 @@ void Session::find_wish(const Assets& assets, const Specialization& specializati
             wish_.leaps = medium.majorants->leaps;
         }
     }
+    if (assets.superposition) {
+        loops_.media = assets.superposition->most_overlaps;
+        wish_.majorant_cell = 0;
+        wish_.leaps = assets.superposition->cells.leaps;
+    }
     if (!job_.resume)
         return;
     if (wish_.schedule == Schedule::automatic) // a GPU may round the two differently
@@ -98,8 +103,10 @@ Plan Session::plan_by(const Device& device, Schedule schedule) const {
 
 // What the picture is explained by, and what further frames need.
 void Session::keep(Assets assets) {
-    for (std::size_t i = 0; i < assets.media.size(); ++i)
-        result_.outline = make_outline(scene_, scene_.volumes[i], assets.media[i], device_scene_->emits());
+    if (assets.superposition)
+        result_.outline = make_outline(*assets.superposition, device_scene_->emits());
+    else if (!assets.media.empty())
+        result_.outline = make_outline(scene_, scene_.volumes.front(), assets.media.front(), device_scene_->emits());
     if (job_.workshop && job_.workshop->has_frames())
         keep_fields(job_.workshop->fields(), scene_, std::move(assets));
 }

@@ -13,9 +13,9 @@ namespace {
 
 using Answer = std::optional<std::string>;
 
-// Whichever: a picture of several is none that this explains.
+// Null where there are several: their pictures are none that this explains.
 const Volume* volume_of(const Scene& scene) {
-    return scene.volumes.empty() ? nullptr : &scene.volumes.back();
+    return scene.volumes.size() == 1 ? &scene.volumes.front() : nullptr;
 }
 
 bool sees_light(const Evidence& e) {

@@ -121,10 +121,11 @@ struct PhaseDetails {
 // A participating medium filling a shape. Coefficients multiply the density: that of the grid, of the noise, or 1.
 struct Volume {
     std::variant<Sphere, Box, MeshFiles, GridFile> shape;
-    std::string place;                             // of the shape, "file:line:column", for messages; or empty
-    std::optional<Noise> noise;                    // not for grids
-    Rgb sigma_a{0.5};                              // absorption, >= 0 [1/unit]
-    Rgb sigma_s{0.5};                              // scattering, >= 0 [1/unit]
+    glm::dmat4 transform{1.0};  // of the shape with all that is in it, in world space; affine, with an inverse
+    std::string place;          // of the shape, "file:line:column", for messages; or empty
+    std::optional<Noise> noise; // not for grids
+    Rgb sigma_a{0.5};           // absorption, >= 0 [1/unit]
+    Rgb sigma_s{0.5};           // scattering, >= 0 [1/unit]
     CoefficientUnit unit = CoefficientUnit::voxel; // without meaning but for grids: else always world
     double density_scale = 1.0;                    // >= 0, multiplies the density
     PhaseFunction phase = PhaseFunction::henyey_greenstein;

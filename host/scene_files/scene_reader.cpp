@@ -12,9 +12,9 @@ namespace vkvol {
 namespace {
 
 const std::vector<std::string> vocabulary = {
-    "densityField", "sphere", "box", "models", "noise", "sigma_a", "sigma_s", "heyneygreenstein_g", "phase", "medium",
-    "emission", "albedo", "light", "lights", "backgroundColor", "camera", "width", "height", "rayPerPixelCount",
-    "maxDepth", "integrator", "march", "filter", "russianRoulette", "majorant", "pixelFilter",
+    "volumes", "densityField", "sphere", "box", "models", "noise", "sigma_a", "sigma_s", "heyneygreenstein_g", "phase",
+    "medium", "emission", "albedo", "light", "lights", "backgroundColor", "camera", "width", "height",
+    "rayPerPixelCount", "maxDepth", "integrator", "march", "filter", "russianRoulette", "majorant", "pixelFilter",
     "lightRayDensityMultiplier", "shadowRayDensityMultiplier", "stepSize", "importanceSampling", "fileName",
     "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds", "expected",
     // Names that are read for old files' sake: a misspelling in the original's report, and the old name of integrator.
@@ -33,8 +33,7 @@ Scene SceneReader::read() {
     scene.background = color(background);
     read_light(scene);
     read_lights(scene);
-    if (const std::optional<Volume> medium = volume(scene.settings.integrator))
-        scene.volumes.push_back(*medium);
+    read_volumes(scene);
     if (!any_medium(scene, [](const Volume& each) { return std::holds_alternative<GridFile>(each.shape); }))
         scene.settings.march.unit = CoefficientUnit::world;
     scene.expected = expected();
@@ -51,7 +50,7 @@ Scene SceneReader::read() {
 // The element of one of these names (they are spellings of the same thing); missing if there is none.
 XmlElement SceneReader::one(std::initializer_list<const char*> names) const {
     pugi::xml_node found;
-    for (const pugi::xml_node child : document_.root().children()) {
+    for (const pugi::xml_node child : scope_.children()) {
         const bool matches = std::any_of(names.begin(), names.end(),
                                          [&](const char* name) { return std::string(name) == child.name(); });
         if (!matches)

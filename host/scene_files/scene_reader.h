@@ -21,7 +21,8 @@ inline constexpr long long max_integer = 2147483647;
 
 class SceneReader {
 public:
-    SceneReader(XmlDocument& document, const SceneOverrides& overrides) : document_(document), overrides_(overrides) {}
+    SceneReader(XmlDocument& document, const SceneOverrides& overrides)
+        : document_(document), overrides_(overrides), scope_(document.root()) {}
 
     Scene read();
 
@@ -47,6 +48,8 @@ private:
     Rgb light_color(const XmlElement& element) const;
     template <class Kind> Light of_power(const XmlElement& element, Kind light, Rgb Kind::*shine) const;
     std::optional<Volume> volume(const std::string& integrator) const;
+    void read_volumes(Scene& scene);
+    glm::dmat4 transform() const;
     std::optional<Shape> shape(const std::string& integrator, std::string& place) const;
     XmlElement shape_element(const std::string& integrator) const;
     Sphere sphere(const XmlElement& element) const;
@@ -71,6 +74,7 @@ private:
 
     XmlDocument& document_;
     const SceneOverrides& overrides_;
+    pugi::xml_node scope_; // whose elements are read: the scene's, or those of a <volume>
 };
 
 } // namespace vkvol

@@ -49,7 +49,7 @@ XmlElement SceneReader::shape_element(const std::string& integrator) const {
         }
         if (element.name() == "models") {
             element.allow({}, false, {"model"});
-            if (!document_.root().child("models").child("model"))
+            if (!scope_.child("models").child("model"))
                 continue;
             if (of_thesis && found.exists() && found.name() == "densityField") {
                 const bool takes_models = row->origin == Integrator::Origin::thesis_models;
@@ -62,8 +62,9 @@ XmlElement SceneReader::shape_element(const std::string& integrator) const {
             }
         }
         if (found.exists())
-            element.fail(fmt::format("a <{}> beside the <{}> at {}; a scene has one medium: remove one", name,
-                                     found.name(), found.place()));
+            element.fail(fmt::format(
+                "a <{}> beside the <{}> at {}; a volume has one shape: remove one, or give each a <volume> of its own",
+                name, found.name(), found.place()));
         found = element;
     }
     return found;
@@ -118,7 +119,7 @@ GridFile SceneReader::grid_file(const XmlElement& element) const {
 // All models; the original kept the last one alone.
 MeshFiles SceneReader::mesh_files() const {
     MeshFiles files;
-    for (const pugi::xml_node node : document_.root().child("models").children("model")) {
+    for (const pugi::xml_node node : scope_.child("models").children("model")) {
         const XmlElement model(document_, node);
         model.allow({"baseDir"}, true);
         files.paths.push_back(file_path(model, "sphere.obj"));

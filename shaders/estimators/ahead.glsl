@@ -69,7 +69,7 @@ uint step_ahead(MediumParams v, bool seeing, inout Walk walk, inout Rng rng, ino
             tally.steps += 1u;
             tally.cells += event == EVENT_COLLIDED ? 0u : 1u;
             if (event == EVENT_COLLIDED) {
-                Collision c = Collision(sigma_t[k], sigma_maj[k], u[k], 0.0, 0.0);
+                Collision c = Collision(sigma_t[k], sigma_maj[k], u[k], 0.0, 0.0, to_spectrum(v.sigma_ratio), to_spectrum(vec3(1.0)));
                 tally.lookups += 1u;
                 tally.violations += c.sigma_t > 1.00001 * c.sigma_maj ? 1u : 0u;
                 rng.draw += 1u;

@@ -37,7 +37,7 @@ uint fly(MediumParams v, Collision c, uint event, inout Walk w, inout Rng rng, i
     deposit = to_spectrum(vec3(0.0));
     if (NULL_FLIGHT && event == EVENT_COLLIDED) {
         float share = FREE_FLIGHT == FREE_FLIGHT_DECOMPOSITION ? decomposition_share(c) : c.sigma_t / c.sigma_maj;
-        deposit = beta * to_spectrum(v.sigma_ratio) * share;
+        deposit = beta * c.ratio * share * c.share;
         switch (FREE_FLIGHT) {
         case FREE_FLIGHT_DELTA:
             event = delta_flight(c);
@@ -49,7 +49,7 @@ uint fly(MediumParams v, Collision c, uint event, inout Walk w, inout Rng rng, i
             event = decomposition_flight(c);
             break;
         case FREE_FLIGHT_SPECTRAL:
-            event = spectral_flight(v, c, beta);
+            event = spectral_flight(c, beta);
             break;
         }
         tally.null_collisions += event == EVENT_TOUCHED ? 1u : 0u;
@@ -72,7 +72,9 @@ uint fly(MediumParams v, Collision c, uint event, inout Walk w, inout Rng rng, i
         event = EVENT_MOVING; // nobody asks
     if (event == EVENT_COLLIDED) {
         tally.real_collisions += 1u;
-        if (!NULL_FLIGHT)
+        if (NULL_FLIGHT)
+            beta *= c.share;
+        else
             beta *= depth_weight(v, beta, w.depth, true);
     }
     return event;

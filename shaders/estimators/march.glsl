@@ -4,7 +4,7 @@
 #ifndef MARCH_GLSL
 #define MARCH_GLSL
 #include "estimators/channel.glsl"
-#include "field/density.glsl"
+#include "field/superposition.glsl"
 #include "lib/rng.glsl"
 #include "lib/tally.glsl"
 
@@ -20,10 +20,12 @@ bool march_is_over(Walk w) {
     return w.t >= w.t_end - 0.5 * w.dt;
 }
 
-float march_density(MediumParams v, float t, vec3 tap, inout Walk w, inout Tally tally) {
+float march_density(MediumParams v, float t, vec3 tap, float u, inout Walk w, inout Tally tally) {
     w.at = t;
     tally.lookups += 1u;
-    return density(v, w.origin + t * w.direction, tap);
+    Matter met = matter_at(v, w.origin + t * w.direction, tap, u);
+    w.met = met.medium;
+    return met.density;
 }
 
 // A step of length `dt` from w.t, in which the density is taken to be `rho`.

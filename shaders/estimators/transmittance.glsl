@@ -60,14 +60,14 @@ uint see(MediumParams v, Collision c, uint event, inout Walk w, inout Rng rng, i
         event = telescoping_transmittance(v, w, tally);
         break;
     case TRANSMITTANCE_RESIDUAL:
-        T = residual_transmittance(v, c, event, T);
+        T = residual_transmittance(c, event, T);
         break;
     }
     if (NULL_TRANSMITTANCE && event == EVENT_COLLIDED) {
         if (TRANSMITTANCE == TRANSMITTANCE_DELTA)
-            T = delta_transmittance(v, c, T);
+            T = delta_transmittance(c, T);
         if (TRANSMITTANCE == TRANSMITTANCE_RATIO)
-            T = ratio_transmittance(v, c, T);
+            T = ratio_transmittance(c, T);
         float m = largest(T);
         if (m < SHADOW_ROULETTE && TRANSMITTANCE != TRANSMITTANCE_DELTA) // unbiased
             T *= c.u * SHADOW_ROULETTE < m ? SHADOW_ROULETTE / m : 0.0;

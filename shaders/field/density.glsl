@@ -111,20 +111,26 @@ ivec3 random_corner(vec3 p, vec3 tap) {
     return ivec3(base) + ivec3(lessThan(tap, p - base));
 }
 
+float lookup(GridParams g, int type, vec3 p, vec3 tap) {
+    switch (FILTER) {
+    case FILTER_NEAREST:
+        return voxel(g, type, nearest_voxel(p));
+    case FILTER_STOCHASTIC:
+        return voxel(g, type, random_corner(p, tap));
+    default:
+        return lookup_trilinear(g, type, p);
+    }
+}
+
+#ifndef SEVERAL
 // At a point of medium space, >= 0. `tap` in [0, 1)^3 is for the stochastic filter.
 float density(MediumParams v, vec3 p, vec3 tap) {
     if (FIELD == FIELD_CONSTANT)
         return 1.0;
     if (FIELD == FIELD_NOISE)
-        return noise_density(v.noise, v.extent * p);
-    switch (FILTER) {
-    case FILTER_NEAREST:
-        return voxel(v.density, GRID_TYPE, nearest_voxel(p));
-    case FILTER_STOCHASTIC:
-        return voxel(v.density, GRID_TYPE, random_corner(p, tap));
-    default:
-        return lookup_trilinear(v.density, GRID_TYPE, p);
-    }
+        return noise_density(v.noise, 0u, v.extent * p);
+    return lookup(v.density, GRID_TYPE, p, tap);
 }
+#endif
 
 #endif

@@ -10,19 +10,21 @@
 vec3 blackbody_color(EmissionParams e, float kelvin) {
     float x = clamp((kelvin - e.table_low) / (e.table_high - e.table_low), 0.0, 1.0) * float(BLACKBODY_ENTRIES - 1);
     uint i = min(uint(x), uint(BLACKBODY_ENTRIES - 2));
-    return mix(blackbody[i], blackbody[i + 1u], x - float(i));
+    return mix(blackbody[e.first_entry + i], blackbody[e.first_entry + i + 1u], x - float(i));
 }
 
 // At a point of render space.
-vec3 emission_at(EmissionParams e, vec3 position) {
-    if (EMISSION == EMISSION_NONE || EMISSION == EMISSION_CONSTANT)
+vec3 emission_at(MediumParams v, vec3 position) {
+    EmissionParams e = v.emission;
+    int kind = KIND(EMISSION, v, emission), type = KIND(TEMPERATURE_TYPE, v, temperature_type);
+    if (kind == EMISSION_NONE || kind == EMISSION_CONSTANT)
         return e.constant;
     vec4 p = vec4(position, 1.0);
     vec3 index = vec3(dot(e.to_index[0], p), dot(e.to_index[1], p), dot(e.to_index[2], p));
-    if (GLOWS_IN_COLOR)
+    if (HAS_COLORS && type == GRID_COLOR)
         return e.constant + e.color * lookup_color(e.grid, GRID_COLOR, index);
-    float value = lookup_trilinear(e.grid, TEMPERATURE_TYPE, index);
-    if (EMISSION == EMISSION_COLOR)
+    float value = lookup_trilinear(e.grid, type, index);
+    if (kind == EMISSION_COLOR)
         return e.constant + value * e.color;
     float kelvin = e.kelvin_scale * value + e.kelvin_offset;
     return kelvin < e.kelvin_cutoff ? e.constant : e.constant + e.color * blackbody_color(e, kelvin);
@@ -30,8 +32,8 @@ vec3 emission_at(EmissionParams e, vec3 position) {
 
 // (1 - albedo) * Le at a point of render space.
 vec3 emitted_radiance(MediumParams v, vec3 position) {
-    vec3 radiance = emission_at(v.emission, position);
-    if (ALBEDO == ALBEDO_GRID)
+    vec3 radiance = emission_at(v, position);
+    if (KIND(ALBEDO, v, albedo) == ALBEDO_GRID)
         radiance *= 1.0 - albedo_at(v, position);
     return radiance;
 }

@@ -37,12 +37,21 @@ float perlin(vec3 p) {
     return mix(in_x.x, in_x.y, fade.y);
 }
 
-// max(0, (1 + fbm) / 2) at a point of render space. `n`: the frame's noise.
-float noise_density(NoiseParams n, vec3 position) {
+// The map of an octave, of the medium of this row. From the buffers themselves, as above.
+vec4 octave(uint row, uint k) {
+#ifdef SEVERAL
+    return media[row].noise.to_noise[k];
+#else
+    return frame_block.media[0].noise.to_noise[k];
+#endif
+}
+
+// max(0, (1 + fbm) / 2) at a point `position` from the middle of the shape, in world units.
+float noise_density(NoiseParams n, uint row, vec3 position) {
     float sum = 0.0;
     float amplitude = 1.0;
     for (uint k = 0u; k < n.octaves; ++k) {
-        vec4 to_noise = frame_block.media[0].noise.to_noise[k];
+        vec4 to_noise = octave(row, k);
         sum += amplitude * perlin(to_noise.w * position + to_noise.xyz);
         amplitude *= n.gain;
     }

@@ -25,13 +25,18 @@ layout(constant_id = SPEC_STEPS) const int STEPS = 1;
 layout(constant_id = SPEC_TRACE) const int TRACE = 0;
 layout(constant_id = SPEC_TEXELS) const int TEXELS = 0;
 layout(constant_id = SPEC_LEAPS) const int LEAPS = 0;
+#ifdef SEVERAL
+#define FULL
+layout(constant_id = SPEC_MEMBER_SHAPE) const int MEMBER_SHAPE = SHAPE_BOX;
+layout(constant_id = SPEC_MEMBER_FIELD) const int MEMBER_FIELD = FIELD_CONSTANT;
+#endif
 #ifdef FULL
 layout(constant_id = SPEC_PHASE) const int PHASE = PHASE_HENYEY_GREENSTEIN;
 layout(constant_id = SPEC_LIGHTS) const int LIGHTS = LIGHTS_TABLE;
 layout(constant_id = SPEC_DISTANCE) const int DISTANCE = DISTANCE_FLIGHTS;
 layout(constant_id = SPEC_ALBEDO) const int ALBEDO = ALBEDO_CONSTANT;
 layout(constant_id = SPEC_ALBEDO_TYPE) const int ALBEDO_TYPE = GRID_FLOAT;
-const bool GLOWS_IN_COLOR = TEMPERATURE_TYPE == GRID_COLOR;
+const bool HAS_COLORS = true; // in grids
 layout(constant_id = SPEC_SENSOR) const int SENSOR = SENSOR_PINHOLE;
 layout(constant_id = SPEC_PIXEL_FILTER) const int PIXEL_FILTER = 0;
 #else
@@ -40,11 +45,22 @@ const int LIGHTS = LIGHTS_SUN;
 const int DISTANCE = DISTANCE_FLIGHTS;
 const int ALBEDO = ALBEDO_CONSTANT;
 const int ALBEDO_TYPE = GRID_FLOAT;
-const bool GLOWS_IN_COLOR = false;
+const bool HAS_COLORS = false;
 const int SENSOR = SENSOR_PINHOLE;
 const int PIXEL_FILTER = 0;
 #endif
 layout(constant_id = SPEC_MIS) const int MIS = MIS_BALANCE;
+
+// What a medium is: a constant, unless it is one of several that differ.
+#ifdef SEVERAL
+#define KIND(CONSTANT, v, kind) (CONSTANT == EACH ? v.kinds.kind : CONSTANT)
+const bool SEVERAL_MEDIA = true;
+const bool HAS_CELLS = true; // of majorants
+#else
+#define KIND(CONSTANT, v, kind) CONSTANT
+const bool SEVERAL_MEDIA = false;
+const bool HAS_CELLS = FIELD == FIELD_GRID;
+#endif
 
 const bool SEES_SKY = (LIGHTS & LIGHTS_SKY) != 0;
 const bool EQUAL_AREA = (LIGHTS & LIGHTS_EQUAL_AREA) != 0;
@@ -90,6 +106,10 @@ layout(scalar, binding = BINDING_LIGHTS) readonly buffer LightBlock { LightRow l
 layout(scalar, binding = BINDING_SKY) readonly buffer SkyBlock { vec4 sky_texels[]; };
 layout(scalar, binding = BINDING_SKY_ALIAS) readonly buffer SkyAliasBlock { AliasEntry sky_alias[]; };
 layout(scalar, binding = BINDING_LIGHT_TREE) readonly buffer LightTreeBlock { LightNode light_nodes[]; };
+#ifdef SEVERAL
+layout(scalar, binding = BINDING_MEDIA) readonly buffer MediumBlock { MediumParams media[]; };
+layout(scalar, binding = BINDING_OVERLAPS) readonly buffer OverlapBlock { uint overlaps[]; };
+#endif
 layout(scalar, binding = BINDING_TRACE) buffer TraceBlock {
     uint trace_count;
     TraceRecord trace_records[];

@@ -1,7 +1,7 @@
 // Tentative collisions: the walk, the density where it stops, and the random numbers that decide what happens there.
 #ifndef COLLISION_GLSL
 #define COLLISION_GLSL
-#include "field/density.glsl"
+#include "field/superposition.glsl"
 #include "majorants/majorant.glsl"
 #include "lib/rng.glsl"
 #include "lib/tally.glsl"
@@ -13,7 +13,13 @@ struct Collision {
     float u;         // [0, 1), for the estimator
     float sigma_c;   // of the control density
     float flown;     // in the cell, since the last step
+    Spectrum ratio;  // of the channels to sigma_t
+    Spectrum share;  // what of the throughput it is with the medium that was drawn: see superposition.glsl
 };
+
+Collision no_collision(MediumParams v) {
+    return Collision(0.0, 1.0, 0.0, 0.0, 0.0, to_spectrum(v.sigma_ratio), to_spectrum(vec3(1.0)));
+}
 
 // One step of the walk. EVENT_COLLIDED: a tentative collision, described in `c`; the distance to the next one is drawn.
 // `seeing`: the walk is a shadow ray's.
@@ -21,6 +27,8 @@ uint next_collision(MediumParams v, bool seeing, inout Walk w, inout Rng rng, in
     bool residual = TRANSMITTANCE == TRANSMITTANCE_RESIDUAL && seeing;
     c.sigma_maj = w.sigma_maj;
     c.sigma_c = v.sigma_t * w.control;
+    c.ratio = to_spectrum(v.sigma_ratio);
+    c.share = to_spectrum(vec3(1.0));
     float from = w.t;
     uint event = advance(v, residual, w);
     c.flown = w.t - from;
@@ -37,7 +45,11 @@ uint next_collision(MediumParams v, bool seeing, inout Walk w, inout Rng rng, in
     // Below the control density a collision is real, whatever the density.
     bool certain = FREE_FLIGHT == FREE_FLIGHT_DECOMPOSITION && !seeing && c.u * c.sigma_maj < c.sigma_c;
     if (!certain) {
-        c.sigma_t = v.sigma_t * density(v, w.origin + w.t * w.direction, to_tap(words));
+        Matter met = matter_at(v, w.origin + w.t * w.direction, to_tap(words), to_choice(words));
+        c.sigma_t = v.sigma_t * met.density;
+        c.ratio = met.ratio;
+        c.share = met.share;
+        w.met = met.medium;
         tally.lookups += 1u;
         float above = residual ? abs(c.sigma_t - c.sigma_c) : c.sigma_t;
         tally.violations += above > 1.00001 * c.sigma_maj ? 1u : 0u;

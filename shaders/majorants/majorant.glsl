@@ -48,7 +48,7 @@ int empty_reach(Walk w) {
 // What the walk needs of its cell. With `residual` the bound of |density - control|, else that of the density; where that
 // is 0, minus the reach of a walk that leaps.
 void load_cell(MediumParams v, bool residual, inout Walk w) {
-    bool cells = FIELD == FIELD_GRID;
+    bool cells = HAS_CELLS;
     uint i = uint((w.cell.x * v.cell_dims.y + w.cell.y) * v.cell_dims.z + w.cell.z);
     if (residual || FREE_FLIGHT == FREE_FLIGHT_DECOMPOSITION)
         w.control = cells ? controls[i].control : v.control;
@@ -62,7 +62,7 @@ void load_cell(MediumParams v, bool residual, inout Walk w) {
 
 void begin_cells(MediumParams v, bool residual, inout Walk w) {
     w.cell = ivec3(0);
-    if (FIELD == FIELD_GRID)
+    if (HAS_CELLS)
         w.cell = clamp(ivec3(floor((w.origin - v.bounds_min) / v.cell_size)), ivec3(0), v.cell_dims - 1);
     load_cell(v, residual, w);
 }
@@ -83,7 +83,7 @@ ivec3 first_axis(vec3 t_face) {
 // Where the walk leaves its cell and the empty ones around it, at most t_end.
 float cell_exit(MediumParams v, Walk w, out vec3 t_face) {
     t_face = vec3(FAR);
-    if (FIELD == FIELD_GRID) {
+    if (HAS_CELLS) {
         int reach = empty_reach(w);
         t_face = far_faces(w, v.bounds_min + v.cell_size * vec3(w.cell - reach), v.cell_size * float(2 * reach + 1));
     }
@@ -93,7 +93,7 @@ float cell_exit(MediumParams v, Walk w, out vec3 t_face) {
 // Into the cell beyond: one step along the axis of the face, and never back along the others. EVENT_LEFT: there is none.
 uint next_cell(MediumParams v, bool residual, float t_exit, vec3 t_face, inout Walk w) {
     w.t = t_exit;
-    if (FIELD != FIELD_GRID)
+    if (!HAS_CELLS)
         return EVENT_LEFT;
     ivec3 side = ivec3(sign(w.direction));
     ivec3 axis = first_axis(t_face);

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/pass.glsl"
 
-#include "field/density.glsl"
+#include "field/superposition.glsl"
 #include "lights/lattice.glsl"
 #include "lib/rng.glsl"
 

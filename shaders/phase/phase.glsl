@@ -14,23 +14,24 @@
 // Per steradian; integrates to 1 over `after`.
 float phase_eval(MediumParams v, vec3 before, vec3 after) {
     float p = 0.0;
-    if (PHASE == PHASE_HENYEY_GREENSTEIN)
+    int kind = KIND(PHASE, v, phase);
+    if (kind == PHASE_HENYEY_GREENSTEIN)
         p = hg_eval(v.phase.g, hg_from_peak(v.phase.g, before, after));
-    else if (PHASE == PHASE_RAYLEIGH)
+    else if (kind == PHASE_RAYLEIGH)
         p = rayleigh_eval(dot(before, after));
-    else if (PHASE == PHASE_DOUBLE_HENYEY_GREENSTEIN)
+    else if (kind == PHASE_DOUBLE_HENYEY_GREENSTEIN)
         p = double_hg_eval(v.phase, before, after);
-    else if (PHASE == PHASE_DRAINE)
+    else if (kind == PHASE_DRAINE)
         p = draine_eval(v.phase.g, v.phase.alpha, hg_from_peak(v.phase.g, before, after));
-    else if (PHASE == PHASE_DROPLETS)
+    else if (kind == PHASE_DROPLETS)
         p = droplets_eval(v.phase, before, after);
-    else if (PHASE == PHASE_TABLE)
+    else if (kind == PHASE_TABLE)
         p = table_eval(v.phase, before, after);
     return p;
 }
 
 // Whether there is a closed form of two scatterings.
-const bool PHASE_HAS_TWICE = PHASE <= PHASE_DOUBLE_HENYEY_GREENSTEIN;
+const bool PHASE_HAS_TWICE = PHASE != EACH && PHASE <= PHASE_DOUBLE_HENYEY_GREENSTEIN;
 
 // After two scatterings: the mean of phase_eval(drawn, after) over what phase_sample draws from `before`. Henyey and
 // Greenstein's functions are closed under convolution, asymmetries multiply.
@@ -48,17 +49,18 @@ float phase_eval_twice(MediumParams v, vec3 before, vec3 after) {
 // A direction distributed as phase_eval; u in [0, 1)^2.
 vec3 phase_sample(MediumParams v, vec3 before, vec2 u) {
     vec3 after = before;
-    if (PHASE == PHASE_HENYEY_GREENSTEIN)
+    int kind = KIND(PHASE, v, phase);
+    if (kind == PHASE_HENYEY_GREENSTEIN)
         after = hg_sample(v.phase.g, before, u);
-    else if (PHASE == PHASE_RAYLEIGH)
+    else if (kind == PHASE_RAYLEIGH)
         after = turned(before, 1.0 - rayleigh_sample_cosine(u.x), u.y);
-    else if (PHASE == PHASE_DOUBLE_HENYEY_GREENSTEIN)
+    else if (kind == PHASE_DOUBLE_HENYEY_GREENSTEIN)
         after = double_hg_sample(v.phase, before, u);
-    else if (PHASE == PHASE_DRAINE)
+    else if (kind == PHASE_DRAINE)
         after = draine_sample(v.phase.g, v.phase.alpha, before, u);
-    else if (PHASE == PHASE_DROPLETS)
+    else if (kind == PHASE_DROPLETS)
         after = droplets_sample(v.phase, before, u);
-    else if (PHASE == PHASE_TABLE)
+    else if (kind == PHASE_TABLE)
         after = table_sample(v.phase, before, u);
     return after;
 }

@@ -18,7 +18,7 @@ Walk kept(Walk w) {
     bool marches = FREE_FLIGHT == FREE_FLIGHT_MARCH || (shadow_traits & TRAIT_MARCH) != 0;
     bool adds_depth = !NULL_FLIGHT || (LOOKS && !NULL_TRANSMITTANCE);
     bool walks = (traits & TRAIT_CELLS) != 0;
-    bool cells = (traits & TRAIT_VOXELS) != 0 || (walks && FIELD == FIELD_GRID);
+    bool cells = (traits & TRAIT_VOXELS) != 0 || (walks && HAS_CELLS);
     bool controlled = (traits & TRAIT_CONTROL) != 0;
     bool sets = (traits & TRAIT_SETS) != 0;
 #define KEEP(type, name, when)                                                                                        \

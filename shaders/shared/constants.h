@@ -27,21 +27,23 @@
 #define BINDING_SKY 21        // vec4 per texel of a map of the sky, see sky.glsl
 #define BINDING_SKY_ALIAS 22  // AliasEntry per row of that map, then per texel
 #define BINDING_LIGHT_TREE 23 // LightNode, depth first
-#define BINDING_PHASE 24      // PhaseNode, of a phase function that is a table
-#define BINDING_TEST_INPUT 25 // test kernels only
-#define BINDING_TEST_OUTPUT 26
-#define BINDING_BUFFERS 27
+#define BINDING_PHASE 24      // PhaseNode, of phase functions that are tables
+#define BINDING_MEDIA 25      // MediumParams, where there are several media; see superposition.glsl
+#define BINDING_OVERLAPS 26   // per cell over all media where its list begins, then the lists: rows of media
+#define BINDING_TEST_INPUT 27 // test kernels only
+#define BINDING_TEST_OUTPUT 28
+#define BINDING_BUFFERS 29
 // The same buffers as texels: software drivers gather these, and read storage buffers lane by lane.
-#define BINDING_GRID_TEXELS 27
-#define BINDING_LEAF_TEXELS 28
-#define BINDING_MAJORANT_TEXELS 29
-#define BINDING_LATTICE_TEXELS 30
-#define BINDING_COUNT 31
+#define BINDING_GRID_TEXELS 29
+#define BINDING_LEAF_TEXELS 30
+#define BINDING_MAJORANT_TEXELS 31
+#define BINDING_LATTICE_TEXELS 32
+#define BINDING_COUNT 33
 
 #define WORKGROUP_SIZE 64
 
-// Rows of the tables that a frame has. A scene of more media is refused, in host/assets/supported.cpp; of more lights, those
-// that are chosen among are in a table of their own.
+// Rows of the tables that a frame has. Of several media it has the superposition, and these are in a table of their own;
+// so are of more lights those that are chosen among.
 #define MOST_SENSORS 1
 #define MOST_MEDIA 1
 #define MOST_LIGHTS 2
@@ -73,7 +75,12 @@
 #define SPEC_ALBEDO_TYPE 21 // GRID_...
 #define SPEC_SENSOR 22       // SENSOR_...
 #define SPEC_PIXEL_FILTER 23 // 1: points in pixels are drawn by quantiles of a filter; 0: evenly
-#define SPEC_COUNT 24
+#define SPEC_MEMBER_SHAPE 24 // of several media: SHAPE_...,
+#define SPEC_MEMBER_FIELD 25 // FIELD_...
+#define SPEC_COUNT 26
+
+// Of several media that differ in it: each one's own, which is in its row.
+#define EACH -1
 
 #define SHAPE_NONE 0 // background only
 #define SHAPE_SPHERE 1
@@ -83,6 +90,7 @@
 #define FIELD_CONSTANT 0 // density 1
 #define FIELD_NOISE 1
 #define FIELD_GRID 2
+#define FIELD_SUPERPOSITION 3 // of several media: its density is their extinction [1 / world unit]
 
 #define GRID_FLOAT 0
 #define GRID_FP4 1

@@ -52,6 +52,7 @@ struct EmissionParams {
     float kelvin_cutoff; // colder than this does not glow
     float table_low;     // kelvin of the black-body table's first and last entry
     float table_high;
+    uint first_entry; // of that table
 };
 
 // Where the density is procedural; see noise.glsl. Each octave has its own map, so that its offset can be wrapped to
@@ -92,6 +93,7 @@ struct PhaseParams {
     float share; // by which this part of the light goes
     float alpha; // of Draine's
     uint nodes;  // of a table, at least 2
+    uint first_node;
 };
 
 // A node of a phase function that is a table.
@@ -99,6 +101,18 @@ struct PhaseNode {
     float x;     // 1 - mu, from 0 at the first to 2 at the last
     float value; // per steradian
     float share; // of the light that is scattered at smaller x; 1 at the last
+};
+
+// What a medium of several is, where it is not the same for all of them: see EACH.
+struct MediumKinds {
+    int shape; // SHAPE_..., and so on
+    int field;
+    int grid_type;
+    int phase;
+    int emission;
+    int temperature_type;
+    int albedo;
+    int albedo_type;
 };
 
 // Medium space: index space for a grid, voxel centres at integers; the unit ball or the cube [-1, 1]^3 for shapes.
@@ -122,6 +136,7 @@ struct MediumParams {
     EmissionParams emission;
     NoiseParams noise;
     uint bvh_nodes; // of a mesh
+    MediumKinds kinds;
 };
 
 // Nodes over the medium's box, z fastest. Lattices of these dimensions lie one after the other: of the density, and of

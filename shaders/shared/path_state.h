@@ -29,6 +29,7 @@
     ROW(uint, sample_index)                                                                                           \
     ROW(uint, draw)  /* random draws consumed; 0 at the camera, whose draw also holds the first free flight */        \
     ROW(uint, depth) /* scattering events, this one included; 0 at the camera */                                      \
+    ROW(uint, medium) /* of several, the row of that which it collided with */                                        \
     ROW(uint, todo)  /* TODO_...: what comes next */
 
 // ROW(type, name, when): `when` is what has to hold for the field to mean something, see lane.glsl. A SPECTRUM_ROW has
@@ -40,6 +41,7 @@
     SPECTRUM_ROW(T, seeing)                  /* of the shadow ray so far */                                           \
     SPECTRUM_ROW(lit, looking && keeps_place) /* throughput of what it lights, */                                     \
     ROW(vec3, position, looking && keeps_place) /* and where that is, render space */                                 \
+    ROW(uint, lit_medium, looking && keeps_place && several) /* of several, the row of that which it lights */        \
     ROW(uint, resume, looking && keeps_place) /* what to do after it */                                               \
     ROW(uint, leg, looking && looks_along) /* LEG_... */                                                              \
     ROW(uint, steps, under_way)                /* of the segment */                                                   \
@@ -60,6 +62,7 @@
     ROW(float, t_end, true)     /* its length */                                                                      \
     ROW(float, t, true)         /* travelled in it */                                                                 \
     ROW(float, at, false)       /* where in it the last interaction was: set by every step */                         \
+    ROW(uint, met, false)       /* of several media, the row of that which it was with: likewise */                   \
     ROW(float, tau, true)       /* optical depth left: of the majorant, or, where no collision is null, of the medium */ \
     ROW(float, depth, adds_depth) /* density integrated so far, over all parts */                                     \
     ROW(float, sigma_maj, walks)  /* of the present cell [1 / world unit]; if it is empty, minus its reach, see majorant.glsl */ \

@@ -9,11 +9,11 @@
 #include "lib/trace.glsl"
 
 // Likewise from one of many lights, which is drawn here.
-void gather_some_light(MediumParams v, vec3 position, float t, Spectrum lit, uint next, inout Lane lane,
+void gather_some_light(MediumParams v, MediumParams met, vec3 position, float t, Spectrum lit, uint next, inout Lane lane,
                        inout Rng rng) {
     LightRow row;
-    LightSample drawn = look_for_light(v, position, lane.path.direction, rng, row);
-    float phase = phase_eval(v, lane.path.direction, drawn.direction);
+    LightSample drawn = look_for_light(met, position, lane.path.direction, rng, row);
+    float phase = phase_eval(met, lane.path.direction, drawn.direction);
     vec3 light = drawn.light * phase * (drawn.pdf > 0.0 ? weight_of_look(drawn.pdf, phase) : 1.0);
     if (LOOKS_ALONG)
         light *= weight_of_collision(v, row, position - t * lane.path.direction, lane.path.direction, t);
@@ -39,35 +39,38 @@ void gather_some_light(MediumParams v, vec3 position, float t, Spectrum lit, uin
     }
 }
 
-// Light at a point, t along a flight, that an interaction of throughput `lit` there scatters into the path. Known at once in a homogeneous
+// Light at a point, t along a flight, that an interaction of throughput `lit` with `met` scatters into the path. Known at once in a homogeneous
 // sphere or box, else the lane goes to look, or, by chance, makes do with the cache; and then does as `next` says.
-void gather_light(MediumParams v, vec3 position, float t, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
+void gather_light(MediumParams v, MediumParams met, vec3 position, float t, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
     if (LIGHTS != LIGHTS_SUN) {
-        gather_some_light(v, position, t, lit, next, lane, rng);
+        gather_some_light(v, met, position, t, lit, next, lane, rng);
     } else if (LOOKS) {
         lane.position = position;
         lane.lit = lit;
+        lane.lit_medium = lane.walk.met;
         lane.resume = next;
         lane.todo = TODO_LOOK;
         if (NEE == NEE_CACHED) {
             lane.cached = cached_transmittance(v, position);
-            Spectrum scattered = lit * phase_eval(v, lane.path.direction, frame.lights[LIGHT_SUN].direction);
+            Spectrum scattered = lit * phase_eval(met, lane.path.direction, frame.lights[LIGHT_SUN].direction);
             lane.path.radiance += scattered * lane.cached * frame.lights[LIGHT_SUN].radiance;
             lane.chance = looking_chance(largest(scattered) / INV_4PI, lane.cached, LOOKING);
             lane.todo = to_uniform(next_words(rng)).x < lane.chance ? TODO_LOOK : next;
         }
     } else {
         Spectrum T = analytic_shadow(v, position, frame.lights[LIGHT_SUN].direction, FAR);
-        lane.path.radiance += sun_contribution(v, frame.lights[LIGHT_SUN], lane.path.direction, lit * T);
+        lane.path.radiance += sun_contribution(met, frame.lights[LIGHT_SUN], lane.path.direction, lit * T);
         lane.todo = next;
     }
 }
 
 // At a real collision: emission, absorption, light. Then the path departs, or ends.
 void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, inout Tally tally) {
+    lane.path.medium = lane.walk.met;
+    MediumParams met = medium_of(v, lane.walk.met);
     if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_COLLISIONS)
-        lane.path.radiance += lane.beta * emitted_radiance(v, lane.path.position);
-    vec3 albedo = albedo_at(v, lane.path.position);
+        lane.path.radiance += lane.beta * emitted_radiance(met, lane.path.position);
+    vec3 albedo = albedo_at(met, lane.path.position);
     lane.beta *= to_spectrum(albedo);
     bool capped = SCATTERING != SCATTERING_NONE && lane.path.depth >= frame.max_depth;
     tally.depth_caps += capped ? 1u : 0u;
@@ -76,7 +79,7 @@ void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, i
     lane.todo = ended || SCATTERING == SCATTERING_SINGLE ? TODO_END : TODO_DEPART;
     if (NEE != NEE_NONE && !ended) {
         Spectrum lit = NEE == NEE_TENTATIVE ? deposit * to_spectrum(albedo) : lane.beta;
-        gather_light(v, lane.path.position, lane.walk.start + lane.walk.t, lit, lane.todo, lane, rng);
+        gather_light(v, met, lane.path.position, lane.walk.start + lane.walk.t, lit, lane.todo, lane, rng);
     }
     trace(TRACE_COLLISION, lane, lane.path.position, lane.path.direction);
 }
@@ -85,15 +88,16 @@ void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, i
 void touch(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng) {
     float t = lane.walk.start + lane.walk.at;
     vec3 position = lane.path.position + t * lane.path.direction;
+    MediumParams met = medium_of(v, lane.walk.met);
     uint next = TODO_FLY;
     if (goes_through()) {
         if (EMISSION != EMISSION_NONE)
-            lane.path.radiance += deposit * emitted_radiance(v, position);
+            lane.path.radiance += deposit * emitted_radiance(met, position);
         next = largest(lane.beta) == 0.0 ? TODO_END : TODO_FLY;
     }
     lane.todo = next;
     if (NEE == NEE_TENTATIVE && lane.path.depth < frame.max_depth)
-        gather_light(v, position, t, deposit * to_spectrum(albedo_at(v, position)), next, lane, rng);
+        gather_light(v, met, position, t, deposit * to_spectrum(albedo_at(met, position)), next, lane, rng);
 }
 
 #endif

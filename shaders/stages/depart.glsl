@@ -66,7 +66,7 @@ void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     if (SEES_SKY && at_camera)
         lane.phase_pdf = 0.0;
     if (!looks && !at_camera && !has_looked)
-        scatter(v, to_uniform(words), lane);
+        scatter(medium_of(v, lane.path.medium), to_uniform(words), lane);
     bool goes_to_look = false;
     if (LOOKS_ALONG) // in an `if` of its own, which the compiler leaves out with all it leads to
         if (lane.todo == TODO_FLY && !has_looked)

@@ -52,6 +52,9 @@ const bool KEEPS_PLACE = NEE == NEE_TENTATIVE || LOOKS_ALONG;
 Spectrum lit_beta(Lane lane) {
     return KEEPS_PLACE ? lane.lit : lane.beta;
 }
+uint lit_medium(Lane lane) {
+    return KEEPS_PLACE ? lane.lit_medium : lane.path.medium;
+}
 bool is_along(Lane lane) {
     return LOOKS_ALONG && lane.leg == LEG_ALONG;
 }
@@ -85,6 +88,7 @@ uint after_looking(Lane lane) {
     bool looking = seeing || (LOOKS && next == TODO_LOOK);                                                            \
     bool flight_rests = NEE == NEE_TENTATIVE;                                                                         \
     bool keeps_place = KEEPS_PLACE;                                                                                   \
+    bool several = SEVERAL_MEDIA;                                                                                     \
     bool looks_along = LOOKS_ALONG;                                                                                   \
     bool sets_out = LOOKS_ALONG && (looking || next == TODO_SET_OUT);                                                 \
     bool sees_sky = SEES_SKY;                                                                             \

@@ -31,13 +31,15 @@ bool look_along(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tall
     Stretch s = stretch_of(v, light, lane.path.position, lane.path.direction);
     float t = distance_in(s, u.y);
     vec3 position = lane.path.position + t * lane.path.direction;
-    LightSample drawn = sample_light(v, light, position, lane.path.direction, next_words(rng), rng);
+    tally.lookups += 1u;
+    Matter matter = matter_at(v, to_medium(v, position, lane.path.direction).origin, to_tap(words), to_choice(words));
+    MediumParams met = medium_of(v, matter.medium);
+    LightSample drawn = sample_light(met, light, position, lane.path.direction, next_words(rng), rng);
     // Over the density t was drawn with, times its weight.
     float per_pdf = 1.0 / (chance * (equiangular_pdf(s, t) + assumed_flight_pdf(v, s, t)));
-    tally.lookups += 1u;
-    float sigma_t = v.sigma_t * density(v, to_medium(v, position, lane.path.direction).origin, to_tap(words));
-    lane.lit = lane.beta * (per_pdf * sigma_t) * to_spectrum(v.sigma_ratio * albedo_at(v, position));
-    lane.light = drawn.light * phase_eval(v, lane.path.direction, drawn.direction);
+    lane.lit = lane.beta * (per_pdf * (v.sigma_t * matter.density)) *
+               (matter.ratio * matter.share * to_spectrum(albedo_at(met, position)));
+    lane.light = drawn.light * phase_eval(met, lane.path.direction, drawn.direction);
     bool is_lit = is_open(s) && lane.path.depth < frame.max_depth && largest(lane.lit) > 0.0 && largest(lane.light) > 0.0;
     if (is_lit && LOOKS) {
         lane.position = position;

@@ -11,9 +11,9 @@ vec3 emission_along(MediumParams v, Spectrum beta, float from, Walk w, PathState
     uvec4 words = next_words(rng);
     float t = mix(from, w.t, to_uniform(words).x);
     tally.lookups += 1u;
-    float sigma_t = v.sigma_t * density(v, w.origin + t * w.direction, to_tap(words));
-    vec3 Le = emitted_radiance(v, path.position + (w.start + t) * path.direction);
-    return beta * (w.t - from) * sigma_t * to_spectrum(v.sigma_ratio) * Le;
+    Matter met = matter_at(v, w.origin + t * w.direction, to_tap(words), to_choice(words));
+    vec3 Le = emitted_radiance(medium_of(v, met.medium), path.position + (w.start + t) * path.direction);
+    return beta * (w.t - from) * (v.sigma_t * met.density) * (met.ratio * met.share) * Le;
 }
 
 // One step of the lane's segment, flight or shadow ray.
@@ -21,7 +21,7 @@ uint step_segment(MediumParams v, inout Lane lane, inout Rng rng, out Spectrum d
     bool seeing = at_shadow_ray(lane.todo == TODO_SEE);
     uint event = EVENT_MOVING;
     deposit = to_spectrum(vec3(0.0));
-    Collision c = Collision(0.0, 1.0, 0.0, 0.0, 0.0);
+    Collision c = no_collision(v);
     if ((NULL_FLIGHT && NULL_TRANSMITTANCE) || (seeing ? NULL_TRANSMITTANCE : NULL_FLIGHT))
         event = next_collision(v, seeing, lane.walk, rng, tally, c);
     if (seeing) {

@@ -30,7 +30,7 @@ void main() {
         if (ahead) {
             event = step_ahead(v, seeing, w, rng, beta, T, tally);
         } else {
-            Collision c = Collision(0.0, 1.0, 0.0, 0.0, 0.0);
+            Collision c = no_collision(v);
             event = next_collision(v, seeing, w, rng, tally, c);
             tally.steps += 1u;
             if (seeing) {

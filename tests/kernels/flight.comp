@@ -27,7 +27,7 @@ void main() {
             event = search_part(v, inputs[i].origin, inputs[i].direction, FAR, false, w, search);
             continue;
         }
-        Collision c = Collision(0.0, 1.0, 0.0, 0.0, 0.0);
+        Collision c = no_collision(v);
         event = NULL_FLIGHT ? next_collision(v, false, w, rng, tally, c) : EVENT_MOVING;
         event = fly(v, c, event, w, rng, beta, deposit, tally);
         event = after_step(event, w, FAR, search);

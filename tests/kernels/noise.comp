@@ -11,6 +11,6 @@ void main() {
         return;
     vec3 position = inputs[i].position;
     vec4 to_noise = frame.media[0].noise.to_noise[0];
-    outputs[i].density = noise_density(frame.media[0].noise, position);
+    outputs[i].density = noise_density(frame.media[0].noise, 0u, position);
     outputs[i].octave = perlin(to_noise.w * position + to_noise.xyz);
 }

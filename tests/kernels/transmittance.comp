@@ -36,7 +36,7 @@ void main() {
             event = search_part(v, ray.origin, ray.direction, FAR, true, w, search);
             continue;
         }
-        Collision c = Collision(0.0, 1.0, 0.0, 0.0, 0.0);
+        Collision c = no_collision(v);
         if (NULL_TRANSMITTANCE)
             event = next_collision(v, true, w, rng, tally, c);
         event = see(v, c, event, w, rng, T, opaque, tally);

@@ -19,6 +19,16 @@ bool inside(const glm::ivec3& i, const glm::ivec3& size) {
 
 } // namespace
 
+void Grid::move(const glm::dmat4& transform) {
+    linear = glm::dmat3(transform) * linear;
+    translation = glm::dvec3(transform * glm::dvec4(translation, 1.0));
+}
+
+void ColorGrid::move(const glm::dmat4& transform) {
+    for (Grid& channel : channels)
+        channel.move(transform);
+}
+
 double Grid::voxel_length() const {
     return std::cbrt(std::abs(glm::determinant(linear)));
 }

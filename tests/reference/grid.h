@@ -28,7 +28,8 @@ struct Grid {
     std::vector<float> majorants, minorants;
 
     bool empty() const { return values.empty(); }
-    double voxel_length() const; // |det linear|^(1/3), world units
+    void move(const glm::dmat4& transform); // in world space
+    double voxel_length() const;            // |det linear|^(1/3), world units
     Ray to_index(const Ray& ray) const;
     glm::dvec3 to_index(const glm::dvec3& world) const;
     Interval support(const Ray& index_ray) const; // where the field can be other than 0
@@ -49,6 +50,7 @@ struct ColorGrid {
     Grid channels[3];
 
     bool empty() const { return channels[0].empty(); }
+    void move(const glm::dmat4& transform);
     vkvol::Rgb trilinear(const glm::dvec3& world) const; // in world space
     vkvol::Rgb clamped(const glm::dvec3& world) const;   // likewise, going on outside of the box of active voxels
 };

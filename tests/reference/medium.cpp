@@ -50,13 +50,15 @@ Medium with_shape(Shape shape, const vkvol::Volume& volume, std::optional<vkvol:
     Medium medium;
     medium.shape = std::move(shape);
     medium.noise = volume.noise;
+    medium.to_unmoved = glm::inverse(volume.transform);
     medium.sigma_t = sigma_t * volume.density_scale;
     for (int i = 0; i < 3; ++i)
         medium.albedo[i] = sigma_t[i] > 0.0 ? volume.sigma_s[i] / sigma_t[i] : 0.0;
     load_phase(volume, medium);
     medium.emission.constant = volume.Le;
     medium.filter = filter.value_or(vkvol::Filter::trilinear);
-    if (const Grid* grid = medium.grid()) {
+    if (Grid* grid = std::get_if<Grid>(&medium.shape)) {
+        grid->move(volume.transform);
         if (volume.noise)
             throw std::runtime_error("a grid's density is its own: noise is for other shapes");
         if (volume.unit == vkvol::CoefficientUnit::voxel)
@@ -77,6 +79,10 @@ Rgb Medium::albedo_at(const glm::dvec3& world) const {
     return albedo_grid.empty() ? albedo : albedo * glm::min(albedo_grid.clamped(world), Rgb(1.0));
 }
 
+Ray Medium::unmoved(const Ray& ray) const {
+    return {glm::dvec3(to_unmoved * glm::dvec4(ray.origin, 1.0)), glm::dmat3(to_unmoved) * ray.direction, ray.reach};
+}
+
 double Medium::largest() const {
     return std::max({sigma_t.x, sigma_t.y, sigma_t.z});
 }
@@ -93,6 +99,9 @@ Medium load(const vkvol::Volume& volume, std::optional<vkvol::Filter> filter) {
     medium.emission = load_emission(volume, &file);
     if (!volume.albedo_grid.empty())
         medium.albedo_grid = load_color_grid(file.path, volume.albedo_grid);
+    medium.albedo_grid.move(volume.transform);
+    medium.emission.grid.move(volume.transform);
+    medium.emission.colors.move(volume.transform);
     return medium;
 }
 
@@ -105,9 +114,9 @@ std::vector<Interval> support(const Medium& medium, const Ray& ray) {
         return {};
     std::vector<Interval> parts;
     if (const auto* sphere = std::get_if<vkvol::Sphere>(&medium.shape))
-        parts = {intersect(*sphere, ray)};
+        parts = {intersect(*sphere, medium.unmoved(ray))};
     else if (const auto* box = std::get_if<vkvol::Box>(&medium.shape))
-        parts = {intersect(*box, ray)};
+        parts = {intersect(*box, medium.unmoved(ray))};
     else if (const auto* mesh = std::get_if<Mesh>(&medium.shape))
         parts = intersect(*mesh, ray);
     else

@@ -14,6 +14,7 @@ namespace reference {
 
 struct Medium {
     std::variant<vkvol::Sphere, vkvol::Box, Mesh, Grid> shape;
+    glm::dmat4 to_unmoved{1.0};        // world -> where a sphere or a box is, and its noise, before it is moved
     std::optional<vkvol::Noise> noise; // the density, but for grids; none: 1
     vkvol::Rgb sigma_t{0.0};           // extinction at density 1 [1/world unit], density_scale included
     vkvol::Rgb albedo{0.0};
@@ -28,11 +29,12 @@ struct Medium {
 
     const Grid* grid() const { return std::get_if<Grid>(&shape); }
     bool homogeneous() const { return !grid() && !noise; } // density 1 throughout
-    double density(const glm::dvec3& p) const;             // at index coordinates of a grid, else in world space
+    double density(const glm::dvec3& p) const;             // at index coordinates of a grid, else before it is moved
 
     vkvol::Rgb albedo_at(const glm::dvec3& world) const;
 
-    double largest() const; // of sigma_t's channels
+    double largest() const;            // of sigma_t's channels
+    Ray unmoved(const Ray& ray) const; // direction: what one world unit becomes there
     bool grey() const { return sigma_t == vkvol::Rgb(sigma_t.x); }
 };
 
@@ -53,9 +55,9 @@ std::vector<Interval> support(const Medium& medium, const Ray& ray);
 class DensityAlong {
 public:
     DensityAlong(const Medium& medium, const Ray& ray)
-        : medium_(medium), ray_(medium.grid() ? medium.grid()->to_index(ray) : ray) {}
+        : medium_(medium), ray_(medium.grid() ? medium.grid()->to_index(ray) : medium.unmoved(ray)) {}
     double operator()(double t) const { return medium_.density(ray_.at(t)); }
-    const Ray& ray() const { return ray_; } // in index space for a grid
+    const Ray& ray() const { return ray_; } // in index space for a grid, else as before the medium is moved
 
 private:
     const Medium& medium_;

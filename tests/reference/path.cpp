@@ -16,8 +16,15 @@ namespace reference {
 
 using vkvol::Rgb;
 
-Rgb direct_light(const World& world, const glm::dvec3& p, const glm::dvec3& travel, Rng& rng) {
-    const Medium& medium = *world.medium;
+Rgb transmittance(const World& world, const Ray& ray, Rng& rng) {
+    const Method& method = world.method;
+    Rgb T = estimate_transmittance(*world.medium, method.transmittance, ray, method.march, rng);
+    for (const Medium& medium : world.others)
+        T *= estimate_transmittance(medium, method.transmittance, ray, method.march, rng);
+    return T;
+}
+
+Rgb direct_light(const World& world, const Medium& medium, const glm::dvec3& p, const glm::dvec3& travel, Rng& rng) {
     Rgb Ld(0.0);
     for (const vkvol::Light& light : world.scene.lights) {
         const bool has_extent = std::holds_alternative<vkvol::SunLight>(light) || vkvol::is_lamp(light);
@@ -27,14 +34,13 @@ Rgb direct_light(const World& world, const glm::dvec3& p, const glm::dvec3& trav
             continue;
         // Light travels along -direction and leaves along -travel: their cosine is dot(direction, travel).
         const double mu = glm::dot(found->ray.direction, travel);
-        const Rgb T = estimate_transmittance(medium, world.method.transmittance, found->ray, world.method.march, rng);
+        const Rgb T = transmittance(world, found->ray, rng);
         Ld += phase_eval(medium, mu) * T * found->light;
     }
     if (world.sky && world.method.scattering == SCATTERING_SINGLE) { // no flight goes on to meet it
         const Draw draw = rng.next();
         const glm::dvec3 direction = turned({0.0, 1.0, 0.0}, 1.0 - 2.0 * draw.x(), draw.y());
-        const Rgb T =
-            estimate_transmittance(medium, world.method.transmittance, {p, direction}, world.method.march, rng);
+        const Rgb T = transmittance(world, {p, direction}, rng);
         Ld += 4.0 * std::numbers::pi * phase_eval(medium, glm::dot(direction, travel)) * T *
               world.sky->radiance(direction);
     }
@@ -48,9 +54,7 @@ Rgb lamps_seen(const World& world, const Ray& ray, Rng& rng) {
         if (!distance || (world.medium && world.method.nee == NEE_NONE))
             continue;
         const Ray seen{ray.origin, ray.direction, *distance};
-        L += lamp_radiance(light) * (world.medium ? estimate_transmittance(*world.medium, world.method.transmittance,
-                                                                           seen, world.method.march, rng)
-                                                  : Rgb(1.0));
+        L += lamp_radiance(light) * (world.medium ? transmittance(world, seen, rng) : Rgb(1.0));
     }
     return L;
 }
@@ -72,9 +76,36 @@ World make_world(const vkvol::Scene& scene, Medium medium) {
     return world;
 }
 
+namespace {
+
+// Estimators that serve in a race: delta tracking and ratio tracking.
+World load_several(const vkvol::Scene& scene) {
+    World world{scene, std::nullopt, {}, load_sky(scene.lights)};
+    for (const vkvol::Volume& volume : scene.volumes) {
+        Medium medium = load(preset_volume(scene.settings.integrator, volume), scene.settings.filter);
+        medium.majorant_scale = scene.settings.majorant_scale;
+        if (!medium.grey())
+            throw std::runtime_error("the reference's race is for grey extinction");
+        if (medium.largest() > 0.0 && !(medium.grid() && medium.grid()->empty()))
+            world.others.push_back(std::move(medium));
+    }
+    if (!world.others.empty()) {
+        world.medium = std::move(world.others.back());
+        world.others.pop_back();
+    }
+    Medium varying;
+    varying.noise = vkvol::Noise{};
+    world.method = resolve_method(scene, varying);
+    if (world.method.transmittance == TRANSMITTANCE_ANALYTIC)
+        world.method.transmittance = TRANSMITTANCE_RATIO;
+    return world;
+}
+
+} // namespace
+
 World load_world(const vkvol::Scene& scene) {
     if (scene.volumes.size() > 1)
-        throw std::runtime_error("the reference renders one volume");
+        return load_several(scene);
     if (scene.volumes.empty()) {
         Medium nothing;
         return {scene, std::nullopt, resolve_method(scene, nothing), load_sky(scene.lights)};
@@ -106,7 +137,7 @@ Flight gathering_flight(const World& world, const Ray& ray, double exponential, 
         };
     if (world.method.nee == NEE_TENTATIVE && lit)
         events.tentative = [&](double t, const Rgb& weight) {
-            L += weight * medium.albedo_at(ray.at(t)) * direct_light(world, ray.at(t), ray.direction, rng);
+            L += weight * medium.albedo_at(ray.at(t)) * direct_light(world, medium, ray.at(t), ray.direction, rng);
         };
     return fly(medium, world.method.free_flight, ray, exponential, select, beta, world.method.march, rng, events);
 }
@@ -116,6 +147,8 @@ Flight gathering_flight(const World& world, const Ray& ray, double exponential, 
 Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng& rng) {
     if (!world.medium)
         return light_from_beyond(world, ray.direction, true);
+    if (!world.others.empty())
+        return radiance_in_several(world, ray, rng);
     if (marches_through(world.method))
         return march_through(world, ray, rng);
     const Medium& medium = *world.medium;
@@ -138,7 +171,7 @@ Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng
         // Its own cache knows one sun; of other lights there is no need for one.
         const bool cached = method.nee == NEE_CACHED && vkvol::only_directional(world.scene.lights);
         if (method.nee == NEE_COLLISIONS || (method.nee == NEE_CACHED && !cached))
-            L += beta * direct_light(world, ray.origin, ray.direction, rng);
+            L += beta * direct_light(world, medium, ray.origin, ray.direction, rng);
         if (cached)
             L += beta * cached_light(world, ray.origin, ray.direction, beta, rng);
         if (method.scattering == SCATTERING_SINGLE)

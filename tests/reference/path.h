@@ -15,6 +15,7 @@ struct World {
     std::optional<Medium> medium; // none: background only
     Method method;
     std::optional<Sky> sky = std::nullopt;
+    std::vector<Medium> others = {}; // beside it, where there are several
 };
 
 // Opens the scene's volume and resolves its integrator. Throws std::runtime_error for what the reference does not model
@@ -29,9 +30,10 @@ vkvol::Rgb radiance(const World& world, Ray ray, double exponential, double sele
 // One sample of pixel (x, y) of the picture.
 vkvol::Rgb trace_path(const World& world, int x, int y, std::uint32_t sample, std::uint32_t seed);
 
-// Radiance from all lights that flights do not meet, scattered at p into the path that travels along `travel`, per unit
-// of scattered throughput.
-vkvol::Rgb direct_light(const World& world, const glm::dvec3& p, const glm::dvec3& travel, Rng& rng);
+// Radiance from all lights that flights do not meet, scattered at p by `medium` into the path that travels along
+// `travel`, per unit of scattered throughput.
+vkvol::Rgb direct_light(const World& world, const Medium& medium, const glm::dvec3& p, const glm::dvec3& travel,
+                        Rng& rng);
 
 // Radiance that comes from far away along `direction`, and that direct_light leaves to flights; `at_camera`: all there
 // is.
@@ -39,6 +41,12 @@ vkvol::Rgb light_from_beyond(const World& world, const glm::dvec3& direction, bo
 
 // Lamps in sight of the camera, through the medium.
 vkvol::Rgb lamps_seen(const World& world, const Ray& ray, Rng& rng);
+
+// Through all media.
+vkvol::Rgb transmittance(const World& world, const Ray& ray, Rng& rng);
+
+// The radiance where there are several media, by a race: see race.cpp.
+vkvol::Rgb radiance_in_several(const World& world, Ray ray, Rng& rng);
 
 // Does a path of this method collide nowhere, and sum up what it passes?
 bool marches_through(const Method& method);

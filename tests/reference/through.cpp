@@ -47,7 +47,8 @@ Rgb march_through(const World& world, const Ray& ray, Rng& rng) {
         const double point = t + (march.jitter ? draw.x() : 0.5) * length;
         const Rgb alpha = pass(point, length);
         if (lit && density(point) > 0.0)
-            L += alpha * medium.albedo_at(ray.at(point)) * direct_light(world, ray.at(point), ray.direction, rng);
+            L += alpha * medium.albedo_at(ray.at(point)) *
+                 direct_light(world, medium, ray.at(point), ray.direction, rng);
         const double m = std::max({beta.x, beta.y, beta.z});
         if (m < roulette_threshold) {
             if (!(draw.y() * roulette_threshold < m)) {

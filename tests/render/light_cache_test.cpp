@@ -17,7 +17,7 @@ namespace {
 std::vector<float> depths_at_nodes(const TestScene& scene, const shared::LatticeParams& lattice,
                                    const std::vector<glm::vec3>& directions, bool texels) {
     Commands commands(test_device());
-    SceneBuffers buffers(test_device(), commands, Media(scene.kernel.volume, 1), std::uint64_t{1} << 27,
+    SceneBuffers buffers(test_device(), commands, Media(scene.kernel.volume, 1), nullptr, std::uint64_t{1} << 27,
                          texels ? std::uint64_t{4} * test_device().limits().maxTexelBufferElements : 1);
     shared::FrameParams frame = scene.kernel.frame;
     frame.lattice = lattice;

@@ -112,7 +112,7 @@ TEST_CASE("nothing is given twice", "[cpu][xml]") {
                Catch::StartsWith("s.xml:2:43: a second <heynegreenstein_g>"));
     CHECK(error_of(R"(<camera x="1" x="2"/>)") == "s.xml:2:15: attribute x given twice in <camera>; remove one");
     CHECK_THAT(error_of("<sphere/>\n<box/>"), Catch::StartsWith("s.xml:3:1: a <box> beside the <sphere> at s.xml:2:1"));
-    CHECK_THAT(error_of("<sphere/>\n<densityField>a.nvdb</densityField>"), Catch::Contains("one medium"));
+    CHECK_THAT(error_of("<sphere/>\n<densityField>a.nvdb</densityField>"), Catch::Contains("one shape"));
 }
 
 TEST_CASE("malformed XML is located", "[cpu][xml]") {

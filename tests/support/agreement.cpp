@@ -94,6 +94,12 @@ std::vector<NamedScene> agreement_scenes() {
     Volume noise = medium(MeshFiles{{mesh_file()}}, 1.5, 0.9, 0.2);
     noise.noise = Noise{1.8, 3, 0.5, 2.0};
     scenes.push_back({"noise in a mesh", picture_of(noise, 9.0, 400)});
+    Scene several = picture_of(medium(cloud_file(), 0.6, 0.95, 0.3), 9.0, 400);
+    Volume ball = medium(Sphere{{1.0, -0.5, 0.5}, 2.5}, 0.7, 0.8, -0.3);
+    ball.noise = Noise{1.1, 2, 0.5, 2.0};
+    several.volumes.push_back(ball);
+    several.volumes.push_back(medium(Box{{-1.5, 1.0, 0.0}, {3.0, 2.0, 4.0}}, 0.3, 0.5));
+    scenes.push_back({"several media", several});
     return scenes;
 }
 

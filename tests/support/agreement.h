@@ -14,8 +14,8 @@ struct NamedScene {
     Scene scene; // its samples per pixel suit a table; a test may take fewer
 };
 
-// A homogeneous slab, spheres with g = +-0.8, a thin and a thick cloud, a spike, a chromatic cloud, fire, and noise in
-// a mesh. Small pictures.
+// A homogeneous slab, spheres with g = +-0.8, a thin and a thick cloud, a spike, a chromatic cloud, fire, noise in a
+// mesh, and several media in one another. Small pictures.
 std::vector<NamedScene> agreement_scenes();
 
 // Choices along all axes, named as on the command line.

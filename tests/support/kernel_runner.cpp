@@ -19,7 +19,7 @@ KernelRunner::KernelRunner(std::span<const std::uint32_t> spirv, const Specializ
     : commands_(test_device()), counters_(test_device(), "counters", sizeof(shared::Counters),
                                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device) {
     commands_.fill(counters_, 0);
-    scene_buffers_.emplace(test_device(), commands_, Media(scene.volume, scene.volume ? 1 : 0),
+    scene_buffers_.emplace(test_device(), commands_, Media(scene.volume, scene.volume ? 1 : 0), nullptr,
                            scene.most_grid_bytes != 0 ? scene.most_grid_bytes
                                                       : std::uint64_t{test_device().limits().maxStorageBufferRange},
                            std::uint64_t{4} * test_device().limits().maxTexelBufferElements);

@@ -17,7 +17,7 @@ uint adaptive_flight(MediumParams v, inout Walk w, inout Rng rng, inout Spectrum
     uvec4 words = next_words(rng);
     vec4 u = to_uniform(words);
     float offset = frame.march.jitter != 0.0 ? u.x : 0.5;
-    float rho = march_density(v, w.t + offset * dt, to_tap(words), w, tally);
+    float rho = march_density(v, w.t + offset * dt, to_tap(words), to_choice(words), w, tally);
     uint event = march_step(v, rho, dt, w, beta, deposit);
     beta = march_roulette(u.y, beta);
     if (event == EVENT_COLLIDED)

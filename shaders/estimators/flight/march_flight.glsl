@@ -8,7 +8,7 @@ uint march_flight(MediumParams v, inout Walk w, inout Rng rng, inout Spectrum be
     vec4 u = to_uniform(words);
     float begin = float(w.index) * w.dt;
     float offset = frame.march.jitter != 0.0 ? u.x : 0.5;
-    float rho = march_density(v, begin + offset * w.dt, to_tap(words), w, tally);
+    float rho = march_density(v, begin + offset * w.dt, to_tap(words), to_choice(words), w, tally);
     uint event = march_step(v, rho, w.dt, w, beta, deposit);
     beta = march_roulette(u.y, beta);
     if (event == EVENT_COLLIDED)

@@ -6,8 +6,8 @@ uint jackknife_transmittance(MediumParams v, inout Walk w, inout Rng rng, inout 
         return EVENT_LEFT;
     uvec4 words = next_words(rng);
     vec2 offset = float(w.index) + to_uniform(words).xy;
-    float first = march_density(v, offset.x * w.dt, to_tap(words), w, tally);
-    float second = march_density(v, offset.y * w.dt, to_tap(words), w, tally);
+    float first = march_density(v, offset.x * w.dt, to_tap(words), to_choice(words), w, tally);
+    float second = march_density(v, offset.y * w.dt, to_tap(words), to_choice(words), w, tally);
     w.depth += 0.5 * w.dt * (first + second);
     w.coarse += w.dt * first;
     w.index += 1u;

@@ -24,7 +24,7 @@ void refine_march(inout Walk w) {
 uint telescoping_transmittance(MediumParams v, inout Walk w, inout Tally tally) {
     if (march_is_over(w))
         return EVENT_LEFT;
-    float sampled = w.dt * march_density(v, (float(w.index) + w.offset) * w.dt, vec3(0.5), w, tally);
+    float sampled = w.dt * march_density(v, (float(w.index) + w.offset) * w.dt, vec3(0.5), 0.0, w, tally);
     uint every = 2u << w.level;
     w.depth += sampled;
     w.coarse += ((w.index ^ w.residue) & 1u) == 0u ? 2.0 * sampled : 0.0;

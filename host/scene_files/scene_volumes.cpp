@@ -1,0 +1,138 @@
+// The part of SceneReader that reads media in groups of their own, and where these are moved to.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "scene_reader.h"
+
+namespace vkvol {
+
+namespace {
+
+const std::vector<std::string> in_a_volume = {"transform",
+                                              "densityField",
+                                              "sphere",
+                                              "box",
+                                              "models",
+                                              "noise",
+                                              "sigma_a",
+                                              "sigma_s",
+                                              "heyneygreenstein_g",
+                                              "heynegreenstein_g",
+                                              "phase",
+                                              "medium",
+                                              "emission",
+                                              "albedo",
+                                              "lightRayDensityMultiplier",
+                                              "shadowRayDensityMultiplier"};
+
+constexpr Limits factor{-1e6, 1e6, true, true, "a number from -1e6 to 1e6, not 0"};
+
+glm::dvec3 vector_of(const XmlElement& element, double fallback, const Limits& limits) {
+    const auto number = [&](const char* name) { return element.attribute_number(name, fallback, limits); };
+    return {number("x"), number("y"), number("z")};
+}
+
+glm::dmat4 scaling(const XmlElement& element) {
+    element.allow({"value", "x", "y", "z"});
+    const double all = element.attribute_number("value", 1.0, factor);
+    const glm::dvec3 scale = all * vector_of(element, 1.0, factor);
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(std::abs(scale[axis]) >= 1e-6))
+            element.fail(
+                fmt::format("<scale> by {:g} along an axis leaves nothing; expected at least 1e-6", scale[axis]));
+    return glm::scale(glm::dmat4(1.0), scale);
+}
+
+// Counter-clockwise as seen from where the axis points to.
+glm::dmat4 rotation(const XmlElement& element) {
+    element.allow({"x", "y", "z", "angle"});
+    const glm::dvec3 axis = vector_of(element, 0.0, any_number);
+    const double largest = std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
+    if (largest == 0.0)
+        element.fail("<rotate> lacks its axis, e.g. y=\"1\" beside angle, in degrees");
+    return glm::rotate(glm::dmat4(1.0), glm::radians(element.attribute_number("angle", 0.0, any_number)),
+                       glm::normalize(axis / largest));
+}
+
+// Row by row; three of four numbers, or four.
+glm::dmat4 matrix(const XmlElement& element) {
+    element.allow({"values"});
+    const std::vector<double> numbers = element.attribute_numbers("values", any_number);
+    if (numbers.size() != 12 && numbers.size() != 16)
+        element.fail(fmt::format("<matrix> has {} values; expected 16, row by row, or the first 12", numbers.size()));
+    glm::dmat4 m(1.0);
+    for (std::size_t i = 0; i < 12; ++i)
+        m[int(i % 4)][int(i / 4)] = numbers[i];
+    for (std::size_t i = 12; i < numbers.size(); ++i)
+        if (numbers[i] != (i == 15 ? 1.0 : 0.0))
+            element.fail_attribute("values",
+                                   "<matrix> values: the last row is not 0 0 0 1; only affine maps move a volume");
+    return m;
+}
+
+} // namespace
+
+// Its parts one after another, the first one first.
+glm::dmat4 SceneReader::transform() const {
+    const XmlElement element = one("transform");
+    element.allow({}, false, {"translate", "rotate", "scale", "matrix"});
+    glm::dmat4 map(1.0);
+    if (!element.exists())
+        return map;
+    for (const pugi::xml_node node : scope_.child("transform").children()) {
+        if (node.type() != pugi::node_element)
+            continue;
+        const XmlElement step(document_, node);
+        if (step.name() == "translate") {
+            step.allow({"x", "y", "z"});
+            map = glm::translate(glm::dmat4(1.0), vector_of(step, 0.0, coordinate)) * map;
+        } else {
+            map = (step.name() == "rotate"  ? rotation(step)
+                   : step.name() == "scale" ? scaling(step)
+                                            : matrix(step)) *
+                  map;
+        }
+    }
+    const double size = std::cbrt(std::abs(glm::determinant(glm::dmat3(map))));
+    bool fits = size >= 1e-9 && size <= 1e9;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 3; ++row)
+            fits = fits && std::abs(map[column][row]) <= (column < 3 ? 1e6 * size : largest_length);
+    if (!fits)
+        element.fail(
+            "<transform> leaves nothing of the volume, or flattens it a million times, or moves it beyond 1e11; "
+            "check its factors");
+    return map;
+}
+
+// What stands in the scene itself is one, too.
+void SceneReader::read_volumes(Scene& scene) {
+    const XmlElement groups = one("volumes");
+    groups.allow({}, false, {"volume"});
+    const pugi::xml_node root = scope_, list = root.child("volumes");
+    const bool has_groups = !list.child("volume").empty();
+    if (has_groups && overrides_.grid)
+        groups.fail("--grid: of several <volumes> it is not clear which one is meant; write the grid's file into one");
+    if (!has_groups || shape_element(scene.settings.integrator).exists())
+        if (const std::optional<Volume> medium = volume(scene.settings.integrator))
+            scene.volumes.push_back(*medium);
+    for (const pugi::xml_node node : list.children("volume")) {
+        const XmlElement group(document_, node);
+        group.allow({"name"}, false, in_a_volume);
+        scope_ = node;
+        std::optional<Volume> medium = volume(scene.settings.integrator);
+        if (!medium)
+            group.fail("<volume> has no shape; add a densityField, sphere, box or models to it");
+        medium->transform = transform();
+        scene.volumes.push_back(*medium);
+        scope_ = root;
+    }
+    constexpr std::size_t most = 100000;
+    if (scene.volumes.size() > most)
+        groups.fail(fmt::format("{} volumes are more than the {} that are rendered; leave some out",
+                                scene.volumes.size(), most));
+}
+
+} // namespace vkvol

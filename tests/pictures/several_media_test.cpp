@@ -1,0 +1,228 @@
+// Several media: that overlaps add up, that cuts are not seen, and pictures against the reference, whose media race.
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "error.h"
+#include "scene_hash.h"
+#include "support/agreement.h"
+#include "support/images.h"
+#include "support/scene_text.h"
+#include "support/scenes.h"
+
+using namespace vkvol;
+using Catch::Contains;
+
+namespace {
+
+Scene lit_scene(const Volume& volume, double width = 5.0) {
+    Scene scene = scene_of(volume, width, 16, 12.0, glm::dvec3(0.0), {10.0, 25.0, -5.0});
+    scene.background = {0.1, 0.2, 0.4};
+    scene.lights = {sunlight({1.0, 0.9, 0.8})};
+    scene.settings.spp = 128;
+    return scene;
+}
+
+// The same medium as several of it, each thinned by its share.
+Scene shared_out(Scene scene, std::initializer_list<double> shares) {
+    const Volume whole = scene.volumes.front();
+    scene.volumes.clear();
+    for (const double share : shares) {
+        scene.volumes.push_back(whole);
+        scene.volumes.back().density_scale = share * whole.density_scale;
+    }
+    return scene;
+}
+
+// All combinations are compared in a table of tools/validate.sh; here each choice comes once.
+int unusual_choices(const AxisChoices& choices) {
+    return (choices.free_flight != FREE_FLIGHT_DELTA) + (choices.transmittance != TRANSMITTANCE_RATIO) +
+           (choices.nee != NEE_COLLISIONS) +
+           (choices.emission.value_or(EMISSION_AT_COLLISIONS) != EMISSION_AT_COLLISIONS);
+}
+
+Volume noisy_ball() {
+    Volume volume = medium(Sphere{{0.2, 0.1, 0.0}, 1.7}, 3.0, 0.8, 0.3);
+    volume.noise = Noise{1.3, 3, 0.5, 2.0};
+    return volume;
+}
+
+Volume cloud() {
+    return medium(write_grids({cloud_grid()}), 2.0, 0.9, 0.2);
+}
+
+glm::dmat4 turned(double angle, glm::dvec3 axis) {
+    return glm::rotate(glm::dmat4(1.0), angle, glm::normalize(axis));
+}
+
+// A ball of noise, a cloud that was turned and a box that glows, in one another, each with a phase function of its own.
+Scene mixture() {
+    Volume box = medium(Box{{0.4, -0.5, 0.3}, {2.0, 1.0, 1.6}}, 0.8, 0.5, 0.0);
+    box.phase = PhaseFunction::rayleigh;
+    box.Le = {0.3, 0.1, 0.02};
+    box.transform = turned(0.6, {1.0, 2.0, -1.0});
+    Volume grid = cloud();
+    grid.g = -0.4;
+    grid.transform = glm::translate(glm::dmat4(1.0), glm::dvec3(0.5, 0.7, -0.4)) * turned(-0.9, {0.0, 1.0, 0.3}) *
+                     glm::scale(glm::dmat4(1.0), glm::dvec3(0.5, -0.35, 0.4));
+    Scene scene = lit_scene(noisy_ball());
+    scene.volumes.push_back(grid);
+    scene.volumes.push_back(box);
+    scene.volumes.front().sigma_s = {0.9, 1.8, 2.4};
+    scene.volumes.front().sigma_a = Rgb(3.0) - scene.volumes.front().sigma_s;
+    return scene;
+}
+
+Scene parse_volumes(const std::string& text) {
+    return parse("<volumes>" + text + "</volumes>");
+}
+
+void check_against_reference(const Scene& scene, const std::string& name) {
+    CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_reference(scene, 2), name));
+}
+
+} // namespace
+
+TEST_CASE("halves of a medium on top of each other are the whole, in every way to render them",
+          "[gpu][image][several]") {
+    const auto check = [](const std::string& name, const Scene& whole) {
+        const Film expected = render_here(whole, 1).film;
+        const Scene halves = shared_out(whole, {0.5, 0.3, 0.2});
+        for (const Combination& combination : unbiased_combinations(halves))
+            if (unusual_choices(combination.choices) <= 1) {
+                Scene scene = halves;
+                scene.settings.choices = combination.choices;
+                CHECK_AGREEMENT(agree(render_here(scene, 2).film, expected, name + " " + combination.name));
+            }
+    };
+    check("ball", lit_scene(medium(Sphere{{0.0, 0.0, 0.0}, 1.5}, 1.0, 0.9, 0.5)));
+    check("noise", lit_scene(noisy_ball()));
+    check("cloud", lit_scene(cloud(), 11.0));
+}
+
+TEST_CASE("a medium cut along an oblique plane is the whole", "[gpu][image][several]") {
+    const glm::dmat4 turn = turned(0.7, {1.0, 1.0, 0.4});
+    Volume whole = medium(Box{{0.0, 0.0, 0.0}, {2.0, 2.0, 2.0}}, 1.5, 0.9, 0.4);
+    whole.transform = turn;
+    const Scene alone = lit_scene(whole);
+    Scene cut = alone;
+    cut.volumes.front().shape = Box{{-0.3, 0.0, 0.0}, {1.4, 2.0, 2.0}};
+    cut.volumes.push_back(cut.volumes.front());
+    cut.volumes.back().shape = Box{{0.7, 0.0, 0.0}, {0.6, 2.0, 2.0}};
+    CHECK_AGREEMENT(agree(render_here(cut, 1).film, render_here(alone, 2).film, "cut"));
+}
+
+TEST_CASE("volumes that are moved equal the reference", "[gpu][image][several]") {
+    const glm::dmat4 map = glm::translate(glm::dmat4(1.0), glm::dvec3(0.2, -0.3, 0.4)) * turned(0.8, {1.0, -2.0, 0.5}) *
+                           glm::scale(glm::dmat4(1.0), glm::dvec3(1.3, -0.5, 0.8));
+    Volume ball = noisy_ball();
+    ball.transform = map;
+    check_against_reference(lit_scene(ball), "noise");
+    Volume box = medium(Box{{0.3, 0.0, 0.0}, {2.0, 3.0, 1.0}}, 1.0, 0.9, 0.5);
+    box.transform = map;
+    check_against_reference(lit_scene(box), "box");
+    Volume grid = cloud();
+    grid.transform = map;
+    grid.transform[1][0] += 0.3; // sheared as well
+    check_against_reference(lit_scene(grid, 9.0), "cloud");
+}
+
+TEST_CASE("media in one another equal the reference's race", "[gpu][image][several]") {
+    Scene scene = mixture();
+    check_against_reference(scene, "sun");
+    scene.settings.integrator = "ratioNEE";
+    scene.settings.choices.emission = EMISSION_AT_STEPS;
+    check_against_reference(scene, "at every step");
+    scene.settings.integrator = "unbiasedRayMarching";
+    check_against_reference(scene, "marched");
+    scene.settings.integrator = "";
+    scene.settings.choices = {};
+    scene.lights.push_back(PointLight{{0.3, 0.2, 0.1}, Rgb(2.0)}); // within all of them
+    scene.lights.push_back(SphereLight{{-1.5, 1.0, 1.0}, 0.3, Rgb(4.0)});
+    check_against_reference(scene, "lamps");
+    scene.settings.choices.distance = DISTANCE_MIXED;
+    check_against_reference(scene, "looks from along flights");
+}
+
+TEST_CASE("a camera in the innermost of nested media", "[gpu][image][several]") {
+    Scene scene = lit_scene(medium(Sphere{{0.0, 0.0, 0.0}, 4.0}, 0.2, 0.9, 0.6));
+    scene.volumes.push_back(medium(Sphere{{0.0, 0.0, 0.0}, 2.0}, 0.4, 0.5, 0.0));
+    scene.volumes.push_back(medium(Sphere{{0.1, 0.0, 0.0}, 0.5}, 1.5, 0.95, -0.3));
+    scene.camera.position = {0.1, 0.0, 0.2};
+    check_against_reference(scene, "nested");
+}
+
+TEST_CASE("colours that are taken away differently in several media", "[gpu][image][several]") {
+    Volume volume = medium(Sphere{{0.0, 0.0, 0.0}, 1.5}, 1.0, 0.9, 0.5);
+    volume.sigma_a = {0.1, 0.3, 0.6};
+    const Scene whole = lit_scene(volume);
+    CHECK_AGREEMENT(agree(render_here(shared_out(whole, {0.6, 0.4}), 1).film, render_here(whole, 2).film, "alike"));
+    // One takes red, one takes blue: together as one medium whose sigmas are the sums.
+    Scene apart = whole;
+    apart.volumes.push_back(volume);
+    apart.volumes[0].sigma_a = {0.1, 0.0, 0.0};
+    apart.volumes[0].sigma_s = Rgb(0.9) * 0.5;
+    apart.volumes[1].sigma_a = {0.0, 0.3, 0.6};
+    apart.volumes[1].sigma_s = Rgb(0.9) * 0.5;
+    Scene together = whole;
+    together.volumes[0].sigma_s = Rgb(0.9);
+    CHECK_AGREEMENT(agree(render_here(apart, 1).film, render_here(together, 2).film, "red and blue"));
+    apart.settings.integrator = "rayMarching";
+    CHECK_THROWS_WITH(render_here(apart, 1), Contains("spectralTracking"));
+}
+
+TEST_CASE("what is nothing beside a medium changes nothing", "[gpu][image][several]") {
+    const Scene whole = lit_scene(noisy_ball());
+    Scene beside = whole;
+    beside.volumes.push_back(medium(Sphere{{0.0, 0.0, 0.0}, 9.0}, 0.0, 0.0));
+    CHECK_AGREEMENT(agree(render_here(beside, 1).film, render_here(whole, 2).film, "nothing"));
+    beside.volumes.front().sigma_a = beside.volumes.front().sigma_s = Rgb(0.0);
+    const Film empty = render_here(beside, 1).film;
+    for (const glm::vec3& pixel : empty.mean)
+        CHECK(pixel == glm::vec3(beside.background));
+}
+
+TEST_CASE("groups of volumes in scene files", "[cpu][xml][several]") {
+    const Scene scene = parse(R"(<sphere radius="2"/><sigma_a>1</sigma_a>
+        <volumes><volume name="haze"><box width="3"/><sigma_s>.1</sigma_s><phase>rayleigh</phase></volume>
+        <volume><sphere/><noise/>
+            <transform><scale y="2"/><rotate z="1" angle="90"/><translate x="5"/></transform></volume></volumes>)");
+    REQUIRE(scene.volumes.size() == 3);
+    CHECK(std::holds_alternative<Sphere>(scene.volumes[0].shape));
+    CHECK(scene.volumes[0].sigma_a == Rgb(1.0));
+    CHECK(scene.volumes[1].sigma_a == Rgb(0.5)); // the default, not the scene's own
+    CHECK(scene.volumes[1].phase == PhaseFunction::rayleigh);
+    CHECK(scene.volumes[2].noise);
+    const glm::dvec3 up(scene.volumes[2].transform * glm::dvec4(0.0, 1.0, 0.0, 1.0));
+    CHECK(glm::distance(up, glm::dvec3(3.0, 0.0, 0.0)) < 1e-12); // stretched, turned to -x, moved
+    const glm::dmat4 rows =
+        parse_volumes(R"(<volume><sphere/><transform><matrix values="1 2 3 4 0 1 0 5 0 0 -1 6"/></transform></volume>)")
+            .volumes.front()
+            .transform;
+    CHECK(glm::dvec3(rows * glm::dvec4(1.0, 1.0, 1.0, 1.0)) == glm::dvec3(10.0, 6.0, 5.0));
+    CHECK(parse_volumes("<volume><sphere/></volume>").volumes.size() == 1);
+
+    const std::pair<const char*, const char*> bad[] = {
+        {"<volume/>", "no shape"},
+        {"<volume><camera/></volume>", "camera"},
+        {"<volume><sphere/><box/></volume>", "a volume has one shape"},
+        {"<volume><sphere/><sphere/></volume>", "a second <sphere>"},
+        {"<volume><sphere/><transform><scale value='0'/></transform></volume>", "leaves nothing"},
+        {"<volume><sphere/><transform><rotate angle='5'/></transform></volume>", "lacks its axis"},
+        {"<volume><sphere/><transform><matrix values='1 2 3'/></transform></volume>", "has 3 values"},
+        {"<volume><sphere/><transform><matrix values='1 0 0 0 1 0 0 0 1 0 0 0'/></transform></volume>",
+         "leaves nothing"},
+        {"<volume><sphere/><transform><matrix values='1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 1'/></transform></volume>",
+         "last row"},
+    };
+    for (const auto& [text, message] : bad) {
+        INFO(text);
+        CHECK_THROWS_WITH(parse_volumes(text), Contains(message));
+    }
+    CHECK_THROWS_WITH(parse("<volume><sphere/></volume>"), Contains("volumes"));
+    const auto hash = [](const char* text) { return scene_hash(parse_volumes(text)); };
+    CHECK(hash("<volume><sphere/></volume>") == scene_hash(parse("<sphere/>")));
+    CHECK(hash("<volume><sphere/></volume>") !=
+          hash("<volume><sphere/><transform><translate x='1'/></transform></volume>"));
+    CHECK(hash("<volume><sphere/></volume>") != hash("<volume><sphere/></volume><volume><sphere/></volume>"));
+}
