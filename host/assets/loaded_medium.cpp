@@ -67,6 +67,10 @@ void load_albedo(const Volume& volume, const GridFile& file, FieldCache* kept, L
         throw InputError(
             fmt::format("{}: \"{}\" has no active voxel, and would make the medium black; leave <albedo> out",
                         file.path.string(), volume.albedo_grid));
+    if (field.max_value() == 0.0f)
+        loaded.warnings.push_back(fmt::format("{}: \"{}\" is 0 everywhere: the medium absorbs all that it meets; name "
+                                              "another grid (vkvol info lists them), or leave <albedo> out",
+                                              file.path.string(), volume.albedo_grid));
     loaded.albedo = std::move(field);
 }
 

@@ -47,7 +47,8 @@ void Session::load(const Device& device, const std::vector<std::string>& authore
     bool has_colour = false; // fog, not fire
     for (const LoadedMedium& medium : assets.media) {
         result_.warnings.insert(result_.warnings.end(), medium.warnings.begin(), medium.warnings.end());
-        result_.counts.cleaned_voxels += medium.field ? medium.field->cleaned : 0;
+        for (const DensityField* grid : grids_of(medium))
+            result_.counts.cleaned_voxels += grid->cleaned;
         has_colour = has_colour || (method_.material_colour && medium.mesh && medium.mesh->diffuse);
     }
     const Specialization specialization = specialize(scene_, assets.media, method_, whole_of(assets));

@@ -5,6 +5,7 @@
 // Worth a shadow ray is a collision that contributes much and about whose T~ there is doubt: where it is neither 0 nor 1.
 #ifndef LIGHT_CACHE_GLSL
 #define LIGHT_CACHE_GLSL
+#include "field/albedo.glsl"
 #include "lights/lattice.glsl"
 #include "phase/phase.glsl"
 #include "shapes/shape.glsl"
@@ -62,9 +63,10 @@ float looking_chance(float share, Spectrum T, float looking) {
 // what that is on average over directions, per unit of throughput and irradiance. The average is known: see
 // phase_eval_twice. Hence this may be subtracted with any factor that was known before. A good one is the
 // transmittance expected there, which for a flight towards the light, through an optical depth tau, is the integral of
-// exp(-t) exp(-(tau - t)): tau exp(-tau). `T`: of the cache, where the path departs.
-Spectrum foreseen_light(MediumParams v, Spectrum T, vec3 before, vec3 after) {
-    Spectrum factor = -T * log(max(T, to_spectrum(vec3(1.0e-30)))) * to_spectrum(v.albedo);
+// exp(-t) exp(-(tau - t)): tau exp(-tau). `T`: of the cache, where the path departs, at `position`; the albedo there
+// stands for the one at the flight's end.
+Spectrum foreseen_light(MediumParams v, vec3 position, Spectrum T, vec3 before, vec3 after) {
+    Spectrum factor = -T * log(max(T, to_spectrum(vec3(1.0e-30)))) * to_spectrum(albedo_at(v, position));
     float average = phase_eval_twice(v, before, frame.lights[LIGHT_SUN].direction);
     return factor * (phase_eval(v, after, frame.lights[LIGHT_SUN].direction) - average);
 }

@@ -34,7 +34,7 @@ void scatter(MediumParams v, vec4 u, inout Lane lane) {
     if (LIGHTS == LIGHTS_SUN) // in an `if` of its own, as below
         if (LOOKS && NEE == NEE_CACHED && PHASE_HAS_TWICE && lane.path.depth < frame.max_depth)
             lane.path.radiance -= lane.beta * frame.lights[LIGHT_SUN].radiance *
-                              foreseen_light(v, lane.cached, before, lane.path.direction);
+                              foreseen_light(v, lane.path.position, lane.cached, before, lane.path.direction);
 }
 
 // The flight or shadow ray itself.

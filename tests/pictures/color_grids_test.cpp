@@ -80,6 +80,27 @@ TEST_CASE("an albedo by a grid equals the reference", "[gpu][image][color_grids]
     check(scene, "marched through");
 }
 
+TEST_CASE("a grid that has one albedo everywhere makes the picture of that number", "[gpu][color_grids]") {
+    GridRecipe even = numbers("Cd");
+    even.value = [](glm::ivec3) { return 0.25f; };
+    Scene number = scene_of(medium(write_grids({cloud_grid(), even}), 2.0, 0.25, 0.7), 11.0, 24, 25.0);
+    number.lights = {sunlight()};
+    number.settings.integrator = "cachedRatioTracking";
+    number.settings.spp = 16;
+    number.settings.majorant_cell = 8; // else chosen by the albedo
+    Scene grid = number;
+    grid.volumes.front().sigma_a = Rgb(0.0);
+    grid.volumes.front().sigma_s = Rgb(2.0);
+    grid.volumes.front().albedo_grid = "Cd";
+    const Film expected = render_here(number, 1).film, film = render_here(grid, 1).film;
+    // Paths are the same, but for roundings: what is subtracted from a pixel to calm it has to be so, too. A rounding
+    // may turn a choice: once in some 1e7, of which there are 1e5.
+    int unlike = 0;
+    for (std::size_t i = 0; i < film.mean.size(); ++i)
+        unlike += std::abs(film.mean[i].x - expected.mean[i].x) > 1e-4 * mean_of(expected);
+    CHECK(unlike <= 1);
+}
+
 TEST_CASE("glow and albedo by grids equal the reference", "[gpu][image][color_grids]") {
     Scene scene = colored_cloud({cloud_grid(), colors("Cd"), colors("glow")}, 0.9);
     scene.volumes.front().temperature.color = {1.0, 0.8, 0.5};
@@ -119,6 +140,31 @@ TEST_CASE("an opaque cube has the radiance of its colours", "[gpu][color_grids]"
     scene.volumes.front().albedo_grid = "Cd";
     scene.settings.choices.scattering = SCATTERING_NONE;
     check(scene, {3.0, 2.0, 0.0});
+}
+
+TEST_CASE("values that are none are counted in every grid", "[gpu][color_grids]") {
+    GridRecipe albedo = colors("Cd"), glow = colors("glow");
+    albedo.color = [](glm::ivec3 i) { return glm::vec3(i.y == 0 && i.z == 0 && i.x > 6 ? -1.0f : 0.5f, 0.5f, 0.5f); };
+    glow.color = [](glm::ivec3 i) { return glm::vec3(i == glm::ivec3(1) ? -1.0f : 0.5f, 0.5f, 0.5f); };
+    Scene scene = colored_cloud({cloud_grid(), albedo, glow}, 0.9);
+    scene.settings.spp = 1;
+    CHECK(render_here(scene, 1).counts.cleaned_voxels == 3);
+    scene.volumes.front().temperature.color = Rgb(1.0);
+    scene.volumes.front().temperature.grid = "glow";
+    CHECK(render_here(scene, 1).counts.cleaned_voxels == 4);
+}
+
+TEST_CASE("a grid of albedos that are all 0 is warned of", "[cpu][color_grids]") {
+    GridRecipe black = numbers("Cd");
+    black.background = 1.0f; // so that what is 0 is there
+    black.value = [](glm::ivec3) { return 0.0f; };
+    const auto warnings = [](const GridRecipe& albedo) {
+        const Scene scene = colored_cloud({cloud_grid(), albedo}, 1.0);
+        return load_assets(scene, choose_method(scene)).media.front().warnings;
+    };
+    REQUIRE(warnings(black).size() == 1);
+    CHECK_THAT(warnings(black).front(), Catch::Contains("\"Cd\" is 0 everywhere: the medium absorbs all"));
+    CHECK(warnings(numbers("Cd")).empty());
 }
 
 TEST_CASE("grids of colours where none can be, and grids that are missing", "[gpu][color_grids]") {

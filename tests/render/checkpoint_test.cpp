@@ -146,6 +146,16 @@ TEST_CASE("a checkpoint is continued by its own render alone", "[gpu][checkpoint
         render_part(other, job);
         other.lights.back() = SphereLight{{3.0, 4.0, 5.0}, 1.0, Rgb(2.0, 2.0, 2.1)};
     }
+    SECTION("of the grid of albedos") {
+        GridRecipe albedo = cloud_grid();
+        albedo.name = "Cd";
+        albedo.value = [](glm::ivec3 voxel) { return 0.5f + 0.5f * cloud_noise(voxel); };
+        other.volumes.front().shape = write_grids({cloud_grid(), albedo});
+        other.volumes.front().albedo_grid = "Cd";
+        render_part(other, job);
+        albedo.value = [](glm::ivec3 voxel) { return 0.5f + 0.5f * cloud_noise(voxel + 1); };
+        other.volumes.front().shape = write_grids({cloud_grid(), albedo});
+    }
     SECTION("of the samples' range") {
         rest.sample_offset = 1;
     }
