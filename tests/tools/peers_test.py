@@ -124,7 +124,14 @@ class LightsTest(unittest.TestCase):
                                 ("<lights><spot/></lights>", "<spot> lookAt"),
                                 ("<lights><sky>sky.hdr</sky></lights>", "from .exr files only"),
                                 ("<camera lookAt='0 0 0' distance='3'/>", "orbits are not translated"),
-                                ("<lights><point x='${= 1+1}'/></lights>", "computes")):
+                                ("<lights><point x='${= 1+1}'/></lights>", "computes"),
+                                ("<camera projection='orthographic'/>", "projection orthographic is not translated"),
+                                ("<camera projection='${p:-equirectangular}'/>", "projection equirectangular is not"),
+                                ("<camera viewHeight='3'/>", "viewHeight"),
+                                ("<camera lensRadius='0.5' focus='3'/>", "lenses are not translated"),
+                                ("<pixelFilter>tent</pixelFilter>", "<pixelFilter> is not translated"),
+                                ("<pixelFilter radius='1'>box</pixelFilter>", "<pixelFilter> is not translated"),
+                                ("<albedo grid='Cd'/>", "(<albedo>), which is not translated")):
             with self.assertRaises(SystemExit) as stopped:
                 read(elements)
             self.assertIn(words, str(stopped.exception))
@@ -136,6 +143,10 @@ class SceneTest(unittest.TestCase):
         elements = '<lights><point x="${x:-2}" y="$y"/></lights>'
         self.assertEqual(read(elements, ["y=3"]).lights[0].position.tolist(), [2, 3, 0])
         self.assertEqual(read(elements, ["x=5", "y=3"]).lights[0].position.tolist(), [5, 3, 0])
+
+    def test_what_is_as_it_is_without_a_word_of_it_is_read(self):
+        plain = '<camera projection="perspective" lensRadius="0" fov="30"/><pixelFilter radius="0.5">box</pixelFilter>'
+        self.assertEqual(read(plain).camera.fov, 30)
 
     def test_cameras_look_at_points(self):
         camera = read('<camera x="1" lookAt="1 0 -4"/>').camera

@@ -151,10 +151,27 @@ class Reader:
         element = self.find(name)
         return self.vector(element, "rgb") * self.number(element, "multiplier", 1.0)
 
+    def refuse_other_views(self):
+        """The peers are told of pinholes, and of pixels that are boxes."""
+        camera, pixel = self.find("camera"), self.find("pixelFilter")
+        said = {} if camera is None else {name: self.filled(text) for name, text in camera.attrib.items()}
+        if said.get("projection", "perspective") != "perspective":
+            self.fail(f"<camera> projection {said['projection']} is not translated; take perspective")
+        if "viewHeight" in said:
+            self.fail("<camera> viewHeight: has a meaning with projection=\"orthographic\" only, which is not translated; "
+                      "remove it")
+        if self.number(camera, "lensRadius", 0.0) != 0:
+            self.fail("<camera> lensRadius: lenses are not translated; take a pinhole, lensRadius=\"0\"")
+        if pixel is not None and (self.text("pixelFilter") != "box" or self.number(pixel, "radius", 0.5) != 0.5):
+            self.fail("<pixelFilter> is not translated, but for a box of radius 0.5; remove it")
+
     def scene(self, grid_override):
+        self.refuse_other_views()
         for name, what in LEFT_OUT.items():
             if self.find(name) is not None:
                 self.fail(f"has {what} (<{name}>), which is not translated; take a scene with a grid, a sphere or a box")
+        if self.find("albedo") is not None:
+            self.fail("has an albedo of its own in each place (<albedo>), which is not translated; remove it")
         if self.color("medium").any() or self.color("emission").any():
             self.fail("the medium glows, which is not translated; remove <medium> and <emission>")
         integrator = self.text("integrator")
