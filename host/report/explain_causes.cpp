@@ -6,6 +6,7 @@
 
 #include "scene_upload.h"
 #include "shared/constants.h"
+#include "view_advice.h"
 
 namespace vkvol {
 
@@ -141,8 +142,9 @@ Answer no_medium(const Evidence& e) {
                        file ? file->grid : "", file ? file->path.string() : "FILE");
 }
 
-std::string frame_advice(const Sight& sight) {
-    return fmt::format("--frame frames it, or look at {}", text_of(0.5 * (sight.box.low + sight.box.high)));
+std::string frame_advice(const Evidence& e) {
+    return fmt::format("{}look at {}", view_advice(e.scene.camera).frame,
+                       text_of(0.5 * (e.sight->box.low + e.sight->box.high)));
 }
 
 // No ray of the window meets the medium's box: where it is, and where the camera looks.
@@ -160,11 +162,8 @@ Answer missed(const Evidence& e) {
     const std::string where =
         s.degrees_off > 90.0 ? "behind the camera" : fmt::format("{:.0f} degrees off the middle", s.degrees_off);
     return fmt::format("no ray enters the medium, whose box {} is {}: the camera at {} looks along {} with {}; {}",
-                       box_text(s.box), where, text_of(s.eye), text_of(s.forward),
-                       e.scene.camera.projection == Projection::orthographic
-                           ? fmt::format("a view {:.3g} high", e.scene.camera.view_height)
-                           : fmt::format("a field of view of {:.3g} degrees", e.scene.camera.fov),
-                       frame_advice(s));
+                       box_text(s.box), where, text_of(s.eye), text_of(s.forward), view_advice(e.scene.camera).width,
+                       frame_advice(e));
 }
 
 Answer speck(const Evidence& e) {
@@ -176,10 +175,10 @@ Answer speck(const Evidence& e) {
                            "{}{}",
                            box_text(e.sight->box), 100.0 * e.sight->entering,
                            e.sight->entering_picture > 2.0 * e.sight->entering ? "move --crop, or " : "",
-                           frame_advice(*e.sight));
-    return fmt::format("the medium, whose box is {}, measures {:.2g} pixels in a picture of {}x{}; go nearer, narrow "
-                       "fov, or --frame it",
-                       box_text(e.sight->box), e.sight->pixels, e.scene.picture.width, e.scene.picture.height);
+                           frame_advice(e));
+    return fmt::format("the medium, whose box is {}, measures {:.2g} pixels in a picture of {}x{}; {}",
+                       box_text(e.sight->box), e.sight->pixels, e.scene.picture.width, e.scene.picture.height,
+                       view_advice(e.scene.camera).larger);
 }
 
 Answer hollow(const Evidence& e) {
@@ -188,7 +187,7 @@ Answer hollow(const Evidence& e) {
     if (e.result->outline.densest == 0.0)
         return "the density is 0 in every voxel of the grid; vkvol info says what the file holds";
     return fmt::format("rays enter the medium's box {}, but the density is 0 wherever they go; {}",
-                       box_text(e.sight->box), frame_advice(*e.sight));
+                       box_text(e.sight->box), frame_advice(e));
 }
 
 Answer too_thin(const Evidence& e) {
@@ -251,9 +250,9 @@ Answer inside(const Evidence& e) {
     if (!nothing || !e.sight || !e.sight->inside || !e.result->outline.fills || e.sight->least_depth < deep)
         return {};
     return fmt::format("the camera at {} stands inside of the medium, whose box is {}, and sees no way out: the "
-                       "optical depth before it is {:.3g} and more; move the camera out (--frame does) or lower "
-                       "sigma_a and sigma_s",
-                       text_of(e.sight->eye), box_text(e.sight->box), e.sight->least_depth);
+                       "optical depth before it is {:.3g} and more; {} or lower sigma_a and sigma_s",
+                       text_of(e.sight->eye), box_text(e.sight->box), e.sight->least_depth,
+                       view_advice(e.scene.camera).out);
 }
 
 // Where light comes from, if from one direction; else 0.
@@ -323,8 +322,11 @@ Answer dim(const Evidence& e) {
 Answer unlit(const Evidence& e) {
     if (e.odd != Odd::black || !e.sight)
         return {};
-    return fmt::format("none of its {} paths met light; the optical depth in view reaches {:.3g}, the albedo is {:.3g}",
-                       e.result->counts.paths, e.sight->most_depth, largest(albedo_of(*volume_of(e.scene))));
+    const Volume& volume = *volume_of(e.scene);
+    return fmt::format(
+        "none of its {} paths met light; the optical depth in view reaches {:.3g}, the albedo is {:.3g}{}",
+        e.result->counts.paths, e.sight->most_depth, largest(albedo_of(volume)),
+        volume.albedo_grid.empty() ? "" : " at most");
 }
 
 Answer furnace(const Evidence& e) {

@@ -87,6 +87,9 @@ Projection projection_of(const XmlElement& element) {
         element.fail_attribute("projection", fmt::format("<camera> projection: '{}' is unknown; expected perspective, "
                                                          "orthographic or equirectangular",
                                                          name));
+    const char* instead = projection == Projection::perspective    ? "fov says how wide the view is"
+                          : projection == Projection::orthographic ? "viewHeight says how much of the world is in view"
+                                                                   : "all directions are in view";
     const auto refuse = [&](std::initializer_list<const char*> names, const char* remedy) {
         if (const char* found = first_of(element, names))
             element.fail_attribute(
@@ -94,11 +97,10 @@ Projection projection_of(const XmlElement& element) {
     };
     if (projection != Projection::perspective) {
         refuse({"lensRadius", "focus", "blades", "bladeRotation"}, "only perspective cameras have a lens");
-        refuse({"fov"}, projection == Projection::orthographic ? "viewHeight says how much of the world is in view"
-                                                               : "all directions are in view");
+        refuse({"fov"}, instead);
     }
     if (projection != Projection::orthographic)
-        refuse({"viewHeight"}, "fov says how wide the view is");
+        refuse({"viewHeight"}, instead);
     return projection;
 }
 

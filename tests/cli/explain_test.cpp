@@ -121,6 +121,15 @@ TEST_CASE("pictures that miss the medium are explained", "[gpu][explain]") {
     check({ball_before_sky, "<width>24</width>", "<width reference=\"240\" startOffset=\"0\">24</width>", "background",
            "missed", "startOffset"});
     check({lit_ball, camera, "<camera z=\"5000\" fov=\"30\"/>", "black", "speck", "pixels in a picture of 24x24"});
+    check({lit_ball, camera, "<camera z=\"5\" x=\"9\" projection=\"orthographic\"/>", "black", "missed",
+           "with a view 10 high; --frame frames it, or look at (0, 0, 0)"});
+    check({lit_ball, camera, "<camera z=\"5\" projection=\"orthographic\" viewHeight=\"3000\"/>", "black", "speck",
+           "lower viewHeight, or --frame it"});
+    check({lit_ball, camera, "<camera z=\"5000\" projection=\"equirectangular\"/>", "black", "speck",
+           "24x24; go nearer"});
+    check({lit_ball, camera + "<width>24</width>",
+           "<camera z=\"5\" projection=\"equirectangular\"/><width reference=\"240\">24</width>", "black", "missed",
+           "startOffset"});
     check({lit_ball, "<sphere/>", "", "black", "noMedium", "the scene has no medium"});
     check({ball_before_sky, "<sphere/>", "<sphere/><lightRayDensityMultiplier>0</lightRayDensityMultiplier>",
            "background", "noMedium", "lightRayDensityMultiplier is 0"});
@@ -155,6 +164,8 @@ TEST_CASE("media that cannot be seen are explained", "[gpu][explain]") {
            "scattering=\"none\">deltaTracking</integrator>" +
                picture,
            "black", "inside", "stands inside of the medium"});
+    check({fog, camera, "<camera projection=\"equirectangular\"/>", "noise", "inside",
+           "move the camera out or lower sigma_a"});
     const std::string lit_slab = with(slab, "<backgroundColor r=\"0.5\" g=\"0.5\" b=\"0.5\"/>",
                                       "<light x=\"0\" y=\"0\" z=\"1\" r=\"5\" g=\"5\" b=\"5\"/>");
     check({lit_slab, "z=\"1\" r", "z=\"-1\" r", "", "", ""}); // thin enough to be seen from behind

@@ -168,6 +168,7 @@ TEST_CASE("sensors in scene files", "[cpu][xml][sensors]") {
         {R"(<camera projection="orthographic" fov="30"/>)", "viewHeight says"},
         {R"(<camera projection="equirectangular" lensRadius="1"/>)", "only perspective cameras"},
         {R"(<camera viewHeight="3"/>)", "fov says"},
+        {R"(<camera projection="equirectangular" viewHeight="3"/>)", "all directions are in view"},
         {"<pixelFilter>sinc</pixelFilter>", "unknown pixelFilter 'sinc'"},
         {R"(<pixelFilter radius="0">box</pixelFilter>)", "radius"}};
     for (const auto& [elements, message] : errors)
