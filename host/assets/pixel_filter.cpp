@@ -25,10 +25,6 @@ double weight(PixelFilter filter, double x) {
 
 } // namespace
 
-bool has_plain_pixels(const RenderSettings& settings) {
-    return settings.pixel_filter == PixelFilter::box && settings.pixel_filter_radius == 0.5;
-}
-
 std::vector<double> filter_quantiles(const RenderSettings& settings, int count) {
     constexpr int steps = 4096; // of the integral, by midpoints
     std::vector<double> sums{0.0};
@@ -37,7 +33,8 @@ std::vector<double> filter_quantiles(const RenderSettings& settings, int count) 
     std::vector<double> quantiles;
     int i = 0;
     for (int q = 0; q < count; ++q) {
-        const double target = sums.back() * q / count;
+        const double rest = 1.0 - double(q) / count;
+        const double target = sums.back() * (1.0 - rest * rest);
         while (sums[static_cast<std::size_t>(i) + 1] < target)
             ++i;
         const double part = (target - sums[static_cast<std::size_t>(i)]) /

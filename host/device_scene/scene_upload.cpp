@@ -370,7 +370,9 @@ Specialization specialize(const Scene& scene, Media media, const Method& method,
     constants[SPEC_LIGHTS] = seen == LIGHTS_TABLE && method.nee == NEE_NONE ? LIGHTS_SUN : seen;
     constants[SPEC_MIS] = method.mis;
     constants[SPEC_SENSOR] = sensor_kind(scene.camera);
-    constants[SPEC_PIXEL_FILTER] = has_plain_pixels(scene.settings) ? 0 : 1;
+    constants[SPEC_PIXEL_FILTER] = has_plain_pixels(scene.settings)                  ? PIXEL_EVEN
+                                   : scene.settings.pixel_filter == PixelFilter::box ? PIXEL_BOX
+                                                                                     : PIXEL_QUANTILES;
     constants[SPEC_DISTANCE] =
         method.distance.value_or(gains_by_looks_along(scene, media) ? DISTANCE_MIXED : DISTANCE_FLIGHTS);
     return constants;

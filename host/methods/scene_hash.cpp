@@ -202,7 +202,7 @@ std::string scene_hash(const Scene& authored) {
     const Method method = choose_method(scene);
     Writer writer;
     add_view(writer, scene.camera, scene.picture);
-    if (scene.settings.pixel_filter != PixelFilter::box || scene.settings.pixel_filter_radius != 0.5)
+    if (!has_plain_pixels(scene.settings))
         writer.add("pixel",
                    glm::dvec3(static_cast<int>(scene.settings.pixel_filter), scene.settings.pixel_filter_radius, 0.0));
     for (const Volume& volume : scene.volumes)

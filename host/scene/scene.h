@@ -185,6 +185,11 @@ struct RenderSettings {
     int majorant_cell = 0;       // voxels along an edge of a majorant cell; 0: automatic
 };
 
+// A box as wide as the pixel, which is what a picture has unless another filter is asked for.
+inline bool has_plain_pixels(const RenderSettings& settings) {
+    return settings.pixel_filter == PixelFilter::box && settings.pixel_filter_radius == 0.5;
+}
+
 // What the mean of the picture must be, for scenes that are tests: derived in the scene file, without effect on the
 // picture.
 struct Expected {

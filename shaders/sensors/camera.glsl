@@ -21,18 +21,25 @@ struct CameraRay {
     vec3 direction;
 };
 
+// The distance from a pixel's middle, along each axis, within which a filter has the part `u`: the inverse of its
+// distribution. Linear between nodes that are even in 1 - sqrt(1 - u), and so lie close where the filter ends.
+vec2 filter_quantile(vec2 u) {
+    vec2 x = min((1.0 - sqrt(1.0 - u)) * float(FILTER_QUANTILES), float(FILTER_QUANTILES) * 0.9999999);
+    uvec2 i = uvec2(x);
+    vec2 low = vec2(frame_block.filter_quantiles[i.x], frame_block.filter_quantiles[i.y]);
+    vec2 high = vec2(frame_block.filter_quantiles[i.x + 1u], frame_block.filter_quantiles[i.y + 1u]);
+    return mix(low, high, x - vec2(i));
+}
+
 // Where in the picture a sample looks, pixels from its top left corner: evenly within its pixel, or about its middle as the
-// filter weights, by the inverse of the filter's distribution.
+// filter weights.
 vec2 picture_point(uint place, vec2 u) {
     vec2 p = vec2(place & 0xffffu, place >> 16u) + u;
-    if (PIXEL_FILTER != 0) {
-        vec2 aside = 2.0 * u - 1.0;
-        vec2 x = min(abs(aside) * float(FILTER_QUANTILES), float(FILTER_QUANTILES) * 0.9999999);
-        uvec2 i = uvec2(x);
-        vec2 low = vec2(frame_block.filter_quantiles[i.x], frame_block.filter_quantiles[i.y]);
-        vec2 high = vec2(frame_block.filter_quantiles[i.x + 1u], frame_block.filter_quantiles[i.y + 1u]);
-        p += 0.5 - u + sign(aside) * mix(low, high, x - vec2(i));
-    }
+    vec2 aside = 2.0 * u - 1.0;
+    if (PIXEL_FILTER == PIXEL_BOX)
+        p += 0.5 - u + aside * frame_block.filter_quantiles[FILTER_QUANTILES];
+    if (PIXEL_FILTER == PIXEL_QUANTILES)
+        p += 0.5 - u + sign(aside) * filter_quantile(abs(aside));
     return p;
 }
 

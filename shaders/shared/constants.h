@@ -74,7 +74,7 @@
 #define SPEC_ALBEDO 20      // ALBEDO_...
 #define SPEC_ALBEDO_TYPE 21 // GRID_...
 #define SPEC_SENSOR 22       // SENSOR_...
-#define SPEC_PIXEL_FILTER 23 // 1: points in pixels are drawn by quantiles of a filter; 0: evenly
+#define SPEC_PIXEL_FILTER 23 // PIXEL_...
 #define SPEC_MEMBER_SHAPE 24 // of several media: SHAPE_...,
 #define SPEC_MEMBER_FIELD 25 // FIELD_...
 #define SPEC_COUNT 26
@@ -103,7 +103,13 @@
 #define SENSOR_LENS 1
 #define SENSOR_ORTHOGRAPHIC 2
 #define SENSOR_EQUIRECTANGULAR 3
-#define FILTER_QUANTILES 64 // between 0 and the filter's radius
+
+// Where samples lie: evenly in their pixel; evenly in a box about its middle; or as the quantiles of a filter have it, between
+// 0 and its radius.
+#define PIXEL_EVEN 0
+#define PIXEL_BOX 1
+#define PIXEL_QUANTILES 2
+#define FILTER_QUANTILES 64
 
 #define ALBEDO_CONSTANT 0
 #define ALBEDO_GRID 1
