@@ -1,6 +1,7 @@
 #include "framing.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <limits>
 
 #include "camera_view.h"
@@ -148,8 +149,28 @@ void frame(Camera& camera, const Picture& picture, const Corners& corners) {
     }
     // A wide view could have the nearest corner in the eye itself.
     const double depth = std::max({across.depth(), upwards.depth(), towards_eye + nearest * diagonal_of(corners)});
+    const glm::dvec3 before = camera.position;
     camera.position = middle + rotation * glm::dvec3(across.place(depth), upwards.place(depth), depth);
+    if (camera.lens.radius > 0.0) // what was sharp stays so
+        camera.lens.focus += glm::dot(camera.position - before, rotation[2]);
 }
+
+namespace {
+
+// What was sharp before the medium may lie behind the eye that sees all of the medium.
+void check_focus(const Lens& lens) {
+    if (lens.radius <= widest_lens * lens.focus)
+        return;
+    const std::string where =
+        lens.focus > 0.0 ? fmt::format("{:.3g} before it, too near for a lens of radius {:g}", lens.focus, lens.radius)
+                         : fmt::format("{:.3g} behind it", -lens.focus);
+    throw InputError(fmt::format("--frame: what is sharp stays where it is, and where the camera sees all of the "
+                                 "medium that is {}; raise <camera> focus, or give lookAt, a point of the medium, in "
+                                 "its place",
+                                 where));
+}
+
+} // namespace
 
 void frame_medium(Scene& scene, FieldCache& fields) {
     const std::optional<Corners> corners = medium_corners(scene, fields);
@@ -161,6 +182,8 @@ void frame_medium(Scene& scene, FieldCache& fields) {
     if (scene.camera.projection == Projection::equirectangular)
         throw InputError("--frame: an equirectangular camera sees all around it, wherever it is; leave --frame out");
     frame(scene.camera, scene.picture, *corners);
+    if (scene.camera.lens.radius > 0.0)
+        check_focus(scene.camera.lens);
 }
 
 } // namespace vkvol

@@ -23,10 +23,11 @@ glm::dvec3 middle_of(const Corners& corners);
 double diagonal_of(const Corners& corners);
 
 // Moves the camera, without turning it, to the nearest place from which the picture shows all corners with some air
-// around them, but not up to the box itself; the box is in its middle.
+// around them, but not up to the box itself; the box is in its middle. What a lens has sharp stays where it is, even if
+// that comes to be behind the eye: its focus is below 0 then.
 void frame(Camera& camera, const Picture& picture, const Corners& corners);
 
-// The same for the scene's medium. Throws InputError if there is none.
+// The same for the scene's medium. Throws InputError if there is none, and where a lens cannot have sharp what it had.
 void frame_medium(Scene& scene, FieldCache& fields);
 
 } // namespace vkvol

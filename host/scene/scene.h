@@ -22,9 +22,13 @@ inline constexpr double largest_length = 1e11;
 // What is hotter is no flame but a slip of the unit.
 inline constexpr double hottest_kelvin = 1e9;
 
-// As SENSOR_... of shaders/shared/constants.h, where a lens makes a perspective one another. Equirectangular: longitude
-// across the picture, latitude down it, the middle of the reference frame straight ahead.
+// How directions become places in the picture. Equirectangular: longitude across it, latitude down it, the middle of
+// the reference frame straight ahead. Kernels tell more of them apart, SENSOR_... of shaders/shared/constants.h: a
+// perspective one with a lens is one of its own there.
 enum class Projection { perspective, orthographic, equirectangular };
+
+// The largest radius of a lens, by the distance of what is sharp: single precision has no directions beyond.
+inline constexpr double widest_lens = 1000.0;
 
 // A thin lens across the eye, in its plane. Perspective only.
 struct Lens {

@@ -121,12 +121,11 @@ Lens lens_of(const XmlElement& element, const Camera& camera, const std::optiona
         element.fail_attribute("lensRadius",
                                "<camera> lensRadius: what is sharp? add focus, the distance along the view, "
                                "or lookAt, the point that is");
-    constexpr double widest = 1000.0; // of lenses, by what is sharp: single precision has no directions beyond
-    if (lens.radius > widest * lens.focus)
+    if (lens.radius > widest_lens * lens.focus)
         element.fail_attribute("lensRadius",
                                fmt::format("<camera> lensRadius: {:g} is more than {:g} times the distance of what is "
                                            "sharp, {:g}; lower it, or raise focus",
-                                           lens.radius, widest, lens.focus));
+                                           lens.radius, widest_lens, lens.focus));
     lens.blades = static_cast<int>(element.attribute_integer("blades", 0, 0, 100));
     if (lens.blades == 1 || lens.blades == 2)
         element.fail_attribute("blades",

@@ -153,6 +153,22 @@ TEST_CASE("a framed box fills the picture and is all in it", "[cpu][xml]") {
     }
 }
 
+TEST_CASE("what a lens has sharp is so from where the medium is framed", "[cpu][xml]") {
+    const char* ball = "<sphere x='3' y='1' z='-20' radius='2'/>";
+    FieldCache fields;
+    Scene scene = parse(fmt::format("{}<camera x='1' y='2' z='30' lookAt='3 1 -20' lensRadius='.5'/>", ball));
+    frame_medium(scene, fields);
+    CHECK(glm::dot(glm::dvec3(3, 1, -20) - scene.camera.position, middle_ray(scene.camera)) ==
+          Approx(scene.camera.lens.focus));
+    CHECK(scene.camera.lens.focus < 10.0); // nearer than before
+    scene =
+        parse(fmt::format("{}<camera z='30' lensRadius='.5' focus='4'/>", ball)); // before the ball, far behind the eye
+    CHECK_THROWS_WITH(frame_medium(scene, fields), Contains("behind it; raise <camera> focus, or give lookAt"));
+    scene = parse(fmt::format("{}<camera z='30' focus='4'/>", ball)); // of a pinhole nothing is sharp, or everything
+    frame_medium(scene, fields);
+    CHECK(scene.camera.lens.focus == 0.0);
+}
+
 TEST_CASE("each kind of medium is framed by its box", "[cpu][xml]") {
     FieldCache fields;
     const auto corners = [&](const char* shape) { return *medium_corners(parse(shape), fields); };
