@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
 
 #include "camera_rays.h"
 #include "camera_view.h"
@@ -257,7 +258,8 @@ shared::SensorParams make_pinhole(const Scene& scene, const CameraRays& rays, gl
         params.lens_v = lens.radius / lens.focus * rotation[1];
         params.lens_lever = static_cast<float>(lens.focus - start);
         params.blades = static_cast<std::uint32_t>(lens.blades);
-        params.blade_rotation = static_cast<float>(glm::radians(lens.rotation));
+        const double turn = 360.0 / std::max(lens.blades, 1); // after which the aperture is the same
+        params.blade_rotation = static_cast<float>(glm::radians(std::remainder(lens.rotation, turn)));
     }
     return params;
 }
@@ -273,7 +275,9 @@ shared::SensorParams make_sensor(const Scene& scene, glm::dvec3 origin, double r
     params.corner = rays.forward;
     params.right = rays.right;
     params.down = rays.down;
-    params.first_angle = rays.first_angle;
+    // What turns around once more is left out: single precision would have nothing left for the angle.
+    params.first_angle = {std::remainder(rays.first_angle.x, 2.0 * std::numbers::pi),
+                          std::remainder(rays.first_angle.y, 2.0 * std::numbers::pi)};
     params.angle_step = rays.angle_step;
     return params;
 }

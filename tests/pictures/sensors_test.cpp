@@ -7,6 +7,7 @@
 #include "camera_rays.h"
 #include "framing.h"
 #include "pixel_filter.h"
+#include "scene_upload.h"
 #include "support/images.h"
 #include "support/scene_text.h"
 #include "support/scenes.h"
@@ -173,6 +174,21 @@ TEST_CASE("samples lie where the filter of their pixel has them", "[gpu][sensors
             CAPTURE(int(filter), low);
             CHECK(mean_of(render_here(scene, 1).film) == Approx(part).margin(5.0 * std::sqrt(part / samples) + rise));
         }
+}
+
+TEST_CASE("angles that go around many times are those of the last turn", "[cpu][sensors]") {
+    const auto sensor = [](const Scene& scene) {
+        return make_frame(scene, {}, choose_method(scene), {0, 1, 0, 1}, 1).sensors[0];
+    };
+    Scene scene;
+    scene.camera.lens = lens(1.0, 10.0, 5, 20.0 + 1e9 * 72.0); // of five blades, every 72 degrees is a turn
+    CHECK(sensor(scene).blade_rotation == Approx(glm::radians(20.0)).epsilon(1e-6));
+    scene.camera.lens = {};
+    scene.camera.projection = Projection::equirectangular;
+    scene.picture = {400, 200, 100.0 - 1e6 * 400.0, 50.0, 400.0, 200.0};
+    // In double precision 2e6 pi radians are known to 1e-9.
+    CHECK(sensor(scene).first_angle.x == Approx(-std::numbers::pi / 2.0).epsilon(1e-6));
+    CHECK(sensor(scene).first_angle.y == Approx(std::numbers::pi / 4.0).epsilon(1e-6));
 }
 
 TEST_CASE("rays of the host are the reference's", "[cpu][sensors]") {
