@@ -162,7 +162,9 @@ void add_view(Writer& writer, const Camera& camera, const Picture& picture) {
     if (camera.projection == Projection::orthographic)
         writer.add("view_height", camera.view_height);
     if (camera.lens.radius > 0.0)
-        writer.add("lens", glm::dvec4(camera.lens.radius, camera.lens.focus, camera.lens.blades, camera.lens.rotation));
+        writer.add("lens", glm::dvec3(camera.lens.radius, camera.lens.focus, 0.0));
+    if (camera.lens.radius > 0.0 && camera.lens.blades > 0)
+        writer.add("blades", glm::dvec3(camera.lens.blades, camera.lens.rotation, 0.0));
     writer.add("width", picture.width);
     writer.add("height", picture.height);
     writer.add("start", glm::dvec3(picture.start_x, picture.start_y, 0));

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "error.h"
 #include "integrators.h"
@@ -304,6 +305,36 @@ TEST_CASE("the scene hash follows what the picture depends on", "[cpu][xml]") {
     CHECK(scene_hash(parse("<box/>")) != hash);
     CHECK(scene_hash(parse_scene("<options><densityField>f.nvdb</densityField></options>", "/a/s.xml")) ==
           scene_hash(parse_scene("<options><densityField>f.nvdb</densityField></options>", "/b/s.xml")));
+}
+
+TEST_CASE("the scene hash follows the camera, the filter of pixels and the grid of albedos", "[cpu][xml]") {
+    const auto hash = [](const std::string& elements) {
+        return scene_hash(parse("<densityField>f.nvdb</densityField>" + elements));
+    };
+    std::set<std::string> hashes = {hash("")};
+    const char* const different[] = {
+        R"(<camera projection="orthographic"/>)",
+        R"(<camera projection="orthographic" viewHeight="3"/>)",
+        R"(<camera projection="equirectangular"/>)",
+        R"(<camera lensRadius=".5" focus="3"/>)",
+        R"(<camera lensRadius=".6" focus="3"/>)",
+        R"(<camera lensRadius=".5" focus="4"/>)",
+        R"(<camera lensRadius=".5" focus="3" blades="5"/>)",
+        R"(<camera lensRadius=".5" focus="3" blades="5" bladeRotation="7"/>)",
+        R"(<pixelFilter radius="1">box</pixelFilter>)",
+        "<pixelFilter>tent</pixelFilter>",
+        R"(<pixelFilter radius="2">tent</pixelFilter>)",
+        R"(<albedo grid="Cd"/>)",
+        R"(<albedo grid="Cs"/>)",
+    };
+    for (const char* elements : different) {
+        CAPTURE(elements);
+        CHECK(hashes.insert(hash(elements)).second);
+    }
+    CHECK(hash("<pixelFilter>box</pixelFilter>") == hash(""));
+    CHECK(hash(R"(<camera projection="perspective" lensRadius="0"/>)") == hash(""));
+    CHECK(hash(R"(<camera lensRadius=".5" focus="3" bladeRotation="7"/>)") ==
+          hash(R"(<camera lensRadius=".5" focus="3"/>)")); // a round one
 }
 
 TEST_CASE("the schema knows every integrator", "[cpu][xml]") {
