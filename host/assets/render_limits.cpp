@@ -27,17 +27,19 @@ struct Extent {
     double diagonal = 0.0;
 };
 
-// Of a box about the middle of a shape, with halves of its edges.
-Extent moved(const Volume& volume, glm::dvec3 center, glm::dvec3 half) {
-    const glm::dmat3 linear(volume.transform);
-    return {glm::dvec3(volume.transform * glm::dvec4(center, 1.0)), 2.0 * glm::length(linear * half)};
+// Of a shape, before its volume's transform, which makes it longer along some axis.
+Extent moved(const Volume& volume, glm::dvec3 center, double diagonal) {
+    double stretch = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+        stretch = std::max(stretch, glm::length(glm::dvec3(volume.transform[axis])));
+    return {glm::dvec3(volume.transform * glm::dvec4(center, 1.0)), stretch * diagonal};
 }
 
 Extent extent_of(const Volume& volume, const LoadedMedium& loaded) {
     if (const auto* sphere = std::get_if<Sphere>(&volume.shape))
-        return moved(volume, sphere->center, glm::dvec3(sphere->radius));
+        return moved(volume, sphere->center, 2.0 * sphere->radius);
     if (const auto* box = std::get_if<Box>(&volume.shape))
-        return moved(volume, box->center, 0.5 * box->size);
+        return moved(volume, box->center, glm::length(box->size));
     if (loaded.mesh)
         return {box_center(*loaded.mesh), 2.0 * glm::length(box_center(*loaded.mesh) - lowest_corner(*loaded.mesh))};
     const glm::dvec3 low(loaded.field->voxel_min), high(loaded.field->voxel_max);

@@ -12,7 +12,7 @@ namespace vkvol {
 namespace {
 
 const std::vector<std::string> vocabulary = {
-    "volumes", "densityField", "sphere", "box", "models", "noise", "sigma_a", "sigma_s", "heyneygreenstein_g", "phase",
+    "densityField", "sphere", "box", "models", "volumes", "noise", "sigma_a", "sigma_s", "heyneygreenstein_g", "phase",
     "medium", "emission", "albedo", "light", "lights", "backgroundColor", "camera", "width", "height",
     "rayPerPixelCount", "maxDepth", "integrator", "march", "filter", "russianRoulette", "majorant", "pixelFilter",
     "lightRayDensityMultiplier", "shadowRayDensityMultiplier", "stepSize", "importanceSampling", "fileName",

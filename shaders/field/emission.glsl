@@ -16,7 +16,7 @@ vec3 blackbody_color(EmissionParams e, float kelvin) {
 // At a point of render space.
 vec3 emission_at(MediumParams v, vec3 position) {
     EmissionParams e = v.emission;
-    int kind = KIND(EMISSION, v, emission), type = KIND(TEMPERATURE_TYPE, v, temperature_type);
+    const int kind = KIND(EMISSION, v, emission), type = KIND(TEMPERATURE_TYPE, v, temperature_type);
     if (kind == EMISSION_NONE || kind == EMISSION_CONSTANT)
         return e.constant;
     vec4 p = vec4(position, 1.0);

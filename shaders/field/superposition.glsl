@@ -28,7 +28,7 @@ MediumParams medium_of(MediumParams v, uint row) {
 float extinction_of(uint row, vec3 position, vec3 tap) {
     MediumParams m = media[row];
     vec3 p = to_medium(m, position, vec3(0.0)).origin;
-    int field = KIND(MEMBER_FIELD, m, field);
+    const int field = KIND(MEMBER_FIELD, m, field);
     bool in_box = all(greaterThanEqual(p, m.bounds_min)) && all(lessThanEqual(p, m.bounds_max));
     bool inside = KIND(MEMBER_SHAPE, m, shape) == SHAPE_SPHERE ? dot(p, p) < 1.0 : in_box;
     float found = 1.0;

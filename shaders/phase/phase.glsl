@@ -14,7 +14,7 @@
 // Per steradian; integrates to 1 over `after`.
 float phase_eval(MediumParams v, vec3 before, vec3 after) {
     float p = 0.0;
-    int kind = KIND(PHASE, v, phase);
+    const int kind = KIND(PHASE, v, phase);
     if (kind == PHASE_HENYEY_GREENSTEIN)
         p = hg_eval(v.phase.g, hg_from_peak(v.phase.g, before, after));
     else if (kind == PHASE_RAYLEIGH)
@@ -49,7 +49,7 @@ float phase_eval_twice(MediumParams v, vec3 before, vec3 after) {
 // A direction distributed as phase_eval; u in [0, 1)^2.
 vec3 phase_sample(MediumParams v, vec3 before, vec2 u) {
     vec3 after = before;
-    int kind = KIND(PHASE, v, phase);
+    const int kind = KIND(PHASE, v, phase);
     if (kind == PHASE_HENYEY_GREENSTEIN)
         after = hg_sample(v.phase.g, before, u);
     else if (kind == PHASE_RAYLEIGH)

@@ -148,7 +148,7 @@ TEST_CASE("between models and a density field the original's integrators decide"
     }
     for (const char* name : {"rayMarching", ""})
         CHECK_THROWS_WITH(both(name), Catch::Contains("a <models> beside the <densityField>"));
-    CHECK_THAT(error_of("<sphere/><models><model>a.obj</model></models>"), Catch::Contains("one medium"));
+    CHECK_THAT(error_of("<sphere/><models><model>a.obj</model></models>"), Catch::Contains("one shape"));
 }
 
 TEST_CASE("the density of shapes can be noise", "[cpu][xml]") {

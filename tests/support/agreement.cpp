@@ -95,9 +95,9 @@ std::vector<NamedScene> agreement_scenes() {
     noise.noise = Noise{1.8, 3, 0.5, 2.0};
     scenes.push_back({"noise in a mesh", picture_of(noise, 9.0, 400)});
     Scene several = picture_of(medium(cloud_file(), 0.6, 0.95, 0.3), 9.0, 400);
-    Volume ball = medium(Sphere{{1.0, -0.5, 0.5}, 2.5}, 0.7, 0.8, -0.3);
-    ball.noise = Noise{1.1, 2, 0.5, 2.0};
-    several.volumes.push_back(ball);
+    Volume noisy = medium(Sphere{{1.0, -0.5, 0.5}, 2.5}, 0.7, 0.8, -0.3);
+    noisy.noise = Noise{1.1, 2, 0.5, 2.0};
+    several.volumes.push_back(noisy);
     several.volumes.push_back(medium(Box{{-1.5, 1.0, 0.0}, {3.0, 2.0, 4.0}}, 0.3, 0.5));
     scenes.push_back({"several media", several});
     return scenes;
