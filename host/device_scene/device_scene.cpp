@@ -24,8 +24,8 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
         form_ |= form_full;
     if (assets.superposition) {
         form_ |= form_full | form_several;
-        buffers_.upload_media(device, commands, make_media(scene, assets.media, method, origin_),
-                              *assets.superposition);
+        media_ = make_media(scene, assets.media, method, origin_);
+        buffers_.upload_media(device, commands, media_, *assets.superposition);
     }
     if (const std::optional<std::uint32_t> bits = buffers_.window_bits()) {
         form_ |= form_windows;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "crop.h"
 #include "light_cache.h"
@@ -31,9 +33,10 @@ public:
     const Specialization& specialization() const { return specialization_; }
     unsigned form() const { return form_; } // of its kernels, see specialization.h
     bool emits() const { return specialization_[SPEC_EMISSION] != EMISSION_NONE; }
-    const std::string& text() const { return text_; }    // of its kernels
-    glm::dvec3 origin() const { return origin_; }        // of render space, in world space
-    const LightTable& lights() const { return lights_; } // empty where there is no choice
+    const std::string& text() const { return text_; }                      // of its kernels
+    glm::dvec3 origin() const { return origin_; }                          // of render space, in world space
+    const LightTable& lights() const { return lights_; }                   // empty where there is no choice
+    std::span<const shared::MediumParams> media() const { return media_; } // of several
     BoundBuffers bound() const;
     std::uint64_t bytes() const;
 
@@ -46,6 +49,7 @@ private:
     shared::FrameParams frame_;
     SceneBuffers buffers_;
     LightTable lights_;
+    std::vector<shared::MediumParams> media_;
     std::optional<LightCache> light_cache_;
     unsigned form_;
     std::string text_;

@@ -119,13 +119,14 @@ Checkpoint parse(std::string_view bytes) {
 } // namespace
 
 RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization, const Assets& assets,
-                        const LightTable& lights, std::uint32_t sample_offset, const std::string& device,
-                        std::vector<std::uint32_t> band_rows) {
+                        const LightTable& lights, std::span<const shared::MediumParams> media,
+                        std::uint32_t sample_offset, const std::string& device, std::vector<std::uint32_t> band_rows) {
     Digest digest;
     digest.add(std::as_bytes(std::span(&sample_offset, 1)));
     digest.add(std::as_bytes(std::span(&frame, 1)));
     digest.add_all(specialization);
     digest.add_all(lights.rows);
+    digest.add_all(media);
     if (assets.sky)
         digest.add_all(assets.sky->texels);
     for (const LoadedMedium& medium : assets.media) {

@@ -41,9 +41,10 @@ struct Checkpoint {
     Schedule schedule = Schedule::fused;
 };
 
+// `media`: rows, of several.
 RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization, const Assets& assets,
-                        const LightTable& lights, std::uint32_t sample_offset, const std::string& device,
-                        std::vector<std::uint32_t> band_rows);
+                        const LightTable& lights, std::span<const shared::MediumParams> media,
+                        std::uint32_t sample_offset, const std::string& device, std::vector<std::uint32_t> band_rows);
 
 // Atomically: the file is the last checkpoint or this one. Throws RenderError.
 void save_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);

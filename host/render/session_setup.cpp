@@ -212,7 +212,8 @@ void Session::begin_identity(const Device& device, const Assets& assets) {
     for (const Band& band : bands_)
         rows.push_back(band.rows);
     identity_ = identify(device_scene_->frame(), device_scene_->specialization(), assets, device_scene_->lights(),
-                         job_.sample_offset, fmt::format("{}, {}", device.info().name, device.info().driver), rows);
+                         device_scene_->media(), job_.sample_offset,
+                         fmt::format("{}, {}", device.info().name, device.info().driver), rows);
     if (job_.resume)
         check_identity(job_.resume->identity, identity_);
 }

@@ -68,6 +68,8 @@ std::string attribute_value(std::string_view name, Source& random) {
         return one_of("flights|mixed", random);
     if (name == "lookAt" || name == "up")
         return one_of("0 0 0|1 2 3|0 0", random);
+    if (name == "values")
+        return one_of("1 0 0 0 0 1 0 0 0 0 1 0|1 2 3 4 0 2 0 1 1 0 3 2 0 0 0 1|1 0 0", random);
     if (name == "kelvin")
         return one_of("|2000|6500", random);
     if (name == "octaves" || name == "cell")
@@ -98,8 +100,29 @@ std::string element(const Words& words, Source& random) {
     return xml + fmt::format(">{}</{}>\n", text, words.element);
 }
 
+// Of some of the elements that a medium has.
+std::string volume(Source& random) {
+    std::string xml = "  <volume>\n" + element(grammar[random.below(3)], random);
+    for (const char* name : {"noise", "sigma_a", "sigma_s", "phase", "medium", "emission", "albedo"})
+        if (random.one_in(3))
+            xml += element(words_of(name), random);
+    if (random.one_in(2)) {
+        xml += "  <transform>\n";
+        for (std::uint64_t steps = random.below(4); steps > 0; --steps)
+            xml += element(random.pick(step_grammar), random);
+        xml += "  </transform>\n";
+    }
+    return xml + "  </volume>\n";
+}
+
 std::string build(Source& random) {
     std::string xml = "<options>\n";
+    if (random.one_in(3)) {
+        xml += "  <volumes>\n";
+        for (std::uint64_t volumes = random.below(4); volumes > 0; --volumes)
+            xml += volume(random);
+        xml += "  </volumes>\n";
+    }
     switch (random.below(5)) { // one medium, mostly
     case 0:
         xml += element(grammar[0], random);

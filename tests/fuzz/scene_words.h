@@ -104,6 +104,12 @@ inline constexpr Words grammar[] = {
     {"multiThreaded", "true|0", {"freeThreads"}},
     {"multiThreadedChunkSize", "i", {}}};
 
+// Within <transform>.
+inline constexpr Words step_grammar[] = {{"translate", "", {"x", "y", "z"}},
+                                         {"rotate", "", {"x", "y", "z", "angle"}},
+                                         {"scale", "", {"value", "x", "y", "z"}},
+                                         {"matrix", "", {"values"}}};
+
 // Within <lights>.
 inline constexpr Words light_grammar[] = {
     {"directional", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier"}},

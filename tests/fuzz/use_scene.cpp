@@ -117,6 +117,19 @@ void check_loaded(const LoadedMedium& loaded) {
             expect_finite(corner, "a corner of a triangle is not finite");
 }
 
+void check_superposition(const Scene& scene, const Superposition& whole) {
+    const std::size_t cells = whole.cells.bounds.size();
+    expect(cells == 0 || whole.overlaps.size() > cells, "cells over all media have no lists");
+    for (std::size_t i = 0; i < cells; ++i) {
+        const std::uint32_t begin = whole.overlaps[i], end = whole.overlaps[i + 1];
+        expect(std::isfinite(whole.cells.bounds[i]), "a majorant of several media is not finite");
+        expect(begin <= end && end <= whole.overlaps.size(), "a list of media reaches beyond the table");
+        expect((begin < end) == (whole.cells.bounds[i] > 0.0f), "a cell's bound and its list differ");
+    }
+    for (std::size_t i = cells + 1; i < whole.overlaps.size(); ++i)
+        expect(whole.overlaps[i] < scene.volumes.size(), "a list of media names one that is not there");
+}
+
 } // namespace
 
 void check_field(const DensityField& field) {
@@ -164,11 +177,19 @@ void use_scene(const Scene& authored) {
     const Assets assets = load_assets(scene, method);
     for (const LoadedMedium& medium : assets.media)
         check_loaded(medium);
-    const Specialization constants = specialize(scene, assets.media, method);
+    const Superposition* whole = whole_of(assets);
+    const Specialization constants = specialize(scene, assets.media, method, whole);
+    if (whole) {
+        check_superposition(scene, *whole);
+        const auto rows = make_media(scene, assets.media, method, render_origin(scene, assets.media, whole));
+        for (const shared::MediumParams& row : rows)
+            if (row.kinds.shape != SHAPE_NONE)
+                check_volume(row);
+    }
     is_chromatic(scene);
     if (constants[SPEC_LIGHTS] != LIGHTS_SUN) {
-        const LightTable table = make_light_table(scene, assets, render_origin(scene, assets.media),
-                                                  0.5 * longest_diagonal(scene, assets.media));
+        const LightTable table = make_light_table(scene, assets, render_origin(scene, assets.media, whole),
+                                                  0.5 * longest_diagonal(scene, assets.media, whole));
         for (const shared::LightRow& row : table.rows)
             check_light(row);
         for (std::uint32_t i = 0; i < table.choices; ++i)
@@ -180,7 +201,7 @@ void use_scene(const Scene& authored) {
         }
     }
     const Crop crop{0, scene.picture.width, 0, scene.picture.height};
-    check_frame(make_frame(scene, assets.media, method, crop, 1), static_cast<int>(constants[SPEC_SHAPE]));
+    check_frame(make_frame(scene, assets.media, method, crop, 1, whole), static_cast<int>(constants[SPEC_SHAPE]));
 }
 
 } // namespace vkvol::fuzz

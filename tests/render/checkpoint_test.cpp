@@ -50,7 +50,9 @@ TEST_CASE("a render resumed from any of its checkpoints has the same bits", "[gp
     const std::size_t band_rows = GENERATE(0u, 10u); // the film in one buffer, or in several
     const Schedule schedule = GENERATE(Schedule::fused, Schedule::staged);
     const Schedule resumed_by = GENERATE(Schedule::fused, Schedule::staged);
-    const Scene scene = cloud(9);
+    Scene scene = cloud(9);
+    if (band_rows > 0)
+        scene.volumes.push_back(medium(Sphere{{0.0, 0.0, 0.0}, 3.0}, 0.5, 0.5));
     RenderJob job;
     job.plan.schedule = schedule;
     job.plan.slots = 64; // few, so that every checkpoint finds pixels left
@@ -155,6 +157,11 @@ TEST_CASE("a checkpoint is continued by its own render alone", "[gpu][checkpoint
         render_part(other, job);
         albedo.value = [](glm::ivec3 voxel) { return 0.5f + 0.5f * cloud_noise(voxel + 1); };
         other.volumes.front().shape = write_grids({cloud_grid(), albedo});
+    }
+    SECTION("of one of several media") {
+        other.volumes.push_back(medium(Sphere{{0.0, 0.0, 0.0}, 3.0}, 0.5, 0.5));
+        render_part(other, job);
+        other.volumes.back().g = 0.1;
     }
     SECTION("of the samples' range") {
         rest.sample_offset = 1;
