@@ -144,6 +144,37 @@ TEST_CASE("media in one another equal the reference's race", "[gpu][image][sever
     check_against_reference(scene, "looks from along flights");
 }
 
+TEST_CASE("media each with tables of their own equal the reference", "[gpu][image][several]") {
+    const auto fire = [](Storage storage, double kelvin) {
+        GridRecipe heat{{-6, -5, -4}, {9, 8, 7}, [](glm::ivec3 i) { return 0.6f + 1.8f * cloud_noise(i * 3 + 40); }};
+        heat.storage = storage;
+        heat.name = "temperature";
+        heat.linear = glm::dmat3(0.45);
+        GridRecipe albedo = heat;
+        albedo.color = [](glm::ivec3 i) { return glm::vec3(0.9f, 0.5f, cloud_noise(i * 5 + 11)); };
+        albedo.name = "Cd";
+        Volume volume = medium(write_grids({cloud_grid(storage), heat, albedo}), 1.0, 0.5, 0.2);
+        volume.temperature.model = TemperatureEmission::Model::blackbody;
+        volume.temperature.color = {0.5, 0.4, 0.25};
+        volume.temperature.scale = kelvin;
+        return volume;
+    };
+    Scene scene = lit_scene(fire(Storage::float32, 700.0), 12.0);
+    scene.volumes.push_back(fire(Storage::fp8, 1000.0));
+    scene.volumes.back().albedo_grid = "Cd";
+    scene.volumes.back().transform = glm::translate(glm::dmat4(1.0), glm::dvec3(1.5, -1.0, 0.5)) *
+                                     turned(1.9, {0.2, 1.0, 0.1}) * glm::scale(glm::dmat4(1.0), glm::dvec3(0.8));
+    scene.volumes.push_back(medium(Sphere{{-2.0, 1.0, 1.0}, 2.0}, 0.6, 0.6));
+    scene.volumes.back().phase = PhaseFunction::table;
+    scene.volumes.back().phase_details.file = write_text("0 9\n10 4\n40 1\n180 .5\n");
+    scene.volumes.push_back(medium(Sphere{{2.0, 1.0, 1.5}, 1.5}, 0.6, 0.6));
+    scene.volumes.back().phase = PhaseFunction::table;
+    scene.volumes.back().phase_details.file = write_text("0 1\n90 .2\n150 3\n180 8\n");
+    scene.volumes.push_back(medium(Sphere{{0.0, -2.0, 0.5}, 1.5}, 0.6, 0.6, 0.4));
+    scene.volumes.back().phase = PhaseFunction::draine;
+    check_against_reference(scene, "tables");
+}
+
 TEST_CASE("a camera in the innermost of nested media", "[gpu][image][several]") {
     Scene scene = lit_scene(medium(Sphere{{0.0, 0.0, 0.0}, 4.0}, 0.2, 0.9, 0.6));
     scene.volumes.push_back(medium(Sphere{{0.0, 0.0, 0.0}, 2.0}, 0.4, 0.5, 0.0));
