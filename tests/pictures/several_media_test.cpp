@@ -2,13 +2,16 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
+#include <random>
 
 #include "error.h"
+#include "loaded_medium.h"
 #include "scene_hash.h"
 #include "support/agreement.h"
 #include "support/images.h"
 #include "support/scene_text.h"
 #include "support/scenes.h"
+#include "tests/reference/medium.h"
 
 using namespace vkvol;
 using Catch::Contains;
@@ -211,6 +214,41 @@ TEST_CASE("what is nothing beside a medium changes nothing", "[gpu][image][sever
     const Film empty = render_here(beside, 1).film;
     for (const glm::vec3& pixel : empty.mean)
         CHECK(pixel == glm::vec3(beside.background));
+}
+
+TEST_CASE("cells over several media bound their sum, and list all that may be there", "[cpu][several]") {
+    const Scene scene = mixture();
+    const Assets assets = load_assets(scene, choose_method(scene));
+    const Superposition& whole = *assets.superposition;
+    std::vector<reference::Medium> media;
+    for (const Volume& volume : scene.volumes)
+        media.push_back(reference::load(volume));
+    std::mt19937 engine(3);
+    std::uniform_real_distribution<double> part(0.0, 1.0);
+    std::size_t met = 0, empty = 0;
+    for (int n = 0; n < 20000; ++n) {
+        const glm::dvec3 cell_point =
+            glm::mix(whole.low(), whole.high(), glm::dvec3(part(engine), part(engine), part(engine)));
+        const glm::ivec3 cell = glm::ivec3(glm::floor(cell_point)) - whole.cells.origin;
+        const auto i = std::size_t((cell.x * whole.cells.dims.y + cell.y) * whole.cells.dims.z + cell.z);
+        const auto begin = whole.overlaps.begin() + whole.overlaps[i],
+                   end = whole.overlaps.begin() + whole.overlaps[i + 1];
+        double sum = 0.0;
+        for (std::uint32_t k = 0; k < media.size(); ++k) {
+            const reference::Ray ray{whole.origin + whole.edge * cell_point, {0.0, 0.0, 1.0}};
+            const auto parts = support(media[k], ray);
+            const bool inside = !parts.empty() && parts.front().t0 == 0.0;
+            const double sigma_t = inside ? media[k].largest() * reference::DensityAlong(media[k], ray)(0.0) : 0.0;
+            sum += sigma_t;
+            met += sigma_t > 0.0;
+            if (sigma_t > 0.0)
+                CHECK(std::find(begin, end, k) != end);
+        }
+        CHECK(sum <= whole.cells.bounds[i]);
+        empty += whole.cells.bounds[i] == 0.0f;
+    }
+    CHECK(met > 2000);
+    CHECK(empty > 2000); // corners of the box around turned ones
 }
 
 TEST_CASE("groups of volumes in scene files", "[cpu][xml][several]") {
