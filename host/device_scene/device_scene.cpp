@@ -15,9 +15,11 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
       form_(is_chromatic(scene) ? form_chromatic : 0), text_(kernel_text(specialization_, assets, is_chromatic(scene))),
       origin_(render_origin(scene, assets.media, whole_of(assets))),
       cache_directions_(cache_layout(scene.lights).directions) {
-    specialization_[SPEC_TEXELS] = buffers_.texels() ? 1 : 0;
     if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN)
         make_lights(scene, assets);
+    // Of texels devices may allow as few as 65536 to a buffer.
+    const bool fits = cache_entries(frame_.lattice, cache_directions_.size()) <= device.limits().maxTexelBufferElements;
+    specialization_[SPEC_TEXELS] = buffers_.texels() && fits ? 1 : 0;
     if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN || specialization_[SPEC_PHASE] != PHASE_HENYEY_GREENSTEIN ||
         specialization_[SPEC_ALBEDO] != ALBEDO_CONSTANT || specialization_[SPEC_TEMPERATURE_TYPE] == GRID_COLOR ||
         specialization_[SPEC_SENSOR] != SENSOR_PINHOLE || specialization_[SPEC_PIXEL_FILTER] != 0)
@@ -56,7 +58,8 @@ void DeviceScene::make_light_cache() {
     if (specialization_[SPEC_NEE] != NEE_CACHED || specialization_[SPEC_SHAPE] == SHAPE_NONE)
         return;
     buffers_.set_frame(commands_, frame_);
-    light_cache_.emplace(device_, buffers_.bound(), frame_.lattice, cache_directions_);
+    light_cache_.emplace(device_, buffers_.bound(), frame_.lattice, cache_directions_,
+                         specialization_[SPEC_TEXELS] != 0);
 }
 
 void DeviceScene::compile_light_cache(VkPipelineCache cache) {
@@ -78,7 +81,7 @@ BoundBuffers DeviceScene::bound() const {
     BoundBuffers bound = buffers_.bound();
     if (light_cache_) {
         bound[BINDING_LATTICE] = &light_cache_->buffer();
-        if (buffers_.texels())
+        if (specialization_[SPEC_TEXELS] != 0)
             bound[BINDING_LATTICE_TEXELS] = &light_cache_->buffer();
     }
     return bound;

@@ -14,8 +14,9 @@ std::uint64_t count(const shared::LatticeParams& lattice) {
     return std::uint64_t(lattice.dims.x) * std::uint64_t(lattice.dims.y) * std::uint64_t(lattice.dims.z);
 }
 
-BoundBuffers with_lattice(BoundBuffers scene, const Buffer& lattice) {
-    scene[BINDING_LATTICE] = scene[BINDING_LATTICE_TEXELS] = &lattice;
+BoundBuffers with_lattice(BoundBuffers scene, const Buffer& lattice, bool texels) {
+    scene[BINDING_LATTICE] = &lattice;
+    scene[BINDING_LATTICE_TEXELS] = texels ? &lattice : nullptr;
     return scene;
 }
 
@@ -51,12 +52,16 @@ CacheLayout cache_layout(const std::vector<Light>& lights) {
     return all;
 }
 
+std::uint64_t cache_entries(const shared::LatticeParams& lattice, std::size_t directions) {
+    return (1 + directions) * count(lattice);
+}
+
 LightCache::LightCache(const Device& device, const BoundBuffers& scene, const shared::LatticeParams& lattice,
-                       std::vector<glm::vec3> directions)
+                       std::vector<glm::vec3> directions, bool texels)
     : device_(device),
-      buffer_(device, "light cache", (1 + directions.size()) * count(lattice) * sizeof(glm::vec4),
+      buffer_(device, "light cache", cache_entries(lattice, directions.size()) * sizeof(glm::vec4),
               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, BufferPlace::device),
-      bindings_(device, with_lattice(scene, buffer_)), directions_(std::move(directions)),
+      bindings_(device, with_lattice(scene, buffer_, texels)), directions_(std::move(directions)),
       nodes_(static_cast<std::uint32_t>(count(lattice))) {}
 
 void LightCache::compile(const Specialization& specialization, unsigned form, VkPipelineCache cache) {

@@ -23,11 +23,14 @@ struct CacheLayout {
 };
 CacheLayout cache_layout(const std::vector<Light>& lights);
 
+// vec4s that it holds.
+std::uint64_t cache_entries(const shared::LatticeParams& lattice, std::size_t directions);
+
 class LightCache {
 public:
-    // Of a scene whose buffers and frame are on the device.
+    // Of a scene whose buffers and frame are on the device. `texels`: it is read as such, see SPEC_TEXELS.
     LightCache(const Device& device, const BoundBuffers& scene, const shared::LatticeParams& lattice,
-               std::vector<glm::vec3> directions);
+               std::vector<glm::vec3> directions, bool texels);
 
     void compile(const Specialization& specialization, unsigned form, VkPipelineCache cache);
     // Once compiled, and before it is read. The kernels go.

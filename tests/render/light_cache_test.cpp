@@ -24,7 +24,7 @@ std::vector<float> depths_at_nodes(const TestScene& scene, const shared::Lattice
     buffers.set_frame(commands, frame);
     Specialization constants = scene.specialization;
     constants[SPEC_TEXELS] = buffers.texels() ? 1 : 0;
-    LightCache cache(test_device(), buffers.bound(), lattice, directions);
+    LightCache cache(test_device(), buffers.bound(), lattice, directions, buffers.texels());
     cache.compile(constants, 0, VK_NULL_HANDLE);
     cache.fill(commands);
     std::vector<glm::vec4> entries(cache.buffer().bytes() / sizeof(glm::vec4));
