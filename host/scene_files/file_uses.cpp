@@ -1,5 +1,6 @@
 #include "file_uses.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "atomic_file.h"
@@ -44,7 +45,9 @@ bool is_same_file(const path& a, const path& b) {
 }
 
 void FileUses::reads(const std::string& what, const path& file) {
-    inputs_.push_back({what, file, ""});
+    const auto is_this = [&](const Use& use) { return use.what == what && use.file == file; };
+    if (std::none_of(inputs_.begin(), inputs_.end(), is_this)) // volumes may have it in common
+        inputs_.push_back({what, file, ""});
 }
 
 void FileUses::reads_files_of(const Scene& scene) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <fmt/format.h>
 
 #include "error.h"
@@ -47,21 +48,28 @@ Scene SceneReader::read() {
     return scene;
 }
 
-// The element of one of these names (they are spellings of the same thing); missing if there is none.
-XmlElement SceneReader::one(std::initializer_list<const char*> names) const {
+pugi::xml_node find_one(XmlDocument& document, pugi::xml_node scope, std::initializer_list<const char*> names) {
     pugi::xml_node found;
-    for (const pugi::xml_node child : scope_.children()) {
+    for (const pugi::xml_node child : scope.children()) {
         const bool matches = std::any_of(names.begin(), names.end(),
-                                         [&](const char* name) { return std::string(name) == child.name(); });
+                                         [&](const char* name) { return std::strcmp(name, child.name()) == 0; });
         if (!matches)
             continue;
         if (found)
-            XmlElement(document_, child)
-                .fail(fmt::format("a second <{}>, after the one at {}; remove one", child.name(),
-                                  document_.place(found)));
+            XmlElement(document, child)
+                .fail(
+                    fmt::format("a second <{}>, after the one at {}; remove one", child.name(), document.place(found)));
         found = child;
     }
-    return XmlElement(document_, found);
+    return found;
+}
+
+// The element of one of these names (they are spellings of the same thing); null if there is none.
+pugi::xml_node SceneReader::find(std::initializer_list<const char*> names) const {
+    for (const pugi::xml_node scope : scopes_)
+        if (const pugi::xml_node found = find_one(document_, scope, names))
+            return found;
+    return {};
 }
 
 RenderSettings SceneReader::settings() const {

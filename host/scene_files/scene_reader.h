@@ -2,6 +2,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,19 +16,24 @@ namespace vkvol {
 
 inline const std::vector<std::string> color_attributes = {"r", "g", "b", "multiplier"};
 using Shape = decltype(Volume::shape);
+using NamedVolumes = std::map<std::string, std::vector<pugi::xml_node>>;
 
 inline constexpr long long max_edge = 65536; // pixels
 inline constexpr long long max_integer = 2147483647;
 
+// Null if there is none in `scope`. Throws InputError if there are two.
+pugi::xml_node find_one(XmlDocument& document, pugi::xml_node scope, std::initializer_list<const char*> names);
+
 class SceneReader {
 public:
     SceneReader(XmlDocument& document, const SceneOverrides& overrides)
-        : document_(document), overrides_(overrides), scope_(document.root()) {}
+        : document_(document), overrides_(overrides), scopes_{document.root()} {}
 
     Scene read();
 
 private:
-    XmlElement one(std::initializer_list<const char*> names) const;
+    pugi::xml_node find(std::initializer_list<const char*> names) const;
+    XmlElement one(std::initializer_list<const char*> names) const { return {document_, find(names)}; }
     XmlElement one(const char* name) const { return one({name}); }
 
     RenderSettings settings() const;
@@ -49,9 +55,13 @@ private:
     template <class Kind> Light of_power(const XmlElement& element, Kind light, Rgb Kind::*shine) const;
     std::optional<Volume> volume(const std::string& integrator) const;
     void read_volumes(Scene& scene);
+    NamedVolumes named_volumes(pugi::xml_node list) const;
+    pugi::xml_node volume_it_is_like(const XmlElement& volume, const NamedVolumes& named) const;
+    std::vector<pugi::xml_node> with_those_it_is_like(pugi::xml_node volume, const NamedVolumes& named) const;
     glm::dmat4 transform() const;
     std::optional<Shape> shape(const std::string& integrator, std::string& place) const;
     XmlElement shape_element(const std::string& integrator) const;
+    XmlElement shape_element(pugi::xml_node scope, const std::string& integrator) const;
     Sphere sphere(const XmlElement& element) const;
     Box box(const XmlElement& element) const;
     std::filesystem::path file_path(const XmlElement& element, const char* example) const;
@@ -74,7 +84,8 @@ private:
 
     XmlDocument& document_;
     const SceneOverrides& overrides_;
-    pugi::xml_node scope_; // whose elements are read: the scene's, or those of a <volume>
+    // Whose elements are read: the scene's, or those of a <volume>, and, where it lacks some, of that which it is like.
+    std::vector<pugi::xml_node> scopes_;
 };
 
 } // namespace vkvol

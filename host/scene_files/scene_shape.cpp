@@ -35,11 +35,19 @@ std::optional<Shape> SceneReader::shape(const std::string& integrator, std::stri
 // The one densityField, sphere, box or models; missing if there is none, or one that asks for nothing. Between models
 // and a density field the original's integrators decided by what they could read, and so do they here.
 XmlElement SceneReader::shape_element(const std::string& integrator) const {
+    for (const pugi::xml_node scope : scopes_)
+        if (const XmlElement element = shape_element(scope, integrator); element.exists())
+            return element;
+    return {document_, {}};
+}
+
+XmlElement SceneReader::shape_element(pugi::xml_node scope, const std::string& integrator) const {
     const Integrator* row = find_integrator(integrator);
     const bool of_thesis = row && row->origin != Integrator::Origin::own;
     XmlElement found(document_, {});
     for (const char* name : {"densityField", "sphere", "box", "models"}) {
-        const XmlElement element = one(name);
+        const pugi::xml_node node = find_one(document_, scope, {name});
+        const XmlElement element(document_, node);
         if (!element.exists())
             continue;
         if (element.name() == "densityField") {
@@ -49,7 +57,7 @@ XmlElement SceneReader::shape_element(const std::string& integrator) const {
         }
         if (element.name() == "models") {
             element.allow({}, false, {"model"});
-            if (!scope_.child("models").child("model"))
+            if (!node.child("model"))
                 continue;
             if (of_thesis && found.exists() && found.name() == "densityField") {
                 const bool takes_models = row->origin == Integrator::Origin::thesis_models;
@@ -119,7 +127,7 @@ GridFile SceneReader::grid_file(const XmlElement& element) const {
 // All models; the original kept the last one alone.
 MeshFiles SceneReader::mesh_files() const {
     MeshFiles files;
-    for (const pugi::xml_node node : scope_.child("models").children("model")) {
+    for (const pugi::xml_node node : find({"models"}).children("model")) {
         const XmlElement model(document_, node);
         model.allow({"baseDir"}, true);
         files.paths.push_back(file_path(model, "sphere.obj"));

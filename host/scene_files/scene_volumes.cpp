@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "nearest_name.h"
 #include "scene_reader.h"
 
 namespace vkvol {
@@ -72,19 +73,13 @@ glm::dmat4 matrix(const XmlElement& element) {
     return m;
 }
 
-} // namespace
-
-// Its parts one after another, the first one first.
-glm::dmat4 SceneReader::transform() const {
-    const XmlElement element = one("transform");
-    element.allow({}, false, {"translate", "rotate", "scale", "matrix"});
+glm::dmat4 transform_of(XmlDocument& document, pugi::xml_node transform) {
+    XmlElement(document, transform).allow({}, false, {"translate", "rotate", "scale", "matrix"});
     glm::dmat4 map(1.0);
-    if (!element.exists())
-        return map;
-    for (const pugi::xml_node node : scope_.child("transform").children()) {
+    for (const pugi::xml_node node : transform.children()) {
         if (node.type() != pugi::node_element)
             continue;
-        const XmlElement step(document_, node);
+        const XmlElement step(document, node);
         if (step.name() == "translate") {
             step.allow({"x", "y", "z"});
             map = glm::translate(glm::dmat4(1.0), vector_of(step, 0.0, coordinate)) * map;
@@ -95,40 +90,108 @@ glm::dmat4 SceneReader::transform() const {
                   map;
         }
     }
+    return map;
+}
+
+bool is_usable(const glm::dmat4& map) {
     const double size = std::cbrt(std::abs(glm::determinant(glm::dmat3(map))));
     bool fits = size >= 1e-9 && size <= 1e9;
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 3; ++row)
             fits = fits && std::abs(map[column][row]) <= (column < 3 ? 1e6 * size : largest_length);
-    if (!fits)
+    return fits;
+}
+
+} // namespace
+
+// Its parts one after another, the first one first; where a volume is like another, after that one's.
+glm::dmat4 SceneReader::transform() const {
+    glm::dmat4 map(1.0);
+    for (auto scope = scopes_.rbegin(); scope != scopes_.rend(); ++scope)
+        map = transform_of(document_, find_one(document_, *scope, {"transform"})) * map;
+    const XmlElement element(document_, find({"transform"}));
+    if (element.exists() && !is_usable(map))
         element.fail(
             "<transform> leaves nothing of the volume, or flattens it a million times, or moves it beyond 1e11; "
             "check its factors");
     return map;
 }
 
+// By their names; also who has a name in common, which nobody can be like.
+NamedVolumes SceneReader::named_volumes(pugi::xml_node list) const {
+    NamedVolumes named;
+    for (const pugi::xml_node node : list.children("volume")) {
+        const XmlElement volume(document_, node);
+        volume.allow({"name", "like"}, false, in_a_volume);
+        if (const std::string name = volume.attribute("name"); !name.empty())
+            named[name].push_back(node);
+    }
+    return named;
+}
+
+// The volume whose name stands in `like`.
+pugi::xml_node SceneReader::volume_it_is_like(const XmlElement& volume, const NamedVolumes& named) const {
+    const std::string name = volume.attribute("like");
+    const auto found = named.find(name);
+    if (found == named.end()) {
+        std::vector<std::string> names;
+        for (const auto& [known, nodes] : named)
+            names.push_back(known);
+        const std::string nearest = nearest_name(name, names);
+        volume.fail_attribute("like", fmt::format("<volume> like: no volume is named '{}'; {}", name,
+                                                  nearest.empty() ? "expected the name of another"
+                                                                  : fmt::format("did you mean {}?", nearest)));
+    }
+    if (found->second.size() > 1)
+        volume.fail_attribute("like",
+                              fmt::format("<volume> like: two volumes are named '{}', at {} and {}; rename one", name,
+                                          document_.place(found->second[0]), document_.place(found->second[1])));
+    return found->second.front();
+}
+
+// Itself first, then that which it is like, and so on.
+std::vector<pugi::xml_node> SceneReader::with_those_it_is_like(pugi::xml_node volume, const NamedVolumes& named) const {
+    constexpr std::size_t longest = 64; // written by hand it has two or three
+    std::vector<pugi::xml_node> chain{volume};
+    for (XmlElement last(document_, volume); last.has("like"); last = XmlElement(document_, chain.back())) {
+        const pugi::xml_node next = volume_it_is_like(last, named);
+        if (std::find(chain.begin(), chain.end(), next) != chain.end())
+            last.fail_attribute("like", fmt::format("<volume> like: '{}' is in the end like this one itself; one of "
+                                                    "them needs what they have in common",
+                                                    last.attribute("like")));
+        if (chain.size() == longest)
+            last.fail_attribute("like",
+                                fmt::format("<volume> like: more than {} volumes each like the next; let all be "
+                                            "like the last of them",
+                                            longest));
+        chain.push_back(next);
+    }
+    return chain;
+}
+
 // What stands in the scene itself is one, too.
 void SceneReader::read_volumes(Scene& scene) {
     const XmlElement groups = one("volumes");
     groups.allow({}, false, {"volume"});
-    const pugi::xml_node root = scope_, list = root.child("volumes");
+    const pugi::xml_node root = document_.root(), list = root.child("volumes");
     const bool has_groups = !list.child("volume").empty();
     if (has_groups && overrides_.grid)
         groups.fail("--grid: of several <volumes> it is not clear which one is meant; write the grid's file into one");
     if (!has_groups || shape_element(scene.settings.integrator).exists())
         if (const std::optional<Volume> medium = volume(scene.settings.integrator))
             scene.volumes.push_back(*medium);
+    const NamedVolumes named = named_volumes(list);
     for (const pugi::xml_node node : list.children("volume")) {
-        const XmlElement group(document_, node);
-        group.allow({"name"}, false, in_a_volume);
-        scope_ = node;
+        scopes_ = with_those_it_is_like(node, named);
         std::optional<Volume> medium = volume(scene.settings.integrator);
         if (!medium)
-            group.fail("<volume> has no shape; add a densityField, sphere, box or models to it");
+            XmlElement(document_, node)
+                .fail("<volume> has no shape; add a densityField, sphere, box or models to it, or say like=\"NAME\" of "
+                      "a volume that has one");
         medium->transform = transform();
         scene.volumes.push_back(*medium);
-        scope_ = root;
     }
+    scopes_ = {root};
     constexpr std::size_t most = 100000;
     if (scene.volumes.size() > most)
         groups.fail(fmt::format("{} volumes are more than the {} that are rendered; leave some out",

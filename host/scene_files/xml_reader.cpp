@@ -102,12 +102,17 @@ const char* foreign_encoding(const std::string& text) {
 } // namespace
 
 void XmlDocument::warn(const std::string& place, const std::string& message) {
-    warnings_.push_back(place + ": " + one_line(message));
+    std::string warning = place + ": " + one_line(message);
+    if (heard_.insert(warning).second) // an element may be read for several volumes
+        warnings_.push_back(std::move(warning));
 }
 
 XmlDocument::XmlDocument(const std::string& text, std::filesystem::path file,
                          const std::map<std::string, std::string>& defines, const std::string& root)
     : text_(text), buffer_(text.begin(), text.end()), file_(std::move(file)), keys_(defines) {
+    for (std::size_t i = 0; i < text_.size(); ++i)
+        if (text_[i] == '\n')
+            line_starts_.push_back(std::ptrdiff_t(i + 1));
     parse();
     find_root(root);
     // Depth first without recursion, so that nesting is no danger. Positions come first: filling in moves strings.
@@ -190,9 +195,9 @@ template <class Place> std::string XmlDocument::substitute(const std::string& ra
 }
 
 std::string XmlDocument::place_of_offset(std::ptrdiff_t offset) const {
-    const auto end = text_.begin() + std::clamp<std::ptrdiff_t>(offset, 0, std::ptrdiff_t(text_.size()));
-    const auto line = 1 + std::count(text_.begin(), end, '\n');
-    const auto line_start = std::find(std::make_reverse_iterator(end), text_.rend(), '\n').base();
+    const auto before = std::clamp<std::ptrdiff_t>(offset, 0, std::ptrdiff_t(text_.size()));
+    const auto line = std::upper_bound(line_starts_.begin(), line_starts_.end(), before) - line_starts_.begin();
+    const auto line_start = text_.begin() + line_starts_[std::size_t(line - 1)], end = text_.begin() + before;
     // UTF-8 continuation bytes belong to the character before them.
     const auto column = 1 + std::count_if(line_start, end, [](char c) { return (c & 0xC0) != 0x80; });
     return fmt::format("{}:{}:{}", file_.string(), line, column);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <pugixml.hpp>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -48,7 +49,8 @@ private:
     template <class Place> std::string substitute(const std::string& raw, const Place& place);
     std::string place_of_offset(std::ptrdiff_t offset) const;
 
-    std::string text_;         // as read, for places
+    std::string text_; // as read, for places
+    std::vector<std::ptrdiff_t> line_starts_{0};
     std::vector<char> buffer_; // what pugixml parsed in place: names still point into it
     std::filesystem::path file_;
     SceneKeys keys_;
@@ -56,6 +58,7 @@ private:
     pugi::xml_document document_;
     pugi::xml_node root_;
     std::vector<std::string> warnings_;
+    std::set<std::string> heard_; // the same
 };
 
 struct Limits {

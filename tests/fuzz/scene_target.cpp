@@ -102,7 +102,14 @@ std::string element(const Words& words, Source& random) {
 
 // Of some of the elements that a medium has.
 std::string volume(Source& random) {
-    std::string xml = "  <volume>\n" + element(grammar[random.below(3)], random);
+    const char* names[] = {"a", "b", "c", ""};
+    std::string xml = "  <volume";
+    for (const char* attribute : {"name", "like"})
+        if (random.one_in(3))
+            xml += fmt::format(" {}=\"{}\"", attribute, names[random.below(4)]);
+    xml += ">\n";
+    if (!random.one_in(4))
+        xml += element(grammar[random.below(3)], random);
     for (const char* name : {"noise", "sigma_a", "sigma_s", "phase", "medium", "emission", "albedo"})
         if (random.one_in(3))
             xml += element(words_of(name), random);
