@@ -67,9 +67,7 @@ std::optional<Corners> corners_of(const Volume& volume, FieldCache& fields) {
     const GridFile& file = std::get<GridFile>(volume.shape);
     DensityField field = fields.take(file);
     field.place(volume.transform);
-    const std::optional<Corners> corners = field.active_voxels > 0 ? std::optional(corners_of(field)) : std::nullopt;
-    fields.keep(file, std::move(field));
-    return corners;
+    return field.active_voxels > 0 ? std::optional(corners_of(field)) : std::nullopt;
 }
 
 // Of the box along the axes that holds both.
@@ -87,6 +85,7 @@ Corners corners_around(const Corners& a, const Corners& b) {
 
 std::optional<Corners> medium_corners(const Scene& scene, FieldCache& fields) {
     check_supported(scene);
+    fields.retain(grid_files(scene));
     std::optional<Corners> all;
     for (const Volume& volume : scene.volumes)
         if (const std::optional<Corners> corners = corners_of(volume, fields))

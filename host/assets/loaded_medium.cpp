@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
+#include <numeric>
+#include <set>
 
 #include "blackbody.h"
 #include "error.h"
@@ -19,12 +22,38 @@ Rgb world_sigma_t(const Volume& volume, const DensityField* field) {
     return field && volume.unit == CoefficientUnit::voxel ? sigma_t / field->voxel_size() : sigma_t;
 }
 
+Majorants::Majorants(MajorantGrid grid) : MajorantGrid(std::move(grid)) {
+    if (bounds.empty())
+        return;
+    mean = std::accumulate(bounds.begin(), bounds.end(), 0.0) / static_cast<double>(bounds.size());
+    most = *std::max_element(bounds.begin(), bounds.end());
+}
+
 std::vector<const DensityField*> grids_of(const LoadedMedium& medium) {
     std::vector<const DensityField*> grids;
     for (const auto* grid : {&medium.field, &medium.temperature, &medium.albedo})
         if (*grid)
             grids.push_back(&**grid);
     return grids;
+}
+
+std::vector<const DensityField*> distinct_grids(Media media) {
+    std::set<const std::byte*> seen;
+    std::vector<const DensityField*> grids;
+    for (const LoadedMedium& medium : media)
+        for (const DensityField* grid : grids_of(medium))
+            if (seen.insert(grid->bytes.data()).second)
+                grids.push_back(grid);
+    return grids;
+}
+
+std::vector<GridFile> grid_files(const Scene& scene) {
+    std::vector<GridFile> files;
+    for (const Volume& volume : scene.volumes)
+        if (const auto* file = std::get_if<GridFile>(&volume.shape))
+            for (const std::string& grid : {file->grid, volume.temperature.grid, volume.albedo_grid})
+                files.push_back({file->path, grid});
+    return files;
 }
 
 double largest(const Rgb& color) {
@@ -52,58 +81,101 @@ bool leaps(const Method& method) {
 
 namespace {
 
-DensityField load_field(const Volume& volume, const GridFile& file, FieldCache* kept,
-                        GridValues values = GridValues::numbers) {
-    DensityField field = kept ? kept->take(file, values) : load_density_field(file, values);
+// Reads media. What several of them have is read and made once, and what is said of it is said once.
+class Loader {
+public:
+    Loader(const Scene& scene, const Method& method, FieldCache& fields)
+        : scene_(scene), method_(method), fields_(fields) {}
+
+    LoadedMedium load(const Volume& volume);
+
+private:
+    DensityField field_of(const Volume& volume, const GridFile& file, GridValues values = GridValues::numbers);
+    float largest_value(const DensityField& field);
+    void load_phase_nodes(const Volume& volume, LoadedMedium& loaded);
+    void load_grid(const Volume& volume, const GridFile& file, LoadedMedium& loaded);
+    void load_majorants(const Volume& volume, const DensityField& field, LoadedMedium& loaded);
+    void load_temperature(const Volume& volume, const GridFile& file, LoadedMedium& loaded);
+    void load_blackbody(const TemperatureEmission& emission, const GridFile& file, LoadedMedium& loaded);
+    void load_albedo(const Volume& volume, const GridFile& file, LoadedMedium& loaded);
+    void load_models(const Volume& volume, const MeshFiles& files, LoadedMedium& loaded);
+    void warn(LoadedMedium& loaded, std::string message) {
+        if (said_.insert(message).second)
+            loaded.warnings.push_back(std::move(message));
+    }
+
+    const Scene& scene_;
+    const Method& method_;
+    FieldCache& fields_;
+    std::map<const std::byte*, std::shared_ptr<const Majorants>> majorants_; // by the bytes of their grid
+    std::map<const std::byte*, float> largest_;                              // likewise
+    std::map<std::pair<double, double>, SharedArray<glm::vec3>> blackbodies_;
+    std::map<std::string, SharedArray<shared::PhaseNode>> phases_; // by their file
+    std::set<std::string> said_;
+};
+
+DensityField Loader::field_of(const Volume& volume, const GridFile& file, GridValues values) {
+    DensityField field = fields_.take(file, values);
     field.place(volume.transform);
     return field;
 }
 
-void load_albedo(const Volume& volume, const GridFile& file, FieldCache* kept, LoadedMedium& loaded) {
+float Loader::largest_value(const DensityField& field) {
+    const auto [found, is_new] = largest_.try_emplace(field.bytes.data());
+    if (is_new)
+        found->second = field.max_value();
+    return found->second;
+}
+
+void Loader::load_albedo(const Volume& volume, const GridFile& file, LoadedMedium& loaded) {
     if (volume.albedo_grid.empty())
         return;
-    DensityField field = load_field(volume, {file.path, volume.albedo_grid}, kept, GridValues::numbers_or_colors);
+    DensityField field = field_of(volume, {file.path, volume.albedo_grid}, GridValues::numbers_or_colors);
     if (field.active_voxels == 0)
         throw InputError(
             fmt::format("{}: \"{}\" has no active voxel, and would make the medium black; leave <albedo> out",
                         file.path.string(), volume.albedo_grid));
-    if (field.max_value() == 0.0f)
-        loaded.warnings.push_back(fmt::format("{}: \"{}\" is 0 everywhere: the medium absorbs all that it meets; name "
-                                              "another grid (vkvol info lists them), or leave <albedo> out",
-                                              file.path.string(), volume.albedo_grid));
+    if (largest_value(field) == 0.0f)
+        warn(loaded, fmt::format("{}: \"{}\" is 0 everywhere: the medium absorbs all that it meets; name "
+                                 "another grid (vkvol info lists them), or leave <albedo> out",
+                                 file.path.string(), volume.albedo_grid));
     loaded.albedo = std::move(field);
 }
 
 // A file without that grid, or one that holds no heat, does not glow: a warning, no error.
-void load_temperature(const Volume& volume, const GridFile& file, FieldCache* kept, LoadedMedium& loaded) {
+void Loader::load_temperature(const Volume& volume, const GridFile& file, LoadedMedium& loaded) {
     const TemperatureEmission& emission = volume.temperature;
     if (emission.color * most_sigma_a(volume) == Rgb(0.0))
         return;
-    if (!has_grid({file.path, emission.grid})) {
-        loaded.warnings.push_back(
-            fmt::format("{}: has no grid \"{}\": <emission> is without effect", file.path.string(), emission.grid));
-        return;
-    }
+    if (!fields_.has({file.path, emission.grid}))
+        return warn(loaded, fmt::format("{}: has no grid \"{}\": <emission> is without effect", file.path.string(),
+                                        emission.grid));
     const bool by_kelvin = emission.model == TemperatureEmission::Model::blackbody;
-    DensityField field = load_field(volume, {file.path, emission.grid}, kept,
-                                    by_kelvin ? GridValues::numbers : GridValues::numbers_or_colors);
+    DensityField field =
+        field_of(volume, {file.path, emission.grid}, by_kelvin ? GridValues::numbers : GridValues::numbers_or_colors);
     if (field.active_voxels == 0)
         return;
-    if (by_kelvin) {
-        loaded.hottest = std::max(emission.scale * field.max_value(), 0.0) + std::max(emission.offset, 0.0);
-        if (loaded.hottest < 500.0 || loaded.hottest > 40000.0)
-            loaded.warnings.push_back(fmt::format("{}: \"{}\" reaches {:.0f} kelvin by temperatureScale and "
-                                                  "temperatureOffset; flames have 1000 to 3000",
-                                                  file.path.string(), emission.grid, loaded.hottest));
-        if (!(loaded.hottest <= hottest_kelvin))
-            throw InputError(
-                fmt::format("{}: \"{}\" reaches {:.3g} kelvin by temperatureScale and temperatureOffset, but "
-                            "{:g} is the most; lower temperatureScale",
-                            file.path.string(), emission.grid, loaded.hottest, hottest_kelvin));
-        loaded.hottest = std::max(loaded.hottest, 1.0);
-        loaded.blackbody = make_blackbody_table(0.0, loaded.hottest, emission.reference, BLACKBODY_ENTRIES);
-    }
+    loaded.largest_temperature = largest_value(field);
+    if (by_kelvin)
+        load_blackbody(emission, file, loaded);
     loaded.temperature = std::move(field);
+}
+
+void Loader::load_blackbody(const TemperatureEmission& emission, const GridFile& file, LoadedMedium& loaded) {
+    loaded.hottest = std::max(emission.scale * loaded.largest_temperature, 0.0) + std::max(emission.offset, 0.0);
+    if (loaded.hottest < 500.0 || loaded.hottest > 40000.0)
+        warn(loaded, fmt::format("{}: \"{}\" reaches {:.0f} kelvin by temperatureScale and "
+                                 "temperatureOffset; flames have 1000 to 3000",
+                                 file.path.string(), emission.grid, loaded.hottest));
+    if (!(loaded.hottest <= hottest_kelvin))
+        throw InputError(fmt::format("{}: \"{}\" reaches {:.3g} kelvin by temperatureScale and temperatureOffset, but "
+                                     "{:g} is the most; lower temperatureScale",
+                                     file.path.string(), emission.grid, loaded.hottest, hottest_kelvin));
+    loaded.hottest = std::max(loaded.hottest, 1.0);
+    SharedArray<glm::vec3>& table = blackbodies_[{loaded.hottest, emission.reference}];
+    if (table.empty())
+        table = make_blackbody_table(0.0, loaded.hottest, emission.reference, BLACKBODY_ENTRIES);
+    loaded.blackbody = table;
 }
 
 // A direction in which shadow rays go: any will do.
@@ -131,52 +203,75 @@ PilotScene pilot_scene(const Scene& scene, const Volume& volume, const Method& m
     return pilot;
 }
 
-// The cells' bounds are scaled after the controls are made: these bound the density itself.
-void load_grid(const Scene& scene, const Volume& volume, const Method& method, const GridFile& file, FieldCache* kept,
-               LoadedMedium& loaded) {
-    DensityField field = load_field(volume, file, kept);
-    if (field.active_voxels == 0)
+// The cells' bounds are scaled after the controls are made: these bound the density itself. Of several media there are
+// no controls, and cells are a matter of speed alone: then all that have the grid make do with those of the first.
+void Loader::load_majorants(const Volume& volume, const DensityField& field, LoadedMedium& loaded) {
+    std::shared_ptr<const Majorants>& known = majorants_[field.bytes.data()];
+    if (known) {
+        loaded.majorants = known;
         return;
-    if (field.background > 0.0f)
-        loaded.warnings.push_back(fmt::format("{}: \"{}\" has a background of {:g}: it fills the box of active voxels, "
-                                              "and ends where they do",
-                                              file.path.string(), file.grid, field.background));
-    const double scale = scene.settings.majorant_scale;
+    }
+    const double scale = scene_.settings.majorant_scale;
     const double voxel_sigma_t = largest(world_sigma_t(volume, &field)) * field.voxel_size();
-    loaded.majorants = choose_majorant_grid(
+    MajorantGrid cells = choose_majorant_grid(
         field,
-        pilot_scene(scene, volume, method, field, voxel_sigma_t * scale, mean_cosine(volume, loaded.phase_nodes)),
-        scene.settings.majorant_cell);
-    const bool decomposes = method.flights_have(TRAIT_CONTROL);
-    if (decomposes || method.shadow_rays_have(TRAIT_CONTROL))
-        loaded.controls = make_controls(field, *loaded.majorants, decomposes ? 0.0 : voxel_sigma_t);
-    for (float& bound : loaded.majorants->bounds)
+        pilot_scene(scene_, volume, method_, field, voxel_sigma_t * scale, mean_cosine(volume, loaded.phase_nodes)),
+        scene_.settings.majorant_cell);
+    const bool decomposes = method_.flights_have(TRAIT_CONTROL);
+    if (decomposes || method_.shadow_rays_have(TRAIT_CONTROL))
+        loaded.controls = make_controls(field, cells, decomposes ? 0.0 : voxel_sigma_t);
+    for (float& bound : cells.bounds)
         bound *= static_cast<float>(scale);
     for (shared::ControlCell& cell : loaded.controls)
         cell.residual *= static_cast<float>(scale);
-    loaded.field = std::move(field);
-    load_temperature(volume, file, kept, loaded);
-    load_albedo(volume, file, kept, loaded);
+    loaded.majorants = known = std::make_shared<const Majorants>(std::move(cells));
 }
 
-void load_files(const Scene& scene, const Volume& volume, const Method& method, FieldCache* kept,
-                LoadedMedium& loaded) {
-    if (volume.phase == PhaseFunction::table) {
+void Loader::load_grid(const Volume& volume, const GridFile& file, LoadedMedium& loaded) {
+    DensityField field = field_of(volume, file);
+    if (field.active_voxels == 0)
+        return;
+    if (field.background > 0.0f)
+        warn(loaded, fmt::format("{}: \"{}\" has a background of {:g}: it fills the box of active voxels, "
+                                 "and ends where they do",
+                                 file.path.string(), file.grid, field.background));
+    load_majorants(volume, field, loaded);
+    loaded.field = std::move(field);
+    load_temperature(volume, file, loaded);
+    load_albedo(volume, file, loaded);
+}
+
+void Loader::load_phase_nodes(const Volume& volume, LoadedMedium& loaded) {
+    if (volume.phase != PhaseFunction::table)
+        return;
+    SharedArray<shared::PhaseNode>& nodes = phases_[volume.phase_details.file.native()];
+    if (nodes.empty()) {
         PhaseTable table = load_phase_table(volume.phase_details.file);
-        loaded.phase_nodes = std::move(table.nodes);
-        loaded.warnings = std::move(table.warnings);
+        nodes = std::move(table.nodes);
+        for (std::string& warning : table.warnings)
+            warn(loaded, std::move(warning));
     }
+    loaded.phase_nodes = nodes;
+}
+
+void Loader::load_models(const Volume& volume, const MeshFiles& files, LoadedMedium& loaded) {
+    loaded.mesh = load_mesh(files, volume.transform);
+    loaded.bvh = build_bvh(*loaded.mesh, box_center(*loaded.mesh));
+    if (method_.material_colour)
+        loaded.warnings.insert(loaded.warnings.end(), loaded.mesh->warnings.begin(), loaded.mesh->warnings.end());
+    if (method_.material_colour && !loaded.mesh->diffuse)
+        loaded.warnings.push_back(fmt::format("{}: has no material with a diffuse colour; <medium> is what glows",
+                                              files.paths.front().string()));
+}
+
+LoadedMedium Loader::load(const Volume& volume) {
+    LoadedMedium loaded;
+    load_phase_nodes(volume, loaded);
     if (const auto* file = std::get_if<GridFile>(&volume.shape))
-        load_grid(scene, volume, method, *file, kept, loaded);
-    if (const auto* files = std::get_if<MeshFiles>(&volume.shape)) {
-        loaded.mesh = load_mesh(*files, volume.transform);
-        loaded.bvh = build_bvh(*loaded.mesh, box_center(*loaded.mesh));
-        if (method.material_colour)
-            loaded.warnings.insert(loaded.warnings.end(), loaded.mesh->warnings.begin(), loaded.mesh->warnings.end());
-        if (method.material_colour && !loaded.mesh->diffuse)
-            loaded.warnings.push_back(fmt::format("{}: has no material with a diffuse colour; <medium> is what glows",
-                                                  files->paths.front().string()));
-    }
+        load_grid(volume, *file, loaded);
+    if (const auto* files = std::get_if<MeshFiles>(&volume.shape))
+        load_models(volume, *files, loaded);
+    return loaded;
 }
 
 void load_sky(const SkyLight& sky, Assets& assets) {
@@ -194,12 +289,16 @@ void load_sky(const SkyLight& sky, Assets& assets) {
 
 Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
     check_supported(scene);
+    FieldCache own;
+    FieldCache& fields = kept ? *kept : own;
+    fields.retain(grid_files(scene));
+    Loader loader(scene, method, fields);
     Assets assets;
+    assets.media.reserve(scene.volumes.size());
     for (const Volume& volume : scene.volumes) {
-        LoadedMedium& loaded = assets.media.emplace_back();
         try {
-            load_files(scene, volume, method, kept, loaded);
-            check_limits(scene, volume, loaded, method);
+            assets.media.push_back(loader.load(volume));
+            check_limits(scene, volume, assets.media.back(), method);
         } catch (const InputError& error) { // of the file, say; the scene says who asked for it
             if (volume.place.empty())
                 throw;
@@ -212,19 +311,6 @@ Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
         if (const auto* sky = std::get_if<SkyLight>(&light))
             load_sky(*sky, assets);
     return assets;
-}
-
-void keep_fields(FieldCache& kept, const Scene& scene, Assets assets) {
-    for (std::size_t i = 0; i < assets.media.size(); ++i) {
-        LoadedMedium& medium = assets.media[i];
-        const auto* file = std::get_if<GridFile>(&scene.volumes[i].shape);
-        if (file && medium.field)
-            kept.keep(*file, std::move(*medium.field));
-        if (file && medium.temperature)
-            kept.keep({file->path, scene.volumes[i].temperature.grid}, std::move(*medium.temperature));
-        if (file && medium.albedo)
-            kept.keep({file->path, scene.volumes[i].albedo_grid}, std::move(*medium.albedo));
-    }
 }
 
 } // namespace vkvol

@@ -1,6 +1,7 @@
 // What a scene's media are made of, read from their files.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,27 +17,39 @@
 
 namespace vkvol {
 
+// As walks have them: scaled.
+struct Majorants : MajorantGrid {
+    explicit Majorants(MajorantGrid grid);
+    double mean = 0.0, most = 0.0; // of the bounds
+};
+
 // A grid with its majorants, or a mesh. Empty for spheres, boxes, no
-// volume, or a grid without voxels.
+// volume, or a grid without voxels. What is large in it is shared by all that have the same.
 struct LoadedMedium {
     std::optional<DensityField> field;
-    std::optional<MajorantGrid> majorants;
+    std::shared_ptr<const Majorants> majorants; // of several media chosen as suits the first that has the grid
     std::vector<shared::ControlCell> controls;  // per majorant cell, for the estimators that use them
     std::optional<DensityField> temperature;    // or colours, only if the scene wants their glow
     std::optional<DensityField> albedo;         // likewise of what multiplies the albedo
-    std::vector<glm::vec3> blackbody;           // BLACKBODY_ENTRIES colours between 0 and the hottest kelvin, or none
+    float largest_temperature = 0.0f;           // or channel of a colour, as the grid has it
+    SharedArray<glm::vec3> blackbody;           // BLACKBODY_ENTRIES colours between 0 and the hottest kelvin, or none
     double hottest = 0.0;                       // kelvin
-    std::vector<shared::PhaseNode> phase_nodes; // of a phase function that is a table
+    SharedArray<shared::PhaseNode> phase_nodes; // of a phase function that is a table
     std::optional<Mesh> mesh;
     std::optional<Bvh> bvh;            // about the middle of the mesh
     std::vector<std::string> warnings; // what the scene asks for and its files do not hold
 };
 
-// Those it has, in the order in which they lie in the device's buffers.
+// Those it has.
 std::vector<const DensityField*> grids_of(const LoadedMedium& medium);
 
 // Of each of the scene's volumes, in their order.
 using Media = std::span<const LoadedMedium>;
+
+// Of each that any of them has one, in the order in which these first come: the same bytes are the same grid, wherever
+// media have put it.
+std::vector<const DensityField*> distinct_grids(Media media);
+
 struct Assets {
     std::vector<LoadedMedium> media;
     std::optional<Superposition> superposition; // of them, if there are several
@@ -50,11 +63,11 @@ inline const Superposition* whole_of(const Assets& assets) {
 }
 
 // Opens the files, if the scene has any. Throws InputError, also for what is not supported. `kept`: grids that need not
-// be read again.
+// be read again; those of the scene are among them then, and no others.
 Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept = nullptr);
 
-// For the next load_assets, of what is on the device now.
-void keep_fields(FieldCache& kept, const Scene& scene, Assets assets);
+// Grids that they may be asked for.
+std::vector<GridFile> grid_files(const Scene& scene);
 
 // Extinction at density 1 [1 / world unit]. `field`: null but for grids.
 Rgb world_sigma_t(const Volume& volume, const DensityField* field);

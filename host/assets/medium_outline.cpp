@@ -51,7 +51,7 @@ glm::dvec2 crossing_of_box(glm::dvec3 low, glm::dvec3 high, glm::dvec3 o, glm::d
 
 } // namespace
 
-MediumOutline make_outline(const Scene& scene, const Volume& volume, LoadedMedium& loaded, bool emits) {
+MediumOutline make_outline(const Scene& scene, const Volume& volume, const LoadedMedium& loaded, bool emits) {
     MediumOutline outline;
     const bool is_grid = std::holds_alternative<GridFile>(volume.shape);
     outline.sigma_t = largest(world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr));
@@ -71,10 +71,9 @@ MediumOutline make_outline(const Scene& scene, const Volume& volume, LoadedMediu
         outline.to_world = placed(center, center - lowest_corner(*loaded.mesh));
     } else if (loaded.field) {
         outline_grid(*loaded.field, outline);
-        outline.cells = std::move(loaded.majorants);
+        outline.cells = loaded.majorants;
         outline.cell_scale = 1.0 / scene.settings.majorant_scale;
-        outline.densest =
-            outline.cell_scale * *std::max_element(outline.cells->bounds.begin(), outline.cells->bounds.end());
+        outline.densest = outline.cell_scale * loaded.majorants->most;
     }
     return outline;
 }
@@ -90,7 +89,7 @@ MediumOutline make_outline(const Superposition& whole, bool emits) {
     outline.to_world = placed(whole.origin, glm::dvec3(whole.edge));
     outline.low = whole.low();
     outline.high = whole.high();
-    outline.cells = whole.cells;
+    outline.cells = std::make_shared<const MajorantGrid>(whole.cells);
     outline.densest = *std::max_element(whole.cells.bounds.begin(), whole.cells.bounds.end());
     return outline;
 }

@@ -2,6 +2,7 @@
 // picture by.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "loaded_medium.h"
@@ -14,18 +15,17 @@ struct MediumOutline {
     bool fills = true;        // the ball or box; meshes are somewhere in theirs
     glm::dmat4 to_world{1.0}; // from medium space, which is a grid's index space
     glm::dvec3 low{-1.0}, high{1.0};
-    double sigma_t = 0.0;              // the largest channel's [1 / world unit], times
-    double densest = 1.0;              // which no density exceeds
-    std::optional<MajorantGrid> cells; // of grids, times
-    double cell_scale = 1.0;           // which makes their bounds the density's own again
-    double voxel = 0.0;                // world units; 0: no grid
-    bool emits = false;                // uniformly, or by its temperature
+    double sigma_t = 0.0;                      // the largest channel's [1 / world unit], times
+    double densest = 1.0;                      // which no density exceeds
+    std::shared_ptr<const MajorantGrid> cells; // of grids, times
+    double cell_scale = 1.0;                   // which makes their bounds the density's own again
+    double voxel = 0.0;                        // world units; 0: no grid
+    bool emits = false;                        // uniformly, or by its temperature
     bool has_temperature = false;
     double hottest = 0.0; // kelvin, of black bodies
 };
 
-// Takes the majorants with it.
-MediumOutline make_outline(const Scene& scene, const Volume& volume, LoadedMedium& loaded, bool emits);
+MediumOutline make_outline(const Scene& scene, const Volume& volume, const LoadedMedium& loaded, bool emits);
 // Of several media.
 MediumOutline make_outline(const Superposition& whole, bool emits);
 

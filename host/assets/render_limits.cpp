@@ -4,7 +4,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
-#include <numeric>
 
 #include "error.h"
 #include "noise.h"
@@ -56,11 +55,8 @@ double majorant_depth(const Scene& scene, const Volume& volume, const LoadedMedi
         const double bound = volume.noise ? noise_bound(*volume.noise) : 1.0;
         return sigma_t * bound * scene.settings.majorant_scale * diagonal;
     }
-    const std::vector<float>& bounds = loaded.majorants->bounds;
-    const double mean = std::accumulate(bounds.begin(), bounds.end(), 0.0) / static_cast<double>(bounds.size());
-    const double most = *std::max_element(bounds.begin(), bounds.end());
     const double cell = std::sqrt(3.0) * loaded.majorants->cell * loaded.field->voxel_size();
-    return sigma_t * (mean * diagonal + most * std::min(cell, diagonal));
+    return sigma_t * (loaded.majorants->mean * diagonal + loaded.majorants->most * std::min(cell, diagonal));
 }
 
 void check_patience(const Scene& scene, const Method& method, double depth) {
@@ -82,8 +78,7 @@ void check_extinction(const Volume& volume, const LoadedMedium& loaded) {
     const double sigma_t = largest(world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr));
     double densest = 1.0;
     if (loaded.majorants)
-        densest = std::max(densest,
-                           double(*std::max_element(loaded.majorants->bounds.begin(), loaded.majorants->bounds.end())));
+        densest = std::max(densest, loaded.majorants->most);
     const bool vanishes = sigma_t > 0.0 && sigma_t < 1.0 / largest_extinction;
     if (vanishes || !(sigma_t * densest <= largest_extinction))
         throw InputError(
@@ -112,7 +107,7 @@ void check_glow(const Volume& volume, const LoadedMedium& loaded) {
                 most = std::isfinite(color[i]) ? std::max(most, double(color[i]))
                                                : std::numeric_limits<double>::infinity();
     else
-        most = loaded.temperature->max_value();
+        most = loaded.largest_temperature;
     most *= largest(volume.temperature.color);
     if (!(most <= brightest_light))
         throw InputError(fmt::format("<emission> reaches a radiance of {:.3g} where \"{}\" is hottest, but {:g} is the "

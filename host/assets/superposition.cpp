@@ -5,68 +5,20 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <utility>
 
+#include "empty_space.h"
 #include "error.h"
-#include "noise.h"
+#include "medium_pieces.h"
 #include "placement.h"
-#include "shared/estimators.h"
 
 namespace vkvol {
 
 namespace {
 
-constexpr double most_cells = 1 << 21;
-constexpr int pieces = 16; // along an edge of a sphere or a box: its parts that are bounded by themselves
-
-// A part of a medium: a box of its space, and what bounds the extinction there.
-struct Piece {
-    glm::dvec3 middle, half;
-    double bound; // [1 / world unit]
-};
-
-bool has_matter(const Volume& volume, const LoadedMedium& loaded) {
-    const bool is_grid = std::holds_alternative<GridFile>(volume.shape);
-    return (volume.sigma_a + volume.sigma_s) * volume.density_scale != Rgb(0.0) && (loaded.field || !is_grid);
-}
-
-std::vector<Piece> pieces_of_grid(const LoadedMedium& loaded, double sigma_t) {
-    const MajorantGrid& grid = *loaded.majorants;
-    const glm::dvec3 base(grid.origin - index_base(*loaded.field));
-    const glm::dvec3 half(0.5 * grid.cell);
-    std::vector<Piece> found;
-    std::size_t i = 0;
-    for (int x = 0; x < grid.dims.x; ++x)
-        for (int y = 0; y < grid.dims.y; ++y)
-            for (int z = 0; z < grid.dims.z; ++z, ++i)
-                if (grid.bounds[i] > 0.0f)
-                    found.push_back({base + double(grid.cell) * (glm::dvec3(x, y, z) + 0.5), half,
-                                     sigma_t * double(grid.bounds[i])});
-    return found;
-}
-
-// Of a ball or a cube.
-std::vector<Piece> pieces_of_shape(bool is_ball, double bound) {
-    const glm::dvec3 half(1.0 / pieces);
-    std::vector<Piece> found;
-    for (int x = 0; x < pieces; ++x)
-        for (int y = 0; y < pieces; ++y)
-            for (int z = 0; z < pieces; ++z) {
-                const glm::dvec3 middle = (2.0 * glm::dvec3(x, y, z) + 1.0) / double(pieces) - 1.0;
-                const glm::dvec3 nearest = glm::max(glm::abs(middle) - half, 0.0);
-                if (!is_ball || glm::dot(nearest, nearest) < 1.0)
-                    found.push_back({middle, half, bound});
-            }
-    return found;
-}
-
-std::vector<Piece> pieces_of(const Scene& scene, const Volume& volume, const LoadedMedium& loaded) {
-    const double sigma_t = largest(world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr));
-    if (loaded.field) // whose bounds the scene's scale is in already
-        return pieces_of_grid(loaded, sigma_t);
-    const double density = volume.noise ? noise_bound(*volume.noise) : 1.0;
-    return pieces_of_shape(std::holds_alternative<Sphere>(volume.shape),
-                           sigma_t * density * scene.settings.majorant_scale);
-}
+constexpr double most_cells = 1 << 21;        // of all, or of bricks
+constexpr double most_coarse_cells = 1 << 18; // beside bricks
+constexpr int most_bits = 5;
 
 // A box along the axes around a box of another space.
 struct AxisBox {
@@ -80,118 +32,299 @@ AxisBox around(const glm::dmat4& map, glm::dvec3 middle, glm::dvec3 half) {
     return {there - reach, there + reach};
 }
 
-// World units: as large as the cells that the medium has by itself, or would have.
-double usual_cell(const Volume& volume, const LoadedMedium& loaded) {
-    return loaded.field ? loaded.majorants->cell * loaded.field->voxel_size()
-                        : diagonal_of(volume, loaded) / std::sqrt(3.0) / pieces;
+// One of several media, of those that have matter.
+struct Member {
+    std::uint32_t number; // in the scene
+    const Volume& volume;
+    const LoadedMedium& loaded;
+    glm::dmat4 to_world;
+    double sigma_t; // at density 1
+    double cell;    // world units, as it has them by itself
+};
+
+std::vector<Member> members_of(const Scene& scene, Media media) {
+    std::vector<Member> members;
+    for (std::size_t i = 0; i < media.size(); ++i) {
+        const Volume& volume = scene.volumes[i];
+        const DensityField* field = media[i].field ? &*media[i].field : nullptr;
+        if (has_matter(volume, media[i]))
+            members.push_back({static_cast<std::uint32_t>(i), volume, media[i], medium_to_world(volume, media[i]),
+                               largest(world_sigma_t(volume, field)), usual_cell(volume, media[i])});
+    }
+    return members;
 }
 
-// The superposition's space: the box around all, in cells as small as the smallest that any of them wants, as far as
-// there may be so many.
-void lay_out(const Scene& scene, Media media, const std::vector<std::size_t>& members, Superposition& whole) {
+AxisBox box_around(const std::vector<Member>& members) {
     AxisBox box;
-    double wanted = std::numeric_limits<double>::infinity();
-    for (const std::size_t i : members) {
-        const MediumBounds bounds = medium_bounds(media[i]);
-        const AxisBox other = around(medium_to_world(scene.volumes[i], media[i]), 0.5 * (bounds.low + bounds.high),
-                                     0.5 * (bounds.high - bounds.low));
+    for (const Member& member : members) {
+        const MediumBounds bounds = medium_bounds(member.loaded);
+        const AxisBox other =
+            around(member.to_world, 0.5 * (bounds.low + bounds.high), 0.5 * (bounds.high - bounds.low));
         box = {glm::min(box.low, other.low), glm::max(box.high, other.high)};
-        wanted = std::min(wanted, usual_cell(scene.volumes[i], media[i]));
     }
+    return box;
+}
+
+// Cells of this edge [world units] over the box, all of them coarse if `bits` is not 0. There are no bricks yet.
+Superposition empty_cells(const AxisBox& box, double edge, int bits) {
+    Superposition whole;
+    whole.origin = 0.5 * (box.low + box.high);
+    whole.edge = edge;
+    whole.bits = bits;
+    const int cell = 1 << bits;
+    const glm::dvec3 half = 0.5 * (box.high - box.low) / edge / double(cell);
+    // A little more, for what rounding may do to a box's faces.
+    const glm::ivec3 low(glm::floor(-half - 1e-3)), high(glm::ceil(half + 1e-3));
+    whole.cells.cell = cell;
+    whole.cells.origin = low * cell;
+    whole.cells.dims = high - low;
+    const glm::dvec3 dims(whole.cells.dims);
+    whole.cells.bounds.assign(static_cast<std::size_t>(dims.x * dims.y * dims.z), 0.0f);
+    if (bits > 0)
+        whole.bricks.assign(whole.cells.bounds.size(), 0);
+    return whole;
+}
+
+// Which entries a medium reaches into, and its bounds there.
+class Touch {
+public:
+    Touch(const Superposition& whole, PieceStore& pieces)
+        : whole_(whole), pieces_(pieces), bounds_(whole.entries(), 0.0f),
+          to_cells_(glm::scale(glm::dmat4(1.0), glm::dvec3(1.0 / whole.edge)) *
+                    glm::translate(glm::dmat4(1.0), -whole.origin)) {}
+
+    // Calls visit(entry, bound) for each of them once. `finest`: of the places that are told apart, world units.
+    template <class Visit> void operator()(const Member& member, double finest, const Visit& visit) {
+        const Pieces& pieces = pieces_.of(member.volume, member.loaded, finest);
+        const glm::dmat4 map = to_cells_ * member.to_world;
+        const glm::ivec3 dims = whole_.dims();
+        for (const Pieces::Piece& piece : pieces.parts) {
+            // A point on the device may be as far aside as single precision lets it be.
+            const AxisBox box = around(map, piece.middle, pieces.half);
+            const glm::dvec3 margin = 1e-4 + 1e-6 * glm::max(glm::abs(box.low), glm::abs(box.high));
+            const glm::ivec3 low =
+                glm::clamp(glm::ivec3(glm::floor(box.low - margin)) - whole_.cells.origin, glm::ivec3(0), dims - 1);
+            const glm::ivec3 high =
+                glm::clamp(glm::ivec3(glm::floor(box.high + margin)) - whole_.cells.origin, glm::ivec3(0), dims - 1);
+            raise(low, high, static_cast<float>(member.sigma_t * piece.bound * (1.0 + 1e-6)));
+        }
+        for (const std::uint32_t entry : touched_) {
+            visit(entry, bounds_[entry]);
+            bounds_[entry] = 0.0f;
+        }
+        touched_.clear();
+    }
+
+private:
+    // All entries of the cells from `low` to `high`.
+    void raise(glm::ivec3 low, glm::ivec3 high, float bound) {
+        const glm::ivec3 first = low >> whole_.bits, last = high >> whole_.bits;
+        for (int x = first.x; x <= last.x; ++x)
+            for (int y = first.y; y <= last.y; ++y)
+                for (int z = first.z; z <= last.z; ++z) {
+                    const std::size_t i = (std::size_t(x) * whole_.cells.dims.y + y) * whole_.cells.dims.z + z;
+                    if (whole_.bricks.empty() || whole_.bricks[i] == 0)
+                        raise(i, bound);
+                    else
+                        raise_brick(i, low - (glm::ivec3(x, y, z) << whole_.bits),
+                                    high - (glm::ivec3(x, y, z) << whole_.bits), bound);
+                }
+    }
+
+    // `low`, `high`: counted from the brick's first.
+    void raise_brick(std::size_t coarse, glm::ivec3 low, glm::ivec3 high, float bound) {
+        const int cells = 1 << whole_.bits;
+        const std::size_t first =
+            whole_.cells.bounds.size() + (std::size_t{whole_.bricks[coarse] - 1} << (3 * whole_.bits));
+        low = glm::max(low, 0);
+        high = glm::min(high, cells - 1);
+        for (int x = low.x; x <= high.x; ++x)
+            for (int y = low.y; y <= high.y; ++y)
+                for (int z = low.z; z <= high.z; ++z)
+                    raise(first + std::size_t((x * cells + y) * cells + z), bound);
+    }
+
+    void raise(std::size_t entry, float bound) {
+        if (bounds_[entry] == 0.0f)
+            touched_.push_back(static_cast<std::uint32_t>(entry));
+        bounds_[entry] = std::max(bounds_[entry], bound);
+    }
+
+    const Superposition& whole_;
+    PieceStore& pieces_;
+    std::vector<float> bounds_; // 0 before and after
+    std::vector<std::uint32_t> touched_;
+    glm::dmat4 to_cells_;
+};
+
+// Makes bricks of the coarse cells in which there are media whose own cells are much finer: their number.
+std::size_t make_bricks(const std::vector<Member>& members, PieceStore& pieces, Superposition& whole) {
+    const double coarse = whole.edge * whole.cells.cell;
+    std::uint32_t count = 0;
+    std::vector<std::uint32_t> bricks(whole.bricks.size(), 0);
+    Touch touch(whole, pieces);
+    for (const Member& member : members)
+        if (member.cell < 0.5 * coarse)
+            touch(member, coarse, [&](std::uint32_t entry, float) {
+                if (bricks[entry] == 0)
+                    bricks[entry] = ++count;
+            });
+    whole.bricks = std::move(bricks);
+    return count;
+}
+
+// Cells as small as the smallest that any medium wants, as far as there may be so many: everywhere, or where small
+// media are.
+Superposition lay_out(const std::vector<Member>& members, PieceStore& pieces) {
+    const AxisBox box = box_around(members);
+    double wanted = std::numeric_limits<double>::infinity();
+    for (const Member& member : members)
+        wanted = std::min(wanted, member.cell);
     const glm::dvec3 size = box.high - box.low;
-    const double longest = std::max({size.x, size.y, size.z});
+    const double longest = std::max({size.x, size.y, size.z}), volume = size.x * size.y * size.z;
     if (!(longest < 1e6 * 8.0 * wanted))
         throw InputError(
             fmt::format("the volumes reach {:.3g} world units across, a million times what the smallest of "
                         "them measures; move them together, or leave some out",
                         longest));
-    whole.origin = 0.5 * (box.low + box.high);
-    whole.edge = std::max({wanted, std::cbrt(size.x * size.y * size.z / most_cells), longest / 1024.0});
-    whole.edge = std::min(whole.edge, longest / 4.0);
-    const glm::dvec3 half = 0.5 * size / whole.edge;
-    whole.cells.cell = 1;
-    whole.cells.origin =
-        glm::ivec3(glm::floor(-half - 1e-3)); // a little more, for what rounding may do to a box's faces
-    whole.cells.dims = glm::ivec3(glm::ceil(half + 1e-3)) - whole.cells.origin;
-}
-
-// Raises the bounds, 0 before, of the cells that pieces of a medium reach into, and lists these in `touched`.
-void raise(const std::vector<Piece>& found, const glm::dmat4& to_cells, const MajorantGrid& cells,
-           std::vector<float>& bounds, std::vector<std::uint32_t>& touched) {
-    for (const Piece& piece : found) {
-        // A point on the device may be as far aside as single precision lets it be.
-        const AxisBox box = around(to_cells, piece.middle, piece.half);
-        const glm::dvec3 margin = 1e-4 + 1e-6 * glm::max(glm::abs(box.low), glm::abs(box.high));
-        const glm::ivec3 low =
-            glm::clamp(glm::ivec3(glm::floor(box.low - margin)) - cells.origin, glm::ivec3(0), cells.dims - 1);
-        const glm::ivec3 high =
-            glm::clamp(glm::ivec3(glm::floor(box.high + margin)) - cells.origin, glm::ivec3(0), cells.dims - 1);
-        for (int x = low.x; x <= high.x; ++x)
-            for (int y = low.y; y <= high.y; ++y)
-                for (int z = low.z; z <= high.z; ++z) {
-                    const auto i = static_cast<std::uint32_t>((x * cells.dims.y + y) * cells.dims.z + z);
-                    if (bounds[i] == 0.0f)
-                        touched.push_back(i);
-                    bounds[i] = std::max(bounds[i], static_cast<float>(piece.bound * (1.0 + 1e-6)));
-                }
+    const double alike = std::max({wanted, std::cbrt(volume / most_cells), longest / 1024.0});
+    Superposition best = empty_cells(box, std::min(alike, longest / 4.0), 0);
+    if (alike <= wanted)
+        return best;
+    const double finest_coarse = std::max(std::cbrt(volume / most_coarse_cells), longest / 512.0);
+    for (int step = 0; step < 8; ++step) {
+        const double coarse = finest_coarse * std::exp2(0.5 * step);
+        Superposition two_levels = empty_cells(box, coarse / (1 << most_bits), most_bits);
+        const double bricks = double(make_bricks(members, pieces, two_levels));
+        int bits = 1;
+        while (bits < most_bits && coarse / (1 << bits) > wanted && bricks * (8 << (3 * bits)) <= most_cells)
+            ++bits;
+        const double edge = coarse / (1 << bits);
+        if (bricks == 0.0 || bricks * (1 << (3 * bits)) > most_cells || edge >= 0.9 * best.edge)
+            continue;
+        best = empty_cells(box, edge, bits);
+        best.bricks = std::move(two_levels.bricks);
+        best.brick_bounds.assign(std::size_t(bricks) << (3 * bits), 0.0f);
     }
+    return best;
 }
 
 struct Overlap {
-    std::uint32_t cell, medium;
+    std::uint32_t entry, medium;
 };
 
-void list_overlaps(const std::vector<Overlap>& found, std::size_t cells, Superposition& whole) {
-    std::vector<std::uint32_t> count(cells, 0);
+void list_overlaps(const std::vector<Overlap>& found, Superposition& whole) {
+    const std::size_t entries = whole.entries();
+    std::vector<std::uint32_t> next(entries, 0);
     for (const Overlap& overlap : found)
-        ++count[overlap.cell];
-    whole.most_overlaps = count.empty() ? 0 : *std::max_element(count.begin(), count.end());
-    whole.overlaps.resize(cells + 1 + found.size());
-    auto next = static_cast<std::uint32_t>(cells + 1);
-    for (std::size_t i = 0; i < cells; ++i) {
-        whole.overlaps[i] = next;
-        next += count[i];
+        ++next[overlap.entry];
+    whole.most_overlaps = *std::max_element(next.begin(), next.end());
+    whole.overlaps.resize(entries + 1 + found.size());
+    auto place = static_cast<std::uint32_t>(entries + 1);
+    for (std::size_t i = 0; i < entries; ++i) {
+        whole.overlaps[i] = place;
+        place += std::exchange(next[i], place);
     }
-    whole.overlaps[cells] = next;
-    std::vector<std::uint32_t> place(whole.overlaps.begin(), whole.overlaps.begin() + std::ptrdiff_t(cells));
+    whole.overlaps[entries] = place;
     for (const Overlap& overlap : found)
-        whole.overlaps[place[overlap.cell]++] = overlap.medium;
+        whole.overlaps[next[overlap.entry]++] = overlap.medium;
+}
+
+void fill(const std::vector<Member>& members, PieceStore& pieces, Superposition& whole) {
+    Touch touch(whole, pieces);
+    std::vector<Overlap> found;
+    std::vector<float> bounds(whole.entries(), 0.0f);
+    for (const Member& member : members)
+        touch(member, whole.edge, [&](std::uint32_t entry, float bound) {
+            bounds[entry] += bound;
+            found.push_back({entry, member.number});
+        });
+    list_overlaps(found, whole);
+    const auto coarse_end = bounds.begin() + std::ptrdiff_t(whole.cells.bounds.size());
+    std::copy(bounds.begin(), coarse_end, whole.cells.bounds.begin());
+    std::copy(coarse_end, bounds.end(), whole.brick_bounds.begin());
+    const std::size_t brick = std::size_t{1} << (3 * whole.bits);
+    for (std::size_t i = 0; i < whole.bricks.size(); ++i)
+        if (const std::uint32_t number = whole.bricks[i]; number > 0) {
+            const auto first = whole.brick_bounds.begin() + std::ptrdiff_t((number - 1) * brick);
+            whole.cells.bounds[i] = *std::max_element(first, first + std::ptrdiff_t(brick));
+        }
+}
+
+// How far around the cells of a brick everything is empty, as walks have it. No further than half a brick.
+void append_brick(const Superposition& whole, glm::ivec3 coarse, std::vector<float>& walked) {
+    const int cells = 1 << whole.bits, margin = cells / 2;
+    MajorantGrid window{1, glm::ivec3(0), glm::ivec3(2 * cells), {}};
+    window.bounds.reserve(std::size_t{8} << (3 * whole.bits));
+    const glm::ivec3 first = (coarse << whole.bits) - margin;
+    for (int x = 0; x < 2 * cells; ++x)
+        for (int y = 0; y < 2 * cells; ++y)
+            for (int z = 0; z < 2 * cells; ++z) {
+                const glm::ivec3 cell = first + glm::ivec3(x, y, z);
+                const bool inside = cell == glm::clamp(cell, glm::ivec3(0), whole.dims() - 1);
+                window.bounds.push_back(inside ? whole.bound(whole.entry_of(cell)) : 0.0f);
+            }
+    const std::vector<std::uint8_t> reaches = empty_reaches(window);
+    for (int x = margin; x < margin + cells; ++x)
+        for (int y = margin; y < margin + cells; ++y)
+            for (int z = margin; z < margin + cells; ++z) {
+                const auto i = std::size_t((x * 2 * cells + y) * 2 * cells + z);
+                walked.push_back(window.bounds[i] > 0.0f ? window.bounds[i]
+                                                         : -float(std::min<int>(reaches[i], margin)));
+            }
 }
 
 } // namespace
 
+std::size_t Superposition::entry_of(glm::ivec3 cell) const {
+    const glm::ivec3 coarse = cell >> bits, within = cell & ((1 << bits) - 1);
+    const std::size_t i = (std::size_t(coarse.x) * cells.dims.y + coarse.y) * cells.dims.z + coarse.z;
+    if (bricks.empty() || bricks[i] == 0)
+        return i;
+    return cells.bounds.size() + (std::size_t{bricks[i] - 1} << (3 * bits)) +
+           std::size_t((((within.x << bits) + within.y) << bits) + within.z);
+}
+
+double Superposition::mean_bound() const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < cells.bounds.size(); ++i)
+        if (bricks.empty() || bricks[i] == 0)
+            sum += cells.bounds[i];
+    for (const float bound : brick_bounds)
+        sum += std::ldexp(bound, -3 * bits);
+    return sum / std::max<double>(1.0, double(cells.bounds.size()));
+}
+
 Superposition superpose(const Scene& scene, Media media, const Method& method) {
-    std::vector<std::size_t> members;
-    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-        if (has_matter(scene.volumes[i], media[i]))
-            members.push_back(i);
-    Superposition whole;
+    const std::vector<Member> members = members_of(scene, media);
     if (members.empty())
-        return whole;
-    lay_out(scene, media, members, whole);
-    const std::size_t count =
-        std::size_t(whole.cells.dims.x) * std::size_t(whole.cells.dims.y) * std::size_t(whole.cells.dims.z);
-    whole.cells.bounds.assign(count, 0.0f);
-    const glm::dmat4 to_cells =
-        glm::scale(glm::dmat4(1.0), glm::dvec3(1.0 / whole.edge)) * glm::translate(glm::dmat4(1.0), -whole.origin);
-    std::vector<float> bounds(count, 0.0f); // of one medium
-    std::vector<std::uint32_t> touched;
-    std::vector<Overlap> found;
-    for (const std::size_t i : members) {
-        raise(pieces_of(scene, scene.volumes[i], media[i]), to_cells * medium_to_world(scene.volumes[i], media[i]),
-              whole.cells, bounds, touched);
-        for (const std::uint32_t cell : touched) {
-            whole.cells.bounds[cell] += bounds[cell];
-            found.push_back({cell, static_cast<std::uint32_t>(i)});
-            bounds[cell] = 0.0f;
-        }
-        touched.clear();
-    }
-    list_overlaps(found, count, whole);
+        return {};
+    PieceStore pieces(scene.settings.majorant_scale);
+    Superposition whole = lay_out(members, pieces);
+    fill(members, pieces, whole);
     // Worth the look at how far they reach where there are some.
-    const auto empty = std::count(whole.cells.bounds.begin(), whole.cells.bounds.end(), 0.0f);
-    whole.cells.leaps = leaps(method) && 8 * std::size_t(empty) > count;
+    const auto empty = std::count(whole.cells.bounds.begin(), whole.cells.bounds.end(), 0.0f) +
+                       std::count(whole.brick_bounds.begin(), whole.brick_bounds.end(), 0.0f);
+    whole.cells.leaps = leaps(method) && 8 * std::size_t(empty) > whole.entries();
     return whole;
+}
+
+std::vector<float> walked_bounds(const Superposition& whole) {
+    std::vector<float> walked = walked_cells(whole.cells);
+    if (!whole.cells.leaps)
+        walked.insert(walked.end(), whole.brick_bounds.begin(), whole.brick_bounds.end());
+    else if (!whole.brick_bounds.empty()) {
+        std::vector<glm::ivec3> places(whole.brick_bounds.size() >> (3 * whole.bits)); // in the order of their numbers
+        std::size_t i = 0;
+        for (int x = 0; x < whole.cells.dims.x; ++x)
+            for (int y = 0; y < whole.cells.dims.y; ++y)
+                for (int z = 0; z < whole.cells.dims.z; ++z, ++i)
+                    if (whole.bricks[i] > 0)
+                        places[whole.bricks[i] - 1] = {x, y, z};
+        for (const glm::ivec3 place : places)
+            append_brick(whole, place, walked);
+    }
+    return walked;
 }
 
 } // namespace vkvol

@@ -2,6 +2,7 @@
 
 #include "kernel_text.h"
 #include "light_table.h"
+#include "overlap_words.h"
 #include "scene_upload.h"
 
 namespace vkvol {
@@ -17,6 +18,8 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
       cache_directions_(cache_layout(scene.lights).directions) {
     if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN)
         make_lights(scene, assets);
+    if (assets.superposition)
+        upload_media(scene, method, assets, most_texel_bytes);
     // Of texels devices may allow as few as 65536 to a buffer.
     const bool fits = cache_entries(frame_.lattice, cache_directions_.size()) <= device.limits().maxTexelBufferElements;
     specialization_[SPEC_TEXELS] = buffers_.texels() && fits ? 1 : 0;
@@ -24,11 +27,8 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
         specialization_[SPEC_ALBEDO] != ALBEDO_CONSTANT || specialization_[SPEC_TEMPERATURE_TYPE] == GRID_COLOR ||
         specialization_[SPEC_SENSOR] != SENSOR_PINHOLE || specialization_[SPEC_PIXEL_FILTER] != 0)
         form_ |= form_full;
-    if (assets.superposition) {
+    if (assets.superposition)
         form_ |= form_full | form_several;
-        media_ = make_media(scene, assets.media, method, origin_);
-        buffers_.upload_media(device, commands, media_, *assets.superposition);
-    }
     if (const std::optional<std::uint32_t> bits = buffers_.window_bits()) {
         form_ |= form_windows;
         specialization_[SPEC_WINDOW_BITS] = static_cast<std::int32_t>(*bits);
@@ -47,6 +47,15 @@ void DeviceScene::make_lights(const Scene& scene, const Assets& assets) {
     std::copy(lights_.suns.begin(), lights_.suns.end(), frame_.cache_suns);
     frame_.fluence = lights_.fluence;
     buffers_.upload_lights(device_, commands_, lights_, assets.sky ? &*assets.sky : nullptr);
+}
+
+void DeviceScene::upload_media(const Scene& scene, const Method& method, const Assets& assets,
+                               std::uint64_t most_texel_bytes) {
+    media_ = make_media(scene, assets.media, method, origin_);
+    const OverlapWords overlaps = overlap_words(media_, *assets.superposition);
+    frame_.overlaps = overlaps.places;
+    frame_.media[0].density = overlaps.grid;
+    buffers_.upload_media(device_, commands_, media_, overlaps.words, most_texel_bytes);
 }
 
 void DeviceScene::set_queues(std::uint32_t slots, std::uint32_t queue_capacity) {

@@ -42,6 +42,7 @@ public:
 
 private:
     void make_lights(const Scene& scene, const Assets& assets);
+    void upload_media(const Scene& scene, const Method& method, const Assets& assets, std::uint64_t most_texel_bytes);
 
     const Device& device_;
     Commands& commands_;

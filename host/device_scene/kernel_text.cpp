@@ -11,9 +11,11 @@ namespace {
 
 // `s` of the media that they have in common.
 std::string several_text(const Specialization& s, const Assets& assets) {
-    return fmt::format("{} media in cells of {:.3g} world units, at most {} of them in one{}", assets.media.size(),
-                       assets.superposition->edge, assets.superposition->most_overlaps,
-                       s[SPEC_LEAPS] ? ", empty ones leapt" : "");
+    const Superposition& whole = *assets.superposition;
+    const double coarse = whole.edge * (1 << whole.bits);
+    return fmt::format("{} media in cells of {:.3g} world units{}, at most {} of them in one{}", assets.media.size(),
+                       coarse, whole.bits > 0 ? fmt::format(", or {:.3g} where small media are", whole.edge) : "",
+                       whole.most_overlaps, s[SPEC_LEAPS] ? ", empty ones leapt" : "");
 }
 
 } // namespace

@@ -58,35 +58,35 @@ void make_parts(const Device& device, Commands& commands, std::optional<Buffer>&
     upload_range(commands, *buffer, parts, 0, buffer->bytes());
 }
 
+void check_size(const Device& device, const char* what, std::uint64_t bytes, const char* remedy) {
+    if (const std::uint64_t most = device.limits().maxStorageBufferRange; bytes > most)
+        throw InputError(fmt::format("{} take {:.1f} MiB, but \"{}\" holds no more than {:.1f} MiB of them; {}", what,
+                                     bytes / mebibyte, device.info().name, most / mebibyte, remedy));
+}
+
 } // namespace
 
 SceneBuffers::SceneBuffers(const Device& device, Commands& commands, Media media, const Superposition* whole,
                            std::uint64_t most_grid_bytes, std::uint64_t most_texel_bytes)
     : frame_(device, "frame parameters", sizeof(shared::FrameParams), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
              BufferPlace::host) {
-    Parts grids, tables, nodes, colors;
-    for (const LoadedMedium& medium : media) {
-        for (const DensityField* grid : grids_of(medium)) {
-            grids.push_back(grid->bytes.span());
-            tables.push_back(bytes_of(grid->leaf_table));
-        }
-        nodes.push_back(bytes_of(medium.phase_nodes));
-        colors.push_back(bytes_of(medium.blackbody));
-    }
-    make_parts(device, commands, phase_, "phase functions", nodes);
-    make_parts(device, commands, blackbody_, "black-body tables", colors);
-    make_parts(device, commands, leaf_table_, "leaf tables", tables);
-    if (!grids.empty())
-        make_grids(device, commands, grids, most_grid_bytes);
+    const UploadLayout layout(media);
+    make_parts(device, commands, phase_, "phase functions", layout.phases());
+    make_parts(device, commands, blackbody_, "black-body tables", layout.blackbodies());
+    make_parts(device, commands, leaf_table_, "leaf tables", layout.leaf_tables());
+    if (!layout.grids().empty())
+        make_grids(device, commands, layout.grids(), most_grid_bytes);
     if (whole)
-        make_cells(device, commands, whole->cells);
+        make_buffer(device, commands, majorants_, "majorant grid", bytes_of(walked_bounds(*whole)));
     else if (!media.empty())
         upload_alone(device, commands, media.front());
-    texels_ = grids_ && std::max({grids_->bytes(), leaf_table_->bytes(), majorants_->bytes()}) <= most_texel_bytes;
+    find_texels(most_texel_bytes);
 }
 
-void SceneBuffers::make_cells(const Device& device, Commands& commands, const MajorantGrid& cells) {
-    make_buffer(device, commands, majorants_, "majorant grid", bytes_of(walked_cells(cells)));
+void SceneBuffers::find_texels(std::uint64_t most_bytes) {
+    texels_ = (grids_ || overlaps_) && windows_.empty();
+    for (const auto* buffer : {&grids_, &leaf_table_, &majorants_, &overlaps_})
+        texels_ = texels_ && (!*buffer || (*buffer)->bytes() <= most_bytes);
 }
 
 // What a medium has only where it is no part of several.
@@ -96,29 +96,28 @@ void SceneBuffers::upload_alone(const Device& device, Commands& commands, const 
         make_buffer(device, commands, bvh_, "bounding volume hierarchy", bytes_of(medium.bvh->nodes));
     }
     if (medium.majorants)
-        make_cells(device, commands, *medium.majorants);
+        make_buffer(device, commands, majorants_, "majorant grid", bytes_of(walked_cells(*medium.majorants)));
     make_buffer(device, commands, controls_, "control grid", bytes_of(medium.controls));
 }
 
 void SceneBuffers::upload_media(const Device& device, Commands& commands, const std::vector<shared::MediumParams>& rows,
-                                const Superposition& whole) {
+                                const std::vector<std::uint32_t>& overlaps, std::uint64_t most_texel_bytes) {
+    check_size(device, "the volumes", bytes_of(rows).size(), "leave some out");
+    check_size(device, "the lists of which volumes are where", bytes_of(overlaps).size(),
+               "leave volumes out, or let fewer lie in one another");
     make_buffer(device, commands, media_, "media", bytes_of(rows));
-    make_buffer(device, commands, overlaps_, "lists of media", bytes_of(whole.overlaps));
+    make_buffer(device, commands, overlaps_, "lists of media", bytes_of(overlaps));
+    find_texels(most_texel_bytes);
 }
 
 void SceneBuffers::upload_lights(const Device& device, Commands& commands, const LightTable& table, const SkyMap* sky) {
-    const auto check = [&](const char* what, std::uint64_t bytes, const char* remedy) {
-        if (const std::uint64_t most = device.limits().maxStorageBufferRange; bytes > most)
-            throw InputError(fmt::format("{} take {:.1f} MiB, but \"{}\" holds no more than {:.1f} MiB of them; {}",
-                                         what, bytes / mebibyte, device.info().name, most / mebibyte, remedy));
-    };
-    check("the lights", bytes_of(table.rows).size(), "leave some out");
+    check_size(device, "the lights", bytes_of(table.rows).size(), "leave some out");
     make_buffer(device, commands, lights_, "lights", bytes_of(table.rows));
     make_buffer(device, commands, light_tree_, "tree of lights", bytes_of(table.tree));
     if (!sky)
         return;
-    check("the texels of the <sky>", bytes_of(sky->texels).size(),
-          "make the map smaller, 8 million texels at most, say");
+    check_size(device, "the texels of the <sky>", bytes_of(sky->texels).size(),
+               "make the map smaller, 8 million texels at most, say");
     make_buffer(device, commands, sky_, "sky", bytes_of(sky->texels));
     make_buffer(device, commands, sky_alias_, "choice of the sky's texels", bytes_of(sky->alias));
 }
@@ -168,6 +167,8 @@ BoundBuffers SceneBuffers::bound() const {
     buffers[BINDING_LEAF_TABLE] = place(leaf_table_);
     buffers[BINDING_MAJORANTS] = place(majorants_);
     if (texels_) {
+        buffers[BINDING_OVERLAP_TEXELS] = place(overlaps_);
+        buffers[BINDING_MEMBER_TEXELS] = place(overlaps_);
         buffers[BINDING_GRID_TEXELS] = place(grids_);
         buffers[BINDING_LEAF_TEXELS] = place(leaf_table_);
         buffers[BINDING_MAJORANT_TEXELS] = place(majorants_);

@@ -9,6 +9,7 @@
 #include "light_table.h"
 #include "loaded_medium.h"
 #include "shared/frame.h"
+#include "upload_layout.h"
 
 namespace vkvol {
 
@@ -20,9 +21,10 @@ public:
     SceneBuffers(const Device& device, Commands& commands, Media media, const Superposition* whole,
                  std::uint64_t most_grid_bytes, std::uint64_t most_texel_bytes);
 
-    // Several media: a row for each.
+    // Several media: a row for each, and what look-ups read of them. Throws InputError if they are too many for the
+    // device.
     void upload_media(const Device& device, Commands& commands, const std::vector<shared::MediumParams>& rows,
-                      const Superposition& whole);
+                      const std::vector<std::uint32_t>& overlaps, std::uint64_t most_texel_bytes);
 
     // `sky`: null without a map. Throws InputError if that is too large for the device.
     void upload_lights(const Device& device, Commands& commands, const LightTable& table, const SkyMap* sky);
@@ -40,10 +42,10 @@ public:
     std::uint64_t bytes() const;
 
 private:
-    using Parts = std::vector<std::span<const std::byte>>; // one after another
+    using Parts = UploadLayout::Parts;
 
     void upload_alone(const Device& device, Commands& commands, const LoadedMedium& medium);
-    void make_cells(const Device& device, Commands& commands, const MajorantGrid& cells);
+    void find_texels(std::uint64_t most_bytes);
     void make_grids(const Device& device, Commands& commands, const Parts& grids, std::uint64_t most_bytes);
     void make_windows(const Device& device, Commands& commands, const Parts& grids, std::uint64_t bytes);
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
+#include <set>
 
 #include "camera_rays.h"
 #include "camera_view.h"
@@ -17,6 +18,7 @@
 #include "placement.h"
 #include "shared/estimators.h"
 #include "shared/items.h"
+#include "upload_layout.h"
 
 namespace vkvol {
 
@@ -44,30 +46,17 @@ int shape_kind(const Volume& volume, const LoadedMedium& loaded) {
     return loaded.field || std::holds_alternative<Box>(volume.shape) ? SHAPE_BOX : SHAPE_NONE;
 }
 
-// `media`: in whose order grids lie in their buffers.
-shared::GridParams make_grid(const DensityField& field, Media media) {
+shared::GridParams make_grid(const DensityField& field, const UploadLayout& layout) {
     const glm::ivec3 base = index_base(field);
+    const UploadLayout::GridPlace place = layout.place_of(field);
     shared::GridParams params{};
     params.voxel_min = field.voxel_min - base;
     params.voxel_max = field.voxel_max - base;
     params.leaf_min = field.leaf_min - (base >> 3);
     params.leaf_dims = field.leaf_dims;
-    for (const LoadedMedium& medium : media)
-        for (const DensityField* grid : grids_of(medium)) {
-            if (grid == &field)
-                return params;
-            params.first_word += static_cast<std::uint32_t>(grid->bytes.size() / 4);
-            params.first_entry += static_cast<std::uint32_t>(grid->leaf_table.size());
-        }
+    params.first_word = place.first_word;
+    params.first_entry = place.first_entry;
     return params;
-}
-
-// Of a table of each medium's own, laid one behind the other: where that of `loaded` begins.
-template <class Table> std::uint32_t first_of(Table LoadedMedium::*table, const LoadedMedium& loaded, Media media) {
-    std::size_t first = 0;
-    for (const LoadedMedium* medium = media.data(); medium != &loaded; ++medium)
-        first += (medium->*table).size();
-    return static_cast<std::uint32_t>(first);
 }
 
 // Rows of the affine map from render space, whose origin is at `origin` in the world. Composed in double precision.
@@ -82,7 +71,7 @@ Rgb constant_emission(const Volume& volume, const LoadedMedium& loaded, const Me
     return method.material_colour && loaded.mesh && loaded.mesh->diffuse ? *loaded.mesh->diffuse : volume.Le;
 }
 
-shared::EmissionParams make_emission(const Volume& volume, const LoadedMedium& loaded, Media media,
+shared::EmissionParams make_emission(const Volume& volume, const LoadedMedium& loaded, const UploadLayout& layout,
                                      const Method& method, glm::dvec3 origin) {
     const Rgb absorbed = loaded.albedo ? Rgb(1.0) : 1.0 - albedo_of(volume);
     shared::EmissionParams params{};
@@ -91,14 +80,14 @@ shared::EmissionParams make_emission(const Volume& volume, const LoadedMedium& l
         return params;
     const TemperatureEmission& emission = volume.temperature;
     params.color = absorbed * emission.color;
-    params.grid = make_grid(*loaded.temperature, media);
+    params.grid = make_grid(*loaded.temperature, layout);
     fill_rows(params.to_index, index_to_world(*loaded.temperature), origin);
     params.kelvin_scale = static_cast<float>(emission.scale);
     params.kelvin_offset = static_cast<float>(emission.offset);
     params.kelvin_cutoff = static_cast<float>(emission.cutoff);
     params.table_low = 0.0f;
     params.table_high = static_cast<float>(loaded.hottest);
-    params.first_entry = first_of(&LoadedMedium::blackbody, loaded, media);
+    params.first_entry = layout.first_color(loaded);
     return params;
 }
 
@@ -119,10 +108,7 @@ double usual_density(const Volume& volume, const LoadedMedium& loaded) {
         return 0.5;
     if (!loaded.majorants)
         return 1.0;
-    double sum = 0.0;
-    for (const float bound : loaded.majorants->bounds)
-        sum += bound;
-    return 0.5 * sum / std::max<double>(1.0, double(loaded.majorants->bounds.size()));
+    return 0.5 * loaded.majorants->mean;
 }
 
 int emission_kind(const Volume& volume, const LoadedMedium& loaded, const Method& method) {
@@ -149,11 +135,9 @@ shared::MediumKinds kinds_of(const Volume& volume, const LoadedMedium& loaded, c
     return kinds;
 }
 
-// The i-th. `origin`: of render space, in world coordinates.
-shared::MediumParams make_medium(const Scene& scene, Media media, std::size_t i, const Method& method,
-                                 glm::dvec3 origin) {
-    const Volume& volume = scene.volumes[i];
-    const LoadedMedium& loaded = media[i];
+// `origin`: of render space, in world coordinates.
+shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const LoadedMedium& loaded,
+                                 const UploadLayout& layout, const Method& method, glm::dvec3 origin) {
     shared::MediumParams params{};
     fill_rows(params.to_medium, medium_to_world(volume, loaded), origin);
     const UnmovedShape shape = unmoved_shape(volume, loaded);
@@ -162,7 +146,7 @@ shared::MediumParams make_medium(const Scene& scene, Media media, std::size_t i,
     params.bounds_min = bounds.low;
     params.bounds_max = bounds.high;
     if (loaded.field) {
-        params.density = make_grid(*loaded.field, media);
+        params.density = make_grid(*loaded.field, layout);
         params.cell_dims = loaded.majorants->dims;
         params.cell_size = static_cast<float>(loaded.majorants->cell);
     }
@@ -176,12 +160,12 @@ shared::MediumParams make_medium(const Scene& scene, Media media, std::size_t i,
     params.usual_sigma_t = static_cast<float>(std::max(largest(sigma_t) * usual_density(volume, loaded), 1e-30));
     params.albedo = albedo_of(volume);
     if (loaded.albedo) {
-        params.albedo_grid.grid = make_grid(*loaded.albedo, media);
+        params.albedo_grid.grid = make_grid(*loaded.albedo, layout);
         fill_rows(params.albedo_grid.to_index, index_to_world(*loaded.albedo), origin);
     }
     params.phase = phase_params(volume, loaded.phase_nodes);
-    params.phase.first_node = first_of(&LoadedMedium::phase_nodes, loaded, media);
-    params.emission = make_emission(volume, loaded, media, method, origin);
+    params.phase.first_node = layout.first_node(loaded);
+    params.emission = make_emission(volume, loaded, layout, method, origin);
     params.kinds = kinds_of(volume, loaded, method);
     return params;
 }
@@ -194,14 +178,10 @@ shared::MediumParams make_whole(const Superposition& whole) {
     params.bounds_min = whole.low();
     params.bounds_max = whole.high();
     params.extent = glm::vec3(static_cast<float>(whole.edge));
-    params.cell_dims = whole.cells.dims;
+    params.cell_dims = whole.dims();
     params.cell_size = 1.0f;
     params.sigma_t = 1.0f;
-    double sum = 0.0;
-    for (const float bound : whole.cells.bounds)
-        sum += bound;
-    params.usual_sigma_t =
-        static_cast<float>(std::max(0.5 * sum / std::max<double>(1.0, double(whole.cells.bounds.size())), 1e-30));
+    params.usual_sigma_t = static_cast<float>(std::max(0.5 * whole.mean_bound(), 1e-30));
     params.sigma_ratio = glm::vec3(1.0f);
     params.noise = make_noise(Noise{}, whole.origin); // its permutation is the same everywhere
     return params;
@@ -329,6 +309,7 @@ void specialize_medium(const shared::MediumKinds& kinds, Specialization& constan
 void specialize_media(const Scene& scene, Media media, const Superposition& whole, const Method& method,
                       Specialization& constants) {
     constants[SPEC_LEAPS] = whole.cells.leaps ? 1 : 0;
+    std::set<const std::byte*> grids;
     bool first = true;
     for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
         const shared::MediumKinds kinds = kinds_of(scene.volumes[i], media[i], method);
@@ -342,7 +323,11 @@ void specialize_media(const Scene& scene, Media media, const Superposition& whol
             constants[k] = first || its[k] == constants[k] ? its[k] : EACH;
         constants[SPEC_SHAPE] = SHAPE_BOX;
         first = false;
+        if (media[i].field)
+            grids.insert(media[i].field->bytes.data());
     }
+    constants[SPEC_MEMBER_GRID] = grids.size() > 1 ? EACH : 0;
+    constants[SPEC_CELL_BITS] = whole.bits;
 }
 
 } // namespace
@@ -444,9 +429,11 @@ glm::dvec3 render_origin(const Scene& scene, Media media, const Superposition* w
 }
 
 std::vector<shared::MediumParams> make_media(const Scene& scene, Media media, const Method& method, glm::dvec3 origin) {
+    const UploadLayout layout(media);
     std::vector<shared::MediumParams> rows;
+    rows.reserve(media.size());
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-        rows.push_back(make_medium(scene, media, i, method, origin));
+        rows.push_back(make_medium(scene, scene.volumes[i], media[i], layout, method, origin));
     return rows;
 }
 
@@ -459,10 +446,10 @@ shared::FrameParams make_frame(const Scene& scene, Media media, const Method& me
     if (whole) {
         frame.media[0] = make_whole(*whole);
         if (method.nee == NEE_CACHED && !whole->cells.bounds.empty())
-            frame.lattice = make_lattice(whole->low(), whole->high(), whole->edge * glm::dvec3(whole->cells.dims),
-                                         whole->cells.dims, nodes);
+            frame.lattice = make_lattice(whole->low(), whole->high(), whole->edge * glm::dvec3(whole->dims()),
+                                         whole->dims(), nodes);
     } else if (!scene.volumes.empty()) {
-        frame.media[0] = make_medium(scene, media, 0, method, origin);
+        frame.media[0] = make_medium(scene, scene.volumes.front(), media.front(), UploadLayout(media), method, origin);
         if (method.nee == NEE_CACHED)
             frame.lattice = make_lattice_of(scene.volumes.front(), media.front(), nodes);
     }

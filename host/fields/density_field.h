@@ -12,6 +12,7 @@
 
 namespace vkvol {
 
+// Copies share what is large in it.
 struct DensityField {
     GridBytes bytes;
     int type = 0; // GRID_FLOAT, GRID_FP4, ...
@@ -23,7 +24,7 @@ struct DensityField {
     // One word per aligned 8^3 block from leaf_min on, z fastest; see shaders/field/density.glsl.
     glm::ivec3 leaf_min{0};
     glm::ivec3 leaf_dims{0};
-    std::vector<std::uint32_t> leaf_table;
+    SharedArray<std::uint32_t> leaf_table;
     float background = 0.0f;   // what voxels have that the file gives no value: it counts in the box, as all others do
     std::uint64_t cleaned = 0; // values that were NaN, infinite or negative and count as 0
 

@@ -1,7 +1,6 @@
 #include "field_cache.h"
 
-#include <algorithm>
-#include <utility>
+#include <set>
 
 #include "shared/constants.h"
 
@@ -14,25 +13,33 @@ FieldCache::Stamp FieldCache::stamp_of(const std::filesystem::path& path) {
 
 DensityField FieldCache::take(const GridFile& file, GridValues values) {
     const Stamp stamp = stamp_of(file.path);
-    const auto is_this = [&](const Entry& entry) {
-        return entry.file.path == file.path && entry.file.grid == file.grid;
-    };
-    const auto entry = std::find_if(entries_.begin(), entries_.end(), is_this);
+    const Key key = key_of(file);
     const auto is_of = [&](const DensityField& field) {
         return values == GridValues::numbers_or_colors || field.type != GRID_COLOR;
     };
-    if (entry != entries_.end() && entry->field && entry->stamp == stamp && is_of(*entry->field))
-        return *std::exchange(entry->field, std::nullopt);
-    std::erase_if(entries_, [&](const Entry& other) { return is_this(other) || other.file.path != file.path; });
-    DensityField field = load_density_field(file, values);
-    entries_.push_back({file, stamp, std::nullopt});
-    return field;
+    if (const auto found = fields_.find(key);
+        found != fields_.end() && found->second.stamp == stamp && is_of(found->second.value))
+        return found->second.value;
+    fields_.erase(key);
+    return fields_.insert_or_assign(key, Stamped<DensityField>{stamp, load_density_field(file, values)})
+        .first->second.value;
 }
 
-void FieldCache::keep(const GridFile& file, DensityField field) {
-    for (Entry& entry : entries_)
-        if (entry.file.path == file.path && entry.file.grid == file.grid)
-            entry.field = std::move(field);
+bool FieldCache::has(const GridFile& file) {
+    const Stamp stamp = stamp_of(file.path);
+    const Key key = key_of(file);
+    if (const auto found = there_.find(key); found != there_.end() && found->second.stamp == stamp)
+        return found->second.value;
+    return there_.insert_or_assign(key, Stamped<bool>{stamp, has_grid(file)}).first->second.value;
+}
+
+void FieldCache::retain(const std::vector<GridFile>& files) {
+    std::set<Key> kept;
+    for (const GridFile& file : files)
+        kept.insert(key_of(file));
+    const auto is_left = [&](const auto& entry) { return kept.count(entry.first) == 0; };
+    std::erase_if(fields_, is_left);
+    std::erase_if(there_, is_left);
 }
 
 } // namespace vkvol

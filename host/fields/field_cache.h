@@ -1,8 +1,11 @@
-// Grids that stay in memory between the frames of a sequence, so that each is read once.
+// Grids in memory, so that each is read once, however many media of a scene and frames of a sequence have it.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "density_field.h"
@@ -11,27 +14,31 @@ namespace vkvol {
 
 class FieldCache {
 public:
-    // The grid that was kept, if its file has not changed since, else as load_density_field. Grids of other files are
-    // let go of where this one has to be read: a sequence of files needs one at a time.
+    // The grid in memory, with what is large in it shared, if its file has not changed since; else as
+    // load_density_field.
     DensityField take(const GridFile& file, GridValues values = GridValues::numbers);
-    // Until the next `take` of it.
-    void keep(const GridFile& file, DensityField field);
+    // As has_grid, whose answer is kept likewise.
+    bool has(const GridFile& file);
+    // Lets go of all others. A sequence of files needs one at a time.
+    void retain(const std::vector<GridFile>& files);
 
 private:
+    using Key = std::pair<std::string, std::string>; // file, grid
     struct Stamp {
         std::uintmax_t bytes = 0;
         std::filesystem::file_time_type changed;
         bool operator==(const Stamp&) const = default;
     };
-    struct Entry {
-        GridFile file;
+    template <class T> struct Stamped {
         Stamp stamp;
-        std::optional<DensityField> field; // none: taken
+        T value;
     };
 
+    static Key key_of(const GridFile& file) { return {file.path.native(), file.grid}; }
     static Stamp stamp_of(const std::filesystem::path& path);
 
-    std::vector<Entry> entries_;
+    std::map<Key, Stamped<DensityField>> fields_;
+    std::map<Key, Stamped<bool>> there_;
 };
 
 } // namespace vkvol

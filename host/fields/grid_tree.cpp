@@ -121,9 +121,10 @@ public:
         bytes_left_ = field_.bytes.size();
         clean(root->mBackground);
         field_.background = most(root->mBackground);
-        std::fill(field_.leaf_table.begin(), field_.leaf_table.end(), entry_of_value(&root->mBackground));
+        std::fill(table_.begin(), table_.end(), entry_of_value(&root->mBackground));
         for (std::uint32_t i = 0; i < root->mTableSize; ++i)
             visit_root_tile(*at<Tile>(root_offset + sizeof(Root) + i * sizeof(Tile)), root_offset);
+        field_.leaf_table = std::move(table_);
     }
 
 private:
@@ -145,7 +146,7 @@ private:
     template <class T> T* at(std::size_t offset, std::size_t size = sizeof(T)) {
         if (offset % 32 != 0 || offset > field_.bytes.size() || size > field_.bytes.size() - offset)
             damaged();
-        return reinterpret_cast<T*>(field_.bytes.data() + offset);
+        return reinterpret_cast<T*>(field_.bytes.edit() + offset);
     }
 
     void read_transform(const nanovdb::GridData& grid) {
@@ -239,7 +240,7 @@ private:
                 fmt::format("{}: the box of active voxels spans {} x {} x {} voxels, too much for a table of "
                             "its blocks; crop stray voxels or split the grid",
                             place_, size.x + 1, size.y + 1, size.z + 1));
-        field_.leaf_table.resize(static_cast<std::size_t>(blocks));
+        table_.resize(static_cast<std::size_t>(blocks));
     }
 
     static float most(float value) { return value; }
@@ -268,7 +269,7 @@ private:
         for (int x = low.x; x <= high.x; ++x)
             for (int y = low.y; y <= high.y; ++y)
                 for (int z = low.z; z <= high.z; ++z)
-                    field_.leaf_table[(std::size_t(x) * field_.leaf_dims.y + y) * field_.leaf_dims.z + z] = entry;
+                    table_[(std::size_t(x) * field_.leaf_dims.y + y) * field_.leaf_dims.z + z] = entry;
     }
 
     std::size_t child_offset(std::size_t parent, std::int64_t child) const {
@@ -344,7 +345,8 @@ private:
 
     DensityField& field_;
     const std::string& place_;
-    std::size_t bytes_left_ = 0; // that nodes not yet seen can have
+    std::vector<std::uint32_t> table_; // of leaves
+    std::size_t bytes_left_ = 0;       // that nodes not yet seen can have
 };
 
 } // namespace

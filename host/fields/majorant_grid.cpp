@@ -50,23 +50,6 @@ void raise_block(MajorantGrid& grid, const DensityField& field, glm::ivec3 block
                     raise(grid, glm::ivec3(x, y, z) - grid.origin, glm::ivec3(x, y, z) - grid.origin, value);
 }
 
-// Cells of twice the edge. The corners of a large cell are those of the eight it is made of.
-MajorantGrid merge_cells(const MajorantGrid& fine) {
-    MajorantGrid coarse;
-    coarse.cell = 2 * fine.cell;
-    coarse.origin = fine.origin;
-    coarse.dims = (fine.dims + 1) / 2;
-    coarse.bounds.assign(static_cast<std::size_t>(count(coarse.dims)), 0.0f);
-    std::size_t i = 0;
-    for (int x = 0; x < fine.dims.x; ++x)
-        for (int y = 0; y < fine.dims.y; ++y)
-            for (int z = 0; z < fine.dims.z; ++z) {
-                float& bound = coarse.bounds[(std::size_t(x / 2) * coarse.dims.y + y / 2) * coarse.dims.z + z / 2];
-                bound = std::max(bound, fine.bounds[i++]);
-            }
-    return coarse;
-}
-
 struct CellValues {
     double least = 1e300, mean = 0.0;
 };
@@ -106,6 +89,23 @@ MajorantGrid make_majorant_grid(const DensityField& field, int cell) {
             for (block.z = 0; block.z < field.leaf_dims.z; ++block.z)
                 raise_block(grid, field, block);
     return grid;
+}
+
+// The corners of a large cell are those of the eight it is made of.
+MajorantGrid merge_cells(const MajorantGrid& fine) {
+    MajorantGrid coarse;
+    coarse.cell = 2 * fine.cell;
+    coarse.origin = fine.origin;
+    coarse.dims = (fine.dims + 1) / 2;
+    coarse.bounds.assign(static_cast<std::size_t>(count(coarse.dims)), 0.0f);
+    std::size_t i = 0;
+    for (int x = 0; x < fine.dims.x; ++x)
+        for (int y = 0; y < fine.dims.y; ++y)
+            for (int z = 0; z < fine.dims.z; ++z) {
+                float& bound = coarse.bounds[(std::size_t(x / 2) * coarse.dims.y + y / 2) * coarse.dims.z + z / 2];
+                bound = std::max(bound, fine.bounds[i++]);
+            }
+    return coarse;
 }
 
 MajorantGrid choose_majorant_grid(const DensityField& field, const PilotScene& scene, int cell) {

@@ -27,6 +27,9 @@ struct MajorantGrid {
 // `cell` voxels along an edge, > 0. More than 2^24 cells are never made.
 MajorantGrid make_majorant_grid(const DensityField& field, int cell);
 
+// Cells of twice the edge.
+MajorantGrid merge_cells(const MajorantGrid& fine);
+
 // What a step costs that minds the room around empty cells, to one that does not.
 constexpr double leap_cost = 1.08; // measured on llvmpipe: a thin medium without empty cells
 

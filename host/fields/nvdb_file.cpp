@@ -88,7 +88,7 @@ void decompress_zip(Reader& reader, GridBytes& grid) {
     std::vector<Bytef> packed(size);
     reader.read(packed.data(), size, "a grid");
     uLongf bytes = grid.size();
-    const int status = uncompress(reinterpret_cast<Bytef*>(grid.data()), &bytes, packed.data(), size);
+    const int status = uncompress(reinterpret_cast<Bytef*>(grid.edit()), &bytes, packed.data(), size);
     if (status != Z_OK || bytes != grid.size())
         reader.damaged("its ZIP data does not decompress");
 }
@@ -105,7 +105,7 @@ void decompress_blosc(Reader& reader, GridBytes& grid) {
         const std::uint64_t chunk = std::min(longest_chunk, grid.size() - done);
         std::size_t unpacked = 0;
         if (blosc_cbuffer_validate(packed.data(), size, &unpacked) != 0 || unpacked != chunk ||
-            blosc_decompress_ctx(packed.data(), grid.data() + done, chunk, 1) != static_cast<int>(chunk))
+            blosc_decompress_ctx(packed.data(), grid.edit() + done, chunk, 1) != static_cast<int>(chunk))
             reader.damaged("its BLOSC data does not decompress");
         done += chunk;
     }
@@ -177,7 +177,7 @@ GridBytes read_nvdb_grid(const std::filesystem::path& file, const GridEntry& ent
     GridBytes grid(entry.memory);
     switch (codec) {
     case Codec::NONE:
-        reader.read(grid.data(), grid.size(), "a grid");
+        reader.read(grid.edit(), grid.size(), "a grid");
         break;
     case Codec::ZIP:
         decompress_zip(reader, grid);

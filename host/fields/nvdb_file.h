@@ -9,15 +9,18 @@
 #include <string>
 #include <vector>
 
+#include "shared_array.h"
+
 namespace vkvol {
 
-// The bytes of one NanoVDB grid, aligned as NanoVDB requires.
+// The bytes of one NanoVDB grid, aligned as NanoVDB requires. Copies share them.
 class GridBytes {
 public:
     GridBytes() = default;
     explicit GridBytes(std::size_t size) : blocks_((size + 31) / 32), size_(size) {}
 
-    std::byte* data() { return reinterpret_cast<std::byte*>(blocks_.data()); }
+    // Of this copy alone.
+    std::byte* edit() { return reinterpret_cast<std::byte*>(blocks_.edit()); }
     const std::byte* data() const { return reinterpret_cast<const std::byte*>(blocks_.data()); }
     std::size_t size() const { return size_; }
     std::span<const std::byte> span() const { return {data(), size_}; }
@@ -26,7 +29,7 @@ private:
     struct alignas(32) Block {
         std::byte bytes[32];
     };
-    std::vector<Block> blocks_;
+    SharedArray<Block> blocks_;
     std::size_t size_ = 0;
 };
 

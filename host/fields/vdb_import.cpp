@@ -74,7 +74,7 @@ template <class Grid> GridBytes to_nanovdb(Grid& grid) {
         grid.tree().clear();
     const auto handle = nanovdb::openToNanoVDB(grid);
     GridBytes bytes(handle.size());
-    std::memcpy(bytes.data(), handle.data(), handle.size());
+    std::memcpy(bytes.edit(), handle.data(), handle.size());
     return bytes;
 }
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "digest.h"
 #include "error.h"
@@ -23,11 +24,6 @@ using Json = nlohmann::json;
 
 // magic, bytes of the header, header (JSON), film, pixels, digest of all before.
 constexpr char magic[] = {'v', 'k', 'v', 'o', 'l', 'c', 'h', '3'};
-
-void add_field(Digest& digest, const std::optional<DensityField>& field) {
-    if (field)
-        digest.add(field->bytes.span());
-}
 
 template <class T> void append(std::string& text, std::span<const T> values) {
     text.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
@@ -129,15 +125,20 @@ RenderIdentity identify(const shared::FrameParams& frame, const Specialization& 
     digest.add_all(media);
     if (assets.sky)
         digest.add_all(assets.sky->texels);
+    std::set<const void*> seen; // what media share counts once
+    const auto add = [&](const auto& values) {
+        const auto bytes = std::as_bytes(std::span(values));
+        if (seen.insert(bytes.data()).second)
+            digest.add(bytes);
+    };
     for (const LoadedMedium& medium : assets.media) {
-        add_field(digest, medium.field);
-        add_field(digest, medium.temperature);
-        add_field(digest, medium.albedo);
+        for (const DensityField* grid : grids_of(medium))
+            add(grid->bytes.span());
         if (medium.majorants)
-            digest.add_all(medium.majorants->bounds);
+            add(medium.majorants->bounds);
         digest.add_all(medium.controls);
-        digest.add_all(medium.blackbody);
-        digest.add_all(medium.phase_nodes);
+        add(std::span(medium.blackbody.begin(), medium.blackbody.end()));
+        add(std::span(medium.phase_nodes.begin(), medium.phase_nodes.end()));
         if (medium.bvh)
             digest.add_all(medium.bvh->triangles);
     }

@@ -41,6 +41,13 @@ struct RenderJob {
     bool dry_run = false;               // set up everything, and render nothing
 };
 
+// What there is of media, and how much of it they share.
+struct MediaFigures {
+    std::uint64_t media = 0, grids = 0, distinct_grids = 0, grid_bytes = 0; // the last of these alone
+    std::uint64_t cells = 0, listed = 0; // over several: cells, and places in their lists
+    std::uint32_t most_listed = 0;       // in one of them
+};
+
 struct RenderResult {
     Film film;
     RenderCounts counts;
@@ -54,7 +61,8 @@ struct RenderResult {
     std::vector<PassFigures> passes;
     std::uint64_t rounds = 0; // of all passes but the sky
     double load_seconds = 0, upload_seconds = 0, pipeline_seconds = 0, render_seconds = 0;
-    std::uint64_t device_bytes = 0;         // of all buffers
+    std::uint64_t device_bytes = 0; // of all buffers
+    MediaFigures media;
     MediumOutline outline;                  // to explain the picture by
     std::vector<shared::TraceRecord> trace; // positions relative to trace_origin
     glm::dvec3 trace_origin{0.0};           // world space
@@ -80,7 +88,7 @@ private:
     void load(const Device& device, const std::vector<std::string>& authored_warnings);
     void find_wish(const Assets& assets, const Specialization& specialization);
     Plan plan_by(const Device& device, Schedule schedule) const;
-    void keep(Assets assets);
+    void keep(const Assets& assets);
     void compile(const Device& device);
     std::unique_ptr<Wavefront> make_wavefront(const Device& device, const Plan& plan, const PipelineCache& cache,
                                               const std::function<void()>& meanwhile);

@@ -27,6 +27,23 @@ std::uint32_t steps_per_look(const Specialization& s, const LoadedMedium& medium
     return walks && medium.majorants ? best_steps_per_look(medium.majorants->segment_steps) : 0;
 }
 
+MediaFigures figures_of(const Assets& assets) {
+    MediaFigures figures;
+    figures.media = assets.media.size();
+    for (const LoadedMedium& medium : assets.media)
+        figures.grids += grids_of(medium).size();
+    for (const DensityField* grid : distinct_grids(assets.media)) {
+        ++figures.distinct_grids;
+        figures.grid_bytes += grid->bytes.size();
+    }
+    if (assets.superposition) {
+        figures.cells = assets.superposition->entries();
+        figures.listed = assets.superposition->listed();
+        figures.most_listed = assets.superposition->most_overlaps;
+    }
+    return figures;
+}
+
 } // namespace
 
 Session::Session(const Device& device, const Scene& scene, const RenderJob& job)
@@ -47,10 +64,11 @@ void Session::load(const Device& device, const std::vector<std::string>& authore
     bool has_colour = false; // fog, not fire
     for (const LoadedMedium& medium : assets.media) {
         result_.warnings.insert(result_.warnings.end(), medium.warnings.begin(), medium.warnings.end());
-        for (const DensityField* grid : grids_of(medium))
-            result_.counts.cleaned_voxels += grid->cleaned;
         has_colour = has_colour || (method_.material_colour && medium.mesh && medium.mesh->diffuse);
     }
+    for (const DensityField* grid : distinct_grids(assets.media))
+        result_.counts.cleaned_voxels += grid->cleaned;
+    result_.media = figures_of(assets);
     const Specialization specialization = specialize(scene_, assets.media, method_, whole_of(assets));
     find_wish(assets, specialization);
     result_.plan = plan_by(device, wish_.schedule);
@@ -63,7 +81,7 @@ void Session::load(const Device& device, const std::vector<std::string>& authore
     result_.biased = method_.biased;
     result_.specialization = device_scene_->text();
     result_.trace_origin = device_scene_->origin();
-    keep(std::move(assets));
+    keep(assets);
     result_.upload_seconds = watch.lap();
 }
 
@@ -102,14 +120,14 @@ Plan Session::plan_by(const Device& device, Schedule schedule) const {
     return make_plan(device, loops_, wish);
 }
 
-// What the picture is explained by, and what further frames need.
-void Session::keep(Assets assets) {
+// What the picture is explained by, and, where there are further frames, what they need.
+void Session::keep(const Assets& assets) {
     if (assets.superposition)
         result_.outline = make_outline(*assets.superposition, device_scene_->emits());
     else if (!assets.media.empty())
         result_.outline = make_outline(scene_, scene_.volumes.front(), assets.media.front(), device_scene_->emits());
-    if (job_.workshop && job_.workshop->has_frames())
-        keep_fields(job_.workshop->fields(), scene_, std::move(assets));
+    if (job_.workshop && !job_.workshop->has_frames())
+        job_.workshop->fields().retain({});
 }
 
 void Session::compile(const Device& device) {

@@ -39,6 +39,15 @@ Json counts_json(const RenderResult& r) {
             {"shadowRays", c.shadow_rays}};
 }
 
+// Grids are read and uploaded once, however many media have them.
+Json media_json(const MediaFigures& m) {
+    Json json{
+        {"volumes", m.media}, {"grids", m.grids}, {"distinctGrids", m.distinct_grids}, {"gridBytes", m.grid_bytes}};
+    if (m.cells > 0)
+        json.update({{"cells", m.cells}, {"listed", m.listed}, {"mostListed", m.most_listed}});
+    return json;
+}
+
 // Of the slots, how many were in each pass's queue when it began, on average.
 Json occupancy_json(const RenderResult& r) {
     Json json = Json::object();
@@ -203,6 +212,7 @@ std::string make_report(const RenderRequest& request, const Scene& scene, const 
         {"samples", static_cast<double>(result.counts.paths) / seconds},
         {"tentativeCollisions",
          static_cast<double>(result.counts.real_collisions + result.counts.null_collisions) / seconds}};
+    report["media"] = media_json(result.media);
     report["plan"] = plan_json(result.plan);
     report["occupancy"] = occupancy_json(result);
     report["laneUse"] = {{"track", result.counts.lane_use()}};

@@ -4,6 +4,7 @@
 #ifndef SUPERPOSITION_GLSL
 #define SUPERPOSITION_GLSL
 #include "field/density.glsl"
+#include "majorants/cells.glsl"
 #include "lib/rng.glsl"
 #include "shapes/shape.glsl"
 
@@ -24,32 +25,54 @@ MediumParams medium_of(MediumParams v, uint row) {
 }
 
 #ifdef SEVERAL
-// Extinction of one of them at a point of render space.
-float extinction_of(uint row, vec3 position, vec3 tap) {
-    MediumParams m = media[row];
-    vec3 p = to_medium(m, position, vec3(0.0)).origin;
-    const int field = KIND(MEMBER_FIELD, m, field);
-    bool in_box = all(greaterThanEqual(p, m.bounds_min)) && all(lessThanEqual(p, m.bounds_max));
-    bool inside = KIND(MEMBER_SHAPE, m, shape) == SHAPE_SPHERE ? dot(p, p) < 1.0 : in_box;
-    float found = 1.0;
-    if (field == FIELD_NOISE)
-        found = noise_density(m.noise, row, m.extent * p);
-    else if (field == FIELD_GRID)
-        found = lookup(m.density, KIND(GRID_TYPE, m, grid_type), p, tap);
-    return inside ? m.sigma_t * found : 0.0;
+uvec4 member_texel(uint i) {
+    return TEXELS != 0 ? texelFetch(member_texels, int(i))
+                       : uvec4(overlaps[4u * i], overlaps[4u * i + 1u], overlaps[4u * i + 2u], overlaps[4u * i + 3u]);
 }
 
-// `u` in [0, 1), for the draw; `tap`: see density.glsl. A point of the superposition's space, which is that of render space in
-// units of a cell.
-Matter matter_at(MediumParams v, vec3 p, vec3 tap, float u) {
-    ivec3 cell = clamp(ivec3(floor(p - v.bounds_min)), ivec3(0), v.cell_dims - 1);
-    uint i = uint((cell.x * v.cell_dims.y + cell.y) * v.cell_dims.z + cell.z);
+// Of all that are grids, or that of a GridRow.
+GridParams member_grid(MediumParams v, uint row) {
+    GridParams grid = v.density;
+    if (MEMBER_GRID == EACH) {
+        uvec4 a = member_texel(row), b = member_texel(row + 1u), c = member_texel(row + 2u), d = member_texel(row + 3u);
+        grid = GridParams(ivec3(a.xyz), ivec3(a.w, b.xy), ivec3(b.zw, c.x), ivec3(c.yzw), d.x, d.y);
+    }
+    return grid;
+}
+
+// Extinction of one of them at a point of render space.
+float extinction_of(MediumParams v, uint row, vec3 position, vec3 tap) {
+    vec4 at = vec4(position, 1.0);
+    vec3 p = vec3(dot(uintBitsToFloat(member_texel(4u * row)), at), dot(uintBitsToFloat(member_texel(4u * row + 1u)), at),
+                  dot(uintBitsToFloat(member_texel(4u * row + 2u)), at));
+    uvec4 rest = member_texel(4u * row + 3u); // see MemberRow
+    const int shape = MEMBER_SHAPE == EACH ? int(rest.y & 255u) : MEMBER_SHAPE;
+    const int field = MEMBER_FIELD == EACH ? int(rest.y >> 8u & 255u) : MEMBER_FIELD;
+    const int type = GRID_TYPE == EACH ? int(rest.y >> 16u) : GRID_TYPE;
+    bool inside = shape == SHAPE_SPHERE ? dot(p, p) < 1.0 : all(lessThanEqual(abs(p), vec3(1.0)));
+    float found = 1.0;
+    if (field == FIELD_NOISE) {
+        found = noise_density(media[row].noise, row, media[row].extent * p);
+    } else if (field == FIELD_GRID) {
+        GridParams grid = member_grid(v, rest.z);
+        vec3 low = vec3(grid.voxel_min - 1), high = vec3(grid.voxel_max + 1);
+        inside = all(greaterThanEqual(p, low)) && all(lessThanEqual(p, high));
+        found = lookup(grid, type, p, tap);
+    }
+    return inside ? uintBitsToFloat(rest.x) * found : 0.0;
+}
+
+// In a cell of that entry, at a point of the superposition's space, which is that of render space in units of a cell. `u` in
+// [0, 1), for the draw; `tap`: see density.glsl.
+Matter matter_in(MediumParams v, uint entry, vec3 p, vec3 tap, float u) {
     Matter found = Matter(0.0, 0u, to_spectrum(vec3(1.0)), to_spectrum(vec3(1.0)));
     Spectrum sum = to_spectrum(vec3(0.0));
-    uint end = overlaps[i + 1u];
-    for (uint k = overlaps[i]; k < end; ++k) {
-        uint row = overlaps[k];
-        float sigma_t = extinction_of(row, v.extent * p, tap);
+    uint k = overlap_word(frame.overlaps.lists + entry);
+    for (bool more = k != 0u; more; ++k) {
+        uint word = overlap_word(k);
+        uint row = word & ~LAST_OF_LIST;
+        more = row == word;
+        float sigma_t = extinction_of(v, row, v.extent * p, tap);
         found.density += sigma_t;
         float share = sigma_t > 0.0 ? sigma_t / found.density : 0.0;
         bool drawn = u < share;
@@ -67,6 +90,12 @@ Matter matter_at(MediumParams v, vec3 p, vec3 tap, float u) {
     return found;
 }
 
+Matter matter_at(MediumParams v, vec3 p, vec3 tap, float u) {
+    int edge;
+    ivec3 cell = clamp(ivec3(floor(p - v.bounds_min)), ivec3(0), v.cell_dims - 1);
+    return matter_in(v, cell_entry(v, cell, edge), p, tap, u);
+}
+
 float density(MediumParams v, vec3 p, vec3 tap) {
     return matter_at(v, p, tap, 0.0).density;
 }
@@ -76,6 +105,9 @@ float to_choice(uvec4 words) {
 #else
 Matter matter_at(MediumParams v, vec3 p, vec3 tap, float u) {
     return Matter(density(v, p, tap), 0u, to_spectrum(v.sigma_ratio), to_spectrum(vec3(1.0)));
+}
+Matter matter_in(MediumParams v, uint entry, vec3 p, vec3 tap, float u) {
+    return matter_at(v, p, tap, u);
 }
 float to_choice(uvec4 words) {
     return 0.0;

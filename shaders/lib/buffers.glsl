@@ -29,6 +29,10 @@ layout(constant_id = SPEC_LEAPS) const int LEAPS = 0;
 #define FULL
 layout(constant_id = SPEC_MEMBER_SHAPE) const int MEMBER_SHAPE = SHAPE_BOX;
 layout(constant_id = SPEC_MEMBER_FIELD) const int MEMBER_FIELD = FIELD_CONSTANT;
+layout(constant_id = SPEC_MEMBER_GRID) const int MEMBER_GRID = EACH;
+layout(constant_id = SPEC_CELL_BITS) const int CELL_BITS = 0;
+#else
+const int CELL_BITS = 0;
 #endif
 #ifdef FULL
 layout(constant_id = SPEC_PHASE) const int PHASE = PHASE_HENYEY_GREENSTEIN;
@@ -109,6 +113,8 @@ layout(scalar, binding = BINDING_LIGHT_TREE) readonly buffer LightTreeBlock { Li
 #ifdef SEVERAL
 layout(scalar, binding = BINDING_MEDIA) readonly buffer MediumBlock { MediumParams media[]; };
 layout(scalar, binding = BINDING_OVERLAPS) readonly buffer OverlapBlock { uint overlaps[]; };
+layout(binding = BINDING_OVERLAP_TEXELS) uniform utextureBuffer overlap_texels;
+layout(binding = BINDING_MEMBER_TEXELS) uniform utextureBuffer member_texels;
 #endif
 layout(scalar, binding = BINDING_TRACE) buffer TraceBlock {
     uint trace_count;

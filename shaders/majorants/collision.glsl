@@ -45,7 +45,7 @@ uint next_collision(MediumParams v, bool seeing, inout Walk w, inout Rng rng, in
     // Below the control density a collision is real, whatever the density.
     bool certain = FREE_FLIGHT == FREE_FLIGHT_DECOMPOSITION && !seeing && c.u * c.sigma_maj < c.sigma_c;
     if (!certain) {
-        Matter met = matter_at(v, w.origin + w.t * w.direction, to_tap(words), to_choice(words));
+        Matter met = matter_in(v, w.cell_row, w.origin + w.t * w.direction, to_tap(words), to_choice(words));
         c.sigma_t = v.sigma_t * met.density;
         c.ratio = met.ratio;
         c.share = met.share;

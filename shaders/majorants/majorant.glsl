@@ -31,6 +31,7 @@
 #ifndef MAJORANT_GLSL
 #define MAJORANT_GLSL
 #include "field/grid.glsl"
+#include "majorants/cells.glsl"
 #include "lib/interval.glsl"
 
 #define EVENT_MOVING 0u  // nothing happened but distance
@@ -45,11 +46,34 @@ int empty_reach(Walk w) {
     return LEAPS != 0 ? int(max(-w.sigma_maj, 0.0)) : 0;
 }
 
+// The cells that the walk passes together: its own, or a coarse one, and those around that are empty like it.
+struct CellBlock {
+    ivec3 low;
+    int edge; // cells
+};
+
+CellBlock cells_passed(Walk w) {
+    int reach = empty_reach(w);
+    CellBlock block = CellBlock(w.cell - reach, 2 * reach + 1);
+    if (CELL_BITS != 0)
+        block = CellBlock((w.cell & -w.cell_edge) - reach * w.cell_edge, (2 * reach + 1) * w.cell_edge);
+    return block;
+}
+
+// Of a block with `cell` in it, the last one on the way to each side; `cell` itself where there is no such side.
+ivec3 last_cell(CellBlock block, ivec3 cell, ivec3 side) {
+    ivec3 last = cell + (block.edge >> 1) * side;
+    if (CELL_BITS != 0)
+        last = mix(mix(block.low, block.low + block.edge - 1, greaterThan(side, ivec3(0))), cell, equal(side, ivec3(0)));
+    return last;
+}
+
 // What the walk needs of its cell. With `residual` the bound of |density - control|, else that of the density; where that
 // is 0, minus the reach of a walk that leaps.
 void load_cell(MediumParams v, bool residual, inout Walk w) {
     bool cells = HAS_CELLS;
-    uint i = uint((w.cell.x * v.cell_dims.y + w.cell.y) * v.cell_dims.z + w.cell.z);
+    uint i = cell_entry(v, w.cell, w.cell_edge);
+    w.cell_row = i;
     if (residual || FREE_FLIGHT == FREE_FLIGHT_DECOMPOSITION)
         w.control = cells ? controls[i].control : v.control;
     if (residual)
@@ -84,8 +108,8 @@ ivec3 first_axis(vec3 t_face) {
 float cell_exit(MediumParams v, Walk w, out vec3 t_face) {
     t_face = vec3(FAR);
     if (HAS_CELLS) {
-        int reach = empty_reach(w);
-        t_face = far_faces(w, v.bounds_min + v.cell_size * vec3(w.cell - reach), v.cell_size * float(2 * reach + 1));
+        CellBlock block = cells_passed(w);
+        t_face = far_faces(w, v.bounds_min + v.cell_size * vec3(block.low), v.cell_size * float(block.edge));
     }
     return max(w.t, min(min(t_face.x, t_face.y), min(t_face.z, w.t_end)));
 }
@@ -98,8 +122,8 @@ uint next_cell(MediumParams v, bool residual, float t_exit, vec3 t_face, inout W
     ivec3 side = ivec3(sign(w.direction));
     ivec3 axis = first_axis(t_face);
     ivec3 next = w.cell + axis * side;
-    if (LEAPS != 0) {
-        ivec3 last = w.cell + empty_reach(w) * side;
+    if (LONG_STEPS) {
+        ivec3 last = last_cell(cells_passed(w), w.cell, side);
         ivec3 there = ivec3(floor((w.origin - v.bounds_min + t_exit * w.direction) * (1.0 / v.cell_size)));
         ivec3 most = clamp(last, ivec3(0), v.cell_dims - 1);
         next = clamp(there, min(w.cell, most), max(w.cell, most));

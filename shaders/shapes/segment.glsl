@@ -19,6 +19,7 @@ Walk kept(Walk w) {
     bool adds_depth = !NULL_FLIGHT || (LOOKS && !NULL_TRANSMITTANCE);
     bool walks = (traits & TRAIT_CELLS) != 0;
     bool cells = (traits & TRAIT_VOXELS) != 0 || (walks && HAS_CELLS);
+    bool listed = SEVERAL_MEDIA, bricks = CELL_BITS != 0;
     bool controlled = (traits & TRAIT_CONTROL) != 0;
     bool sets = (traits & TRAIT_SETS) != 0;
 #define KEEP(type, name, when)                                                                                        \

@@ -29,7 +29,7 @@
 #define BINDING_LIGHT_TREE 23 // LightNode, depth first
 #define BINDING_PHASE 24      // PhaseNode, of phase functions that are tables
 #define BINDING_MEDIA 25      // MediumParams, where there are several media; see superposition.glsl
-#define BINDING_OVERLAPS 26   // per cell over all media where its list begins, then the lists: rows of media
+#define BINDING_OVERLAPS 26   // words: what look-ups ask several media for, and which of them are where; see superposition.glsl
 #define BINDING_TEST_INPUT 27 // test kernels only
 #define BINDING_TEST_OUTPUT 28
 #define BINDING_BUFFERS 29
@@ -38,7 +38,9 @@
 #define BINDING_LEAF_TEXELS 30
 #define BINDING_MAJORANT_TEXELS 31
 #define BINDING_LATTICE_TEXELS 32
-#define BINDING_COUNT 33
+#define BINDING_OVERLAP_TEXELS 33
+#define BINDING_MEMBER_TEXELS 34 // the same, four words at a time
+#define BINDING_COUNT 35
 
 #define WORKGROUP_SIZE 64
 
@@ -77,7 +79,9 @@
 #define SPEC_PIXEL_FILTER 23 // PIXEL_...
 #define SPEC_MEMBER_SHAPE 24 // of several media: SHAPE_...,
 #define SPEC_MEMBER_FIELD 25 // FIELD_...
-#define SPEC_COUNT 26
+#define SPEC_MEMBER_GRID 26  // 0: all that are grids have the same one
+#define SPEC_CELL_BITS 27    // of several media: log2 of the cells along the edge of a coarse one; 0: there are no coarse ones
+#define SPEC_COUNT 28
 
 // Of several media that differ in it: each one's own, which is in its row.
 #define EACH -1
@@ -226,6 +230,8 @@
 #define TRACE_LIGHT 2       // a shadow ray has ended
 #define TRACE_ESCAPE 3      // into the background
 #define TRACE_END 4
+
+#define LAST_OF_LIST 0x80000000u // of media in a cell: set in the last one's word
 
 #define NO_LIGHT 0xffffffffu
 

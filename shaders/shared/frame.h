@@ -115,6 +115,27 @@ struct MediumKinds {
     int albedo_type;
 };
 
+// What a look-up asks of one of several media: four texels of the words in BINDING_OVERLAPS.
+struct MemberRow {
+    vec4 to_medium[3]; // as in MediumParams
+    float sigma_t;     // likewise
+    uint kinds;        // SHAPE_... | FIELD_... << 8 | GRID_... << 16
+    uint grid;         // the first texel of its GridRow
+    uint unused;
+};
+
+// Four texels as well.
+struct GridRow {
+    GridParams grid;
+    uint unused[2];
+};
+
+// Where in those words what follows the rows begins.
+struct OverlapParams {
+    uint bricks; // of each coarse cell 0, or 1 + the number of the brick of finer cells that it is made of
+    uint lists;  // of each cell, those of bricks last, where its list begins, or 0 if there is none; then the lists: media
+};
+
 // Medium space: index space for a grid, voxel centres at integers; the unit ball or the cube [-1, 1]^3 for shapes.
 struct MediumParams {
     vec4 to_medium[3]; // rows of the affine map render -> medium
@@ -204,6 +225,7 @@ struct FrameParams {
     uint lamp_count;
     SkyParams sky;
     MarchParams march;
+    OverlapParams overlaps; // several media only
     LatticeParams lattice; // NEE_CACHED only
     float fluence;         // of all lights of a table, amid the medium, roughly
     vec3 cache_suns[CACHE_SUNS]; // unit; 0: none

@@ -68,6 +68,8 @@
     ROW(float, sigma_maj, walks)  /* of the present cell [1 / world unit]; if it is empty, minus its reach, see majorant.glsl */ \
     ROW(float, control, controlled) /* control density of the present cell */                                         \
     ROW(ivec3, cell, cells)       /* majorant cell; the voxel in regular tracking */                                  \
+    ROW(uint, cell_row, listed) /* of several media: the cell's in their tables */ \
+    ROW(int, cell_edge, bricks) /* of several media: more than 1 in a coarse cell, in which `cell` is any one */ \
     ROW(float, dt, marches)       /* marches: length of a step */                                                     \
     ROW(uint, index, marches)     /* marches: the next step */                                                        \
     ROW(uint, level, sets)        /* telescoping: the refinement */                                                   \

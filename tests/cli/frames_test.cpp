@@ -125,11 +125,18 @@ TEST_CASE("a kept grid is the file's, and read again once that changes", "[cpu][
     const GridFile file{copy, "density"};
     DensityField field = cache.take(file);
     CHECK(field.max_value() == 1.0f);
-    const std::byte* bytes = field.bytes.data();
-    cache.keep(file, std::move(field));
-    field = cache.take(file);
-    CHECK(field.bytes.data() == bytes); // the same memory
-    cache.keep(file, std::move(field));
+    const DensityField again = cache.take(file);
+    CHECK(again.bytes.data() == field.bytes.data()); // the same memory
+    CHECK(again.leaf_table.data() == field.leaf_table.data());
+    field.bytes.edit()[0] = std::byte{1}; // a copy of its own then
+    CHECK(again.bytes.data() != field.bytes.data());
+    CHECK(again.bytes.data()[0] != std::byte{1});
+    CHECK(cache.has(file));
+    CHECK_FALSE(cache.has({copy, "temperature"}));
+    cache.retain({file});
+    CHECK(cache.take(file).bytes.data() == again.bytes.data());
+    cache.retain({});
+    CHECK(cache.take(file).bytes.data() != again.bytes.data());
     replace("sphere.nvdb");
     CHECK(cache.take(file).active_voxels == 14328);
     std::filesystem::remove(copy);

@@ -98,8 +98,10 @@ TEST_CASE("delta tracking through a rough grid follows the optical depth", "[gpu
         recipe.translation = {3.0e5, -1.0e5, 2.0e4};
     }
     TestGrid grid = make_test_grid(recipe);
-    for (float& bound : grid.volume.majorants->bounds)
-        bound *= c.majorant_scale;
+    grid.change_majorants([&](MajorantGrid& majorants) {
+        for (float& bound : majorants.bounds)
+            bound *= c.majorant_scale;
+    });
     const Volume volume = medium_of(moved ? 1.0 : 0.4);
     const TestScene scene = make_test_scene(grid.volume, volume, c.filter);
     const reference::Medium medium = reference::with_grid(

@@ -145,7 +145,8 @@ TEST_CASE("the device walks the cells that a ray passes", "[gpu][majorant]") {
     recipe.cell = GENERATE(4, 8, 16, 5);
     CAPTURE(recipe.cell);
     TestGrid grid = make_test_grid(recipe);
-    grid.volume.majorants->leaps = GENERATE(false, true);
+    const bool leaps = GENERATE(false, true);
+    grid.change_majorants([&](MajorantGrid& majorants) { majorants.leaps = leaps; });
     const Bounds box = bounds_of(grid);
     std::mt19937 engine(13);
     std::uniform_real_distribution<double> uniform;
@@ -174,7 +175,8 @@ TEST_CASE("axis-parallel rays, on faces, edges and borders, pass every cell once
     const bool mirror_zero = GENERATE(false, true); // direction components -0.0
     CAPTURE(recipe.cell, mirror_zero);
     TestGrid grid = make_test_grid(recipe);
-    grid.volume.majorants->leaps = GENERATE(false, true);
+    const bool leaps = GENERATE(false, true);
+    grid.change_majorants([&](MajorantGrid& majorants) { majorants.leaps = leaps; });
     const MajorantGrid& m = grid.majorants();
     const Bounds box = bounds_of(grid);
     // Places across the ray: least face, a face between cells, inside, a voxel plane, greatest face.
@@ -214,7 +216,8 @@ TEST_CASE("axis-parallel rays, on faces, edges and borders, pass every cell once
 
 TEST_CASE("rays through edges and corners of cells lose nothing", "[gpu][majorant][hard]") {
     TestGrid grid = make_test_grid(GENERATE(false, true) ? sparse_recipe() : larger_recipe(Storage::float32));
-    grid.volume.majorants->leaps = GENERATE(false, true);
+    const bool leaps = GENERATE(false, true);
+    grid.change_majorants([&](MajorantGrid& majorants) { majorants.leaps = leaps; });
     const MajorantGrid& m = grid.majorants();
     std::vector<RayInput> rays;
     for (int i = 0; i < 26; ++i) { // diagonals of faces and of the cube, from and through corners of cells

@@ -140,7 +140,8 @@ TEST_CASE("table of transmittance estimators", "[.transmittance_table]") {
         "has of it);\nvariance: of one estimate; lookups and steps: per estimate.\n";
     for (const double mean_tau : {1.0, 20.0}) { // thin and dense
         volume.sigma_a = Rgb(mean_tau / D.mean());
-        loaded.majorants = make_majorant_grid(*loaded.field, mean_tau > 10.0 ? 32 : 64);
+        loaded.majorants =
+            std::make_shared<const Majorants>(make_majorant_grid(*loaded.field, mean_tau > 10.0 ? 32 : 64));
         table += fmt::format("\nmean optical depth {}, sigma_t {:.4f} per voxel, majorant cells of {} voxels\n",
                              mean_tau, volume.sigma_a.x * loaded.field->voxel_size(), loaded.majorants->cell);
         table += fmt::format("{:18} {:>11} {:>9} {:>11} {:>9} {:>9} {:>13}\n", "estimator", "error", "in s.e.",

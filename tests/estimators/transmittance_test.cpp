@@ -55,8 +55,10 @@ double mean_p(const TestScene& scene, const reference::Ray& ray, std::uint32_t c
 }
 
 void scale_majorants(TestGrid& grid, float scale) {
-    for (float& bound : grid.volume.majorants->bounds)
-        bound *= scale;
+    grid.change_majorants([&](MajorantGrid& majorants) {
+        for (float& bound : majorants.bounds)
+            bound *= scale;
+    });
 }
 
 } // namespace

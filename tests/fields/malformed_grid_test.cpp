@@ -20,7 +20,7 @@ namespace {
 using Grid = nanovdb::NanoGrid<float>;
 
 std::string error_of(GridBytes bytes, const std::function<void(Grid&)>& damage) {
-    damage(*reinterpret_cast<Grid*>(bytes.data()));
+    damage(*reinterpret_cast<Grid*>(bytes.edit()));
     try {
         make_density_field(std::move(bytes), "a grid");
     } catch (const InputError& error) {
@@ -103,7 +103,7 @@ TEST_CASE("large tiles cost no more than small ones", "[cpu][density]") {
     recipe.last = {8200, 0, 0};
     recipe.value = [](glm::ivec3 i) { return i.x < 4093 || i.x > 8195 ? 1.5f : i.x == 5000 ? 2.0f : 0.0f; };
     GridBytes bytes = with_root_tile(make_grid_bytes(recipe), {5000, 0, 0}, 4.0f);
-    reinterpret_cast<Grid*>(bytes.data())->tree().root().data()->mBBox = {{4090, 0, 0}, {8200, 1000, 1000}};
+    reinterpret_cast<Grid*>(bytes.edit())->tree().root().data()->mBBox = {{4090, 0, 0}, {8200, 1000, 1000}};
     const DensityField field = make_density_field(std::move(bytes), "tiles");
     CHECK(field.max_value() == 4.0f);
     const MajorantGrid majorants = make_majorant_grid(field, 64);

@@ -82,10 +82,10 @@ std::vector<GridBytes> make_grids(const std::string& name) {
                 grids.push_back(make_grid_bytes(recipe_of(kind, storage, name)));
     // Half grids of NanoVDB 32.x differ from float ones by their type alone.
     GridBytes half = grids.front();
-    reinterpret_cast<nanovdb::GridData*>(half.data())->mGridType = nanovdb::GridType::Half;
+    reinterpret_cast<nanovdb::GridData*>(half.edit())->mGridType = nanovdb::GridType::Half;
     grids.push_back(half);
     GridBytes empty = grids.front();
-    auto* tree = reinterpret_cast<nanovdb::TreeData<3>*>(empty.data() + sizeof(nanovdb::GridData));
+    auto* tree = reinterpret_cast<nanovdb::TreeData<3>*>(empty.edit() + sizeof(nanovdb::GridData));
     tree->mVoxelCount = 0;
     grids.push_back(empty);
     grids.push_back(with_root_tile(make_grid_bytes(recipe_of(4, Storage::float32, name)), {4096, 0, 0}, 0.5f));

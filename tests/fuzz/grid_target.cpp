@@ -103,7 +103,7 @@ template <class Value> struct TreeDamage {
     }
 
     static void damage_tree(GridBytes& bytes, Random& random) {
-        const std::span<std::byte> grid(bytes.data(), bytes.size());
+        const std::span<std::byte> grid(bytes.edit(), bytes.size());
         const Way way = random_way(grid, random);
         switch (random.below(12)) {
         case 0:

@@ -118,16 +118,21 @@ void check_loaded(const LoadedMedium& loaded) {
 }
 
 void check_superposition(const Scene& scene, const Superposition& whole) {
-    const std::size_t cells = whole.cells.bounds.size();
-    expect(cells == 0 || whole.overlaps.size() > cells, "cells over all media have no lists");
-    for (std::size_t i = 0; i < cells; ++i) {
+    const std::size_t entries = whole.entries();
+    expect(entries == 0 || whole.overlaps.size() > entries, "cells over all media have no lists");
+    expect(whole.brick_bounds.size() % (std::size_t{1} << (3 * whole.bits)) == 0, "a brick is cut off");
+    for (const std::uint32_t brick : whole.bricks)
+        expect(std::size_t{brick} << (3 * whole.bits) <= whole.brick_bounds.size(), "a brick is not there");
+    for (std::size_t i = 0; i < entries; ++i) {
         const std::uint32_t begin = whole.overlaps[i], end = whole.overlaps[i + 1];
-        expect(std::isfinite(whole.cells.bounds[i]), "a majorant of several media is not finite");
+        expect(std::isfinite(whole.bound(i)), "a majorant of several media is not finite");
         expect(begin <= end && end <= whole.overlaps.size(), "a list of media reaches beyond the table");
-        expect((begin < end) == (whole.cells.bounds[i] > 0.0f), "a cell's bound and its list differ");
+        const bool is_brick = i < whole.bricks.size() && whole.bricks[i] > 0; // whose cells have lists
+        expect(is_brick || (begin < end) == (whole.bound(i) > 0.0f), "a cell's bound and its list differ");
     }
-    for (std::size_t i = cells + 1; i < whole.overlaps.size(); ++i)
+    for (std::size_t i = entries + 1; i < whole.overlaps.size(); ++i)
         expect(whole.overlaps[i] < scene.volumes.size(), "a list of media names one that is not there");
+    expect(entries == 0 || walked_bounds(whole).size() == entries, "walks have other cells");
 }
 
 } // namespace

@@ -230,9 +230,8 @@ TEST_CASE("cells over several media bound their sum, and list all that may be th
         const glm::dvec3 cell_point =
             glm::mix(whole.low(), whole.high(), glm::dvec3(part(engine), part(engine), part(engine)));
         const glm::ivec3 cell = glm::ivec3(glm::floor(cell_point)) - whole.cells.origin;
-        const auto i = std::size_t((cell.x * whole.cells.dims.y + cell.y) * whole.cells.dims.z + cell.z);
-        const auto begin = whole.overlaps.begin() + whole.overlaps[i],
-                   end = whole.overlaps.begin() + whole.overlaps[i + 1];
+        const std::size_t i = whole.entry_of(cell);
+        const auto list = whole.list(i);
         double sum = 0.0;
         for (std::uint32_t k = 0; k < media.size(); ++k) {
             const reference::Ray ray{whole.origin + whole.edge * cell_point, {0.0, 0.0, 1.0}};
@@ -242,10 +241,10 @@ TEST_CASE("cells over several media bound their sum, and list all that may be th
             sum += sigma_t;
             met += sigma_t > 0.0;
             if (sigma_t > 0.0)
-                CHECK(std::find(begin, end, k) != end);
+                CHECK(std::find(list.begin(), list.end(), k) != list.end());
         }
-        CHECK(sum <= whole.cells.bounds[i]);
-        empty += whole.cells.bounds[i] == 0.0f;
+        CHECK(sum <= whole.bound(i));
+        empty += whole.bound(i) == 0.0f;
     }
     CHECK(met > 2000);
     CHECK(empty > 2000); // corners of the box around turned ones

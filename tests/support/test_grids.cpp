@@ -43,7 +43,7 @@ template <class Build> GridBytes build(const GridRecipe& recipe) {
     const auto handle = builder.template getHandle<nanovdb::AbsDiff>(make_map(recipe.linear, recipe.translation),
                                                                      recipe.name, nanovdb::AbsDiff(0.001f));
     GridBytes bytes(handle.size());
-    std::memcpy(bytes.data(), handle.data(), handle.size());
+    std::memcpy(bytes.edit(), handle.data(), handle.size());
     return bytes;
 }
 
@@ -57,7 +57,7 @@ GridBytes build_colors(const GridRecipe& recipe) {
         nanovdb::CoordBBox(to_coord(recipe.first), to_coord(recipe.last)));
     const auto handle = builder.getHandle(make_map(recipe.linear, recipe.translation), recipe.name);
     GridBytes bytes(handle.size());
-    std::memcpy(bytes.data(), handle.data(), handle.size());
+    std::memcpy(bytes.edit(), handle.data(), handle.size());
     return bytes;
 }
 
@@ -145,15 +145,16 @@ TestGrid make_test_grid(GridBytes bytes, int cell) {
     grid.volume.field = make_density_field(std::move(bytes), "test grid");
     if (grid.field().active_voxels == 0)
         return grid;
-    grid.volume.majorants = make_majorant_grid(grid.field(), cell);
-    grid.volume.majorants->leaps = true; // the harder way
+    MajorantGrid majorants = make_majorant_grid(grid.field(), cell);
+    majorants.leaps = true; // the harder way
+    grid.volume.majorants = std::make_shared<const Majorants>(std::move(majorants));
     for (const float bound : grid.majorants().bounds)
         grid.highest = std::max(grid.highest, bound);
     return grid;
 }
 
 GridBytes with_root_tile(GridBytes bytes, glm::ivec3 ijk, float value) {
-    auto* nano = reinterpret_cast<nanovdb::NanoGrid<float>*>(bytes.data());
+    auto* nano = reinterpret_cast<nanovdb::NanoGrid<float>*>(bytes.edit());
     auto* root = nano->tree().root().data();
     for (std::uint32_t i = 0; i < root->mTableSize; ++i) {
         auto* tile = root->tile(i);

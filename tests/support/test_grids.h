@@ -37,6 +37,12 @@ struct TestGrid {
 
     const DensityField& field() const { return *volume.field; }
     const MajorantGrid& majorants() const { return *volume.majorants; }
+    // change(MajorantGrid&) of a copy, which takes their place.
+    template <class Change> void change_majorants(const Change& change) {
+        MajorantGrid changed = majorants();
+        change(changed);
+        volume.majorants = std::make_shared<const Majorants>(std::move(changed));
+    }
     bool in_box(glm::ivec3 ijk) const;
     // What a voxel counts as: the accessor's value within the box if that is finite and positive, else 0.
     float voxel(glm::ivec3 ijk) const;

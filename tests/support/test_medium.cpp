@@ -83,11 +83,13 @@ TestMedium::TestMedium(const MediumRecipe& recipe) {
     const Filter filter = recipe.filter == Filter::nearest ? Filter::nearest : Filter::trilinear;
     if (recipe.kind == MediumKind::grid) {
         grid_ = make_test_grid(recipe.grid);
-        grid_->volume.majorants->leaps = recipe.leaps;
         add_controls(grid_->volume, volume, estimators);
         const float scale = static_cast<float>(recipe.majorant_scale);
-        for (float& bound : grid_->volume.majorants->bounds)
-            bound *= scale;
+        grid_->change_majorants([&](MajorantGrid& majorants) {
+            majorants.leaps = recipe.leaps;
+            for (float& bound : majorants.bounds)
+                bound *= scale;
+        });
         for (shared::ControlCell& cell : grid_->volume.controls)
             cell.residual *= scale;
         scene_ = make_test_scene(grid_->volume, volume, recipe.filter, estimators);
