@@ -18,6 +18,10 @@ void check_supported(const Scene& scene) {
     const auto is_map = [](const Light& light) { return std::holds_alternative<SkyLight>(light); };
     if (std::count_if(scene.lights.begin(), scene.lights.end(), is_map) > 1)
         throw InputError("a scene with several maps of the sky is not rendered by this version; keep one");
+    const auto is_plane = [](const Surface& surface) { return std::holds_alternative<PlaneSurface>(surface.shape); };
+    if (const auto planes = std::count_if(scene.surfaces.begin(), scene.surfaces.end(), is_plane); planes > MOST_PLANES)
+        throw InputError(fmt::format("{} planes are more than the {} that are rendered; make rectangles of some",
+                                     planes, MOST_PLANES));
     // Every camera ray asks all lamps, and every path that leaves all suns.
     constexpr std::ptrdiff_t most_lamps = 4096, most_suns = 256;
     if (const auto lamps = std::count_if(scene.lights.begin(), scene.lights.end(), is_lamp); lamps > most_lamps)

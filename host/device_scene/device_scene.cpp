@@ -1,9 +1,14 @@
 #include "device_scene.h"
 
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
 #include "kernel_text.h"
 #include "light_table.h"
 #include "overlap_words.h"
 #include "scene_upload.h"
+#include "surface_mesh.h"
 
 namespace vkvol {
 
@@ -27,6 +32,8 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
         specialization_[SPEC_ALBEDO] != ALBEDO_CONSTANT || specialization_[SPEC_TEMPERATURE_TYPE] == GRID_COLOR ||
         specialization_[SPEC_SENSOR] != SENSOR_PINHOLE || specialization_[SPEC_PIXEL_FILTER] != 0)
         form_ |= form_full;
+    if (!scene.surfaces.empty())
+        make_surfaces(scene, assets);
     if (assets.superposition)
         form_ |= form_full | form_several;
     if (const std::optional<std::uint32_t> bits = buffers_.window_bits()) {
@@ -37,7 +44,10 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
 }
 
 void DeviceScene::make_lights(const Scene& scene, const Assets& assets) {
-    lights_ = make_light_table(scene, assets, origin_, 0.5 * longest_diagonal(scene, assets.media, whole_of(assets)));
+    double radius = 0.5 * longest_diagonal(scene, assets.media, whole_of(assets));
+    if (const double reach = reach_of_surfaces(scene.surfaces, origin_); std::isfinite(reach))
+        radius = std::max(radius, reach);
+    lights_ = make_light_table(scene, assets, origin_, radius);
     frame_.choices = lights_.choices;
     frame_.sky_count = lights_.sky_count;
     frame_.lamp_first = lights_.lamp_first;
@@ -56,6 +66,19 @@ void DeviceScene::upload_media(const Scene& scene, const Method& method, const A
     frame_.overlaps = overlaps.places;
     frame_.media[0].density = overlaps.grid;
     buffers_.upload_media(device_, commands_, media_, overlaps.words, most_texel_bytes);
+}
+
+void DeviceScene::make_surfaces(const Scene& scene, const Assets& assets) {
+    form_ |= form_full | form_surfaces;
+    surfaces_ = make_surface_table(scene.surfaces, origin_);
+    const bool has_mesh = !assets.superposition && !assets.media.empty() && assets.media.front().bvh;
+    const std::vector<shared::BvhNode> none;
+    const std::vector<shared::BvhNode>& before = has_mesh ? assets.media.front().bvh->nodes : none;
+    frame_.first_surface_node = static_cast<std::uint32_t>(before.size());
+    frame_.surface_nodes = static_cast<std::uint32_t>(surfaces_.nodes.size());
+    frame_.planes = surfaces_.planes;
+    text_ += fmt::format(", {} surfaces of {} pieces", surfaces_.rows.size(), surfaces_.primitives.size());
+    buffers_.upload_surfaces(device_, commands_, surfaces_, before);
 }
 
 void DeviceScene::set_queues(std::uint32_t slots, std::uint32_t queue_capacity) {

@@ -37,12 +37,14 @@ public:
     glm::dvec3 origin() const { return origin_; }                          // of render space, in world space
     const LightTable& lights() const { return lights_; }                   // empty where there is no choice
     std::span<const shared::MediumParams> media() const { return media_; } // of several
+    const SurfaceTable& surfaces() const { return surfaces_; }
     BoundBuffers bound() const;
     std::uint64_t bytes() const;
 
 private:
     void make_lights(const Scene& scene, const Assets& assets);
     void upload_media(const Scene& scene, const Method& method, const Assets& assets, std::uint64_t most_texel_bytes);
+    void make_surfaces(const Scene& scene, const Assets& assets);
 
     const Device& device_;
     Commands& commands_;
@@ -50,6 +52,7 @@ private:
     shared::FrameParams frame_;
     SceneBuffers buffers_;
     LightTable lights_;
+    SurfaceTable surfaces_;
     std::vector<shared::MediumParams> media_;
     std::optional<LightCache> light_cache_;
     unsigned form_;

@@ -122,6 +122,20 @@ void SceneBuffers::upload_lights(const Device& device, Commands& commands, const
     make_buffer(device, commands, sky_alias_, "choice of the sky's texels", bytes_of(sky->alias));
 }
 
+void SceneBuffers::upload_surfaces(const Device& device, Commands& commands, const SurfaceTable& table,
+                                   const std::vector<shared::BvhNode>& before) {
+    const std::uint64_t bytes = bytes_of(table.primitives).size(), most = device.limits().maxStorageBufferRange;
+    if (bytes > most)
+        throw InputError(
+            fmt::format("the surfaces' triangles take {:.1f} MiB, but \"{}\" holds no more than {:.1f} MiB "
+                        "of them; decimate the meshes",
+                        bytes / mebibyte, device.info().name, most / mebibyte));
+    make_buffer(device, commands, surfaces_, "surfaces", bytes_of(table.rows));
+    make_buffer(device, commands, primitives_, "pieces of surfaces", bytes_of(table.primitives));
+    bvh_.reset();
+    make_parts(device, commands, bvh_, "bounding volume hierarchies", Parts{bytes_of(before), bytes_of(table.nodes)});
+}
+
 void SceneBuffers::make_grids(const Device& device, Commands& commands, const Parts& grids, std::uint64_t most_bytes) {
     const std::uint64_t bytes = total(grids);
     if (bytes > most_bytes)
@@ -180,6 +194,8 @@ BoundBuffers SceneBuffers::bound() const {
     buffers[BINDING_PHASE] = place(phase_);
     buffers[BINDING_MEDIA] = place(media_);
     buffers[BINDING_OVERLAPS] = place(overlaps_);
+    buffers[BINDING_SURFACES] = place(surfaces_);
+    buffers[BINDING_PRIMITIVES] = place(primitives_);
     buffers[BINDING_LIGHTS] = place(lights_);
     buffers[BINDING_LIGHT_TREE] = place(light_tree_);
     buffers[BINDING_SKY] = place(sky_);
@@ -189,8 +205,9 @@ BoundBuffers SceneBuffers::bound() const {
 
 std::uint64_t SceneBuffers::bytes() const {
     std::uint64_t total = frame_.bytes();
-    for (const auto* buffer : {&grids_, &leaf_table_, &majorants_, &controls_, &blackbody_, &triangles_, &bvh_,
-                               &lights_, &light_tree_, &sky_, &sky_alias_, &phase_, &media_, &overlaps_})
+    for (const auto* buffer :
+         {&grids_, &leaf_table_, &majorants_, &controls_, &blackbody_, &triangles_, &bvh_, &lights_, &light_tree_,
+          &sky_, &sky_alias_, &phase_, &media_, &overlaps_, &surfaces_, &primitives_})
         total += *buffer ? (*buffer)->bytes() : 0;
     for (const Buffer& window : windows_)
         total += window.bytes();

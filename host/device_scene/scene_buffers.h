@@ -10,6 +10,7 @@
 #include "loaded_medium.h"
 #include "shared/frame.h"
 #include "upload_layout.h"
+#include "surface_table.h"
 
 namespace vkvol {
 
@@ -28,6 +29,10 @@ public:
 
     // `sky`: null without a map. Throws InputError if that is too large for the device.
     void upload_lights(const Device& device, Commands& commands, const LightTable& table, const SkyMap* sky);
+
+    // `before`: the hierarchy that the surfaces' follows in the same buffer.
+    void upload_surfaces(const Device& device, Commands& commands, const SurfaceTable& table,
+                         const std::vector<shared::BvhNode>& before);
 
     // The buffers of `frame` that kernels reach by address are put into it.
     void set_frame(Commands& commands, shared::FrameParams frame);
@@ -52,6 +57,7 @@ private:
     Buffer frame_;
     std::optional<Buffer> grids_, leaf_table_, majorants_, controls_, blackbody_, triangles_, bvh_;
     std::optional<Buffer> lights_, light_tree_, sky_, sky_alias_, phase_, media_, overlaps_;
+    std::optional<Buffer> surfaces_, primitives_;
     std::vector<Buffer> windows_;
     bool texels_ = false;
     std::optional<std::uint32_t> window_bits_;

@@ -19,6 +19,8 @@
 #include "shared/estimators.h"
 #include "shared/items.h"
 #include "upload_layout.h"
+#include "surface_mesh.h"
+#include "surface_table.h"
 
 namespace vkvol {
 
@@ -284,7 +286,7 @@ Rgb albedo_of(const Volume& volume) {
 }
 
 bool is_chromatic(const Scene& scene) {
-    return has_chromatic_extinction(scene) || any_medium(scene, [](const Volume& volume) {
+    return has_chromatic_extinction(scene) || !scene.surfaces.empty() || any_medium(scene, [](const Volume& volume) {
                if (!volume.albedo_grid.empty())
                    return true;
                const Rgb albedo = albedo_of(volume);
@@ -357,6 +359,10 @@ Specialization specialize(const Scene& scene, Media media, const Method& method,
     const int lights = lights_kind(scene.lights);
     const int seen = method.nee == NEE_NONE ? lights & ~LIGHTS_LAMPS : lights;
     constants[SPEC_LIGHTS] = seen == LIGHTS_TABLE && method.nee == NEE_NONE ? LIGHTS_SUN : seen;
+    if (!scene.surfaces.empty()) { // segments then have an end
+        constants[SPEC_LIGHTS] |= LIGHTS_TABLE;
+        constants[SPEC_MATERIALS] = material_bits(scene.surfaces);
+    }
     constants[SPEC_MIS] = method.mis;
     constants[SPEC_SENSOR] = sensor_kind(scene.camera);
     constants[SPEC_PIXEL_FILTER] = has_plain_pixels(scene.settings)                  ? PIXEL_EVEN
@@ -425,7 +431,10 @@ glm::dvec3 render_origin(const Scene& scene, Media media, const Superposition* w
     glm::dvec3 sum(0.0);
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         sum += middle_of(scene.volumes[i], media[i]);
-    return scene.volumes.empty() ? scene.camera.position : sum / static_cast<double>(scene.volumes.size());
+    if (!scene.volumes.empty())
+        return sum / static_cast<double>(scene.volumes.size());
+    const std::optional<SurfaceBounds> bounds = bounds_of(scene.surfaces);
+    return bounds ? 0.5 * (bounds->low + bounds->high) : scene.camera.position;
 }
 
 std::vector<shared::MediumParams> make_media(const Scene& scene, Media media, const Method& method, glm::dvec3 origin) {
@@ -453,7 +462,9 @@ shared::FrameParams make_frame(const Scene& scene, Media media, const Method& me
         if (method.nee == NEE_CACHED)
             frame.lattice = make_lattice_of(scene.volumes.front(), media.front(), nodes);
     }
-    frame.sensors[0] = make_sensor(scene, origin, std::max(0.5 * diagonal, reach_of_lamps(scene.lights, origin)));
+    frame.sensors[0] = make_sensor(
+        scene, origin,
+        std::max({0.5 * diagonal, reach_of_lamps(scene.lights, origin), reach_of_surfaces(scene.surfaces, origin)}));
     frame.lights[LIGHT_BACKGROUND].radiance = scene.background;
     if (const DirectionalLight* sun = only_directional(scene.lights))
         frame.lights[LIGHT_SUN] = {sun->direction, sun->irradiance};

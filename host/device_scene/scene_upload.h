@@ -11,14 +11,14 @@ namespace vkvol {
 // What is left of light at a collision; 0 in channels that do not scatter.
 Rgb albedo_of(const Volume& volume);
 
-// Extinction or albedo differs between the colour channels.
+// Extinction or albedo differs between the colour channels, or may differ, as of surfaces.
 bool is_chromatic(const Scene& scene);
 
 // Value of every specialization constant. What the scene lacks is switched off here and compiles to nothing.
 // `whole`: of several media, here and below, else null.
 Specialization specialize(const Scene& scene, Media media, const Method& method, const Superposition* whole = nullptr);
 
-// World position of render space's origin: amid the media, or the camera where there is none.
+// World position of render space's origin: amid the media, or the surfaces, or the camera where there are none.
 glm::dvec3 render_origin(const Scene& scene, Media media, const Superposition* whole = nullptr);
 
 // Of the boxes around the media; world units, 0 where there is none.

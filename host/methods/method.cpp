@@ -110,7 +110,8 @@ void Resolution::choose_nee() {
     int& nee = method_.nee;
     nee = choices_.nee.value_or(preset_.nee);
     const bool scatters = method_.scattering != SCATTERING_NONE &&
-                          any_medium(scene_, [](const Volume& volume) { return volume.sigma_s != Rgb(0.0); });
+                          (!scene_.surfaces.empty() ||
+                           any_medium(scene_, [](const Volume& volume) { return volume.sigma_s != Rgb(0.0); }));
     // The camera sees lamps by shadow rays, whether or not anything scatters.
     const bool shows_lamps = std::any_of(scene_.lights.begin(), scene_.lights.end(), is_lamp) &&
                              !(is_through(method_) && method_.scattering == SCATTERING_NONE);
@@ -133,9 +134,8 @@ void Resolution::choose_nee() {
         nee = NEE_COLLISIONS;
     } else if (nee == NEE_CACHED && (field_ == FIELD_CONSTANT || !can_cache_light(scene_))) {
         if (choices_.nee)
-            warn("a cache of transmittances is for grids, and for noise in spheres and boxes; shadow rays start at "
-                 "every "
-                 "collision");
+            warn("a cache of transmittances is for grids, and for noise in spheres and boxes, without surfaces; shadow "
+                 "rays start at every collision");
         nee = NEE_COLLISIONS;
     }
 }
@@ -154,10 +154,11 @@ void Resolution::choose_mis() {
 void Resolution::choose_distance() {
     const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
     const bool could = method_.nee != NEE_NONE && method_.scattering != SCATTERING_NONE &&
-                       !any_medium(scene_, is_mesh) &&
+                       !any_medium(scene_, is_mesh) && scene_.surfaces.empty() &&
                        std::any_of(scene_.lights.begin(), scene_.lights.end(), has_place);
     if (choices_.distance && !could)
-        warn("distance is without effect: it is for point, spot, sphere, disk and rectangle lights, and not in models");
+        warn("distance is without effect: it is for point, spot, sphere, disk and rectangle lights, and not in models "
+             "or beside surfaces");
     method_.distance = could ? choices_.distance : DISTANCE_FLIGHTS;
 }
 
@@ -284,7 +285,8 @@ int density_kind(const Scene& scene) {
 
 bool can_cache_light(const Scene& scene) {
     const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
-    return !scene.lights.empty() && density_kind(scene) != FIELD_CONSTANT && !any_medium(scene, is_mesh);
+    return !scene.lights.empty() && scene.surfaces.empty() && density_kind(scene) != FIELD_CONSTANT &&
+           !any_medium(scene, is_mesh);
 }
 
 bool has_chromatic_extinction(const Scene& scene) {

@@ -46,7 +46,8 @@ bool is_superposition(const Scene& scene);
 // FIELD_..., FIELD_CONSTANT without a volume.
 int density_kind(const Scene& scene);
 bool has_chromatic_extinction(const Scene& scene); // sigma_t differs between channels
-// Where transmittances towards lights can be cached: there are any, the density varies, and the shape is no mesh.
+// Where transmittances towards lights can be cached: there are any, the density varies, the shape is no mesh, and no
+// surface is in the way.
 bool can_cache_light(const Scene& scene);
 bool emits(const Scene& scene); // judged by coefficients: the temperature grid may be missing
 

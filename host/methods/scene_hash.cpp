@@ -152,6 +152,51 @@ void add_light(Writer& writer, const SkyLight& light) {
     writer.add("scale", light.scale);
 }
 
+void add_shape(Writer& writer, const BallSurface& ball) {
+    writer.add("center", ball.center);
+    writer.add("radius", ball.radius);
+}
+
+void add_shape(Writer& writer, const DiskSurface& disk) {
+    writer.add("disk_center", disk.center);
+    writer.add("disk_normal", disk.normal);
+    writer.add("disk_radius", disk.radius);
+}
+
+void add_shape(Writer& writer, const PlaneSurface& plane) {
+    writer.add("plane", plane.point);
+    writer.add("plane_normal", plane.normal);
+}
+
+void add_shape(Writer& writer, const TriangleSurface& mesh) {
+    for (const glm::uvec3& triangle : mesh.triangles)
+        for (int corner = 0; corner < 3; ++corner)
+            writer.add("corner", mesh.vertices[triangle[corner]]);
+}
+
+void add_shape(Writer& writer, const MeshSurface& mesh) {
+    add_file(writer, mesh.file);
+}
+
+void add_surface(Writer& writer, const Surface& surface) {
+    std::visit([&](const auto& shape) { add_shape(writer, shape); }, surface.shape);
+    if (surface.transform != glm::dmat4(1.0))
+        for (int column = 0; column < 4; ++column)
+            writer.add("transform", glm::dvec3(surface.transform[column]));
+    const Material& material = surface.material;
+    writer.add("material", static_cast<int>(material.kind));
+    writer.add("color", material.color);
+    if (material.kind == MaterialKind::dielectric)
+        writer.add("ior", material.ior);
+    if (material.kind == MaterialKind::conductor) {
+        writer.add("eta", material.eta);
+        writer.add("k", material.k);
+    }
+    writer.add("shine", surface.emission);
+    if (surface.shines_both_ways)
+        writer.add("sides", 2);
+}
+
 void add_view(Writer& writer, const Camera& camera, const Picture& picture) {
     writer.add("position", camera.position);
     writer.add("rotation", glm::dvec3(camera.pitch, camera.yaw, camera.roll));
@@ -209,6 +254,8 @@ std::string scene_hash(const Scene& authored) {
                    glm::dvec3(static_cast<int>(scene.settings.pixel_filter), scene.settings.pixel_filter_radius, 0.0));
     for (const Volume& volume : scene.volumes)
         add_volume(writer, volume);
+    for (const Surface& surface : scene.surfaces)
+        add_surface(writer, surface);
     for (const Light& light : scene.lights)
         if (method.nee != NEE_NONE || is_met_by_chance(light))
             std::visit([&writer](const auto& kind) { add_light(writer, kind); }, light);

@@ -116,13 +116,16 @@ Checkpoint parse(std::string_view bytes) {
 
 RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization, const Assets& assets,
                         const LightTable& lights, std::span<const shared::MediumParams> media,
-                        std::uint32_t sample_offset, const std::string& device, std::vector<std::uint32_t> band_rows) {
+                        const SurfaceTable& surfaces, std::uint32_t sample_offset, const std::string& device,
+                        std::vector<std::uint32_t> band_rows) {
     Digest digest;
     digest.add(std::as_bytes(std::span(&sample_offset, 1)));
     digest.add(std::as_bytes(std::span(&frame, 1)));
     digest.add_all(specialization);
     digest.add_all(lights.rows);
     digest.add_all(media);
+    digest.add_all(surfaces.rows);
+    digest.add_all(surfaces.primitives);
     if (assets.sky)
         digest.add_all(assets.sky->texels);
     std::set<const void*> seen; // what media share counts once

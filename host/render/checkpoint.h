@@ -9,6 +9,7 @@
 
 #include "compute_pass.h"
 #include "light_table.h"
+#include "surface_table.h"
 #include "loaded_medium.h"
 #include "plan.h"
 #include "render_counts.h"
@@ -44,7 +45,8 @@ struct Checkpoint {
 // `media`: rows, of several.
 RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization, const Assets& assets,
                         const LightTable& lights, std::span<const shared::MediumParams> media,
-                        std::uint32_t sample_offset, const std::string& device, std::vector<std::uint32_t> band_rows);
+                        const SurfaceTable& surfaces, std::uint32_t sample_offset, const std::string& device,
+                        std::vector<std::uint32_t> band_rows);
 
 // Atomically: the file is the last checkpoint or this one. Throws RenderError.
 void save_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);

@@ -22,6 +22,8 @@ std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
     std::uint32_t iterations = 2 + (steps + 1);
     if (loops.mesh)
         iterations += 2 + 1 + MESH_NODES_PER_TURN * node;
+    if (loops.surfaces) // planes when a segment begins, then a search
+        iterations += MOST_PLANES + 1 + 1 + SURFACE_NODES_PER_TURN * node;
     const std::uint32_t octaves = loops.octaves > 0 ? loops.octaves + 1 : 0;
     const std::uint32_t look_up = loops.media > 0 ? 1 + loops.media * (1 + octaves) : octaves;
     iterations += (4 * steps + 1) * look_up;

@@ -38,6 +38,7 @@ constexpr std::uint32_t most_slots = 1u << 19;
 // What a turn of the tracking passes loops over.
 struct LoopSizes {
     bool mesh = false;
+    bool surfaces = false;
     std::uint32_t octaves = 0; // of noise; 0 without it
     std::uint32_t media = 0;   // that a look-up asks, at most; 0 where there is but one
     std::uint32_t phase = 0;   // iterations within phase functions

@@ -11,6 +11,7 @@
 #include "scene_upload.h"
 #include "schedule_memory.h"
 #include "session.h"
+#include "surface_mesh.h"
 #include "workshop.h"
 
 namespace vkvol {
@@ -47,7 +48,7 @@ MediaFigures figures_of(const Assets& assets) {
 } // namespace
 
 Session::Session(const Device& device, const Scene& scene, const RenderJob& job)
-    : scene_(with_preset(scene)), job_(job), method_(choose_method(scene_)), commands_(device) {
+    : scene_(with_surface_meshes(with_preset(scene))), job_(job), method_(choose_method(scene_)), commands_(device) {
     load(device, scene.warnings);
     compile(device);
     watch_.lap();
@@ -88,6 +89,7 @@ void Session::load(const Device& device, const std::vector<std::string>& authore
 void Session::find_wish(const Assets& assets, const Specialization& specialization) {
     wish_ = job_.plan;
     loops_.lights = loop_iterations(scene_.lights);
+    loops_.surfaces = !scene_.surfaces.empty();
     for (std::size_t i = 0; i < assets.media.size(); ++i) {
         const Volume& volume = scene_.volumes[i];
         const LoadedMedium& medium = assets.media[i];
@@ -143,7 +145,7 @@ void Session::compile(const Device& device) {
     device_scene_->fill_light_cache();
     // Software drivers are 1.7 to 3.1 times as fast with one pass (tools/results): no trial is worth its time.
     const bool is_known = device.is_cpu() && !job_.plan.tries;
-    const bool has_paths = device_scene_->specialization()[SPEC_SHAPE] != SHAPE_NONE;
+    const bool has_paths = device_scene_->specialization()[SPEC_SHAPE] != SHAPE_NONE || !scene_.surfaces.empty();
     if (wish_.schedule == Schedule::automatic && !is_known && has_paths && !job_.trace && !job_.dry_run)
         choose_schedule(device, cache);
     cache.save();
@@ -230,7 +232,7 @@ void Session::begin_identity(const Device& device, const Assets& assets) {
     for (const Band& band : bands_)
         rows.push_back(band.rows);
     identity_ = identify(device_scene_->frame(), device_scene_->specialization(), assets, device_scene_->lights(),
-                         device_scene_->media(), job_.sample_offset,
+                         device_scene_->media(), device_scene_->surfaces(), job_.sample_offset,
                          fmt::format("{}, {}", device.info().name, device.info().driver), rows);
     if (job_.resume)
         check_identity(job_.resume->identity, identity_);

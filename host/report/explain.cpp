@@ -84,6 +84,9 @@ bool sees_light(const Scene& scene, const Method& method) {
 std::optional<Explanation> foresee(const Scene& authored) {
     const Scene scene = with_preset(authored);
     const Method method = choose_method(scene);
+    const auto glows = [](const Surface& surface) { return surface.emission != Rgb(0.0); };
+    if (std::any_of(scene.surfaces.begin(), scene.surfaces.end(), glows))
+        return std::nullopt;
     if (sees_light(scene, method) || scene.background != Rgb(0.0) || emits(scene) || method.material_colour)
         return std::nullopt;
     Evidence evidence{scene, authored, method};
@@ -91,6 +94,8 @@ std::optional<Explanation> foresee(const Scene& authored) {
 }
 
 std::optional<Explanation> explain(const Scene& authored, const RenderResult& result, const Tone& tone) {
+    if (!authored.surfaces.empty()) // what is said is about pictures of media
+        return std::nullopt;
     const Scene scene = with_preset(authored);
     const FilmLook seen = look(result.film, scene.background, tone.mapping);
     std::optional<Odd> odd = oddity(seen, scene, tone);

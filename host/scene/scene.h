@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "lights.h"
+#include "surfaces.h"
 
 namespace vkvol {
 
@@ -213,6 +214,7 @@ struct Scene {
     Picture picture;
     std::vector<Volume> volumes; // the media
     std::vector<Light> lights;
+    std::vector<Surface> surfaces;
     Rgb background{0.0}; // constant radiance from every direction
     RenderSettings settings;
     std::optional<Expected> expected;

@@ -5,6 +5,7 @@
 
 #include "blackbody.h"
 #include "daylight.h"
+#include "scene_places.h"
 #include "scene_reader.h"
 
 namespace vkvol {
@@ -22,17 +23,6 @@ std::vector<std::string> with_colors(std::vector<std::string> attributes) {
     return attributes;
 }
 
-glm::dvec3 unit(const glm::dvec3& v) {
-    const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    return glm::normalize(v / largest);
-}
-
-// Where it is, or where towards, by x, y and z.
-glm::dvec3 xyz(const XmlElement& element, const Limits& limits) {
-    return {element.attribute_number("x", 0.0, limits), element.attribute_number("y", 0.0, limits),
-            element.attribute_number("z", 0.0, limits)};
-}
-
 glm::dvec3 direction(const XmlElement& element) {
     const glm::dvec3 towards = xyz(element, any_number);
     if (towards == glm::dvec3(0.0))
@@ -42,38 +32,9 @@ glm::dvec3 direction(const XmlElement& element) {
     return unit(towards);
 }
 
-glm::dvec3 looking_at(const XmlElement& element, const glm::dvec3& position) {
-    const std::vector<double> numbers = element.attribute_numbers("lookAt", coordinate);
-    if (numbers.size() != 3)
-        element.fail(fmt::format("<{}> needs lookAt=\"x y z\", the point at which it shines", element.name()));
-    const glm::dvec3 target(numbers[0], numbers[1], numbers[2]);
-    if (target == position)
-        element.fail_attribute("lookAt",
-                               fmt::format("<{}> lookAt: is where the light is; move one of them", element.name()));
-    return unit(target - position);
-}
-
-// As a camera of this `lookAt` and `up` would have it: `width` across, `height` along up.
-RectangleLight rectangle(const XmlElement& element, const Rgb& radiance) {
-    RectangleLight light;
-    light.center = xyz(element, coordinate);
-    light.radiance = radiance;
-    const glm::dvec3 normal = looking_at(element, light.center);
-    glm::dvec3 up = std::abs(normal.y) < 0.999 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
-    if (element.has("up")) {
-        const std::vector<double> numbers = element.attribute_numbers("up", any_number);
-        if (numbers.size() != 3 || glm::dvec3(numbers[0], numbers[1], numbers[2]) == glm::dvec3(0.0))
-            element.fail_attribute("up", "<rectangle> up: expected a direction x y z, e.g. up=\"0 1 0\"");
-        up = unit({numbers[0], numbers[1], numbers[2]});
-    }
-    const glm::dvec3 across = glm::cross(normal, up);
-    if (glm::length(across) < 1e-6)
-        element.fail_attribute(element.has("up") ? "up" : "lookAt",
-                               "<rectangle> up: is the direction in which it shines; name another");
-    light.edge_u = 0.5 * element.attribute_number("width", 1.0, length) * -glm::normalize(across);
-    light.edge_v = 0.5 * element.attribute_number("height", 1.0, length) *
-                   glm::normalize(glm::cross(glm::normalize(across), normal));
-    return light;
+RectangleLight rectangle_light(const XmlElement& element, const Rgb& radiance) {
+    const Rectangle shape = rectangle(element);
+    return {shape.center, shape.edge_u, shape.edge_v, radiance};
 }
 
 SkyMapping sky_mapping(const XmlElement& element) {
@@ -180,7 +141,7 @@ Light SceneReader::light(const XmlElement& element) const {
     }
     if (kind == "rectangle") {
         element.allow(with_colors({"x", "y", "z", "lookAt", "up", "width", "height", "power"}));
-        return of_power(element, rectangle(element, light_color(element)), &RectangleLight::radiance);
+        return of_power(element, rectangle_light(element, light_color(element)), &RectangleLight::radiance);
     }
     element.allow(with_colors({"baseDir", "mapping", "rotation"}), true);
     SkyLight sky;

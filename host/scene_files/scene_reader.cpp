@@ -13,11 +13,11 @@ namespace vkvol {
 namespace {
 
 const std::vector<std::string> vocabulary = {
-    "densityField", "sphere", "box", "models", "volumes", "noise", "sigma_a", "sigma_s", "heyneygreenstein_g", "phase",
-    "medium", "emission", "albedo", "light", "lights", "backgroundColor", "camera", "width", "height",
-    "rayPerPixelCount", "maxDepth", "integrator", "march", "filter", "russianRoulette", "majorant", "pixelFilter",
-    "lightRayDensityMultiplier", "shadowRayDensityMultiplier", "stepSize", "importanceSampling", "fileName",
-    "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds", "expected",
+    "densityField", "sphere", "box", "models", "volumes", "surfaces", "noise", "sigma_a", "sigma_s",
+    "heyneygreenstein_g", "phase", "medium", "emission", "albedo", "light", "lights", "backgroundColor", "camera",
+    "width", "height", "rayPerPixelCount", "maxDepth", "integrator", "march", "filter", "russianRoulette", "majorant",
+    "pixelFilter", "lightRayDensityMultiplier", "shadowRayDensityMultiplier", "stepSize", "importanceSampling",
+    "fileName", "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds", "expected",
     // Names that are read for old files' sake: a misspelling in the original's report, and the old name of integrator.
     "heynegreenstein_g", "intersectionHandler"};
 
@@ -35,6 +35,7 @@ Scene SceneReader::read() {
     read_light(scene);
     read_lights(scene);
     read_volumes(scene);
+    read_surfaces(scene);
     if (!any_medium(scene, [](const Volume& each) { return std::holds_alternative<GridFile>(each.shape); }))
         scene.settings.march.unit = CoefficientUnit::world;
     scene.expected = expected();

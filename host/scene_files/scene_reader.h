@@ -58,6 +58,9 @@ private:
     NamedVolumes named_volumes(pugi::xml_node list) const;
     pugi::xml_node volume_it_is_like(const XmlElement& volume, const NamedVolumes& named) const;
     std::vector<pugi::xml_node> with_those_it_is_like(pugi::xml_node volume, const NamedVolumes& named) const;
+    void read_surfaces(Scene& scene);
+    Surface surface(const XmlElement& element) const;
+    Material material(const XmlElement& element) const;
     glm::dmat4 transform() const;
     std::optional<Shape> shape(const std::string& integrator, std::string& place) const;
     XmlElement shape_element(const std::string& integrator) const;

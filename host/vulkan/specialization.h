@@ -15,7 +15,7 @@ using Specialization = std::array<std::int32_t, SPEC_COUNT>;
 
 // Bits of what a kernel is compiled with only where a scene has it: FORM_FLAGS of shaders/CMakeLists.txt. A table of a
 // kernel's forms is indexed by their sum.
-inline constexpr unsigned form_chromatic = 1, form_windows = 2, form_full = 4, form_several = 8;
+inline constexpr unsigned form_chromatic = 1, form_windows = 2, form_full = 4, form_several = 8, form_surfaces = 16;
 
 // The kernel as these values leave it: what they make unreachable is gone, and nothing is left to specialise. Drivers
 // could do that themselves, but pay for the whole kernel first: half of llvmpipe's start-up, and minutes in

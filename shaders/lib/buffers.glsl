@@ -8,6 +8,10 @@
 #include "shared/estimators.h"
 #include "shared/items.h"
 #include "shared/frame.h"
+#ifdef SURFACES // which may have any colours
+#define FULL
+#define CHROMATIC
+#endif
 #include "lib/spectrum.glsl"
 
 layout(constant_id = SPEC_SHAPE) const int SHAPE = SHAPE_NONE;
@@ -25,8 +29,10 @@ layout(constant_id = SPEC_STEPS) const int STEPS = 1;
 layout(constant_id = SPEC_TRACE) const int TRACE = 0;
 layout(constant_id = SPEC_TEXELS) const int TEXELS = 0;
 layout(constant_id = SPEC_LEAPS) const int LEAPS = 0;
-#ifdef SEVERAL
+#if defined(SEVERAL) && !defined(FULL)
 #define FULL
+#endif
+#ifdef SEVERAL
 layout(constant_id = SPEC_MEMBER_SHAPE) const int MEMBER_SHAPE = SHAPE_BOX;
 layout(constant_id = SPEC_MEMBER_FIELD) const int MEMBER_FIELD = FIELD_CONSTANT;
 layout(constant_id = SPEC_MEMBER_GRID) const int MEMBER_GRID = EACH;
@@ -54,6 +60,12 @@ const int SENSOR = SENSOR_PINHOLE;
 const int PIXEL_FILTER = 0;
 #endif
 layout(constant_id = SPEC_MIS) const int MIS = MIS_BALANCE;
+#ifdef SURFACES
+layout(constant_id = SPEC_MATERIALS) const int MATERIALS = 1 << MATERIAL_DIFFUSE;
+const bool HAS_SURFACES = true;
+#else
+const bool HAS_SURFACES = false;
+#endif
 
 // What a medium is: a constant, unless it is one of several that differ.
 #ifdef SEVERAL
@@ -109,6 +121,8 @@ layout(scalar, binding = BINDING_PHASE) readonly buffer PhaseBlock { PhaseNode p
 layout(scalar, binding = BINDING_LIGHTS) readonly buffer LightBlock { LightRow lights[]; };
 layout(scalar, binding = BINDING_SKY) readonly buffer SkyBlock { vec4 sky_texels[]; };
 layout(scalar, binding = BINDING_SKY_ALIAS) readonly buffer SkyAliasBlock { AliasEntry sky_alias[]; };
+layout(scalar, binding = BINDING_SURFACES) readonly buffer SurfaceBlock { SurfaceRow surfaces[]; };
+layout(scalar, binding = BINDING_PRIMITIVES) readonly buffer PrimitiveBlock { SurfacePrimitive primitives[]; };
 layout(scalar, binding = BINDING_LIGHT_TREE) readonly buffer LightTreeBlock { LightNode light_nodes[]; };
 #ifdef SEVERAL
 layout(scalar, binding = BINDING_MEDIA) readonly buffer MediumBlock { MediumParams media[]; };

@@ -1,13 +1,13 @@
 // Lamps: lights of a shape and place. What passes through them is not stopped, and flights do not meet them: all their light is
 // found by looks, and the camera sees them by looks too.
 //
-// A look's direction is drawn from the lamp's own shape or, with chance c, by the phase function: one sample of a mixture, weighted
+// A look's direction is drawn from the lamp's own shape or, with chance c, by the phase function, or as a surface scatters: one sample of a mixture, weighted
 // by the mixture's density. By its shape alone, near a lamp or in a sharp phase function the weight would have no bound.
 #ifndef LAMP_GLSL
 #define LAMP_GLSL
 #include "lights/flat.glsl"
 #include "lights/sphere.glsl"
-#include "phase/phase.glsl"
+#include "surfaces/scatterer.glsl"
 
 float hit_lamp(LightRow light, vec3 from, vec3 direction) {
     return light.kind == LIGHT_SPHERE ? hit_sphere(light, from, direction) : hit_flat(light, from, direction);
@@ -20,25 +20,23 @@ float lamp_pdf(LightRow light, vec3 from, vec3 direction, float t) {
 
 // c: next to nothing for what is small as seen from here, against the narrowest that the phase function draws; most for what is
 // large, but never all. What 0.85 is worth: tools/results/README.md.
-float phase_share(MediumParams v, LightRow light, vec3 from) {
+float scatterer_share(Scatterer scatterer, LightRow light, vec3 from) {
     vec3 apart = light.position - from;
-    vec3 along = vec3(0.0, 1.0, 0.0);
-    float peak = max(phase_eval(v, along, along), phase_eval(v, along, -along));
-    float s = peak * light.area / max(dot(apart, apart), 1.0e-30);
+    float s = scatter_peak(scatterer) * light.area / max(dot(apart, apart), 1.0e-30);
     return 0.85 * s / (1.0 + s);
 }
 
 // `pdf` of what is returned: 0, for no flight meets it. Its light is over the mixture's density already.
-LightSample sample_lamp(MediumParams v, LightRow light, vec3 from, vec3 travel, vec2 u, float select) {
-    float share = MIS == MIS_LIGHT ? 0.0 : MIS == MIS_PHASE ? 1.0 : phase_share(v, light, from);
+LightSample sample_lamp(Scatterer s, LightRow light, vec3 from, vec3 travel, vec2 u, float select) {
+    float share = MIS == MIS_LIGHT ? 0.0 : MIS == MIS_PHASE ? 1.0 : scatterer_share(s, light, from);
     bool by_phase = select < share;
-    vec3 direction = by_phase                      ? phase_sample(v, travel, u)
+    vec3 direction = by_phase                      ? scatter_direction(s, travel, u)
                      : light.kind == LIGHT_SPHERE ? sphere_direction(light, from, u)
                                                   : flat_direction(light, from, u);
     float t = by_phase                      ? hit_lamp(light, from, direction)
               : light.kind == LIGHT_SPHERE ? sphere_distance(light, from, direction)
                                            : flat_distance(light, from, direction);
-    float density = mix(lamp_pdf(light, from, direction, t), phase_eval(v, travel, direction), share);
+    float density = mix(lamp_pdf(light, from, direction, t), scatter_pdf(s, travel, direction), share);
     bool seen = t < FAR && density > 0.0;
     return LightSample(direction, t, seen ? light.radiance / density : vec3(0.0), 0.0);
 }

@@ -36,11 +36,11 @@ uint choose_light(vec3 from, uvec4 words, inout Rng rng, out float chance) {
     return i;
 }
 
-LightSample sample_light(MediumParams v, LightRow light, vec3 from, vec3 travel, uvec4 words, inout Rng rng) {
+LightSample sample_light(Scatterer s, LightRow light, vec3 from, vec3 travel, uvec4 words, inout Rng rng) {
     vec2 u = to_uniform(words).zw;
     LightSample drawn;
     if (SEES_LAMPS && light.kind >= LIGHT_SPHERE)
-        drawn = sample_lamp(v, light, from, travel, u, to_tap(words).z);
+        drawn = sample_lamp(s, light, from, travel, u, to_tap(words).z);
     else if (SEES_SKY && light.kind == LIGHT_MAP)
         drawn = sample_sky(u, rng);
     else if (light.kind == LIGHT_DISC)
@@ -54,13 +54,13 @@ LightSample sample_light(MediumParams v, LightRow light, vec3 from, vec3 travel,
     return drawn;
 }
 
-// Light that reaches `from`, over the density with which its direction was drawn: to be multiplied by the phase function,
-// whose density of that direction is phase_pdf, and by weight_of_look. `travel`: how the path came there.
-LightSample look_for_light(MediumParams v, vec3 from, vec3 travel, inout Rng rng, out LightRow light) {
+// Light that reaches `from`, over the density with which its direction was drawn: to be multiplied by scatter_value, and by
+// weight_of_look with scatter_pdf. `travel`: how the path came there.
+LightSample look_for_light(Scatterer s, vec3 from, vec3 travel, inout Rng rng, out LightRow light) {
     uvec4 words = next_words(rng);
     float chance;
     light = lights[choose_light(from, words, rng, chance)];
-    LightSample drawn = sample_light(v, light, from, travel, words, rng);
+    LightSample drawn = sample_light(s, light, from, travel, words, rng);
     drawn.pdf *= chance;
     drawn.light /= drawn.pdf > 0.0 ? drawn.pdf : chance;
     return drawn;

@@ -16,7 +16,7 @@ void main() {
     FilmPixel entry = film[pixel];
     Tally tally = NOTHING_SEEN;
     uint place = place_of(pixel);
-    bool hit = false;
+    bool hit = frame.surface_nodes + frame.planes > 0u;
     for (uint i = push.sample_begin; i < push.sample_end && !hit; ++i) {
         CameraRay ray = camera_ray(place, i);
         hit = may_meet_medium(frame.media[0], to_medium(frame.media[0], ray.origin, ray.direction));

@@ -86,11 +86,17 @@ bool is_left(float a, vec2 p, vec2 q) {
     return a != 0.0 ? a > 0.0 : (p.y != q.y ? p.y > q.y : q.x > p.x);
 }
 
-// Counts triangle `i` if the ray meets it beyond where the search began.
-void add_crossing(Shear s, uint i, inout PartSearch c) {
-    vec3 p = project(s, triangles[3u * i]);
-    vec3 q = project(s, triangles[3u * i + 1u]);
-    vec3 r = project(s, triangles[3u * i + 2u]);
+struct Crossing {
+    int turn;   // 1: the line leaves through the triangle, -1: it enters, 0: it passes by
+    float t;    // world distance, where it does not
+    vec3 areas; // the corners' weights, not normalised
+};
+
+// Of the ray's whole line with a triangle.
+Crossing cross_triangle(Shear s, vec3 a, vec3 b, vec3 c) {
+    vec3 p = project(s, a);
+    vec3 q = project(s, b);
+    vec3 r = project(s, c);
     vec3 areas = vec3(area(q.xy, r.xy), area(r.xy, p.xy), area(p.xy, q.xy));
     // A loop, since software drivers do both sides of an `if`; it is seldom entered.
     for (bool tie = any(equal(areas, vec3(0.0))); tie; tie = false) {
@@ -105,9 +111,15 @@ void add_crossing(Shear s, uint i, inout PartSearch c) {
     precise float sum = areas.x + areas.y + areas.z;
     precise float weighted = areas.x * p.z + areas.y * q.z + areas.z * r.z;
     precise float t = weighted / sum;
-    bool met = turn != 0 && t > c.t_from;
-    turn = met ? turn : 0;
-    t = met ? t : FAR;
+    return Crossing(turn, t, areas);
+}
+
+// Counts triangle `i` if the ray meets it beyond where the search began.
+void add_crossing(Shear s, uint i, inout PartSearch c) {
+    Crossing crossing = cross_triangle(s, triangles[3u * i], triangles[3u * i + 1u], triangles[3u * i + 2u]);
+    bool met = crossing.turn != 0 && crossing.t > c.t_from;
+    int turn = met ? crossing.turn : 0;
+    float t = met ? crossing.t : FAR;
     c.winding += turn;
     c.turn = t < c.first ? turn : t == c.first ? c.turn + turn : c.turn;
     c.second = t < c.first ? c.first : t > c.first ? min(c.second, t) : c.second;
@@ -119,10 +131,10 @@ void add_crossing(Shear s, uint i, inout PartSearch c) {
 // where the ray passes the projected triangle: so the point at t is within 28 u R of the triangle's box. The slab
 // test's own distances, at most 2 sqrt(3) R where they matter, err by at most 5 u of themselves, or 18 u R. The rest is
 // spare.
-MeshRay make_mesh_ray(uint bvh_nodes, Ray ray) {
+MeshRay make_mesh_ray(uint root, uint bvh_nodes, Ray ray) {
     MeshRay m;
     m.shear = make_shear(ray);
-    vec3 reach = bvh_nodes > 0u ? max(abs(bvh[0].low), abs(bvh[0].high)) + abs(ray.origin) : vec3(0.0);
+    vec3 reach = bvh_nodes > 0u ? max(abs(bvh[root].low), abs(bvh[root].high)) + abs(ray.origin) : vec3(0.0);
     float margin = 3.8147e-6 * max(reach.x, max(reach.y, reach.z));
     m.before = ray.origin + margin;
     m.after = ray.origin - margin;
@@ -133,18 +145,18 @@ MeshRay make_mesh_ray(uint bvh_nodes, Ray ray) {
     return m;
 }
 
-// Whether the ray may be in the box beyond t_from.
-bool meets(MeshRay m, BvhNode box, float t_from) {
+// Whether the ray may be in the box between t_from and t_to.
+bool meets(MeshRay m, BvhNode box, float t_from, float t_to) {
     vec3 t0 = (box.low - m.before) * m.inverse, t1 = (box.high - m.after) * m.inverse;
     vec3 entries = min(t0, t1), exits = max(t0, t1);
     float entry = max(max(entries.x, entries.y), max(entries.z, t_from));
-    float exit = min(exits.x, min(exits.y, exits.z));
+    float exit = min(min(exits.x, t_to), min(exits.y, exits.z));
     return entry <= exit;
 }
 
 // Whether the ray may meet the mesh at all.
 bool may_meet_mesh(uint bvh_nodes, Ray ray) {
-    return bvh_nodes > 0u && meets(make_mesh_ray(bvh_nodes, ray), bvh[0], 0.0);
+    return bvh_nodes > 0u && meets(make_mesh_ray(0u, bvh_nodes, ray), bvh[0], 0.0, FAR);
 }
 
 // For the first part [t.x, t.y], t_from <= t.x < t.y, of the ray beyond t_from (>= 0) that lies inside of what the
@@ -160,7 +172,7 @@ bool step_search(uint bvh_nodes, MeshRay m, inout PartSearch s, out vec2 t) {
     t = vec2(0.0);
     if (s.node < bvh_nodes) {
         BvhNode node = bvh[s.node];
-        bool met = meets(m, node, s.t_from);
+        bool met = meets(m, node, s.t_from, FAR);
         uint first = node.leaf >> 3u, last = first + (met ? node.leaf & 7u : 0u);
         for (uint k = first; k < last; ++k) // at most MESH_LEAF
             add_crossing(m.shear, k, s);

@@ -6,10 +6,12 @@
 #include "estimators/free_flight.glsl"
 #include "estimators/transmittance.glsl"
 
-// Where a shadow ray is a walk of its own; that of a homogeneous medium of one part is known at once. (In bits,
+// Where a shadow ray is a walk of its own; that of a homogeneous medium of one part is known at once, where no
+// surface can be in the way. (In bits,
 // since glslang 12 branches for nested `&&` and `||`, and takes the outcome for a constant nevertheless.)
 const bool LOOKS =
-    (int(NEE != NEE_NONE) & (int(TRANSMITTANCE != TRANSMITTANCE_ANALYTIC) | int(SHAPE == SHAPE_MESH))) != 0;
+    (int(NEE != NEE_NONE) &
+     (int(TRANSMITTANCE != TRANSMITTANCE_ANALYTIC) | int(SHAPE == SHAPE_MESH) | int(HAS_SURFACES))) != 0;
 
 // What the scene's estimators need of a walk that is laid aside. The rest is dropped, so that nothing computes it.
 Walk kept(Walk w) {
@@ -87,7 +89,7 @@ uint search_part(MediumParams v, vec3 position, vec3 direction, float reach, boo
     // A loop, since software drivers do both sides of an `if`: a group none of whose lanes searches passes it by.
     for (bool begins = is_searching(search); begins; begins = false) {
         Ray ray = to_medium(v, position, direction);
-        MeshRay mesh_ray = make_mesh_ray(v.bvh_nodes, ray);
+        MeshRay mesh_ray = make_mesh_ray(0u, v.bvh_nodes, ray);
         vec2 t;
         bool over = false;
         for (int k = 0; k < MESH_NODES_PER_TURN && !over; ++k)

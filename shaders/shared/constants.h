@@ -17,7 +17,7 @@
 #define BINDING_BETAS 11      // path throughput per slot: float, or vec3 in a medium of chromatic coefficients
 #define BINDING_CONTROLS 12   // ControlCell per majorant cell
 #define BINDING_TRIANGLES 13  // vec3, three corners per triangle, counterclockwise seen from without; render space
-#define BINDING_BVH 14        // BvhNode
+#define BINDING_BVH 14        // BvhNode: of a medium's mesh, then of the surfaces
 #define BINDING_SUSPENDED 15  // Suspended per slot
 #define BINDING_TRACE 16      // TraceHeader and TraceRecords, only where one path is followed
 #define BINDING_LATTICE 17    // vec4 per node of two lattices, see lattice.glsl
@@ -30,17 +30,19 @@
 #define BINDING_PHASE 24      // PhaseNode, of phase functions that are tables
 #define BINDING_MEDIA 25      // MediumParams, where there are several media; see superposition.glsl
 #define BINDING_OVERLAPS 26   // words: what look-ups ask several media for, and which of them are where; see superposition.glsl
-#define BINDING_TEST_INPUT 27 // test kernels only
-#define BINDING_TEST_OUTPUT 28
-#define BINDING_BUFFERS 29
+#define BINDING_SURFACES 27   // SurfaceRow
+#define BINDING_PRIMITIVES 28 // SurfacePrimitive
+#define BINDING_TEST_INPUT 29 // test kernels only
+#define BINDING_TEST_OUTPUT 30
+#define BINDING_BUFFERS 31
 // The same buffers as texels: software drivers gather these, and read storage buffers lane by lane.
-#define BINDING_GRID_TEXELS 29
-#define BINDING_LEAF_TEXELS 30
-#define BINDING_MAJORANT_TEXELS 31
-#define BINDING_LATTICE_TEXELS 32
-#define BINDING_OVERLAP_TEXELS 33
-#define BINDING_MEMBER_TEXELS 34 // the same, four words at a time
-#define BINDING_COUNT 35
+#define BINDING_GRID_TEXELS 31
+#define BINDING_LEAF_TEXELS 32
+#define BINDING_MAJORANT_TEXELS 33
+#define BINDING_LATTICE_TEXELS 34
+#define BINDING_OVERLAP_TEXELS 35
+#define BINDING_MEMBER_TEXELS 36 // the same, four words at a time
+#define BINDING_COUNT 37
 
 #define WORKGROUP_SIZE 64
 
@@ -81,7 +83,8 @@
 #define SPEC_MEMBER_FIELD 25 // FIELD_...
 #define SPEC_MEMBER_GRID 26  // 0: all that are grids have the same one
 #define SPEC_CELL_BITS 27    // of several media: log2 of the cells along the edge of a coarse one; 0: there are no coarse ones
-#define SPEC_COUNT 28
+#define SPEC_MATERIALS 28    // bits, 1 << MATERIAL_..., of those that the surfaces have
+#define SPEC_COUNT 29
 
 // Of several media that differ in it: each one's own, which is in its row.
 #define EACH -1
@@ -161,6 +164,22 @@
 #define LIGHT_DISK 6
 #define LIGHT_RECTANGLE 7
 
+// What a surface is made of. A plane has no end; there are few, and no hierarchy holds them.
+#define SURFACE_TRIANGLES 0
+#define SURFACE_SPHERE 1
+#define SURFACE_DISK 2
+#define SURFACE_PLANE 3
+#define MOST_PLANES 8
+
+// How it scatters.
+#define MATERIAL_DIFFUSE 0
+#define MATERIAL_MIRROR 1
+#define MATERIAL_CONDUCTOR 2
+#define MATERIAL_DIELECTRIC 3
+
+// In place of a primitive's number.
+#define NO_SURFACE 0xffffffffu
+
 // How what looks toward a light and what flights meet of it share the work.
 #define MIS_BALANCE 0
 #define MIS_POWER 1
@@ -207,6 +226,7 @@
 
 #define MESH_LEAF 4            // triangles in a leaf of a mesh's hierarchy, at most
 #define MESH_NODES_PER_TURN 64 // of the hierarchy, which a turn of the track pass visits
+#define SURFACE_NODES_PER_TURN 32
 
 // A slot is in one queue, or held by a lane, or at rest when nothing is left to do.
 #define QUEUE_GENERATE 0 // free slots
@@ -230,6 +250,7 @@
 #define TRACE_LIGHT 2       // a shadow ray has ended
 #define TRACE_ESCAPE 3      // into the background
 #define TRACE_END 4
+#define TRACE_SURFACE 5     // the path has come to one
 
 #define LAST_OF_LIST 0x80000000u // of media in a cell: set in the last one's word
 

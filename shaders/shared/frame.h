@@ -193,6 +193,25 @@ struct LightRow {
     float none_beyond; // none beyond
 };
 
+// A surface; which fields mean something depends on its kinds.
+struct SurfaceRow {
+    uint shape;    // SURFACE_...
+    uint material; // MATERIAL_...
+    vec3 color;    // share of the light that it scatters, of a conductor times Fresnel's
+    vec3 emission; // radiance, from its front, or from both sides
+    uint sides;    // that shine: 1 or 2
+    vec3 eta;      // index of refraction, of a dielectric the same in all channels: of its inside to that of its outside
+    vec3 k;        // of a conductor, the index's imaginary part
+};
+
+// A piece of a surface that a ray meets at once. Render space.
+struct SurfacePrimitive {
+    vec3 a; // a triangle's corners, counterclockwise as seen from without; or a middle,
+    vec3 b; // a unit normal
+    vec3 c; // and the radius, in x
+    uint surface; // its row
+};
+
 // Of a binary tree over lights, in depth-first order; a branch's left one follows it.
 struct LightNode {
     vec3 low; // bounds of all lights below, render space
@@ -224,6 +243,9 @@ struct FrameParams {
     uint lamp_first;                 // rows of the lamps
     uint lamp_count;
     SkyParams sky;
+    uint first_surface_node; // of the hierarchy over all surfaces, which follows that of a medium's mesh
+    uint surface_nodes;
+    uint planes;             // the first primitives are these
     MarchParams march;
     OverlapParams overlaps; // several media only
     LatticeParams lattice; // NEE_CACHED only

@@ -26,6 +26,10 @@ struct PartSearch {
     SEARCH_STATE(STATE_FIELD)
 };
 
+struct SurfaceSearch {
+    SEEK_STATE(STATE_FIELD)
+};
+
 // A path laid aside amid a segment.
 struct Suspended {
     SEGMENT_STATE(STATE_FIELD_WHEN, STATE_SPECTRUM, STATE_WALK)

@@ -13,6 +13,8 @@
 #define TODO_DONE 6u   // the pixel has its samples
 #define TODO_BEGIN 7u  // a path, at the camera
 #define TODO_SET_OUT 8u // from a vertex, where it has scattered and looked along its way
+#define TODO_SEEK 9u    // the surface that ends the flight, before that begins
+#define TODO_CHECK 10u  // whether a surface is in the way of the shadow ray, before that begins
 
 // Of a look from along a flight.
 #define LEG_ALONG 0u // to where it begins
@@ -30,6 +32,7 @@
     ROW(uint, draw)  /* random draws consumed; 0 at the camera, whose draw also holds the first free flight */        \
     ROW(uint, depth) /* scattering events, this one included; 0 at the camera */                                      \
     ROW(uint, medium) /* of several, the row of that which it collided with */                                        \
+    ROW(uint, surface) /* the primitive that it is at; NO_SURFACE: none */                                            \
     ROW(uint, todo)  /* TODO_...: what comes next */
 
 // ROW(type, name, when): `when` is what has to hold for the field to mean something, see lane.glsl. A SPECTRUM_ROW has
@@ -52,7 +55,11 @@
                                                   throughput that it lights */                                        \
     SPECTRUM_ROW(cached, has_cache)            /* transmittance that the shadow ray corrects */                       \
     ROW(float, chance, looking && has_cache)   /* with which it was sent */                                           \
-    ROW(PartSearch, search, under_way && SHAPE == SHAPE_MESH)
+    ROW(PartSearch, search, under_way && SHAPE == SHAPE_MESH)                                                         \
+    ROW(SurfaceSearch, seek, seeking)                                                                                 \
+    ROW(float, reach, under_way && HAS_SURFACES) /* of the flight, to the surface that ends it, or FAR [world units] */ \
+    ROW(uint, struck, under_way && HAS_SURFACES) /* that surface's primitive */                                       \
+    ROW(uint, lit_surface, looking && HAS_SURFACES) /* the primitive that the shadow ray lights, or NO_SURFACE */
 
 // ROW(type, name, when): a segment as far as it has gone, and which estimators need the field; see kept() in segment.glsl.
 #define WALK_STATE(ROW)                                                                                               \
@@ -87,5 +94,11 @@
     ROW(float, first)  /* distance to the first crossing, or infinitely far */                                        \
     ROW(int, turn)     /* surfaces left less those entered there */                                                   \
     ROW(float, second) /* distance to the next crossing behind that, or infinitely far */
+
+// ROW(type, name): a search for the nearest surface along a ray, as far as it has gone; see nearest.glsl.
+#define SEEK_STATE(ROW)                                                                                               \
+    ROW(uint, node)     /* of the hierarchy, to be visited next */                                                    \
+    ROW(float, nearest) /* distance to the nearest surface so far, or how far the ray goes */                         \
+    ROW(uint, primitive) /* what it is there; NO_SURFACE: nothing yet */
 
 #endif

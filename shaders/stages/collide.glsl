@@ -9,12 +9,13 @@
 #include "lib/trace.glsl"
 
 // Likewise from one of many lights, which is drawn here.
-void gather_some_light(MediumParams v, MediumParams met, vec3 position, float t, Spectrum lit, uint next, inout Lane lane,
+void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spectrum lit, uint next, inout Lane lane,
                        inout Rng rng) {
     LightRow row;
-    LightSample drawn = look_for_light(met, position, lane.path.direction, rng, row);
-    float phase = phase_eval(met, lane.path.direction, drawn.direction);
-    vec3 light = drawn.light * phase * (drawn.pdf > 0.0 ? weight_of_look(drawn.pdf, phase) : 1.0);
+    LightSample drawn = look_for_light(s, position, lane.path.direction, rng, row);
+    float pdf = scatter_pdf(s, lane.path.direction, drawn.direction);
+    vec3 light = drawn.light * scatter_value(s, lane.path.direction, drawn.direction) *
+                 (drawn.pdf > 0.0 ? weight_of_look(drawn.pdf, pdf) : 1.0);
     if (LOOKS_ALONG)
         light *= weight_of_collision(v, row, position - t * lane.path.direction, lane.path.direction, t);
     if (LOOKS) {
@@ -22,6 +23,9 @@ void gather_some_light(MediumParams v, MediumParams met, vec3 position, float t,
         lane.lit = lit;
         lane.resume = next;
         lane.leg = LEG_LOOK;
+#ifdef SURFACES
+        lane.lit_surface = s.is_surface ? lane.path.surface : NO_SURFACE;
+#endif
         lane.to_light = drawn.direction;
         lane.light_distance = drawn.distance;
         lane.light = light;
@@ -43,7 +47,7 @@ void gather_some_light(MediumParams v, MediumParams met, vec3 position, float t,
 // sphere or box, else the lane goes to look, or, by chance, makes do with the cache; and then does as `next` says.
 void gather_light(MediumParams v, MediumParams met, vec3 position, float t, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
     if (LIGHTS != LIGHTS_SUN) {
-        gather_some_light(v, met, position, t, lit, next, lane, rng);
+        gather_some_light(v, matter_of(met), position, t, lit, next, lane, rng);
     } else if (LOOKS) {
         lane.position = position;
         lane.lit = lit;
@@ -67,6 +71,8 @@ void gather_light(MediumParams v, MediumParams met, vec3 position, float t, Spec
 // At a real collision: emission, absorption, light. Then the path departs, or ends.
 void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, inout Tally tally) {
     lane.path.medium = lane.walk.met;
+    if (HAS_SURFACES)
+        lane.path.surface = NO_SURFACE;
     MediumParams met = medium_of(v, lane.walk.met);
     if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_COLLISIONS)
         lane.path.radiance += lane.beta * emitted_radiance(met, lane.path.position);

@@ -4,6 +4,8 @@
 #include "lights/light_cache.glsl"
 #include "lib/trace.glsl"
 #include "stages/look_along.glsl"
+#include "stages/look_straight.glsl"
+#include "surfaces/nearest.glsl"
 
 // Russian roulette on the throughput: unbiased, survivors are raised to the threshold.
 bool survives(inout Spectrum beta, float u) {
@@ -37,42 +39,89 @@ void scatter(MediumParams v, vec4 u, inout Lane lane) {
                               foreseen_light(v, lane.path.position, lane.cached, before, lane.path.direction);
 }
 
+#ifdef SURFACES
+// Likewise at a surface.
+void scatter_at_surface(vec4 u, inout Lane lane) {
+    vec3 wo = -lane.path.direction;
+    SurfacePoint at = surface_point(lane.path.surface, lane.path.position);
+    Bsdf bsdf = bsdf_of(surfaces[at.row], at.normal, wo);
+    BsdfSample drawn = bsdf_sample(bsdf, wo, u.yzx);
+    bool crosses = dot(drawn.direction, bsdf.normal) < 0.0;
+    lane.path.position = at.position + (crosses ? -at.apart : at.apart) * bsdf.normal;
+    lane.path.direction = drawn.direction;
+    lane.phase_pdf = drawn.pdf;
+    lane.beta *= drawn.weight;
+    lane.todo = survives(lane.beta, u.w) ? TODO_FLY : TODO_END;
+}
+
+// What mirrors and glass show of lamps is seen as the camera sees them.
+bool look_at_shown_lamps(inout Lane lane, inout Rng rng) {
+    bool is_shown = lane.todo == TODO_FLY && lane.path.surface != NO_SURFACE && lane.phase_pdf == 0.0;
+    LightSample seen = seen_lamp(lane.path.position, lane.path.direction, to_uniform(next_words(rng)).w);
+    bool sees = is_shown && seen.distance < FAR;
+    if (sees)
+        look_straight(seen, lane.beta, TODO_SET_OUT, lane);
+    return sees;
+}
+#endif
+
 // The flight or shadow ray itself.
-void begin_going(MediumParams v, uvec4 words, bool looks, bool at_camera, inout Lane lane, inout Rng rng,
-                 inout Tally tally) {
-    if (NEE == NEE_TENTATIVE && looks)
-        lane.flight = lane.walk;
+void set_going(MediumParams v, uvec4 words, bool looks, bool at_camera, inout Lane lane) {
     float e = to_exponential(at_camera ? words.z : words.x, words);
     lane.walk.tau = looks ? e : begin_flight(v, lane.beta, e, to_tap(words).z);
     lane.walk.depth = 0.0;
     if (LOOKS && looks)
         begin_transmittance(words, lane.walk);
     begin_segment(v, looks ? looking_from(lane) : lane.path.position,
-                  looks ? looking_along(lane) : lane.path.direction, looks ? looking_as_far_as(lane) : FAR, looks,
-                  lane.walk, lane.search);
-    tally.shadow_rays += looks ? 1u : 0u;
+                  looks ? looking_along(lane) : lane.path.direction,
+                  looks ? looking_as_far_as(lane) : flying_as_far_as(lane), looks, lane.walk, lane.search);
     lane.T = to_spectrum(vec3(1.0));
     lane.steps = 0u;
+}
+
+// At once or, where there are surfaces, once these have been asked.
+void begin_going(MediumParams v, uvec4 words, bool looks, bool at_camera, inout Lane lane, inout Tally tally) {
+    if (NEE == NEE_TENTATIVE && looks)
+        lane.flight = lane.walk;
+#ifdef SURFACES
+    Ray ray = Ray(looks ? looking_from(lane) : lane.path.position, looks ? looking_along(lane) : lane.path.direction);
+    lane.seek = begin_seek(ray, looks ? looking_as_far_as(lane) : FAR, looks ? lane.lit_surface : lane.path.surface);
+    lane.todo = looks ? TODO_CHECK : lane.todo == TODO_FLY ? TODO_SEEK : lane.todo;
+#else
+    set_going(v, words, looks, at_camera, lane);
+#endif
+    tally.shadow_rays += looks ? 1u : 0u;
     if (!looks)
         trace(TRACE_DEPART, lane, lane.path.position, lane.path.direction);
 }
 
 void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     bool looks = at_shadow_ray(lane.todo == TODO_LOOK);
-    bool has_looked = LOOKS_ALONG && lane.todo == TODO_SET_OUT;
+    bool has_looked = SETS_OUT && lane.todo == TODO_SET_OUT;
     bool at_camera = !looks && lane.path.depth == 0u;
     uvec4 words = first_words(looks, rng);
     lane.todo = looks ? TODO_SEE : TODO_FLY;
     if (SEES_SKY && at_camera)
         lane.phase_pdf = 0.0;
-    if (!looks && !at_camera && !has_looked)
+    bool scatters = !looks && !at_camera && !has_looked;
+#ifdef SURFACES
+    if (scatters && lane.path.surface != NO_SURFACE)
+        scatter_at_surface(to_uniform(words), lane);
+    scatters = scatters && lane.path.surface == NO_SURFACE;
+#endif
+    if (scatters)
         scatter(medium_of(v, lane.path.medium), to_uniform(words), lane);
     bool goes_to_look = false;
+#ifdef SURFACES
+    if (SEES_LAMPS && LOOKS)
+        if (!looks && !at_camera && !has_looked)
+            goes_to_look = look_at_shown_lamps(lane, rng);
+#endif
     if (LOOKS_ALONG) // in an `if` of its own, which the compiler leaves out with all it leads to
         if (lane.todo == TODO_FLY && !has_looked)
             goes_to_look = look_along(v, lane, rng, tally);
     if (!goes_to_look)
-        begin_going(v, words, looks, at_camera, lane, rng, tally);
+        begin_going(v, words, looks, at_camera, lane, tally);
 }
 
 #endif

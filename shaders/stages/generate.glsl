@@ -3,7 +3,7 @@
 #define STAGE_GENERATE_GLSL
 #include "lights/lamp.glsl"
 #include "sensors/camera.glsl"
-#include "stages/lane.glsl"
+#include "stages/look_straight.glsl"
 
 // Where the camera sees lamps, a look toward one of them comes before the first flight. Its random numbers begin behind the
 // camera's draw, of which it takes what is left.
@@ -12,15 +12,7 @@ void look_at_lamps(MediumParams v, inout Lane lane, inout Rng rng) {
     if (seen.distance == FAR) {
         rng.draw = 0u;
     } else if (LOOKS) {
-        lane.position = lane.path.position;
-        lane.lit = to_spectrum(vec3(1.0));
-        lane.resume = TODO_DEPART;
-        lane.leg = LEG_LOOK;
-        lane.to_light = seen.direction;
-        lane.light_distance = seen.distance;
-        lane.light = seen.light;
-        look_in_full(lane);
-        lane.todo = TODO_LOOK;
+        look_straight(seen, to_spectrum(vec3(1.0)), TODO_DEPART, lane);
     } else {
         lane.path.radiance = analytic_shadow(v, lane.path.position, seen.direction, seen.distance) * seen.light;
     }
@@ -33,6 +25,8 @@ void generate(MediumParams v, inout Lane lane, out Rng rng) {
     lane.path.radiance = vec3(0.0);
     lane.path.draw = 0u;
     lane.path.depth = 0u;
+    if (HAS_SURFACES)
+        lane.path.surface = NO_SURFACE;
     lane.beta = to_spectrum(vec3(1.0));
     lane.todo = TODO_DEPART;
     rng = pixel_rng(lane.path.place, lane.path.sample_index, 0u);

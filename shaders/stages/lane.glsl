@@ -26,15 +26,30 @@ bool at_shadow_ray(bool is) {
 #endif
 }
 
+// Whether paths may come to look along the way that they have drawn, before they go it.
+const bool SETS_OUT = LOOKS_ALONG || HAS_SURFACES;
+
 // Whether a lane begins a segment, or goes on along one, of a kind that its pass has.
 bool departs(uint todo) {
-    bool sets_out = LOOKS_ALONG && todo == TODO_SET_OUT;
+    bool sets_out = SETS_OUT && todo == TODO_SET_OUT;
 #if defined(FLIGHTS_ONLY)
     return todo == TODO_DEPART || sets_out;
 #elif defined(SHADOW_RAYS_ONLY)
     return todo == TODO_LOOK;
 #else
     return todo == TODO_DEPART || todo == TODO_LOOK || sets_out;
+#endif
+}
+// Of the surface that ends a flight, or is in the way of a shadow ray.
+bool seeks(uint todo) {
+#if !defined(SURFACES)
+    return false;
+#elif defined(FLIGHTS_ONLY)
+    return todo == TODO_SEEK;
+#elif defined(SHADOW_RAYS_ONLY)
+    return todo == TODO_CHECK;
+#else
+    return todo == TODO_SEEK || todo == TODO_CHECK;
 #endif
 }
 bool is_under_way(uint todo) {
@@ -48,7 +63,7 @@ bool is_under_way(uint todo) {
 }
 
 // What the shadow ray lights, and from where. At collisions that is the path's own vertex, and need not be kept.
-const bool KEEPS_PLACE = NEE == NEE_TENTATIVE || LOOKS_ALONG;
+const bool KEEPS_PLACE = NEE == NEE_TENTATIVE || LOOKS_ALONG || HAS_SURFACES;
 Spectrum lit_beta(Lane lane) {
     return KEEPS_PLACE ? lane.lit : lane.beta;
 }
@@ -70,6 +85,14 @@ float looking_as_far_as(Lane lane) {
            : is_along(lane)     ? distance(lane.path.position, lane.position)
                                 : lane.light_distance;
 }
+// How far a flight goes, unless it collides.
+float flying_as_far_as(Lane lane) {
+#ifdef SURFACES
+    return lane.reach;
+#else
+    return FAR;
+#endif
+}
 // One that corrects no cache.
 void look_in_full(inout Lane lane) {
     lane.cached = to_spectrum(vec3(0.0));
@@ -84,13 +107,14 @@ uint after_looking(Lane lane) {
 
 // What the rows of path_state.h ask for.
 #define STATE_CONDITIONS(next, amid)                                                                                  \
+    bool seeking = HAS_SURFACES && amid && (next == TODO_SEEK || next == TODO_CHECK);                                 \
     bool seeing = LOOKS && amid && next == TODO_SEE;                                                                  \
-    bool looking = seeing || (LOOKS && next == TODO_LOOK);                                                            \
+    bool looking = seeing || (LOOKS && next == TODO_LOOK) || (HAS_SURFACES && LOOKS && amid && next == TODO_CHECK);   \
     bool flight_rests = NEE == NEE_TENTATIVE;                                                                         \
     bool keeps_place = KEEPS_PLACE;                                                                                   \
     bool several = SEVERAL_MEDIA;                                                                                     \
     bool looks_along = LOOKS_ALONG;                                                                                   \
-    bool sets_out = LOOKS_ALONG && (looking || next == TODO_SET_OUT);                                                 \
+    bool sets_out = SETS_OUT && (looking || seeking || next == TODO_SET_OUT);                                         \
     bool sees_sky = SEES_SKY;                                                                             \
     bool chooses_light = LIGHTS != LIGHTS_SUN;                                                                        \
     bool has_cache = LOOKS && NEE == NEE_CACHED;                                                                      \
@@ -104,7 +128,7 @@ void lay_aside(uint slot, uint pixel, Rng rng, Lane lane, const bool amid) {
     paths[slot] = lane.path;
     betas[slot] = lane.beta;
     STATE_CONDITIONS(lane.todo, amid)
-    if (!under_way && !looking && !sets_out && !has_cache)
+    if (!under_way && !looking && !seeking && !sets_out && !has_cache)
         return;
 #define LAY_ASIDE(type, name, when)                                                                                   \
     if (when)                                                                                                         \
@@ -124,7 +148,7 @@ void take_up(uint slot, inout Lane lane, out Rng rng, const bool amid) {
     lane.todo = lane.path.todo;
     rng = pixel_rng(lane.path.place, lane.path.sample_index, lane.path.draw);
     STATE_CONDITIONS(lane.todo, amid)
-    if (!under_way && !looking && !sets_out && !has_cache)
+    if (!under_way && !looking && !seeking && !sets_out && !has_cache)
         return;
 #define TAKE_UP(type, name, when)                                                                                     \
     if (when)                                                                                                         \

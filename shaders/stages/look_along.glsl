@@ -34,7 +34,7 @@ bool look_along(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tall
     tally.lookups += 1u;
     Matter matter = matter_at(v, to_medium(v, position, lane.path.direction).origin, to_tap(words), to_choice(words));
     MediumParams met = medium_of(v, matter.medium);
-    LightSample drawn = sample_light(met, light, position, lane.path.direction, next_words(rng), rng);
+    LightSample drawn = sample_light(matter_of(met), light, position, lane.path.direction, next_words(rng), rng);
     // Over the density t was drawn with, times its weight.
     float per_pdf = 1.0 / (chance * (equiangular_pdf(s, t) + assumed_flight_pdf(v, s, t)));
     lane.lit = lane.beta * (per_pdf * (v.sigma_t * matter.density)) *

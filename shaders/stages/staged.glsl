@@ -26,7 +26,7 @@ void run_segments(const uint queue, const uint laid_aside) {
         tally.room += turns * uint(STEPS);
         for (uint k = 0u; k < turns; ++k)
             turn(v, lane, rng, tally);
-        if (lane.todo != TODO_TAKE && !departs(lane.todo) && !is_under_way(lane.todo))
+        if (lane.todo != TODO_TAKE && !departs(lane.todo) && !seeks(lane.todo) && !is_under_way(lane.todo))
             send(slot, rng, lane);
     }
     if (lane.todo != TODO_TAKE) {

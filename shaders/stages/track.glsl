@@ -36,7 +36,7 @@ uint step_segment(MediumParams v, inout Lane lane, inout Rng rng, out Spectrum d
         if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS && !goes_through() && matter)
             lane.path.radiance += emission_along(v, before, from, lane.walk, lane.path, rng, tally);
     }
-    return after_step(event, lane.walk, seeing ? looking_as_far_as(lane) : FAR, lane.search);
+    return after_step(event, lane.walk, seeing ? looking_as_far_as(lane) : flying_as_far_as(lane), lane.search);
 }
 
 // EVENT_MOVING: nothing has happened yet. After EVENT_COLLIDED the path is where it collided. `deposit`: see
@@ -48,8 +48,8 @@ uint track(MediumParams v, inout Lane lane, inout Rng rng, out Spectrum deposit,
     bool seeing = at_shadow_ray(lane.todo == TODO_SEE);
     if (SHAPE == SHAPE_MESH)
         event = search_part(v, seeing ? looking_from(lane) : lane.path.position,
-                            seeing ? looking_along(lane) : lane.path.direction, seeing ? looking_as_far_as(lane) : FAR,
-                            seeing, lane.walk, lane.search);
+                            seeing ? looking_along(lane) : lane.path.direction,
+                            seeing ? looking_as_far_as(lane) : flying_as_far_as(lane), seeing, lane.walk, lane.search);
     if (looks_ahead()) {
         event = step_ahead(v, seeing, lane.walk, rng, lane.beta, lane.T, tally);
     } else {

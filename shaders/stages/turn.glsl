@@ -4,7 +4,9 @@
 #include "stages/collide.glsl"
 #include "stages/depart.glsl"
 #include "stages/escape.glsl"
+#include "stages/seek.glsl"
 #include "stages/shadow.glsl"
+#include "stages/surface.glsl"
 #include "stages/track.glsl"
 
 // What the present segment met, if anything, and what follows.
@@ -14,6 +16,10 @@ void arrive(MediumParams v, uint event, Spectrum deposit, inout Lane lane, inout
         end_shadow(v, event, lane);
     else if (event == EVENT_CUT)
         lane.todo = TODO_END;
+#ifdef SURFACES
+    else if (event == EVENT_LEFT && lane.reach < FAR)
+        arrive_at_surface(v, lane, rng, tally);
+#endif
     else if (event == EVENT_LEFT)
         escape(v, lane);
     else if (event == EVENT_COLLIDED)
@@ -25,6 +31,10 @@ void arrive(MediumParams v, uint event, Spectrum deposit, inout Lane lane, inout
 void turn(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     if (departs(lane.todo))
         depart(v, lane, rng, tally);
+#ifdef SURFACES
+    if (seeks(lane.todo))
+        seek(v, lane, rng, tally);
+#endif
     Spectrum deposit = to_spectrum(vec3(0.0));
     uint event = EVENT_MOVING;
     if (is_under_way(lane.todo))

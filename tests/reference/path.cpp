@@ -9,6 +9,7 @@
 #include "free_flight.h"
 #include "phase.h"
 #include "reference_light_cache.h"
+#include "reference_surfaces.h"
 #include "shaders/shared/constants.h"
 #include "transmittance.h"
 
@@ -18,6 +19,10 @@ using vkvol::Rgb;
 
 Rgb transmittance(const World& world, const Ray& ray, Rng& rng) {
     const Method& method = world.method;
+    if (nearest_surface(world.scene.surfaces, ray))
+        return Rgb(0.0);
+    if (!world.medium)
+        return Rgb(1.0);
     Rgb T = estimate_transmittance(*world.medium, method.transmittance, ray, method.march, rng);
     for (const Medium& medium : world.others)
         T *= estimate_transmittance(medium, method.transmittance, ray, method.march, rng);
@@ -54,7 +59,7 @@ Rgb lamps_seen(const World& world, const Ray& ray, Rng& rng) {
         if (!distance || (world.medium && world.method.nee == NEE_NONE))
             continue;
         const Ray seen{ray.origin, ray.direction, *distance};
-        L += lamp_radiance(light) * (world.medium ? transmittance(world, seen, rng) : Rgb(1.0));
+        L += lamp_radiance(light) * transmittance(world, seen, rng);
     }
     return L;
 }
@@ -78,7 +83,7 @@ World make_world(const vkvol::Scene& scene, Medium medium) {
 
 namespace {
 
-// Estimators that serve in a race: delta tracking and ratio tracking.
+// With estimators that serve in a race: delta tracking and ratio tracking.
 World load_several(const vkvol::Scene& scene) {
     World world{scene, std::nullopt, {}, load_sky(scene.lights)};
     for (const vkvol::Volume& volume : scene.volumes) {
@@ -104,7 +109,7 @@ World load_several(const vkvol::Scene& scene) {
 } // namespace
 
 World load_world(const vkvol::Scene& scene) {
-    if (scene.volumes.size() > 1)
+    if (scene.volumes.size() > 1 || !scene.surfaces.empty())
         return load_several(scene);
     if (scene.volumes.empty()) {
         Medium nothing;
@@ -145,10 +150,10 @@ Flight gathering_flight(const World& world, const Ray& ray, double exponential, 
 } // namespace
 
 Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng& rng) {
+    if (!world.others.empty() || !world.scene.surfaces.empty())
+        return radiance_by_race(world, ray, rng);
     if (!world.medium)
         return light_from_beyond(world, ray.direction, true);
-    if (!world.others.empty())
-        return radiance_in_several(world, ray, rng);
     if (marches_through(world.method))
         return march_through(world, ray, rng);
     const Medium& medium = *world.medium;

@@ -42,11 +42,11 @@ vkvol::Rgb light_from_beyond(const World& world, const glm::dvec3& direction, bo
 // Lamps in sight of the camera, through the medium.
 vkvol::Rgb lamps_seen(const World& world, const Ray& ray, Rng& rng);
 
-// Through all media.
+// Through all media; 0 where a surface is in the way.
 vkvol::Rgb transmittance(const World& world, const Ray& ray, Rng& rng);
 
-// The radiance where there are several media, by a race: see race.cpp.
-vkvol::Rgb radiance_in_several(const World& world, Ray ray, Rng& rng);
+// The radiance where there are several media, or surfaces, by a race: see race.cpp.
+vkvol::Rgb radiance_by_race(const World& world, Ray ray, Rng& rng);
 
 // Does a path of this method collide nowhere, and sum up what it passes?
 bool marches_through(const Method& method);

@@ -1,0 +1,21 @@
+// Surfaces that are triangles, as they are in files.
+#pragma once
+
+#include "scene.h"
+
+namespace vkvol {
+
+// With triangles in place of files; of a dielectric, which has to know what it encloses, closed and turned
+// outward. Throws InputError for a file that cannot be read, or that is not closed where it has to be.
+Scene with_surface_meshes(Scene scene);
+
+// Where all finite surfaces are, world space; none without any. Of meshes only once they are loaded.
+struct SurfaceBounds {
+    glm::dvec3 low, high;
+};
+std::optional<SurfaceBounds> bounds_of(const std::vector<Surface>& surfaces);
+
+// The distance from `origin` to the end of what is farthest away; infinite for planes.
+double reach_of_surfaces(const std::vector<Surface>& surfaces, const glm::dvec3& origin);
+
+} // namespace vkvol

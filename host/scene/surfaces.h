@@ -1,0 +1,62 @@
+// The surfaces of a scene as they are written. World space; lengths are world units.
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "lights.h"
+
+namespace vkvol {
+
+struct BallSurface {
+    glm::dvec3 center{0.0};
+    double radius = 1.0; // > 0
+};
+
+struct DiskSurface {
+    glm::dvec3 center{0.0};
+    glm::dvec3 normal{0.0, 1.0, 0.0}; // unit
+    double radius = 1.0;              // > 0
+};
+
+// Without end.
+struct PlaneSurface {
+    glm::dvec3 point{0.0};
+    glm::dvec3 normal{0.0, 1.0, 0.0}; // unit
+};
+
+// Counterclockwise as seen from without, or from in front.
+struct TriangleSurface {
+    std::vector<glm::dvec3> vertices;
+    std::vector<glm::uvec3> triangles;
+};
+
+struct MeshSurface {
+    std::filesystem::path file; // .obj
+};
+
+using SurfaceShape = std::variant<BallSurface, DiskSurface, PlaneSurface, TriangleSurface, MeshSurface>;
+
+// As MATERIAL_... of shaders/shared/constants.h.
+enum class MaterialKind { diffuse, mirror, conductor, dielectric };
+
+struct Material {
+    MaterialKind kind = MaterialKind::diffuse;
+    Rgb color{0.5};       // share of the light that goes on, in [0, 1]; of a conductor times Fresnel's
+    double ior = 1.5;     // of a dielectric: index of refraction of what it encloses over that around it, > 0
+    Rgb eta{1.0}, k{0.0}; // of a conductor: its complex index, eta + i k
+};
+
+struct Surface {
+    SurfaceShape shape;
+    Material material;
+    Rgb emission{0.0};             // radiance from its front, which is where its normal points to
+    bool shines_both_ways = false; // from its back too
+    glm::dmat4 transform{1.0};     // of a mesh's file; the others are where they say
+    std::string place;             // "file:line:column", for messages; or empty
+};
+
+} // namespace vkvol

@@ -1,0 +1,51 @@
+#include "scene_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace vkvol {
+
+glm::dvec3 unit(const glm::dvec3& v) {
+    const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    return glm::normalize(v / largest);
+}
+
+glm::dvec3 xyz(const XmlElement& element, const Limits& limits) {
+    return {element.attribute_number("x", 0.0, limits), element.attribute_number("y", 0.0, limits),
+            element.attribute_number("z", 0.0, limits)};
+}
+
+glm::dvec3 looking_at(const XmlElement& element, const glm::dvec3& position) {
+    const std::vector<double> numbers = element.attribute_numbers("lookAt", coordinate);
+    if (numbers.size() != 3)
+        element.fail(fmt::format("<{}> needs lookAt=\"x y z\", the point that it faces", element.name()));
+    const glm::dvec3 target(numbers[0], numbers[1], numbers[2]);
+    if (target == position)
+        element.fail_attribute("lookAt",
+                               fmt::format("<{}> lookAt: is where its middle is; move one of them", element.name()));
+    return unit(target - position);
+}
+
+Rectangle rectangle(const XmlElement& element) {
+    Rectangle shape;
+    shape.center = xyz(element, coordinate);
+    const glm::dvec3 normal = looking_at(element, shape.center);
+    glm::dvec3 up = std::abs(normal.y) < 0.999 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
+    if (element.has("up")) {
+        const std::vector<double> numbers = element.attribute_numbers("up", any_number);
+        if (numbers.size() != 3 || glm::dvec3(numbers[0], numbers[1], numbers[2]) == glm::dvec3(0.0))
+            element.fail_attribute("up", "<rectangle> up: expected a direction x y z, e.g. up=\"0 1 0\"");
+        up = unit({numbers[0], numbers[1], numbers[2]});
+    }
+    const glm::dvec3 across = glm::cross(normal, up);
+    if (glm::length(across) < 1e-6)
+        element.fail_attribute(element.has("up") ? "up" : "lookAt",
+                               "<rectangle> up: is the direction that it faces; name another");
+    shape.edge_u = 0.5 * element.attribute_number("width", 1.0, length) * -glm::normalize(across);
+    shape.edge_v = 0.5 * element.attribute_number("height", 1.0, length) *
+                   glm::normalize(glm::cross(glm::normalize(across), normal));
+    return shape;
+}
+
+} // namespace vkvol

@@ -1,0 +1,25 @@
+// Where things are, which several elements say alike.
+#pragma once
+
+#include "xml_reader.h"
+
+namespace vkvol {
+
+// Without over- or underflow; not of 0.
+glm::dvec3 unit(const glm::dvec3& v);
+
+// Where it is, or where towards, by x, y and z; 0 where they are missing.
+glm::dvec3 xyz(const XmlElement& element, const Limits& limits);
+
+// Towards lookAt="x y z", unit.
+glm::dvec3 looking_at(const XmlElement& element, const glm::dvec3& position);
+
+struct Rectangle {
+    glm::dvec3 center;
+    glm::dvec3 edge_u, edge_v; // halves of its edges; their cross product points to the side that it faces
+};
+
+// By x, y, z, lookAt, up, width and height, as a camera of this `lookAt` and `up` would have it.
+Rectangle rectangle(const XmlElement& element);
+
+} // namespace vkvol

@@ -1,0 +1,210 @@
+// The part of SceneReader that reads <surfaces>.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "nearest_name.h"
+#include "scene_places.h"
+#include "scene_reader.h"
+
+namespace vkvol {
+
+namespace {
+
+const std::vector<std::string> shapes = {"sphere", "disk", "rectangle", "box", "plane", "mesh"};
+constexpr Limits share{0.0, 1.0, true, true, "a number from 0 to 1"};
+constexpr Limits index_limits{0.05, 20.0, true, true, "an index of refraction from 0.05 to 20"};
+constexpr Limits absorbing{0.0, 100.0, true, true, "a number from 0 to 100"};
+
+const std::vector<std::string> of_materials = {"material", "r", "g", "b", "multiplier", "ior", "metal", "eta", "k"};
+
+std::vector<std::string> with_material(std::vector<std::string> attributes) {
+    attributes.insert(attributes.end(), of_materials.begin(), of_materials.end());
+    return attributes;
+}
+
+// Complex indices in the three channels, of measured spectra (Johnson and Christy 1972; of aluminium Rakic 1995).
+struct Metal {
+    const char* name;
+    Rgb eta, k;
+};
+const Metal metals[] = {{"aluminium", {1.657, 0.880, 0.521}, {9.224, 6.270, 4.837}},
+                        {"copper", {0.200, 0.924, 1.102}, {3.912, 2.452, 2.142}},
+                        {"gold", {0.143, 0.375, 1.442}, {3.983, 2.386, 1.603}},
+                        {"silver", {0.155, 0.117, 0.138}, {4.828, 3.122, 2.147}}};
+
+Rgb three(const XmlElement& element, const char* attribute, const Limits& limits) {
+    const std::vector<double> numbers = element.attribute_numbers(attribute, limits);
+    if (numbers.size() != 1 && numbers.size() != 3)
+        element.fail_attribute(attribute,
+                               fmt::format("<{}> {}: {} numbers; expected one, or three for red, green, blue",
+                                           element.name(), attribute, numbers.size()));
+    return numbers.size() == 1 ? Rgb(numbers[0]) : Rgb(numbers[0], numbers[1], numbers[2]);
+}
+
+void read_metal(const XmlElement& element, Material& material) {
+    if (element.has("eta") && element.has("k")) {
+        material.eta = three(element, "eta", index_limits);
+        material.k = three(element, "k", absorbing);
+        return;
+    }
+    const std::string name = element.attribute("metal", "aluminium");
+    const auto* metal =
+        std::find_if(std::begin(metals), std::end(metals), [&](const Metal& m) { return name == m.name; });
+    if (metal == std::end(metals))
+        element.fail_attribute(
+            "metal", fmt::format("<{}> metal: '{}' is unknown{}; others are described by eta=\"r g b\" and "
+                                 "k=\"r g b\"",
+                                 element.name(), name, name_hint(name, {"aluminium", "copper", "gold", "silver"})));
+    material.eta = metal->eta;
+    material.k = metal->k;
+}
+
+glm::dvec3 moved(const glm::dmat4& map, const glm::dvec3& point) {
+    return glm::dvec3(map * glm::dvec4(point, 1.0));
+}
+
+// Of what must stay round, or flat across its normal.
+double scale_of(const XmlElement& element, const glm::dmat4& map) {
+    const glm::dmat3 m(map);
+    const double scale = std::cbrt(std::abs(glm::determinant(m)));
+    const glm::dmat3 square = glm::transpose(m) * m;
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            if (std::abs(square[column][row] - (column == row ? scale * scale : 0.0)) > 1e-9 * scale * scale)
+                element.fail(fmt::format("<{}> transform: stretches it along one axis, or shears it, and it would not "
+                                         "stay what it is; use a mesh",
+                                         element.name()));
+    return scale;
+}
+
+TriangleSurface moved(const glm::dmat4& map, TriangleSurface shape) {
+    for (glm::dvec3& vertex : shape.vertices)
+        vertex = moved(map, vertex);
+    if (glm::determinant(glm::dmat3(map)) < 0.0) // a mirror turns them inside out
+        for (glm::uvec3& triangle : shape.triangles)
+            std::swap(triangle.y, triangle.z);
+    return shape;
+}
+
+TriangleSurface rectangle_of(const XmlElement& element) {
+    const Rectangle r = rectangle(element);
+    return {{r.center - r.edge_u - r.edge_v, r.center + r.edge_u - r.edge_v, r.center + r.edge_u + r.edge_v,
+             r.center - r.edge_u + r.edge_v},
+            {{0, 1, 2}, {0, 2, 3}}};
+}
+
+TriangleSurface box_of(const Box& box) {
+    TriangleSurface shape;
+    for (int corner = 0; corner < 8; ++corner)
+        shape.vertices.push_back(box.center + box.size * (glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2) - 0.5));
+    shape.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                       {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    return shape;
+}
+
+} // namespace
+
+Material SceneReader::material(const XmlElement& element) const {
+    struct Choice {
+        const char* name;
+        MaterialKind kind;
+        double color; // unless another is asked for
+    };
+    constexpr Choice choices[] = {{"diffuse", MaterialKind::diffuse, 0.5},
+                                  {"mirror", MaterialKind::mirror, 1.0},
+                                  {"conductor", MaterialKind::conductor, 1.0},
+                                  {"dielectric", MaterialKind::dielectric, 1.0}};
+    const std::string name = element.attribute("material", "diffuse");
+    const auto* choice =
+        std::find_if(std::begin(choices), std::end(choices), [&](const Choice& each) { return name == each.name; });
+    if (choice == std::end(choices))
+        element.fail_attribute("material",
+                               fmt::format("<{}> material: '{}' is unknown{}", element.name(), name,
+                                           name_hint(name, {"diffuse", "mirror", "conductor", "dielectric"})));
+    Material material;
+    material.kind = choice->kind;
+    const bool colored = element.has("r") || element.has("g") || element.has("b");
+    material.color =
+        colored ? color(element) : Rgb(choice->color * element.attribute_number("multiplier", 1.0, not_negative));
+    for (int i = 0; i < 3; ++i)
+        if (material.color[i] > share.high)
+            element.fail(
+                fmt::format("<{}> scatters {:g} of the light in one colour, more than it gets; lower r, g, b or "
+                            "multiplier to 1 at most",
+                            element.name(), material.color[i]));
+    const auto only = [&](const char* attribute, MaterialKind kind, const char* kind_name) {
+        if (element.has(attribute) && material.kind != kind)
+            element.fail_attribute(attribute, fmt::format("<{}> {}: has a meaning with material=\"{}\" only",
+                                                          element.name(), attribute, kind_name));
+    };
+    only("ior", MaterialKind::dielectric, "dielectric");
+    for (const char* attribute : {"metal", "eta", "k"})
+        only(attribute, MaterialKind::conductor, "conductor");
+    material.ior = element.attribute_number("ior", material.ior, index_limits);
+    if (material.kind == MaterialKind::conductor)
+        read_metal(element, material);
+    return material;
+}
+
+// `scope_` is the element.
+Surface SceneReader::surface(const XmlElement& element) const {
+    Surface surface;
+    surface.place = element.place();
+    const std::string kind = element.name();
+    const std::vector<std::string> inner = {"transform", "emission"};
+    const glm::dmat4 map = transform();
+    const auto allow = [&](std::vector<std::string> attributes) {
+        element.allow(with_material(std::move(attributes)), false, inner);
+    };
+    if (kind == "sphere") {
+        allow({"x", "y", "z", "radius"});
+        surface.shape = BallSurface{moved(map, xyz(element, coordinate)),
+                                    element.attribute_number("radius", 1.0, length) * scale_of(element, map)};
+    } else if (kind == "disk") {
+        allow({"x", "y", "z", "lookAt", "radius"});
+        const glm::dvec3 center = xyz(element, coordinate), normal = looking_at(element, center);
+        surface.shape = DiskSurface{moved(map, center), vkvol::unit(glm::dmat3(map) * normal),
+                                    element.attribute_number("radius", 1.0, length) * scale_of(element, map)};
+    } else if (kind == "plane") {
+        allow({"x", "y", "z", "lookAt"});
+        const glm::dvec3 point = xyz(element, coordinate);
+        const glm::dvec3 normal = element.has("lookAt") ? looking_at(element, point) : glm::dvec3(0.0, 1.0, 0.0);
+        scale_of(element, map);
+        surface.shape = PlaneSurface{moved(map, point), vkvol::unit(glm::dmat3(map) * normal)};
+    } else if (kind == "rectangle") {
+        allow({"x", "y", "z", "lookAt", "up", "width", "height"});
+        surface.shape = moved(map, rectangle_of(element));
+    } else if (kind == "box") {
+        allow({"x", "y", "z", "width", "height", "depth"});
+        const auto edge = [&](const char* name) { return element.attribute_number(name, 1.0, length); };
+        surface.shape = moved(map, box_of({xyz(element, coordinate), {edge("width"), edge("height"), edge("depth")}}));
+    } else {
+        allow({"file", "baseDir"});
+        if (element.attribute("file").empty())
+            element.fail("<mesh> names no file; write one, e.g. file=\"bunny.obj\"");
+        surface.shape = MeshSurface{file_path(element, element.attribute("file"))};
+        surface.transform = map;
+    }
+    surface.material = material(element);
+    const XmlElement emission = one("emission");
+    emission.allow({"r", "g", "b", "kelvin", "multiplier", "sides"});
+    if (emission.exists())
+        surface.emission = light_color(emission);
+    surface.shines_both_ways = emission.attribute_integer("sides", 1, 1, 2) == 2;
+    return surface;
+}
+
+void SceneReader::read_surfaces(Scene& scene) {
+    one("surfaces").allow({}, false, shapes);
+    const pugi::xml_node root = scope_;
+    for (const pugi::xml_node node : root.child("surfaces").children()) {
+        if (node.type() != pugi::node_element)
+            continue;
+        scope_ = node;
+        scene.surfaces.push_back(surface(XmlElement(document_, node)));
+        scope_ = root;
+    }
+}
+
+} // namespace vkvol

@@ -1,0 +1,22 @@
+// A look toward a lamp that lies ahead: of the camera, or of what a mirror or glass shows.
+#ifndef STAGE_LOOK_STRAIGHT_GLSL
+#define STAGE_LOOK_STRAIGHT_GLSL
+#include "lights/sample.glsl"
+#include "stages/lane.glsl"
+
+// Its light counts as often as `lit` says; then the path does as `next` says.
+void look_straight(LightSample seen, Spectrum lit, uint next, inout Lane lane) {
+    lane.position = lane.path.position;
+    lane.lit = lit;
+    lane.resume = next;
+    lane.leg = LEG_LOOK;
+    lane.to_light = seen.direction;
+    lane.light_distance = seen.distance;
+    lane.light = seen.light;
+    if (HAS_SURFACES)
+        lane.lit_surface = lane.path.surface;
+    look_in_full(lane);
+    lane.todo = TODO_LOOK;
+}
+
+#endif

@@ -1,0 +1,30 @@
+// Before a flight or shadow ray begins: the surface that ends it, or whether one is in its way. Then it sets out.
+#ifndef STAGE_SEEK_GLSL
+#define STAGE_SEEK_GLSL
+#include "stages/depart.glsl"
+#include "stages/shadow.glsl"
+
+#ifdef SURFACES
+// Goes on with the search for some nodes. What is in the way of a shadow ray ends it, and the search.
+void seek(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
+    bool looks = at_shadow_ray(lane.todo == TODO_CHECK);
+    Ray ray = Ray(looks ? looking_from(lane) : lane.path.position, looks ? looking_along(lane) : lane.path.direction);
+    uint from = looks ? lane.lit_surface : lane.path.surface;
+    MeshRay mesh_ray = make_mesh_ray(frame.first_surface_node, frame.surface_nodes, ray);
+    bool over = looks && lane.seek.primitive != NO_SURFACE;
+    for (int k = 0; k < SURFACE_NODES_PER_TURN && !over; ++k) {
+        over = step_seek(mesh_ray, ray, from, lane.seek);
+        over = over || (looks && lane.seek.primitive != NO_SURFACE);
+    }
+    if (over && looks && lane.seek.primitive != NO_SURFACE) {
+        end_shadow(v, EVENT_OPAQUE, lane);
+    } else if (over) {
+        lane.reach = looks ? lane.reach : lane.seek.nearest;
+        lane.struck = looks ? lane.struck : lane.seek.primitive;
+        lane.todo = looks ? TODO_SEE : TODO_FLY;
+        set_going(v, next_words(rng), looks, false, lane);
+    }
+}
+#endif
+
+#endif

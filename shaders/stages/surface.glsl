@@ -1,0 +1,32 @@
+// A flight meets a surface: emission, reflection, light. Then the path departs from there, or ends.
+#ifndef STAGE_SURFACE_GLSL
+#define STAGE_SURFACE_GLSL
+#include "stages/collide.glsl"
+
+#ifdef SURFACES
+// What shines on both sides, or on the side that is seen.
+vec3 surface_emission(SurfaceRow row, vec3 normal, vec3 travel) {
+    return row.sides == 2u || dot(normal, travel) < 0.0 ? row.emission : vec3(0.0);
+}
+
+void arrive_at_surface(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
+    if (!NULL_FLIGHT && !goes_through())
+        lane.beta *= depth_weight(v, lane.beta, lane.walk.depth, false);
+    SurfacePoint at = surface_point(lane.struck, lane.path.position + lane.reach * lane.path.direction);
+    SurfaceRow row = surfaces[at.row];
+    lane.path.radiance += lane.beta * surface_emission(row, at.normal, lane.path.direction);
+    Bsdf bsdf = bsdf_of(row, at.normal, -lane.path.direction);
+    lane.path.position = at.position + at.apart * bsdf.normal;
+    lane.path.surface = lane.struck;
+    bool capped = SCATTERING != SCATTERING_NONE && lane.path.depth >= frame.max_depth;
+    tally.depth_caps += capped ? 1u : 0u;
+    lane.path.depth += 1u;
+    bool ended = capped || SCATTERING == SCATTERING_NONE || largest(lane.beta) == 0.0 || largest(row.color) == 0.0;
+    lane.todo = ended || SCATTERING == SCATTERING_SINGLE ? TODO_END : TODO_DEPART;
+    if (NEE != NEE_NONE && !ended && is_rough(bsdf))
+        gather_some_light(v, surface_of(v, bsdf), lane.path.position, 0.0, lane.beta, lane.todo, lane, rng);
+    trace(TRACE_SURFACE, lane, lane.path.position, lane.path.direction);
+}
+#endif
+
+#endif

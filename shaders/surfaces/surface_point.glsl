@@ -1,0 +1,72 @@
+// Where a ray meets a piece of a surface, and what is there. All in render space.
+#ifndef SURFACE_POINT_GLSL
+#define SURFACE_POINT_GLSL
+#include "shapes/mesh.glsl"
+
+// `itself`: the ray comes from this ball. Then it leaves, or meets the far side at the end of a chord, and rounding has no say
+// in which.
+float meet_ball(Ray ray, vec3 center, float radius, bool itself) {
+    vec3 o = ray.origin - center;
+    float middle = -dot(o, ray.direction);
+    vec3 closest = o + middle * ray.direction;
+    float off = length(closest);
+    float half_chord = sqrt(max((radius - off) * (radius + off), 0.0));
+    float first = middle - half_chord, second = middle + half_chord;
+    float t = off >= radius ? FAR : first > 0.0 ? first : second > 0.0 ? second : FAR;
+    return itself ? (middle > 0.0 ? 2.0 * middle : FAR) : t;
+}
+
+// Of an endless plane if the radius is FAR.
+float meet_disk(Ray ray, vec3 center, vec3 normal, float radius) {
+    float along = dot(normal, ray.direction);
+    float t = dot(normal, center - ray.origin) / (along != 0.0 ? along : 1.0);
+    vec3 aside = ray.origin + t * ray.direction - center;
+    return along != 0.0 && (radius == FAR || dot(aside, aside) <= radius * radius) ? t : FAR;
+}
+
+// How far along the ray, beyond 0, it meets primitive `i`; FAR if it does not. `from`: the primitive that it comes from, which if
+// flat it does not meet again, or NO_SURFACE.
+float meet_primitive(MeshRay m, Ray ray, uint i, uint from) {
+    SurfacePrimitive p = primitives[i];
+    uint shape = surfaces[p.surface].shape;
+    float t = FAR;
+    if (shape == SURFACE_TRIANGLES) {
+        Crossing crossing = cross_triangle(m.shear, p.a, p.b, p.c);
+        t = crossing.turn != 0 ? crossing.t : FAR;
+    } else if (shape == SURFACE_SPHERE) {
+        t = meet_ball(ray, p.a, p.c.x, i == from);
+    } else {
+        t = meet_disk(ray, p.a, p.b, shape == SURFACE_DISK ? p.c.x : FAR);
+    }
+    return t > 0.0 && (i != from || shape == SURFACE_SPHERE) ? t : FAR;
+}
+
+struct SurfacePoint {
+    vec3 position; // on the surface, as exactly as can be
+    vec3 normal;   // unit, outward
+    float apart;   // from the surface, where no ray meets it again by rounding
+    uint row;
+};
+
+// Of what is flat an offset of 64 u R, with u = 2^-24 and R the greatest coordinate that there is in it, is beyond the error of 28
+// u R that a ray's crossing with a neighbour has: see mesh.glsl. Unlike a fixed length it serves scenes of any size.
+SurfacePoint surface_point(uint i, vec3 near) {
+    SurfacePrimitive p = primitives[i];
+    uint shape = surfaces[p.surface].shape;
+    SurfacePoint at;
+    at.row = p.surface;
+    at.normal = shape == SURFACE_TRIANGLES ? normalize(cross(p.b - p.a, p.c - p.a)) : p.b;
+    at.position = near - at.normal * dot(at.normal, near - p.a);
+    vec3 reach = max(abs(p.a), abs(near));
+    if (shape == SURFACE_TRIANGLES)
+        reach = max(reach, max(abs(p.b), abs(p.c)));
+    if (shape == SURFACE_SPHERE) {
+        at.normal = normalize(near - p.a);
+        at.position = p.a + p.c.x * at.normal;
+        reach += p.c.x;
+    }
+    at.apart = 3.8147e-6 * max(reach.x, max(reach.y, reach.z));
+    return at;
+}
+
+#endif

@@ -1,0 +1,340 @@
+// Surfaces: furnaces, closed forms, pictures against the reference, and what nothing may leak through.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+#include "error.h"
+#include "scene_hash.h"
+#include "support/agreement.h"
+#include "support/images.h"
+#include "support/scene_text.h"
+#include "support/scenes.h"
+
+using namespace vkvol;
+using Catch::Contains;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Surface ball(const Material& material, glm::dvec3 center = glm::dvec3(0.0), double radius = 1.0) {
+    Surface surface;
+    surface.shape = BallSurface{center, radius};
+    surface.material = material;
+    return surface;
+}
+
+Material white(MaterialKind kind) {
+    Material material;
+    material.kind = kind;
+    material.color = Rgb(1.0);
+    return material;
+}
+
+Material grey(double albedo) {
+    return {MaterialKind::diffuse, Rgb(albedo)};
+}
+
+// Of `n` bands of latitude, closed.
+TriangleSurface round_mesh(int n, double radius) {
+    TriangleSurface mesh;
+    const int columns = 2 * n;
+    for (int row = 0; row <= n; ++row)
+        for (int column = 0; column < columns; ++column) {
+            const double latitude = pi * row / n, longitude = 2.0 * pi * column / columns;
+            mesh.vertices.push_back(radius * glm::dvec3(std::sin(latitude) * std::cos(longitude), std::cos(latitude),
+                                                        -std::sin(latitude) * std::sin(longitude)));
+        }
+    for (unsigned row = 0; row < unsigned(n); ++row)
+        for (unsigned column = 0; column < unsigned(columns); ++column) {
+            const unsigned next = (column + 1) % unsigned(columns), c = unsigned(columns);
+            const unsigned a = row * c + column, b = row * c + next;
+            mesh.triangles.push_back({a, a + c, b + c});
+            mesh.triangles.push_back({a, b + c, b});
+        }
+    return mesh;
+}
+
+Scene empty_scene(int pixels = 12, double width = 2.6) {
+    Scene scene = scene_of(medium(Sphere{{0.0, 0.0, 0.0}, 1.0}, 0.0, 0.0), width, pixels, 8.0, glm::dvec3(0.0),
+                           {14.0, 23.0, 5.0});
+    scene.volumes.clear();
+    scene.settings.spp = 64;
+    return scene;
+}
+
+// Rays side by side, straight down onto a square of this width about the origin.
+Scene from_above(double width, int pixels = 4) {
+    Scene scene = empty_scene(pixels);
+    scene.camera = {};
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.view_height = width;
+    scene.camera.position = {0.0, 5.0, 0.0};
+    scene.camera.pitch = -90.0;
+    return scene;
+}
+
+void check_everywhere(const Scene& scene, const Rgb& expected, double relative) {
+    const Film film = render_here(scene, 1).film;
+    for (const glm::vec3& mean : film.mean)
+        for (int i = 0; i < 3; ++i)
+            CHECK(mean[i] == Approx(expected[i]).epsilon(relative).margin(1e-7));
+}
+
+Volume fog(double sigma_t, double albedo) {
+    return medium(Box{{0.0, 0.0, 0.0}, {3.0, 3.0, 3.0}}, sigma_t, albedo, 0.4);
+}
+
+// A ball of noise above a floor, with glass, metal, a mirror and something that glows, under lights of all kinds.
+Scene still_life() {
+    Volume smoke = medium(Sphere{{-0.4, 0.3, 0.1}, 0.8}, 4.0, 0.9, 0.3);
+    smoke.noise = Noise{1.3, 3, 0.5, 2.0};
+    Scene scene = scene_of(smoke, 4.5, 20, 9.0, {0.0, 0.0, 0.0}, {-18.0, 20.0, 0.0});
+    const auto add = [&](SurfaceShape shape, Material material) -> Surface& {
+        Surface& surface = scene.surfaces.emplace_back();
+        surface.shape = std::move(shape);
+        surface.material = material;
+        return surface;
+    };
+    add(PlaneSurface{{0.0, -0.9, 0.0}, {0.0, 1.0, 0.0}}, {MaterialKind::diffuse, {0.7, 0.5, 0.3}});
+    add(BallSurface{{0.9, -0.3, 0.9}, 0.6}, white(MaterialKind::dielectric));
+    Material gold = white(MaterialKind::conductor);
+    gold.eta = {0.143, 0.375, 1.442};
+    gold.k = {3.983, 2.386, 1.603};
+    add(BallSurface{{-1.4, -0.5, 0.9}, 0.4}, gold);
+    TriangleSurface wall = round_mesh(4, 0.5);
+    for (glm::dvec3& vertex : wall.vertices)
+        vertex += glm::dvec3(1.3, 0.4, -0.8);
+    add(wall, {MaterialKind::mirror, {0.9, 0.8, 0.7}});
+    Surface& lamp = add(DiskSurface{{-1.7, 0.9, -0.4}, glm::normalize(glm::dvec3(1.0, -0.6, 0.5)), 0.35}, grey(0.2));
+    lamp.emission = {1.5, 1.0, 0.5};
+    scene.background = {0.1, 0.15, 0.25};
+    scene.lights = {sunlight({0.6, 0.5, 0.4}), PointLight{{0.3, 1.6, 1.4}, {0.8, 0.9, 1.0}},
+                    RectangleLight{{0.0, 2.2, 0.0}, {0.5, 0.0, 0.0}, {0.0, 0.0, 0.5}, {1.0, 1.0, 1.2}}};
+    scene.settings.spp = 128;
+    return scene;
+}
+
+} // namespace
+
+TEST_CASE("whatever scatters all light vanishes in an even sky, in fog too", "[gpu][image][surfaces]") {
+    for (const MaterialKind kind : {MaterialKind::diffuse, MaterialKind::mirror, MaterialKind::dielectric})
+        for (const bool in_fog : {false, true}) {
+            CAPTURE(static_cast<int>(kind), in_fog);
+            Scene scene = empty_scene();
+            scene.background = {1.0, 2.0, 0.5};
+            scene.surfaces = {ball(white(kind), {0.3, 0.0, 0.2}, 0.7)};
+            scene.surfaces.push_back(scene.surfaces.front());
+            scene.surfaces.back().shape = round_mesh(5, 0.4);
+            if (in_fog)
+                scene.volumes = {fog(1.5, 1.0)};
+            // Weights are 1 but for rounding, of which a path has some at each of some dozens of vertices.
+            check_everywhere(scene, scene.background, 2e-5);
+        }
+}
+
+TEST_CASE("looks and flights share a map of the sky on surfaces as in matter", "[gpu][image][surfaces]") {
+    Scene scene = empty_scene();
+    scene.lights = {write_sky(make_map(8, 4, [](int, int) { return Rgb(1.0); }))};
+    scene.surfaces = {ball(white(MaterialKind::diffuse)), ball(white(MaterialKind::dielectric), {0.9, 0.6, 0.7}, 0.5)};
+    scene.volumes = {fog(0.8, 1.0)};
+    scene.settings.spp = 256;
+    const Film film = render_here(scene, 1).film;
+    CHECK_AGREEMENT(agree_with_means(film, std::vector<Rgb>(film.mean.size(), Rgb(1.0)), "sky on surfaces"));
+}
+
+TEST_CASE("a floor under a lamp has the form factor of a disk", "[gpu][image][surfaces]") {
+    // On the axis of a disk of radius r at height h: E = pi L r^2 / (r^2 + h^2). Off it by x it changes by less than
+    // 3 (x / h)^2 of itself: the picture is so small that this is 1e-6.
+    const double r = 0.8, h = 1.3, albedo = 0.6;
+    Scene scene = from_above(1e-3);
+    Surface floor;
+    floor.shape = PlaneSurface{};
+    floor.material = grey(albedo);
+    scene.surfaces = {floor};
+    scene.camera.position.y = 1.0;
+    scene.settings.max_depth = 1;
+    scene.settings.spp = 4096;
+    const double expected = albedo * r * r / (r * r + h * h);
+    scene.lights = {DiskLight{{0.0, h, 0.0}, {0.0, -1.0, 0.0}, r, Rgb(1.0)}};
+    const Film looked = render_here(scene, 1).film;
+    CHECK_AGREEMENT(agree_with_means(looked, std::vector<Rgb>(looked.mean.size(), Rgb(expected)), "lamp"));
+    // The same as a surface that glows, which paths meet by chance.
+    scene.lights.clear();
+    Surface glowing;
+    glowing.shape = DiskSurface{{0.0, h, 0.0}, {0.0, -1.0, 0.0}, r};
+    glowing.material = grey(0.0);
+    glowing.emission = Rgb(1.0);
+    scene.surfaces.push_back(glowing);
+    const Film met = render_here(scene, 2).film;
+    CHECK_AGREEMENT(agree_with_means(met, std::vector<Rgb>(met.mean.size(), Rgb(expected)), "glowing surface"));
+}
+
+TEST_CASE("fog darkens a sunlit floor by both ways through it", "[gpu][image][surfaces]") {
+    // Absorbing fog of height 1 above a floor: albedo / pi E cos(sun) exp(-tau / cos(sun)) exp(-tau).
+    const double tau = 0.7, albedo = 0.5;
+    const glm::dvec3 sun = glm::normalize(glm::dvec3(0.5, 1.0, -0.3));
+    Scene scene = from_above(0.5);
+    Surface floor;
+    floor.shape = PlaneSurface{};
+    floor.material = grey(albedo);
+    scene.surfaces = {floor};
+    scene.volumes = {medium(Box{{0.0, 0.5, 0.0}, {100.0, 1.0, 100.0}}, tau, 0.0)};
+    scene.lights = {DirectionalLight{sun, Rgb(2.0)}};
+    // The camera's ray is followed by chance, the sun's is known.
+    scene.settings.spp = 4096;
+    const double seen = albedo / pi * 2.0 * sun.y * std::exp(-tau / sun.y);
+    const Film film = render_here(scene, 1).film;
+    CHECK_AGREEMENT(agree_with_escapes(film, std::vector<double>(film.mean.size(), std::exp(-tau)), Rgb(seen), Rgb(0.0),
+                                       "floor in fog"));
+}
+
+TEST_CASE("a pane of glass and a metal reflect what Fresnel says", "[gpu][image][surfaces]") {
+    // Between its faces light goes to and fro: R = 2 F / (1 + F), T = (1 - F) / (1 + F).
+    Scene scene = from_above(0.5);
+    scene.settings.roulette_threshold = 0.0;
+    Surface pane;
+    TriangleSurface box;
+    for (int corner = 0; corner < 8; ++corner)
+        box.vertices.push_back(glm::dvec3(8.0, 0.3, 8.0) *
+                               (glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2) - 0.5));
+    box.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    pane.shape = box;
+    pane.material = white(MaterialKind::dielectric);
+    Surface below;
+    below.shape = PlaneSurface{{0.0, -2.0, 0.0}, {0.0, 1.0, 0.0}};
+    below.material = grey(0.0);
+    below.emission = Rgb(1.0);
+    scene.surfaces = {pane, below};
+    scene.settings.spp = 8192;
+    for (const double tilt : {0.0, 50.0}) {
+        CAPTURE(tilt);
+        scene.camera.pitch = -90.0 + tilt;
+        scene.camera.position = {0.0, 3.0 * std::cos(tilt * pi / 180.0), 3.0 * std::sin(tilt * pi / 180.0)};
+        const double c = std::cos(tilt * pi / 180.0), beyond = std::sqrt(1.0 - (1.0 - c * c) / 2.25);
+        const double across = (c - 1.5 * beyond) / (c + 1.5 * beyond), along = (1.5 * c - beyond) / (1.5 * c + beyond);
+        const double F = 0.5 * (across * across + along * along);
+        const Film film = render_here(scene, 1).film;
+        CHECK_AGREEMENT(agree_with_escapes(film, std::vector<double>(film.mean.size(), (1.0 - F) / (1.0 + F)), Rgb(1.0),
+                                           Rgb(0.0), "pane"));
+    }
+    // Straight on, F = ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
+    Surface metal;
+    metal.shape = PlaneSurface{};
+    metal.material = white(MaterialKind::conductor);
+    metal.material.eta = {0.143, 0.375, 1.442};
+    metal.material.k = {3.983, 2.386, 1.603};
+    Scene mirror = from_above(0.5);
+    mirror.surfaces = {metal};
+    mirror.background = Rgb(1.0);
+    const Rgb n = metal.material.eta, k = metal.material.k;
+    check_everywhere(mirror, ((n - 1.0) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k), 1e-5);
+}
+
+TEST_CASE("no ray leaves a closed mesh", "[gpu][image][surfaces]") {
+    Scene scene = empty_scene(64);
+    scene.camera = {};
+    scene.camera.projection = Projection::equirectangular;
+    scene.background = Rgb(1.0);
+    Surface room;
+    room.shape = round_mesh(40, 1.0);
+    room.material = grey(0.0);
+    scene.surfaces = {room};
+    check_everywhere(scene, Rgb(0.0), 0.0);
+    // Nor do paths that bounce about within it; from far away, where digits are few.
+    scene.surfaces.front().material = white(MaterialKind::diffuse);
+    scene.settings.max_depth = 50;
+    for (const double scale : {1e-4, 1.0, 1e5}) {
+        CAPTURE(scale);
+        Scene scaled = scene;
+        for (glm::dvec3& vertex : std::get<TriangleSurface>(scaled.surfaces.front().shape).vertices)
+            vertex = scale * (vertex + glm::dvec3(30.0, -20.0, 10.0));
+        scaled.camera.position = scale * glm::dvec3(30.0, -20.0, 10.0);
+        check_everywhere(scaled, Rgb(0.0), 0.0);
+    }
+}
+
+TEST_CASE("surfaces among media equal the reference, by both schedules", "[gpu][image][surfaces]") {
+    const Scene scene = still_life();
+    const Film film = render_here(scene, 1).film;
+    CHECK_AGREEMENT(agree(film, render_reference(scene, 2), "still life"));
+    RenderJob staged;
+    staged.plan.schedule = Schedule::staged;
+    CHECK(same_bits(film, render_here(scene, 1, staged).film));
+    Scene several = scene;
+    several.volumes.push_back(medium(Box{{0.6, -0.4, 0.4}, {1.6, 0.9, 1.6}}, 1.0, 0.7, -0.2));
+    several.volumes.back().sigma_s = {0.5, 0.6, 0.7};
+    several.volumes.back().sigma_a = Rgb(0.8) - several.volumes.back().sigma_s;
+    CHECK_AGREEMENT(agree(render_here(several, 1).film, render_reference(several, 2), "several media"));
+    Scene bare = scene;
+    bare.volumes.clear();
+    CHECK_AGREEMENT(agree(render_here(bare, 1).film, render_reference(bare, 2), "no medium"));
+}
+
+TEST_CASE("surfaces among media are the same for every estimator", "[gpu][image][surfaces]") {
+    Scene scene = still_life();
+    scene.settings.spp = 96;
+    const Film expected = render_here(scene, 1).film;
+    for (const Combination& combination : unbiased_combinations(scene)) {
+        const AxisChoices& choices = combination.choices;
+        const int unusual = (choices.free_flight != FREE_FLIGHT_DELTA) +
+                            (choices.transmittance != TRANSMITTANCE_RATIO) + (choices.nee != NEE_COLLISIONS) +
+                            (choices.emission.value_or(EMISSION_AT_COLLISIONS) != EMISSION_AT_COLLISIONS);
+        if (unusual > 1)
+            continue;
+        Scene other = scene;
+        other.settings.choices = choices;
+        CHECK_AGREEMENT(agree(render_here(other, 2).film, expected, combination.name));
+    }
+}
+
+TEST_CASE("surfaces are read, moved and refused by name", "[xml][surfaces]") {
+    const Scene scene = parse(R"(<surfaces>
+  <sphere x="1" radius="2" material="dielectric" ior="1.33"/>
+  <plane y="-1" r="0.1" g="0.2" b="0.3"/>
+  <rectangle lookAt="0 1 0" width="2" height="4"><emission r="1" g="1" b="1" multiplier="3" sides="2"/></rectangle>
+  <box width="2"><transform><scale value="2"/><translate y="5"/></transform></box>
+  <disk lookAt="0 0 1" material="conductor" metal="gold"/>
+</surfaces>)");
+    REQUIRE(scene.surfaces.size() == 5);
+    CHECK(scene.surfaces[0].material.ior == 1.33);
+    CHECK(scene.surfaces[1].material.color == Rgb(0.1, 0.2, 0.3));
+    CHECK(scene.surfaces[2].emission == Rgb(3.0));
+    CHECK(scene.surfaces[2].shines_both_ways);
+    const auto& box = std::get<TriangleSurface>(scene.surfaces[3].shape);
+    CHECK(box.vertices.front() == glm::dvec3(-2.0, 4.0, -1.0));
+    CHECK(box.vertices.back() == glm::dvec3(2.0, 6.0, 1.0));
+    CHECK(scene.surfaces[4].material.k.x == 3.983);
+
+    const auto refused = [](const std::string& surface) { return error_of("<surfaces>" + surface + "</surfaces>"); };
+    CHECK_THAT(refused("<sphere material=\"gold\"/>"), Contains("2:11") && Contains("'gold' is unknown"));
+    CHECK_THAT(refused("<sphere ior=\"2\"/>"), Contains("has a meaning with material=\"dielectric\" only"));
+    CHECK_THAT(refused("<sphere r=\"2\"/>"), Contains("more than it gets"));
+    CHECK_THAT(refused("<sphere><transform><scale x=\"2\"/></transform></sphere>"), Contains("use a mesh"));
+    CHECK_THAT(refused("<mesh/>"), Contains("names no file"));
+    CHECK_THAT(refused("<disk material=\"conductor\" metal=\"tin\"/>"), Contains("lookAt"));
+    CHECK_THAT(refused("<plane material=\"conductor\" metal=\"tin\"/>"), Contains("'tin' is unknown"));
+    CHECK_THAT(refused("<cone/>"), Contains("cone"));
+}
+
+TEST_CASE("what a surface is and is made of is in the scene hash", "[method][surfaces]") {
+    const Scene scene = still_life();
+    const std::string hash = scene_hash(scene);
+    const auto differs = [&](const auto& change) {
+        Scene other = scene;
+        change(other.surfaces);
+        return scene_hash(other) != hash;
+    };
+    CHECK(scene_hash(still_life()) == hash);
+    CHECK(differs([](auto& s) { std::get<PlaneSurface>(s[0].shape).point.y = -1.0; }));
+    CHECK(differs([](auto& s) { std::get<BallSurface>(s[1].shape).radius = 0.61; }));
+    CHECK(differs([](auto& s) { s[1].material.ior = 1.4; }));
+    CHECK(differs([](auto& s) { s[2].material.k.x = 4.0; }));
+    CHECK(differs([](auto& s) { std::get<TriangleSurface>(s[3].shape).vertices[0].x += 0.1; }));
+    CHECK(differs([](auto& s) { s[4].emission.x = 1.6; }));
+    CHECK(differs([](auto& s) { s[4].shines_both_ways = true; }));
+    CHECK(differs([](auto& s) { s[0].material.kind = MaterialKind::mirror; }));
+    CHECK(differs([](auto& s) { s.pop_back(); }));
+}

@@ -1,0 +1,34 @@
+// Surfaces, asked one by one, in double precision.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "rng.h"
+#include "scene.h"
+#include "shapes.h"
+
+namespace reference {
+
+struct SurfaceHit {
+    double t;
+    glm::dvec3 normal; // unit, outward
+    const vkvol::Surface* surface;
+};
+
+// The nearest within the ray's reach.
+std::optional<SurfaceHit> nearest_surface(const std::vector<vkvol::Surface>& surfaces, const Ray& ray);
+
+// A direction that light may come from, and its share of what goes on along -travel: times the light from there its
+// mean is what the surface scatters. `specular`: of one direction, or one of two. Drawn not as the renderer does.
+struct Scattered {
+    glm::dvec3 direction;
+    vkvol::Rgb weight;
+    bool specular;
+};
+Scattered scatter(const SurfaceHit& hit, const glm::dvec3& travel, const Draw& draw);
+
+// Of light from `direction`, per steradian, cosine included; 0 of what is specular.
+vkvol::Rgb scatter_value(const SurfaceHit& hit, const glm::dvec3& travel, const glm::dvec3& direction);
+
+} // namespace reference
