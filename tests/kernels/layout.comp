@@ -55,6 +55,8 @@ void put(uvec4 v) {
 #define phase_node phase_nodes[1]
 #define light_node light_nodes[1]
 #define bvh_node bvh[1]
+#define surface_row surfaces[1]
+#define piece primitives[1]
 #define header queues[1]
 #define entry film[1]
 #define PUT(field) put(field);

@@ -10,7 +10,7 @@ void main() {
     if (i >= push.lanes)
         return;
     Ray ray = Ray(inputs[i].origin, inputs[i].direction);
-    MeshRay mesh_ray = make_mesh_ray(frame.media[0].bvh_nodes, ray);
+    MeshRay mesh_ray = make_mesh_ray(0u, frame.media[0].bvh_nodes, ray);
     PartSearch search = begin_search(SEARCH_FIRST, 0.0);
     float total = 0.0;
     uint count = 0u;

@@ -19,8 +19,8 @@ struct Structs {
     shared::PhaseNode phase_node;
     shared::LightRow light_row;
     shared::LightNode light_node;
-    shared::SurfaceRow surface;
-    shared::SurfacePrimitive primitive;
+    shared::SurfaceRow surface_row;
+    shared::SurfacePrimitive piece;
     shared::BvhNode bvh_node;
     shared::QueueHeader header;
     shared::FilmPixel entry;
@@ -47,7 +47,7 @@ std::vector<std::uint32_t> list_words(const Structs& all) {
         words.resize(first + sizeof field / 4);
         std::memcpy(&words[first], &field, sizeof field);
     };
-    const auto& [path, laid_aside, waiting, control_cell, phase_node, light_row, light_node, surface, primitive,
+    const auto& [path, laid_aside, waiting, control_cell, phase_node, light_row, light_node, surface_row, piece,
                  bvh_node, header, entry, counters, frame, push] = all;
 #define PUT(field) put(field);
 #define PUT_EACH(field, count)                                                                                         \
@@ -83,8 +83,8 @@ TEST_CASE("shared structs have one layout on host and device", "[gpu][layout]") 
     const Buffer phase_nodes = second_of_two(commands, all.phase_node, storage);
     const Buffer lights = second_of_two(commands, all.light_row, storage);
     const Buffer light_nodes = second_of_two(commands, all.light_node, storage);
-    const Buffer surfaces = second_of_two(commands, all.surface, storage);
-    const Buffer primitives = second_of_two(commands, all.primitive, storage);
+    const Buffer surfaces = second_of_two(commands, all.surface_row, storage);
+    const Buffer primitives = second_of_two(commands, all.piece, storage);
     const Buffer nodes = second_of_two(commands, all.bvh_node, storage);
     const Buffer headers = second_of_two(commands, all.header, storage);
     const Buffer film = second_of_two(commands, all.entry, storage);
