@@ -19,6 +19,13 @@ build=$work/build
 # name ~ file ~ text ~ replacement ~ tests (a Catch2 specification). "^" parts several texts and their replacements.
 mutations() {
     cat <<'END'
+map taken from the knot before ~ shaders/field/value_map.glsl ~ .value <= value ? next ~ .value <= 0.9 * value ? next ~ [value_map]
+map bounded at the ends of values alone ~ host/fields/value_map.cpp ~ if (point.value >= low && point.value <= high) ~ if (false) ~ [value_map]
+map bounded by the largest value alone ~ host/fields/majorant_grid.cpp ~ mapped_range(map, least, most) ~ mapped_range(map, most, most) ~ [value_map]
+mapped values by a stochastic corner ~ host/methods/method.cpp ~ linear_shadows && !has_map(scene_); ~ linear_shadows; ~ [value_map]
+mapped albedo left out ~ shaders/field/albedo.glsl ~ albedo *= mapped_albedo(v, mapped_value(v, position)); ~ ; ~ [value_map]
+mapped emission left out ~ shaders/field/emission.glsl ~ radiance += mapped_emission(v, mapped_value(v, position)); ~ ; ~ [value_map]
+map's table of another medium ~ host/device_scene/scene_upload.cpp ~ params.first_knot = first_of(&LoadedMedium::map_knots, loaded, media); ~ params.first_knot = 0; ~ [value_map]
 albedo + 2 % ~ host/device_scene/scene_upload.cpp ~ params.albedo = albedo_of(volume); ~ params.albedo = 1.02 * albedo_of(volume); ~ [image]
 g sign in sampling ~ shaders/phase/phase.glsl ~ hg_sample(v.phase.g, ~ hg_sample(-v.phase.g, ~ [image]
 g sign toward the light ~ shaders/phase/phase.glsl ~ hg_eval(v.phase.g, hg_from_peak(v.phase.g, ~ hg_eval(-v.phase.g, hg_from_peak(-v.phase.g, ~ [image]

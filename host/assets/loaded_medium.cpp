@@ -14,6 +14,7 @@
 #include "render_limits.h"
 #include "shared/estimators.h"
 #include "supported.h"
+#include "value_map.h"
 
 namespace vkvol {
 
@@ -85,7 +86,10 @@ namespace {
 class Loader {
 public:
     Loader(const Scene& scene, const Method& method, FieldCache& fields)
-        : scene_(scene), method_(method), fields_(fields) {}
+        : scene_(scene), method_(method), fields_(fields) {
+        for (const Volume& volume : scene.volumes)
+            knots_ = std::max(knots_, make_knots(volume.map).size());
+    }
 
     LoadedMedium load(const Volume& volume);
 
@@ -95,6 +99,7 @@ private:
     void load_phase_nodes(const Volume& volume, LoadedMedium& loaded);
     void load_grid(const Volume& volume, const GridFile& file, LoadedMedium& loaded);
     void load_majorants(const Volume& volume, const DensityField& field, LoadedMedium& loaded);
+    void load_map(const Volume& volume, const GridFile& file, const DensityField& field, LoadedMedium& loaded);
     void load_temperature(const Volume& volume, const GridFile& file, LoadedMedium& loaded);
     void load_blackbody(const TemperatureEmission& emission, const GridFile& file, LoadedMedium& loaded);
     void load_albedo(const Volume& volume, const GridFile& file, LoadedMedium& loaded);
@@ -107,8 +112,11 @@ private:
     const Scene& scene_;
     const Method& method_;
     FieldCache& fields_;
-    std::map<const std::byte*, std::shared_ptr<const Majorants>> majorants_; // by the bytes of their grid
-    std::map<const std::byte*, float> largest_;                              // likewise
+    // By the bytes of their grid, and its map.
+    std::map<std::pair<const std::byte*, std::vector<double>>, std::shared_ptr<const Majorants>> majorants_;
+    std::map<std::vector<double>, SharedArray<shared::MapKnot>> maps_;
+    std::size_t knots_ = 0;                     // of the scene's longest map: one search serves all
+    std::map<const std::byte*, float> largest_; // likewise
     std::map<std::pair<double, double>, SharedArray<glm::vec3>> blackbodies_;
     std::map<std::string, SharedArray<shared::PhaseNode>> phases_; // by their file
     std::set<std::string> said_;
@@ -197,16 +205,18 @@ PilotScene pilot_scene(const Scene& scene, const Volume& volume, const Method& m
     if (method.nee == NEE_COLLISIONS || method.nee == NEE_TENTATIVE)
         pilot.light = glm::normalize(glm::dvec3(to_index * glm::dvec4(some_light(scene.lights), 0.0)));
     pilot.sigma_t = sigma_t;
-    pilot.albedo = largest(volume.sigma_s) / std::max(largest(volume.sigma_a + volume.sigma_s), 1e-300);
+    pilot.albedo =
+        largest(most_map_albedo(volume) * volume.sigma_s) / std::max(largest(volume.sigma_a + volume.sigma_s), 1e-300);
     pilot.g = g;
     pilot.leaps = leaps(method);
+    pilot.map = volume.map;
     return pilot;
 }
 
 // The cells' bounds are scaled after the controls are made: these bound the density itself. Of several media there are
 // no controls, and cells are a matter of speed alone: then all that have the grid make do with those of the first.
 void Loader::load_majorants(const Volume& volume, const DensityField& field, LoadedMedium& loaded) {
-    std::shared_ptr<const Majorants>& known = majorants_[field.bytes.data()];
+    std::shared_ptr<const Majorants>& known = majorants_[{field.bytes.data(), numbers_of(volume.map)}];
     if (known) {
         loaded.majorants = known;
         return;
@@ -219,12 +229,29 @@ void Loader::load_majorants(const Volume& volume, const DensityField& field, Loa
         scene_.settings.majorant_cell);
     const bool decomposes = method_.flights_have(TRAIT_CONTROL);
     if (decomposes || method_.shadow_rays_have(TRAIT_CONTROL))
-        loaded.controls = make_controls(field, cells, decomposes ? 0.0 : voxel_sigma_t);
+        loaded.controls = make_controls(field, cells, decomposes ? 0.0 : voxel_sigma_t, volume.map);
     for (float& bound : cells.bounds)
         bound *= static_cast<float>(scale);
     for (shared::ControlCell& cell : loaded.controls)
         cell.residual *= static_cast<float>(scale);
     loaded.majorants = known = std::make_shared<const Majorants>(std::move(cells));
+}
+
+void Loader::load_map(const Volume& volume, const GridFile& file, const DensityField& field, LoadedMedium& loaded) {
+    if (!volume.map.exists())
+        return;
+    SharedArray<shared::MapKnot>& known = maps_[numbers_of(volume.map)];
+    if (known.empty()) {
+        std::vector<shared::MapKnot> knots = make_knots(volume.map);
+        pad_knots(knots, knots_);
+        known = std::move(knots);
+    }
+    loaded.map_knots = known;
+    if (loaded.majorants->most == 0.0)
+        warn(loaded, fmt::format("{}: \"{}\" has values up to {:g}, which <{}> maps to nothing: there is no medium; "
+                                 "give points among these values more than 0",
+                                 file.path.string(), file.grid, largest_value(field),
+                                 volume.map.is_transfer ? "transferFunction" : "densityMap"));
 }
 
 void Loader::load_grid(const Volume& volume, const GridFile& file, LoadedMedium& loaded) {
@@ -236,6 +263,7 @@ void Loader::load_grid(const Volume& volume, const GridFile& file, LoadedMedium&
                                  "and ends where they do",
                                  file.path.string(), file.grid, field.background));
     load_majorants(volume, field, loaded);
+    load_map(volume, file, field, loaded);
     loaded.field = std::move(field);
     load_temperature(volume, file, loaded);
     load_albedo(volume, file, loaded);

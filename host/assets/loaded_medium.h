@@ -35,6 +35,7 @@ struct LoadedMedium {
     SharedArray<glm::vec3> blackbody;           // BLACKBODY_ENTRIES colours between 0 and the hottest kelvin, or none
     double hottest = 0.0;                       // kelvin
     SharedArray<shared::PhaseNode> phase_nodes; // of a phase function that is a table
+    SharedArray<shared::MapKnot> map_knots;     // of a map from the grid's values; all of a scene's are as long
     std::optional<Mesh> mesh;
     std::optional<Bvh> bvh;            // about the middle of the mesh
     std::vector<std::string> warnings; // what the scene asks for and its files do not hold

@@ -29,8 +29,9 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
     const bool fits = cache_entries(frame_.lattice, cache_directions_.size()) <= device.limits().maxTexelBufferElements;
     specialization_[SPEC_TEXELS] = buffers_.texels() && fits ? 1 : 0;
     if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN || specialization_[SPEC_PHASE] != PHASE_HENYEY_GREENSTEIN ||
-        specialization_[SPEC_ALBEDO] != ALBEDO_CONSTANT || specialization_[SPEC_TEMPERATURE_TYPE] == GRID_COLOR ||
-        specialization_[SPEC_SENSOR] != SENSOR_PINHOLE || specialization_[SPEC_PIXEL_FILTER] != 0)
+        specialization_[SPEC_ALBEDO] != ALBEDO_CONSTANT || specialization_[SPEC_MAP] != MAP_NONE ||
+        specialization_[SPEC_TEMPERATURE_TYPE] == GRID_COLOR || specialization_[SPEC_SENSOR] != SENSOR_PINHOLE ||
+        specialization_[SPEC_PIXEL_FILTER] != 0)
         form_ |= form_full;
     if (!scene.surfaces.empty())
         make_surfaces(scene, assets);

@@ -41,6 +41,8 @@ std::string kernel_text(const Specialization& s, const Assets& assets, bool chro
                            s[SPEC_LEAPS] ? ", empty ones leapt" : "");
     else
         text = (s[SPEC_FIELD] == FIELD_NOISE ? "noise in a " : "homogeneous ") + text;
+    if (s[SPEC_MAP] != MAP_NONE)
+        text += s[SPEC_MAP] >= MAP_ALBEDO ? ", transfer function" : ", mapped values";
     text += fmt::format("{}, {} flight", chromatic ? ", chromatic" : "", choice(1, s[SPEC_FREE_FLIGHT]));
     text += scatterings[s[SPEC_SCATTERING]];
     if (s[SPEC_NEE] != NEE_NONE)

@@ -72,6 +72,7 @@ SceneBuffers::SceneBuffers(const Device& device, Commands& commands, Media media
              BufferPlace::host) {
     const UploadLayout layout(media);
     make_parts(device, commands, phase_, "phase functions", layout.phases());
+    make_parts(device, commands, maps_, "maps of values", layout.maps());
     make_parts(device, commands, blackbody_, "black-body tables", layout.blackbodies());
     make_parts(device, commands, leaf_table_, "leaf tables", layout.leaf_tables());
     if (!layout.grids().empty())
@@ -192,6 +193,7 @@ BoundBuffers SceneBuffers::bound() const {
     buffers[BINDING_TRIANGLES] = place(triangles_);
     buffers[BINDING_BVH] = place(bvh_);
     buffers[BINDING_PHASE] = place(phase_);
+    buffers[BINDING_MAPS] = place(maps_);
     buffers[BINDING_MEDIA] = place(media_);
     buffers[BINDING_OVERLAPS] = place(overlaps_);
     buffers[BINDING_SURFACES] = place(surfaces_);
@@ -207,7 +209,7 @@ std::uint64_t SceneBuffers::bytes() const {
     std::uint64_t total = frame_.bytes();
     for (const auto* buffer :
          {&grids_, &leaf_table_, &majorants_, &controls_, &blackbody_, &triangles_, &bvh_, &lights_, &light_tree_,
-          &sky_, &sky_alias_, &phase_, &media_, &overlaps_, &surfaces_, &primitives_})
+          &sky_, &sky_alias_, &phase_, &media_, &overlaps_, &maps_, &surfaces_, &primitives_})
         total += *buffer ? (*buffer)->bytes() : 0;
     for (const Buffer& window : windows_)
         total += window.bytes();

@@ -9,8 +9,8 @@
 #include "light_table.h"
 #include "loaded_medium.h"
 #include "shared/frame.h"
-#include "upload_layout.h"
 #include "surface_table.h"
+#include "upload_layout.h"
 
 namespace vkvol {
 
@@ -56,7 +56,7 @@ private:
 
     Buffer frame_;
     std::optional<Buffer> grids_, leaf_table_, majorants_, controls_, blackbody_, triangles_, bvh_;
-    std::optional<Buffer> lights_, light_tree_, sky_, sky_alias_, phase_, media_, overlaps_;
+    std::optional<Buffer> lights_, light_tree_, sky_, sky_alias_, phase_, media_, overlaps_, maps_;
     std::optional<Buffer> surfaces_, primitives_;
     std::vector<Buffer> windows_;
     bool texels_ = false;

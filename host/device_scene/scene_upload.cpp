@@ -1,6 +1,7 @@
 #include "scene_upload.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -18,9 +19,9 @@
 #include "placement.h"
 #include "shared/estimators.h"
 #include "shared/items.h"
-#include "upload_layout.h"
 #include "surface_mesh.h"
 #include "surface_table.h"
+#include "upload_layout.h"
 
 namespace vkvol {
 
@@ -31,7 +32,7 @@ static_assert(sizeof(shared::AlbedoParams) == sizeof(shared::GridParams) + 3 * 1
 static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 6 * 4);
 static_assert(sizeof(shared::MediumParams) == 3 * 16 + 3 * 12 + sizeof(shared::GridParams) + 12 + 6 * 4 + 2 * 12 +
                                                   sizeof(shared::PhaseParams) + sizeof(shared::AlbedoParams) +
-                                                  sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) + 4 +
+                                                  sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) + 8 +
                                                   sizeof(shared::MediumKinds));
 static_assert(sizeof(shared::LatticeParams) == 3 * 12);
 static_assert(sizeof(shared::PassPush) <= 128, "the least push constant space that Vulkan promises");
@@ -75,7 +76,7 @@ Rgb constant_emission(const Volume& volume, const LoadedMedium& loaded, const Me
 
 shared::EmissionParams make_emission(const Volume& volume, const LoadedMedium& loaded, const UploadLayout& layout,
                                      const Method& method, glm::dvec3 origin) {
-    const Rgb absorbed = loaded.albedo ? Rgb(1.0) : 1.0 - albedo_of(volume);
+    const Rgb absorbed = loaded.albedo || volume.map.is_transfer ? Rgb(1.0) : 1.0 - albedo_of(volume);
     shared::EmissionParams params{};
     params.constant = absorbed * constant_emission(volume, loaded, method);
     if (!loaded.temperature)
@@ -116,8 +117,16 @@ double usual_density(const Volume& volume, const LoadedMedium& loaded) {
 int emission_kind(const Volume& volume, const LoadedMedium& loaded, const Method& method) {
     if (loaded.temperature)
         return volume.temperature.model == TemperatureEmission::Model::color ? EMISSION_COLOR : EMISSION_BLACKBODY;
-    return most_sigma_a(volume) * constant_emission(volume, loaded, method) != Rgb(0.0) ? EMISSION_CONSTANT
-                                                                                        : EMISSION_NONE;
+    const Rgb glow = constant_emission(volume, loaded, method) + most_map_emission(volume);
+    return most_sigma_a(volume) * glow != Rgb(0.0) ? EMISSION_CONSTANT : EMISSION_NONE;
+}
+
+int map_kind(const Volume& volume) {
+    if (!volume.map.exists())
+        return MAP_NONE;
+    if (!volume.map.is_transfer)
+        return MAP_DENSITY;
+    return most_map_emission(volume) == Rgb(0.0) ? MAP_ALBEDO : MAP_GLOW;
 }
 
 int density_kind(const Volume& volume, const LoadedMedium& loaded) {
@@ -134,6 +143,7 @@ shared::MediumKinds kinds_of(const Volume& volume, const LoadedMedium& loaded, c
     kinds.temperature_type = loaded.temperature ? loaded.temperature->type : GRID_FLOAT;
     kinds.albedo = loaded.albedo ? ALBEDO_GRID : ALBEDO_CONSTANT;
     kinds.albedo_type = loaded.albedo ? loaded.albedo->type : GRID_FLOAT;
+    kinds.map = loaded.field ? map_kind(volume) : MAP_NONE;
     return kinds;
 }
 
@@ -167,6 +177,7 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
     }
     params.phase = phase_params(volume, loaded.phase_nodes);
     params.phase.first_node = layout.first_node(loaded);
+    params.first_knot = layout.first_knot(loaded);
     params.emission = make_emission(volume, loaded, layout, method, origin);
     params.kinds = kinds_of(volume, loaded, method);
     return params;
@@ -285,13 +296,18 @@ Rgb albedo_of(const Volume& volume) {
     return albedo;
 }
 
+namespace {
+bool is_grey(const Rgb& albedo) {
+    const double most = largest(albedo);
+    return !glm::any(glm::greaterThan(Rgb(most) - albedo, Rgb(1e-9 * most)));
+}
+} // namespace
+
 bool is_chromatic(const Scene& scene) {
     return has_chromatic_extinction(scene) || !scene.surfaces.empty() || any_medium(scene, [](const Volume& volume) {
-               if (!volume.albedo_grid.empty())
-                   return true;
-               const Rgb albedo = albedo_of(volume);
-               const double most = largest(albedo);
-               return glm::any(glm::greaterThan(Rgb(most) - albedo, Rgb(1e-9 * most)));
+               return !volume.albedo_grid.empty() || !is_grey(albedo_of(volume)) ||
+                      std::any_of(volume.map.points.begin(), volume.map.points.end(),
+                                  [](const MapPoint& point) { return !is_grey(point.albedo); });
            });
 }
 
@@ -305,6 +321,7 @@ void specialize_medium(const shared::MediumKinds& kinds, Specialization& constan
     constants[SPEC_ALBEDO] = kinds.albedo;
     constants[SPEC_ALBEDO_TYPE] = kinds.albedo_type;
     constants[SPEC_EMISSION] = kinds.emission;
+    constants[SPEC_MAP] = kinds.map;
 }
 
 // Of several, what they have in common.
@@ -344,6 +361,9 @@ Specialization specialize(const Scene& scene, Media media, const Method& method,
         constants[SPEC_SHAPE] = kinds.shape;
         constants[SPEC_LEAPS] = media.front().majorants && media.front().majorants->leaps ? 1 : 0;
     }
+    for (const LoadedMedium& medium : media)
+        if (!medium.map_knots.empty())
+            constants[SPEC_MAP_HALVINGS] = std::bit_width(medium.map_knots.size()) - 1;
     constants[SPEC_FIELD] = density_kind(scene);
     constants[SPEC_FILTER] = method.filter == Filter::nearest     ? FILTER_NEAREST
                              : method.filter == Filter::trilinear ? FILTER_TRILINEAR

@@ -20,6 +20,7 @@ UploadLayout::UploadLayout(Media media) {
     }
     for (const LoadedMedium& medium : media) {
         phases_.add(medium.phase_nodes);
+        maps_.add(medium.map_knots);
         blackbodies_.add(medium.blackbody);
     }
 }

@@ -1,5 +1,5 @@
-// Where in the device's buffers what media are made of lies: grids, their tables of leaves, tables of phase functions
-// and of black bodies, one behind the other, and each once, however many media have it.
+// Where in the device's buffers what media are made of lies: grids, their tables of leaves, tables of phase functions,
+// maps of values and black bodies, one behind the other, and each once, however many media have it.
 #pragma once
 
 #include <cstdint>
@@ -21,6 +21,7 @@ public:
     const Parts& grids() const { return grids_; }
     const Parts& leaf_tables() const { return leaf_tables_; }
     const Parts& phases() const { return phases_.parts; }
+    const Parts& maps() const { return maps_.parts; }
     const Parts& blackbodies() const { return blackbodies_.parts; }
 
     // Of a grid that one of the media has.
@@ -30,6 +31,7 @@ public:
     GridPlace place_of(const DensityField& grid) const { return grid_places_.at(grid.bytes.data()); }
     // Of tables, entries; 0 without one.
     std::uint32_t first_node(const LoadedMedium& medium) const { return phases_.first(medium.phase_nodes); }
+    std::uint32_t first_knot(const LoadedMedium& medium) const { return maps_.first(medium.map_knots); }
     std::uint32_t first_color(const LoadedMedium& medium) const { return blackbodies_.first(medium.blackbody); }
 
 private:
@@ -47,7 +49,7 @@ private:
 
     Parts grids_, leaf_tables_;
     std::map<const std::byte*, GridPlace> grid_places_;
-    Tables phases_, blackbodies_;
+    Tables phases_, maps_, blackbodies_;
 };
 
 } // namespace vkvol

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "pilot_paths.h"
+#include "value_map.h"
 
 namespace vkvol {
 
@@ -50,15 +51,16 @@ void raise_block(MajorantGrid& grid, const DensityField& field, glm::ivec3 block
                     raise(grid, glm::ivec3(x, y, z) - grid.origin, glm::ivec3(x, y, z) - grid.origin, value);
 }
 
-struct CellValues {
-    double least = 1e300, mean = 0.0;
+struct CellDensities {
+    double least = 0.0, most = 0.0, mean = 0.0;
 };
 
-// Over the corners of interpolation inside the cell.
-CellValues cell_values(const DensityField& field, const MajorantGrid& grid, glm::ivec3 cell) {
+// Of all interpolation inside the cell; the mean is that of its corners.
+CellDensities cell_densities(const DensityField& field, const ValueMap& map, const MajorantGrid& grid,
+                             glm::ivec3 cell) {
     const glm::ivec3 low = grid.origin + cell * grid.cell;
     const glm::ivec3 high = glm::min(low + grid.cell, field.voxel_max + 1);
-    CellValues values;
+    double least = 1e300, most = 0.0, sum = 0.0;
     int corners = 0;
     for (int x = low.x; x <= high.x; ++x)
         for (int y = low.y; y <= high.y; ++y)
@@ -66,16 +68,29 @@ CellValues cell_values(const DensityField& field, const MajorantGrid& grid, glm:
                 const glm::ivec3 voxel(x, y, z);
                 const bool active = voxel == glm::clamp(voxel, field.voxel_min, field.voxel_max);
                 const double value = active ? field.value(voxel) : 0.0;
-                values.least = std::min(values.least, value);
-                values.mean += value;
+                least = std::min(least, value);
+                most = std::max(most, value);
+                sum += mapped_density(map, value);
             }
-    values.mean /= corners;
-    return values;
+    const DensityRange range = mapped_range(map, least, most);
+    return {range.least, range.most, sum / corners};
+}
+
+// Bounds of values become those of densities. Cells whose values are all 0 need not be searched.
+void map_bounds(const DensityField& field, const ValueMap& map, MajorantGrid& grid) {
+    const double of_none = mapped_range(map, 0.0, 0.0).most;
+    std::size_t i = 0;
+    for (int x = 0; x < grid.dims.x; ++x)
+        for (int y = 0; y < grid.dims.y; ++y)
+            for (int z = 0; z < grid.dims.z; ++z, ++i) {
+                const bool none = grid.bounds[i] == 0.0f;
+                grid.bounds[i] = static_cast<float>(none ? of_none : cell_densities(field, map, grid, {x, y, z}).most);
+            }
 }
 
 } // namespace
 
-MajorantGrid make_majorant_grid(const DensityField& field, int cell) {
+MajorantGrid make_majorant_grid(const DensityField& field, int cell, const ValueMap& map) {
     MajorantGrid grid;
     grid.cell = cell;
     while (count(cell_dims(field, grid.cell)) > most_cells)
@@ -88,6 +103,8 @@ MajorantGrid make_majorant_grid(const DensityField& field, int cell) {
         for (block.y = 0; block.y < field.leaf_dims.y; ++block.y)
             for (block.z = 0; block.z < field.leaf_dims.z; ++block.z)
                 raise_block(grid, field, block);
+    if (map.exists())
+        map_bounds(field, map, grid);
     return grid;
 }
 
@@ -109,7 +126,7 @@ MajorantGrid merge_cells(const MajorantGrid& fine) {
 }
 
 MajorantGrid choose_majorant_grid(const DensityField& field, const PilotScene& scene, int cell) {
-    MajorantGrid grid = make_majorant_grid(field, cell > 0 ? cell : 4), best = grid;
+    MajorantGrid grid = make_majorant_grid(field, cell > 0 ? cell : 4, scene.map), best = grid;
     const std::vector<PilotSegment> segments = pilot_paths(field, grid, scene);
     double least = std::numeric_limits<double>::infinity();
     const auto consider = [&](bool leaps) {
@@ -135,7 +152,8 @@ MajorantGrid choose_majorant_grid(const DensityField& field, const PilotScene& s
     return best;
 }
 
-std::vector<shared::ControlCell> make_controls(const DensityField& field, const MajorantGrid& grid, double sigma_t) {
+std::vector<shared::ControlCell> make_controls(const DensityField& field, const MajorantGrid& grid, double sigma_t,
+                                               const ValueMap& map) {
     constexpr double rounding = 1e-6; // of the bounds, so that single precision does not violate them
     std::vector<shared::ControlCell> controls(grid.bounds.size(), shared::ControlCell{0.0f, 0.0f});
     std::size_t i = 0;
@@ -145,7 +163,7 @@ std::vector<shared::ControlCell> make_controls(const DensityField& field, const 
                 const double most = grid.bounds[i];
                 if (most == 0.0)
                     continue;
-                const CellValues values = cell_values(field, grid, {x, y, z});
+                const CellDensities values = cell_densities(field, map, grid, {x, y, z});
                 const double rest_of_mean = std::max(most - values.mean, values.mean - values.least);
                 const bool thin = sigma_t > 0.0 && sigma_t * rest_of_mean * grid.cell * std::sqrt(3.0) < 1.0;
                 const double control = thin ? values.mean : values.least * (1.0 - rounding);

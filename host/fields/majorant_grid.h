@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "density_field.h"
+#include "scene.h"
 #include "shared/frame.h"
 
 namespace vkvol {
@@ -14,7 +15,8 @@ struct PilotScene;
 // Cells are cubes of `cell` voxels from `origin` on (index space, z fastest); together they cover the region where the
 // interpolated density can differ from 0, one voxel beyond the active ones. Each bound is the largest voxel value
 // among the corners that interpolation inside the cell, faces included, can touch: tight for trilinear lookup unless
-// that value stands at a corner shared with a neighbour.
+// that value stands at a corner shared with a neighbour. Where values are mapped to densities, it is the most that the
+// map has between the least and the largest of these values.
 struct MajorantGrid {
     int cell = 8;
     glm::ivec3 origin{0};
@@ -25,7 +27,7 @@ struct MajorantGrid {
 };
 
 // `cell` voxels along an edge, > 0. More than 2^24 cells are never made.
-MajorantGrid make_majorant_grid(const DensityField& field, int cell);
+MajorantGrid make_majorant_grid(const DensityField& field, int cell, const ValueMap& map = {});
 
 // Cells of twice the edge.
 MajorantGrid merge_cells(const MajorantGrid& fine);
@@ -43,6 +45,7 @@ MajorantGrid choose_majorant_grid(const DensityField& field, const PilotScene& s
 // the density differs from it: the least value in the cell, or, where the rest is optically thin across the cell, the
 // mean (Novak et al., "Residual Ratio Tracking", 2014: in thick cells a control above the density makes weights that
 // grow exponentially). `sigma_t`: extinction at density 1 per voxel; 0: the least value everywhere, a lower bound.
-std::vector<shared::ControlCell> make_controls(const DensityField& field, const MajorantGrid& grid, double sigma_t);
+std::vector<shared::ControlCell> make_controls(const DensityField& field, const MajorantGrid& grid, double sigma_t,
+                                               const ValueMap& map = {});
 
 } // namespace vkvol

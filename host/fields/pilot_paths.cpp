@@ -7,6 +7,7 @@
 
 #include "cell_walk.h"
 #include "empty_space.h"
+#include "value_map.h"
 
 namespace vkvol {
 
@@ -61,7 +62,7 @@ private:
                 if (--steps_left_ < 0)
                     return false;
                 const glm::ivec3 voxel(glm::floor(origin + t0 * direction + 0.5));
-                if (uniform() * bound < field_.value(voxel)) {
+                if (uniform() * bound < mapped_density(scene_.map, field_.value(voxel))) {
                     gone = t0;
                     collides = true;
                     return false;

@@ -17,6 +17,7 @@ struct PilotScene {
     double albedo = 0.0;
     double g = 0.0;
     bool leaps = true; // its walks can pass empty cells together
+    ValueMap map = {}; // of the grid's values to densities
 };
 
 // A flight or a shadow ray.

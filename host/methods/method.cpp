@@ -21,6 +21,17 @@ bool Method::shadow_rays_have(int traits) const {
 
 namespace {
 
+constexpr const char* no_polynomials = "where values are mapped, densities between voxels are no polynomials; with the "
+                                       "filter nearest regular ones serve";
+
+bool has_map(const Scene& scene) {
+    return any_medium(scene, [](const Volume& volume) { return volume.map.exists(); });
+}
+
+bool can_scatter(const Volume& volume) {
+    return volume.sigma_s * most_map_albedo(volume) != Rgb(0.0);
+}
+
 // One method in the making: each rule builds on those before.
 class Resolution {
 public:
@@ -34,6 +45,7 @@ private:
     void choose_scattering();
     void choose_flight();
     const char* without_voxels() const;
+    bool bends_voxels() const;
     void choose_nee();
     void choose_mis();
     void choose_distance();
@@ -94,6 +106,9 @@ void Resolution::choose_flight() {
     } else if (flight == FREE_FLIGHT_DECOMPOSITION && field_ == FIELD_SUPERPOSITION) {
         warn("flights are delta: several volumes have no control density");
         flight = FREE_FLIGHT_DELTA;
+    } else if (flight == FREE_FLIGHT_REGULAR && bends_voxels()) {
+        warn(fmt::format("flights are delta: {}", no_polynomials));
+        flight = FREE_FLIGHT_DELTA;
     }
     if (!chromatic_ || !flight_has(flight, TRAIT_GREY))
         return;
@@ -106,12 +121,16 @@ const char* Resolution::without_voxels() const {
     return field_ == FIELD_NOISE ? "noise has none" : "several volumes share none";
 }
 
+// A map of the values between voxels leaves no polynomial of them; of each voxel's own it leaves one.
+bool Resolution::bends_voxels() const {
+    return field_ != FIELD_CONSTANT && has_map(scene_) && scene_.settings.filter != Filter::nearest;
+}
+
 void Resolution::choose_nee() {
     int& nee = method_.nee;
     nee = choices_.nee.value_or(preset_.nee);
-    const bool scatters = method_.scattering != SCATTERING_NONE &&
-                          (!scene_.surfaces.empty() ||
-                           any_medium(scene_, [](const Volume& volume) { return volume.sigma_s != Rgb(0.0); }));
+    const bool scatters =
+        method_.scattering != SCATTERING_NONE && (!scene_.surfaces.empty() || any_medium(scene_, can_scatter));
     // The camera sees lamps by shadow rays, whether or not anything scatters.
     const bool shows_lamps = std::any_of(scene_.lights.begin(), scene_.lights.end(), is_lamp) &&
                              !(is_through(method_) && method_.scattering == SCATTERING_NONE);
@@ -177,6 +196,11 @@ void Resolution::choose_transmittance() {
             warn("transmittance is by ratio tracking: several volumes have no control density");
         transmittance = TRANSMITTANCE_RATIO;
     }
+    if (transmittance == TRANSMITTANCE_REGULAR && field_ == FIELD_GRID && bends_voxels()) {
+        if (method_.nee != NEE_NONE)
+            warn(fmt::format("transmittance is by ratio tracking: {}", no_polynomials));
+        transmittance = TRANSMITTANCE_RATIO;
+    }
     const bool impossible =
         transmittance == TRANSMITTANCE_ANALYTIC || (transmittance == TRANSMITTANCE_REGULAR && field_ != FIELD_GRID);
     if (!impossible)
@@ -210,7 +234,7 @@ void Resolution::choose_emission() {
 void Resolution::choose_filter() {
     const int transmittance = method_.transmittance;
     const bool linear_shadows = !method_.shadow_rays_have(TRAIT_VOXELS | TRAIT_MARCH);
-    const bool linear = method_.flights_have(TRAIT_NULL) && linear_shadows;
+    const bool linear = method_.flights_have(TRAIT_NULL) && linear_shadows && !has_map(scene_);
     const bool has_voxels = field_ == FIELD_GRID || field_ == FIELD_SUPERPOSITION;
     if (!has_voxels || linear) {
         method_.filter = scene_.settings.filter.value_or(Filter::stochastic);
@@ -220,6 +244,12 @@ void Resolution::choose_filter() {
     if (method_.filter != Filter::stochastic)
         return;
     const bool flight = !method_.flights_have(TRAIT_NULL);
+    if (linear_shadows && !flight) {
+        warn("the filter is trilinear: a map of values would be biased by a stochastic one, since the mean of what it "
+             "makes of values is not what it makes of their mean");
+        method_.filter = Filter::trilinear;
+        return;
+    }
     const std::string name = flight ? axes()[1].names[std::size_t(method_.free_flight)] + " flights"
                                     : axes()[2].names[std::size_t(transmittance)] + " transmittance";
     warn(fmt::format("the filter is trilinear: {} would be biased by a stochastic one, since the mean of an "
@@ -300,7 +330,7 @@ bool has_chromatic_extinction(const Scene& scene) {
 
 bool emits(const Scene& scene) {
     return any_medium(scene, [](const Volume& volume) {
-        return most_sigma_a(volume) * (volume.Le + volume.temperature.color) != Rgb(0.0);
+        return most_sigma_a(volume) * (volume.Le + volume.temperature.color + most_map_emission(volume)) != Rgb(0.0);
     });
 }
 
@@ -367,8 +397,11 @@ Scene with_preset(Scene scene) {
             else
                 volume.noise = Noise{};
         }
-        if (adjusts(adjust_no_emission))
+        if (adjusts(adjust_no_emission)) {
             volume.Le = volume.temperature.color = Rgb(0.0);
+            for (MapPoint& point : volume.map.points)
+                point.emission = Rgb(0.0);
+        }
     }
     if (adjusts(adjust_no_emission) && glows)
         warn("leaves emission out; nanoVDBEmission renders it");

@@ -73,8 +73,20 @@ void add_phase(Writer& writer, const Volume& volume) {
         add_file(writer, details.file);
 }
 
+void add_map(Writer& writer, const ValueMap& map) {
+    if (!map.exists())
+        return;
+    writer.add("map", glm::dvec3(double(map.points.size()), map.rise, map.is_transfer ? 1.0 : 0.0));
+    for (const MapPoint& point : map.points) {
+        writer.add("point", glm::dvec3(point.value, point.density, 0.0));
+        writer.add("albedo", point.albedo);
+        writer.add("glow", point.emission);
+    }
+}
+
 void add_volume(Writer& writer, const Volume& volume) {
     add_shape(writer, volume);
+    add_map(writer, volume.map);
     if (volume.transform != glm::dmat4(1.0))
         for (int column = 0; column < 4; ++column)
             writer.add("transform", glm::dvec3(volume.transform[column]));

@@ -25,8 +25,10 @@ std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
     if (loops.surfaces) // planes when a segment begins, then a search
         iterations += MOST_PLANES + 1 + 1 + SURFACE_NODES_PER_TURN * node;
     const std::uint32_t octaves = loops.octaves > 0 ? loops.octaves + 1 : 0;
-    const std::uint32_t look_up = loops.media > 0 ? 1 + loops.media * (1 + octaves) : octaves;
-    iterations += (4 * steps + 1) * look_up;
+    const std::uint32_t search = loops.halvings > 0 ? loops.halvings + 1 : 0;
+    const std::uint32_t of_one = octaves + search;
+    const std::uint32_t look_up = loops.media > 0 ? 1 + loops.media * (1 + of_one) : of_one;
+    iterations += (4 * steps + 1) * look_up + 4 * search; // colours are looked up at collisions
     return iterations + loops.phase + loops.lights;
 }
 

@@ -39,10 +39,11 @@ constexpr std::uint32_t most_slots = 1u << 19;
 struct LoopSizes {
     bool mesh = false;
     bool surfaces = false;
-    std::uint32_t octaves = 0; // of noise; 0 without it
-    std::uint32_t media = 0;   // that a look-up asks, at most; 0 where there is but one
-    std::uint32_t phase = 0;   // iterations within phase functions
-    std::uint32_t lights = 0;  // iterations over lamps, suns and the levels of a tree; 0 without a choice of lights
+    std::uint32_t octaves = 0;  // of noise; 0 without it
+    std::uint32_t halvings = 0; // of a search in a map of values; 0 without one
+    std::uint32_t media = 0;    // that a look-up asks, at most; 0 where there is but one
+    std::uint32_t phase = 0;    // iterations within phase functions
+    std::uint32_t lights = 0;   // iterations over lamps, suns and the levels of a tree; 0 without a choice of lights
 };
 
 // Completes `wish`, of which what is chosen wins.

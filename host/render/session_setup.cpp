@@ -90,6 +90,7 @@ void Session::find_wish(const Assets& assets, const Specialization& specializati
     wish_ = job_.plan;
     loops_.lights = loop_iterations(scene_.lights);
     loops_.surfaces = !scene_.surfaces.empty();
+    loops_.halvings = static_cast<std::uint32_t>(specialization[SPEC_MAP_HALVINGS]);
     for (std::size_t i = 0; i < assets.media.size(); ++i) {
         const Volume& volume = scene_.volumes[i];
         const LoadedMedium& medium = assets.media[i];

@@ -325,8 +325,8 @@ Answer unlit(const Evidence& e) {
     const Volume& volume = *volume_of(e.scene);
     return fmt::format(
         "none of its {} paths met light; the optical depth in view reaches {:.3g}, the albedo is {:.3g}{}",
-        e.result->counts.paths, e.sight->most_depth, largest(albedo_of(volume)),
-        volume.albedo_grid.empty() ? "" : " at most");
+        e.result->counts.paths, e.sight->most_depth, largest(most_map_albedo(volume) * albedo_of(volume)),
+        has_albedo_of_place(volume) ? " at most" : "");
 }
 
 Answer furnace(const Evidence& e) {

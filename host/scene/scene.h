@@ -123,12 +123,32 @@ struct PhaseDetails {
     std::filesystem::path file = {}; // table
 };
 
+// What a medium is where its grid has a value.
+struct MapPoint {
+    double value = 0.0;   // >= 0
+    double density = 0.0; // >= 0
+    Rgb albedo{1.0};      // in [0, 1], multiplies the medium's
+    Rgb emission{0.0};    // radiance per absorption event, adds to the medium's
+};
+
+// From the values of a grid, as interpolated, to densities, and by a transfer function to colours as well. Linear
+// between points, and beyond them as at the first and the last; two points of one value are a step, at which the latter
+// counts.
+struct ValueMap {
+    std::vector<MapPoint> points; // their values ascending; none: the values are densities
+    double rise = 0.0;            // of the density per value beyond the last point
+    bool is_transfer = false;     // has albedos and emission
+
+    bool exists() const { return !points.empty(); }
+};
+
 // A participating medium filling a shape. Coefficients multiply the density: that of the grid, of the noise, or 1.
 struct Volume {
     std::variant<Sphere, Box, MeshFiles, GridFile> shape;
     glm::dmat4 transform{1.0};  // of the shape with all that is in it, in world space; affine, with an inverse
     std::string place;          // of the shape, "file:line:column", for messages; or empty
     std::optional<Noise> noise; // not for grids
+    ValueMap map;               // for grids only
     Rgb sigma_a{0.5};           // absorption, >= 0 [1/unit]
     Rgb sigma_s{0.5};           // scattering, >= 0 [1/unit]
     CoefficientUnit unit = CoefficientUnit::voxel; // without meaning but for grids: else always world
@@ -142,9 +162,28 @@ struct Volume {
     TemperatureEmission temperature; // adds to Le
 };
 
+// Whether its albedo differs from place to place.
+inline bool has_albedo_of_place(const Volume& volume) {
+    return !volume.albedo_grid.empty() || volume.map.is_transfer;
+}
+
 // sigma_a where it is largest, at density 1.
 inline Rgb most_sigma_a(const Volume& volume) {
-    return volume.albedo_grid.empty() ? volume.sigma_a : volume.sigma_a + volume.sigma_s;
+    return has_albedo_of_place(volume) ? volume.sigma_a + volume.sigma_s : volume.sigma_a;
+}
+
+// The most that its map has, channel by channel.
+inline Rgb most_map_albedo(const Volume& volume) {
+    Rgb most(volume.map.is_transfer ? 0.0 : 1.0);
+    for (const MapPoint& point : volume.map.points)
+        most = glm::max(most, point.albedo);
+    return most;
+}
+inline Rgb most_map_emission(const Volume& volume) {
+    Rgb most(0.0);
+    for (const MapPoint& point : volume.map.points)
+        most = glm::max(most, point.emission);
+    return most;
 }
 
 // How the density between voxel centres is looked up. `stochastic` takes one of the eight corners with the

@@ -16,15 +16,16 @@ std::optional<Expected> SceneReader::expected() const {
         return std::nullopt;
     if (!element.has("mean"))
         element.fail("<expected> lacks mean; write the picture's mean radiance, e.g. mean=\"0.5 1 1.5\"");
-    return Expected{channels(element, "mean", Rgb(0.0)), channels(element, "bias", Rgb(0.0)),
-                    element.attribute_boolean("exact", false)};
+    return Expected{channels(element, "mean", expected_radiance, Rgb(0.0)),
+                    channels(element, "bias", expected_radiance, Rgb(0.0)), element.attribute_boolean("exact", false)};
 }
 
 // One number for all channels, or one for each.
-Rgb SceneReader::channels(const XmlElement& element, const char* attribute, const Rgb& fallback) const {
+Rgb SceneReader::channels(const XmlElement& element, const char* attribute, const Limits& limits,
+                          const Rgb& fallback) const {
     if (!element.has(attribute))
         return fallback;
-    const std::vector<double> numbers = element.attribute_numbers(attribute, expected_radiance);
+    const std::vector<double> numbers = element.attribute_numbers(attribute, limits);
     if (numbers.size() == 1)
         return Rgb(numbers[0]);
     if (numbers.size() != 3)

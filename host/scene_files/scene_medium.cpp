@@ -50,6 +50,7 @@ void SceneReader::read_coefficients(Volume& volume) const {
     const bool is_grid = std::holds_alternative<GridFile>(volume.shape);
     volume.temperature = temperature_emission(is_grid);
     volume.albedo_grid = albedo_grid(is_grid);
+    read_map(volume);
 
     const XmlElement path_density = one("lightRayDensityMultiplier");
     const XmlElement shadow_density = one("shadowRayDensityMultiplier");
@@ -153,8 +154,8 @@ CoefficientUnit SceneReader::unit(const XmlElement& sigma_a, const XmlElement& s
 }
 
 void SceneReader::warn_without_volume() const {
-    for (const char* name :
-         {"sigma_a", "sigma_s", "heyneygreenstein_g", "heynegreenstein_g", "phase", "medium", "albedo", "noise"})
+    for (const char* name : {"sigma_a", "sigma_s", "heyneygreenstein_g", "heynegreenstein_g", "phase", "medium",
+                             "albedo", "densityMap", "transferFunction", "noise"})
         if (const XmlElement element = one(name); element.exists()) {
             element.warn(
                 fmt::format("<{}> is without effect: the scene has no densityField, sphere, box or model", name));

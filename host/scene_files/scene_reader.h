@@ -78,9 +78,14 @@ private:
     void check_extinction(const Volume& volume) const;
     TemperatureEmission temperature_emission(bool is_grid) const;
     std::string albedo_grid(bool is_grid) const;
+    void read_map(Volume& volume) const;
+    ValueMap density_map(const XmlElement& element) const;
+    ValueMap transfer_function(const XmlElement& element) const;
+    ValueMap ramp(const XmlElement& element) const;
+    std::vector<MapPoint> map_points(const char* name, bool is_transfer) const;
     CoefficientUnit unit(const XmlElement& sigma_a, const XmlElement& sigma_s, bool is_grid) const;
     std::optional<Expected> expected() const;
-    Rgb channels(const XmlElement& element, const char* attribute, const Rgb& fallback) const;
+    Rgb channels(const XmlElement& element, const char* attribute, const Limits& limits, const Rgb& fallback) const;
     void warn_without_volume() const;
     void read_without_effect() const;
     void read_bookkeeping() const;

@@ -25,6 +25,8 @@ const std::vector<std::string> in_a_volume = {"transform",
                                               "medium",
                                               "emission",
                                               "albedo",
+                                              "densityMap",
+                                              "transferFunction",
                                               "lightRayDensityMultiplier",
                                               "shadowRayDensityMultiplier"};
 

@@ -13,8 +13,8 @@ vec3 blackbody_color(EmissionParams e, float kelvin) {
     return mix(blackbody[e.first_entry + i], blackbody[e.first_entry + i + 1u], x - float(i));
 }
 
-// At a point of render space.
-vec3 emission_at(MediumParams v, vec3 position) {
+// What comes of the medium's own, and of grids of temperatures or colours.
+vec3 grid_emission(MediumParams v, vec3 position) {
     EmissionParams e = v.emission;
     const int kind = KIND(EMISSION, v, emission), type = KIND(TEMPERATURE_TYPE, v, temperature_type);
     if (kind == EMISSION_NONE || kind == EMISSION_CONSTANT)
@@ -32,8 +32,11 @@ vec3 emission_at(MediumParams v, vec3 position) {
 
 // (1 - albedo) * Le at a point of render space.
 vec3 emitted_radiance(MediumParams v, vec3 position) {
-    vec3 radiance = emission_at(v, position);
-    if (KIND(ALBEDO, v, albedo) == ALBEDO_GRID)
+    vec3 radiance = grid_emission(v, position);
+    if (KIND(MAP, v, map) == MAP_GLOW)
+        radiance += mapped_emission(v, mapped_value(v, position));
+    bool varies = KIND(ALBEDO, v, albedo) == ALBEDO_GRID || KIND(MAP, v, map) >= MAP_ALBEDO;
+    if (varies)
         radiance *= 1.0 - albedo_at(v, position);
     return radiance;
 }

@@ -48,7 +48,8 @@ float extinction_of(MediumParams v, uint row, vec3 position, vec3 tap) {
     uvec4 rest = member_texel(4u * row + 3u); // see MemberRow
     const int shape = MEMBER_SHAPE == EACH ? int(rest.y & 255u) : MEMBER_SHAPE;
     const int field = MEMBER_FIELD == EACH ? int(rest.y >> 8u & 255u) : MEMBER_FIELD;
-    const int type = GRID_TYPE == EACH ? int(rest.y >> 16u) : GRID_TYPE;
+    const int type = GRID_TYPE == EACH ? int(rest.y >> 16u & 255u) : GRID_TYPE;
+    const int map = MAP == EACH ? int(rest.y >> 24u) : MAP;
     bool inside = shape == SHAPE_SPHERE ? dot(p, p) < 1.0 : all(lessThanEqual(abs(p), vec3(1.0)));
     float found = 1.0;
     if (field == FIELD_NOISE) {
@@ -57,7 +58,7 @@ float extinction_of(MediumParams v, uint row, vec3 position, vec3 tap) {
         GridParams grid = member_grid(v, rest.z);
         vec3 low = vec3(grid.voxel_min - 1), high = vec3(grid.voxel_max + 1);
         inside = all(greaterThanEqual(p, low)) && all(lessThanEqual(p, high));
-        found = lookup(grid, type, p, tap);
+        found = mapped_density(map, rest.w, lookup(grid, type, p, tap));
     }
     return inside ? uintBitsToFloat(rest.x) * found : 0.0;
 }

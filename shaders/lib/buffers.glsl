@@ -46,6 +46,8 @@ layout(constant_id = SPEC_LIGHTS) const int LIGHTS = LIGHTS_TABLE;
 layout(constant_id = SPEC_DISTANCE) const int DISTANCE = DISTANCE_FLIGHTS;
 layout(constant_id = SPEC_ALBEDO) const int ALBEDO = ALBEDO_CONSTANT;
 layout(constant_id = SPEC_ALBEDO_TYPE) const int ALBEDO_TYPE = GRID_FLOAT;
+layout(constant_id = SPEC_MAP) const int MAP = MAP_NONE;
+layout(constant_id = SPEC_MAP_HALVINGS) const int MAP_HALVINGS = 0;
 const bool HAS_COLORS = true; // in grids
 layout(constant_id = SPEC_SENSOR) const int SENSOR = SENSOR_PINHOLE;
 layout(constant_id = SPEC_PIXEL_FILTER) const int PIXEL_FILTER = 0;
@@ -55,6 +57,8 @@ const int LIGHTS = LIGHTS_SUN;
 const int DISTANCE = DISTANCE_FLIGHTS;
 const int ALBEDO = ALBEDO_CONSTANT;
 const int ALBEDO_TYPE = GRID_FLOAT;
+const int MAP = MAP_NONE;
+const int MAP_HALVINGS = 0;
 const bool HAS_COLORS = false;
 const int SENSOR = SENSOR_PINHOLE;
 const int PIXEL_FILTER = 0;
@@ -118,6 +122,7 @@ layout(scalar, binding = BINDING_SAMPLES) buffer SampleBlock { uvec3 waiting_sam
 layout(scalar, binding = BINDING_PLACES) buffer PlaceBlock { SamplePlace sample_places[]; };
 layout(scalar, binding = BINDING_BLACKBODY) readonly buffer BlackbodyBlock { vec3 blackbody[]; };
 layout(scalar, binding = BINDING_PHASE) readonly buffer PhaseBlock { PhaseNode phase_nodes[]; };
+layout(scalar, binding = BINDING_MAPS) readonly buffer MapBlock { MapKnot map_knots[]; };
 layout(scalar, binding = BINDING_LIGHTS) readonly buffer LightBlock { LightRow lights[]; };
 layout(scalar, binding = BINDING_SKY) readonly buffer SkyBlock { vec4 sky_texels[]; };
 layout(scalar, binding = BINDING_SKY_ALIAS) readonly buffer SkyAliasBlock { AliasEntry sky_alias[]; };

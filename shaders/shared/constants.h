@@ -32,17 +32,18 @@
 #define BINDING_OVERLAPS 26   // words: what look-ups ask several media for, and which of them are where; see superposition.glsl
 #define BINDING_SURFACES 27   // SurfaceRow
 #define BINDING_PRIMITIVES 28 // SurfacePrimitive
-#define BINDING_TEST_INPUT 29 // test kernels only
-#define BINDING_TEST_OUTPUT 30
-#define BINDING_BUFFERS 31
+#define BINDING_MAPS 29       // MapKnot, a table for each medium that has a map; see value_map.glsl
+#define BINDING_TEST_INPUT 30 // test kernels only
+#define BINDING_TEST_OUTPUT 31
+#define BINDING_BUFFERS 32
 // The same buffers as texels: software drivers gather these, and read storage buffers lane by lane.
-#define BINDING_GRID_TEXELS 31
-#define BINDING_LEAF_TEXELS 32
-#define BINDING_MAJORANT_TEXELS 33
-#define BINDING_LATTICE_TEXELS 34
-#define BINDING_OVERLAP_TEXELS 35
-#define BINDING_MEMBER_TEXELS 36 // the same, four words at a time
-#define BINDING_COUNT 37
+#define BINDING_GRID_TEXELS 32
+#define BINDING_LEAF_TEXELS 33
+#define BINDING_MAJORANT_TEXELS 34
+#define BINDING_LATTICE_TEXELS 35
+#define BINDING_OVERLAP_TEXELS 36
+#define BINDING_MEMBER_TEXELS 37 // the same, four words at a time
+#define BINDING_COUNT 38
 
 #define WORKGROUP_SIZE 64
 
@@ -84,7 +85,9 @@
 #define SPEC_MEMBER_GRID 26  // 0: all that are grids have the same one
 #define SPEC_CELL_BITS 27    // of several media: log2 of the cells along the edge of a coarse one; 0: there are no coarse ones
 #define SPEC_MATERIALS 28    // bits, 1 << MATERIAL_..., of those that the surfaces have
-#define SPEC_COUNT 29
+#define SPEC_MAP 29          // MAP_...
+#define SPEC_MAP_HALVINGS 30 // log2 of the knots in a map's table
+#define SPEC_COUNT 31
 
 // Of several media that differ in it: each one's own, which is in its row.
 #define EACH -1
@@ -120,6 +123,12 @@
 
 #define ALBEDO_CONSTANT 0
 #define ALBEDO_GRID 1
+
+// From values of a grid to densities; see value_map.glsl.
+#define MAP_NONE 0
+#define MAP_DENSITY 1
+#define MAP_ALBEDO 2 // and to albedos,
+#define MAP_GLOW 3   // and to emission
 
 #define FILTER_NEAREST 0
 #define FILTER_TRILINEAR 1

@@ -103,6 +103,17 @@ struct PhaseNode {
     float share; // of the light that is scattered at smaller x; 1 at the last
 };
 
+// A knot of a map from a grid's values, and how much of each there is more per value from here to the next.
+struct MapKnot {
+    float value;
+    float density;
+    float density_slope;
+    vec3 albedo; // multiplies the medium's
+    vec3 albedo_slope;
+    vec3 emission; // radiance per absorption event
+    vec3 emission_slope;
+};
+
 // What a medium of several is, where it is not the same for all of them: see EACH.
 struct MediumKinds {
     int shape; // SHAPE_..., and so on
@@ -113,15 +124,16 @@ struct MediumKinds {
     int temperature_type;
     int albedo;
     int albedo_type;
+    int map;
 };
 
 // What a look-up asks of one of several media: four texels of the words in BINDING_OVERLAPS.
 struct MemberRow {
     vec4 to_medium[3]; // as in MediumParams
     float sigma_t;     // likewise
-    uint kinds;        // SHAPE_... | FIELD_... << 8 | GRID_... << 16
+    uint kinds;        // SHAPE_... | FIELD_... << 8 | GRID_... << 16 | MAP_... << 24
     uint grid;         // the first texel of its GridRow
-    uint unused;
+    uint first_knot;   // as in MediumParams
 };
 
 // Four texels as well.
@@ -157,6 +169,7 @@ struct MediumParams {
     EmissionParams emission;
     NoiseParams noise;
     uint bvh_nodes; // of a mesh
+    uint first_knot; // of the map
     MediumKinds kinds;
 };
 

@@ -66,6 +66,7 @@ TEST_CASE("unbiased flights follow the optical depth in every medium", "[gpu][fr
         MediumKind kind;
         Filter filter;
         double majorant_scale;
+        bool is_mapped = false;
     };
     const std::vector<Case> cases = {
         {MediumKind::grid, Filter::trilinear, 1.0},         {MediumKind::grid, Filter::trilinear, 2.0},
@@ -73,19 +74,21 @@ TEST_CASE("unbiased flights follow the optical depth in every medium", "[gpu][fr
         {MediumKind::grid, Filter::stochastic, 8.0},        {MediumKind::grid, Filter::nearest, 2.0},
         {MediumKind::noise_sphere, Filter::trilinear, 1.0}, {MediumKind::noise_sphere, Filter::trilinear, 8.0},
         {MediumKind::sphere, Filter::trilinear, 2.0},       {MediumKind::cubes, Filter::trilinear, 1.0},
-        {MediumKind::cubes, Filter::trilinear, 8.0},        {MediumKind::noise_cubes, Filter::trilinear, 2.0}};
+        {MediumKind::cubes, Filter::trilinear, 8.0},        {MediumKind::noise_cubes, Filter::trilinear, 2.0},
+        {MediumKind::grid, Filter::trilinear, 1.0, true},   {MediumKind::grid, Filter::nearest, 2.0, true}};
     const int flight = GENERATE(FREE_FLIGHT_ANALYTIC, FREE_FLIGHT_REGULAR, FREE_FLIGHT_DELTA, FREE_FLIGHT_WEIGHTED,
                                 FREE_FLIGHT_DECOMPOSITION, FREE_FLIGHT_SPECTRAL);
     for (const Case& c : cases) {
-        const MediumRecipe recipe = recipe_of(c.kind, flight, c.filter, c.majorant_scale);
+        MediumRecipe recipe = recipe_of(c.kind, flight, c.filter, c.majorant_scale);
+        recipe.is_mapped = c.is_mapped;
         // Those without majorants need not be seen with several.
         if (!flies(flight, recipe) || (!is_null_flight(flight) && c.majorant_scale > 2.0))
             continue;
-        CAPTURE(flight, int(c.kind), int(c.filter), c.majorant_scale);
+        CAPTURE(flight, int(c.kind), int(c.filter), c.majorant_scale, c.is_mapped);
         const TestMedium medium(recipe);
         const reference::Ray ray = medium.ray();
         const auto flights = medium.fly(medium.flights_along(ray, 10000, 1));
-        check_flights(medium, ray, flights, significance_of(6 * 12 * 2));
+        check_flights(medium, ray, flights, significance_of(6 * 14 * 2));
         // Majorants that bound leave weights of 1, but for the roundings of each tentative collision's factor: of
         // sigma_n, the sum, a probability and its complement, two products and two quotients, each at most u, some
         // of them seen twice.

@@ -210,6 +210,11 @@ void use_grid_file(const std::filesystem::path& file, Random& random) {
     }
     if (random.one_in(2))
         scene.volumes.front().albedo_grid = random.one_in(2) ? "temperature" : "colour";
+    if (random.one_in(2)) {
+        scene.volumes.front().map.points = {{0.0, 0.1}, {0.4, 1.0}, {0.4, 0.0}, {0.8, 3.0}};
+        scene.volumes.front().map.rise = random.one_in(2) ? 0.5 : 0.0;
+        scene.volumes.front().map.is_transfer = random.one_in(2);
+    }
     if (random.one_in(2))
         scene.settings.integrator = random.one_in(2) ? "decompositionTracking" : "rayMarching";
     use_scene(scene);

@@ -70,6 +70,8 @@ std::string attribute_value(std::string_view name, Source& random) {
         return one_of("0 0 0|1 2 3|0 0", random);
     if (name == "values")
         return one_of("1 0 0 0 0 1 0 0 0 0 1 0|1 2 3 4 0 2 0 1 1 0 3 2 0 0 0 1|1 0 0", random);
+    if (name == "albedo" || (name == "emission" && random.one_in(2)))
+        return one_of("0.5|0.9 0.5 0.2|1|0 1", random);
     if (name == "kelvin")
         return one_of("|2000|6500", random);
     if (name == "octaves" || name == "cell")
@@ -100,6 +102,24 @@ std::string element(const Words& words, Source& random) {
     return xml + fmt::format(">{}</{}>\n", text, words.element);
 }
 
+// A map of a grid's values by points, most of which ascend.
+std::string map_by_points(Source& random) {
+    const bool transfer = random.one_in(2);
+    const char* name = transfer ? "transferFunction" : "densityMap";
+    std::string xml = fmt::format("  <{}>\n", name);
+    double value = 0.0;
+    for (std::uint64_t points = random.below(6); points > 0; --points) {
+        std::string point = element(point_grammar[transfer], random);
+        if (const std::size_t at = point.find("value=\""); at != std::string::npos && !random.one_in(20)) {
+            value += random.one_in(4) ? 0.0 : 0.1 * static_cast<double>(random.below(5));
+            const std::size_t begin = at + 7;
+            point.replace(begin, point.find('"', begin) - begin, fmt::format("{}", value));
+        }
+        xml += point;
+    }
+    return xml + fmt::format("  </{}>\n", name);
+}
+
 // Of some of the elements that a medium has.
 std::string volume(Source& random) {
     const char* names[] = {"a", "b", "c", ""};
@@ -110,9 +130,11 @@ std::string volume(Source& random) {
     xml += ">\n";
     if (!random.one_in(4))
         xml += element(grammar[random.below(3)], random);
-    for (const char* name : {"noise", "sigma_a", "sigma_s", "phase", "medium", "emission", "albedo"})
+    for (const char* name : {"noise", "sigma_a", "sigma_s", "phase", "medium", "emission", "albedo", "densityMap"})
         if (random.one_in(3))
             xml += element(words_of(name), random);
+    if (random.one_in(4))
+        xml += map_by_points(random);
     if (random.one_in(2)) {
         xml += "  <transform>\n";
         for (std::uint64_t steps = random.below(4); steps > 0; --steps)
@@ -149,6 +171,8 @@ std::string build(Source& random) {
             continue;
         xml += element(grammar[i], random);
     }
+    if (random.one_in(6))
+        xml += map_by_points(random);
     if (random.one_in(3)) {
         xml += "  <lights>\n";
         for (std::uint64_t lights = random.below(4); lights > 0; --lights)

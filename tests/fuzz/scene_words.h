@@ -17,6 +17,8 @@ inline constexpr const char* element_names[] = {"densityField",
                                                 "medium",
                                                 "emission",
                                                 "albedo",
+                                                "densityMap",
+                                                "transferFunction",
                                                 "light",
                                                 "lights",
                                                 "directional",
@@ -77,6 +79,7 @@ inline constexpr Words grammar[] = {
      {"r", "g", "b", "multiplier", "grid", "model", "temperatureScale", "temperatureOffset", "temperatureCutoff",
       "referenceTemperature"}},
     {"albedo", "", {"grid"}},
+    {"densityMap", "", {"gain", "offset", "threshold"}},
     {"light", "", {"x", "y", "z", "r", "g", "b", "multiplier"}},
     {"backgroundColor", "", {"r", "g", "b", "multiplier"}},
     {"camera", "", {"x", "y", "z", "pitch", "yaw", "roll", "fov"}},
@@ -103,6 +106,10 @@ inline constexpr Words grammar[] = {
     {"fileName", "a|b.png", {}},
     {"multiThreaded", "true|0", {"freeThreads"}},
     {"multiThreadedChunkSize", "i", {}}};
+
+// Within <densityMap> and <transferFunction>.
+inline constexpr Words point_grammar[] = {{"point", "", {"value", "density"}},
+                                          {"point", "", {"value", "sigma_t", "albedo", "emission"}}};
 
 // Within <transform>.
 inline constexpr Words step_grammar[] = {{"translate", "", {"x", "y", "z"}},

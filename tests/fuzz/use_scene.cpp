@@ -110,6 +110,13 @@ void check_loaded(const LoadedMedium& loaded) {
             expect(std::isfinite(bound) && bound >= 0.0f, "a majorant is not finite");
     for (const shared::ControlCell& cell : loaded.controls)
         expect(std::isfinite(cell.control) && std::isfinite(cell.residual), "a control density is not finite");
+    for (const shared::MapKnot& knot : loaded.map_knots) {
+        expect(std::isfinite(knot.density) && knot.density >= 0.0f && std::isfinite(knot.density_slope),
+               "a mapped density is not finite");
+        expect_finite(knot.albedo_slope, "a mapped albedo is not finite");
+        expect_radiance(knot.emission, "mapped emission is out of range");
+        expect_finite(knot.emission_slope, "mapped emission is not finite");
+    }
     for (const glm::vec3& color : loaded.blackbody)
         expect_radiance(color, "a black body is out of range");
     if (loaded.bvh)

@@ -53,6 +53,7 @@ void put(uvec4 v) {
 #define control_cell controls[1]
 #define light_row lights[1]
 #define phase_node phase_nodes[1]
+#define map_knot map_knots[1]
 #define light_node light_nodes[1]
 #define bvh_node bvh[1]
 #define surface_row surfaces[1]

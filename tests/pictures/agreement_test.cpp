@@ -61,7 +61,7 @@ TEST_CASE("each estimator equals the reference's own", "[gpu][agreement]") {
     // One axis at a time, from delta flights with ratio-tracked shadow rays at collisions: the rest is for the table.
     for (const NamedScene& named : agreement_scenes()) {
         if (named.name != "thick cloud" && named.name != "chromatic cloud" && named.name != "fire" &&
-            named.name != "noise in a mesh")
+            named.name != "noise in a mesh" && named.name != "transfer function")
             continue;
         Scene scene = named.scene;
         scene.settings.spp = 256;
@@ -126,7 +126,7 @@ TEST_CASE("marches through the medium scatter once", "[gpu][agreement]") {
                 CHECK_AGREEMENT(agree(marched, render_reference(scene, 3), name));
             const RelativeBias bias = bias_of(marched, expected);
             CAPTURE(name, bias.value, bias.error);
-            CHECK(normal_p(bias.value / bias.error) > sidak(0.001, 2 * 9));
+            CHECK(normal_p(bias.value / bias.error) > sidak(0.001, 2 * 10));
         }
     }
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapped.h"
+
 namespace reference {
 
 CellWalk::CellWalk(const Medium& medium, const Ray& ray)
@@ -17,8 +19,8 @@ bool CellWalk::next(Cell& cell) {
         MajorantSegment segment;
         if (!grid_walk_ || !grid_walk_->next(segment))
             return false;
-        cell = {segment.t0, segment.t1, segment.majorant * scale, segment.minorant,
-                (segment.majorant - segment.minorant) * scale};
+        const auto [least, most] = mapped_extremes(medium_.map, segment.minorant, segment.majorant);
+        cell = {segment.t0, segment.t1, most * scale, least, (most - least) * scale};
         return true;
     }
     if (interval_ == intervals_.size())

@@ -8,6 +8,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "mapped.h"
+
 namespace reference {
 
 using vkvol::Rgb;
@@ -56,6 +58,7 @@ Medium with_shape(Shape shape, const vkvol::Volume& volume, std::optional<vkvol:
         medium.albedo[i] = sigma_t[i] > 0.0 ? volume.sigma_s[i] / sigma_t[i] : 0.0;
     load_phase(volume, medium);
     medium.emission.constant = volume.Le;
+    medium.map = volume.map;
     medium.filter = filter.value_or(vkvol::Filter::trilinear);
     if (Grid* grid = std::get_if<Grid>(&medium.shape)) {
         grid->move(volume.transform);
@@ -70,13 +73,27 @@ Medium with_shape(Shape shape, const vkvol::Volume& volume, std::optional<vkvol:
 } // namespace
 
 double Medium::density(const glm::dvec3& p) const {
-    if (const Grid* values = grid())
-        return filter == vkvol::Filter::nearest ? values->nearest(p) : values->trilinear(p);
+    if (grid())
+        return mapped(map, grid_value(p)).density;
     return noise ? noise_density(*noise, p) : 1.0;
 }
 
+double Medium::grid_value(const glm::dvec3& index) const {
+    return filter == vkvol::Filter::nearest ? grid()->nearest(index) : grid()->trilinear(index);
+}
+
 Rgb Medium::albedo_at(const glm::dvec3& world) const {
-    return albedo_grid.empty() ? albedo : albedo * glm::min(albedo_grid.clamped(world), Rgb(1.0));
+    Rgb here = albedo_grid.empty() ? albedo : albedo * glm::min(albedo_grid.clamped(world), Rgb(1.0));
+    if (map.is_transfer)
+        here *= mapped(map, grid_value(grid()->to_index(world))).albedo;
+    return here;
+}
+
+Rgb Medium::emission_at(const glm::dvec3& world) const {
+    Rgb here = emission.at(world);
+    if (map.is_transfer)
+        here += mapped(map, grid_value(grid()->to_index(world))).emission;
+    return here;
 }
 
 Ray Medium::unmoved(const Ray& ray) const {

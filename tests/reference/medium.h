@@ -19,6 +19,7 @@ struct Medium {
     vkvol::Rgb sigma_t{0.0};           // extinction at density 1 [1/world unit], density_scale included
     vkvol::Rgb albedo{0.0};
     ColorGrid albedo_grid; // multiplies it; or empty
+    vkvol::ValueMap map;   // of the grid's values; or none
     vkvol::PhaseFunction phase = vkvol::PhaseFunction::henyey_greenstein;
     double g = 0.0;
     double g2 = 0.0, share = 0.0, alpha = 0.0; // of a second function and its part
@@ -32,6 +33,8 @@ struct Medium {
     double density(const glm::dvec3& p) const;             // at index coordinates of a grid, else before it is moved
 
     vkvol::Rgb albedo_at(const glm::dvec3& world) const;
+    vkvol::Rgb emission_at(const glm::dvec3& world) const; // per absorption event
+    double grid_value(const glm::dvec3& index) const;      // as interpolated, before it is mapped
 
     double largest() const;            // of sigma_t's channels
     Ray unmoved(const Ray& ray) const; // direction: what one world unit becomes there

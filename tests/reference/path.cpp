@@ -137,7 +137,7 @@ Flight gathering_flight(const World& world, const Ray& ray, double exponential, 
         events.piece = [&](double t0, double t1, const Rgb& weight) {
             const double t = t0 + rng.next().x() * (t1 - t0);
             const Rgb emitted =
-                medium.sigma_t * density(t) * (1.0 - medium.albedo_at(ray.at(t))) * medium.emission.at(ray.at(t));
+                medium.sigma_t * density(t) * (1.0 - medium.albedo_at(ray.at(t))) * medium.emission_at(ray.at(t));
             L += weight * (t1 - t0) * emitted;
         };
     if (world.method.nee == NEE_TENTATIVE && lit)
@@ -169,7 +169,7 @@ Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng
         ray.origin = ray.at(*flight.t);
         const Rgb albedo = medium.albedo_at(ray.origin);
         if (method.emission == EMISSION_AT_COLLISIONS)
-            L += beta * (1.0 - albedo) * medium.emission.at(ray.origin);
+            L += beta * (1.0 - albedo) * medium.emission_at(ray.origin);
         if (last)
             return L;
         beta *= albedo;

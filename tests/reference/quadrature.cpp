@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "lights.h"
+#include "mapped.h"
 #include "phase.h"
 
 namespace reference {
@@ -67,11 +68,37 @@ Rgb attenuated_integral(const Medium& medium, const Ray& ray, int panels,
 
 } // namespace
 
+namespace {
+
+// Within each voxel the values along the ray are a cubic.
+void add_map_breaks(std::vector<double>& t, const Medium& medium, const Ray& index_ray) {
+    std::sort(t.begin(), t.end());
+    const std::size_t faces = t.size();
+    for (std::size_t i = 0; i + 1 < faces; ++i) {
+        const double length = t[i + 1] - t[i];
+        double v[4]; // at points within, where no rounding takes them into the voxel next to it
+        for (int k = 0; k < 4; ++k)
+            v[k] = medium.grid_value(index_ray.at(t[i] + (k + 0.5) / 4.0 * length));
+        const auto cubic = [&v](double s) { // Lagrange's, x counted in spacings from the first of them
+            const double x = 4.0 * s - 0.5;
+            return -(x - 1) * (x - 2) * (x - 3) / 6 * v[0] + x * (x - 2) * (x - 3) / 2 * v[1] -
+                   x * (x - 1) * (x - 3) / 2 * v[2] + x * (x - 1) * (x - 2) / 6 * v[3];
+        };
+        const double ends[4] = {cubic(0.0), cubic(1.0 / 3.0), cubic(2.0 / 3.0), cubic(1.0)};
+        for (const double at : map_breaks(medium.map, ends))
+            t.push_back(t[i] + at * length);
+    }
+}
+
+} // namespace
+
 std::vector<double> breaks(const Medium& medium, const Ray& field_ray, const Interval& interval) {
     std::vector<double> t{interval.t0, interval.t1};
     if (const Grid* grid = medium.grid()) {
         const double shift = medium.filter == vkvol::Filter::nearest ? 0.5 : 0.0;
         add_crossings(t, field_ray, interval, glm::dvec3(grid->lower) + shift, 1.0);
+        if (medium.map.exists() && shift == 0.0)
+            add_map_breaks(t, medium, field_ray);
     } else if (medium.noise) {
         double frequency = medium.noise->frequency;
         for (int octave = 0; octave < medium.noise->octaves; ++octave, frequency *= medium.noise->lacunarity)

@@ -81,7 +81,7 @@ Rgb radiance_by_race(const World& world, Ray ray, Rng& rng) {
         ray.origin = ray.at(collides ? collision->t : hit->t);
         if (collides) {
             const Rgb albedo = collision->medium->albedo_at(ray.origin);
-            L += beta * (1.0 - albedo) * collision->medium->emission.at(ray.origin);
+            L += beta * (1.0 - albedo) * collision->medium->emission_at(ray.origin);
             beta *= albedo;
         } else if (hit->surface->shines_both_ways || glm::dot(hit->normal, travel) < 0.0) {
             L += beta * hit->surface->emission;

@@ -32,7 +32,7 @@ Rgb march_through(const World& world, const Ray& ray, Rng& rng) {
     const auto pass = [&](double t, double length) { // all that the step adds, but the light scattered in it
         const Rgb T = glm::exp(-medium.sigma_t * density(t) * length);
         const Rgb alpha = beta * (1.0 - T);
-        L += alpha * (1.0 - medium.albedo_at(ray.at(t))) * medium.emission.at(ray.at(t));
+        L += alpha * (1.0 - medium.albedo_at(ray.at(t))) * medium.emission_at(ray.at(t));
         beta *= T;
         return alpha;
     };

@@ -17,6 +17,7 @@ struct Structs {
     shared::SamplePlace waiting;
     shared::ControlCell control_cell;
     shared::PhaseNode phase_node;
+    shared::MapKnot map_knot;
     shared::LightRow light_row;
     shared::LightNode light_node;
     shared::SurfaceRow surface_row;
@@ -47,8 +48,8 @@ std::vector<std::uint32_t> list_words(const Structs& all) {
         words.resize(first + sizeof field / 4);
         std::memcpy(&words[first], &field, sizeof field);
     };
-    const auto& [path, laid_aside, waiting, control_cell, phase_node, light_row, light_node, surface_row, piece,
-                 bvh_node, header, entry, counters, frame, push] = all;
+    const auto& [path, laid_aside, waiting, control_cell, phase_node, map_knot, light_row, light_node, surface_row,
+                 piece, bvh_node, header, entry, counters, frame, push] = all;
 #define PUT(field) put(field);
 #define PUT_EACH(field, count)                                                                                         \
     for (int k = 0; k < count; ++k)                                                                                    \
@@ -81,6 +82,7 @@ TEST_CASE("shared structs have one layout on host and device", "[gpu][layout]") 
     const Buffer places = second_of_two(commands, all.waiting, storage);
     const Buffer controls = second_of_two(commands, all.control_cell, storage);
     const Buffer phase_nodes = second_of_two(commands, all.phase_node, storage);
+    const Buffer map_knots = second_of_two(commands, all.map_knot, storage);
     const Buffer lights = second_of_two(commands, all.light_row, storage);
     const Buffer light_nodes = second_of_two(commands, all.light_node, storage);
     const Buffer surfaces = second_of_two(commands, all.surface_row, storage);
@@ -101,6 +103,7 @@ TEST_CASE("shared structs have one layout on host and device", "[gpu][layout]") 
     bound[BINDING_PLACES] = &places;
     bound[BINDING_CONTROLS] = &controls;
     bound[BINDING_PHASE] = &phase_nodes;
+    bound[BINDING_MAPS] = &map_knots;
     bound[BINDING_LIGHTS] = &lights;
     bound[BINDING_LIGHT_TREE] = &light_nodes;
     bound[BINDING_SURFACES] = &surfaces;

@@ -147,6 +147,10 @@ TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "
         const Specialization s = with({{SPEC_NEE, NEE_COLLISIONS}, {SPEC_LIGHTS, lights}});
         CHECK(specialise(fused_full_spv, s).bindings == more);
     };
+    for (const int map : {MAP_DENSITY, MAP_ALBEDO, MAP_GLOW})
+        CHECK(
+            specialise(fused_full_spv, with({{SPEC_MAP, map}, {SPEC_MAP_HALVINGS, 3}, {SPEC_FILTER, FILTER_TRILINEAR}}))
+                .bindings.contains(BINDING_MAPS));
     lights_touch(LIGHTS_SUN, {});
     lights_touch(LIGHTS_TABLE, {BINDING_LIGHTS});
     lights_touch(LIGHTS_TABLE | LIGHTS_TREE, {BINDING_LIGHTS, BINDING_LIGHT_TREE});
@@ -171,6 +175,7 @@ TEST_CASE("every feature costs instructions only where a scene has it", "[gpu][s
     CHECK(constant < count({{SPEC_EMISSION, EMISSION_CONSTANT}, {SPEC_EMISSION_AT, EMISSION_AT_STEPS}}));
     CHECK(none < specialise(fused_chromatic_spv, plain()).instructions);
     CHECK(none == specialise(fused_full_spv, plain()).instructions);
+    CHECK(none == specialise(fused_full_spv, with({{SPEC_MAP_HALVINGS, 3}})).instructions);
     CHECK(none < count({{SPEC_FILTER, FILTER_TRILINEAR}}));
     CHECK(none < count({{SPEC_LEAPS, 1}}));
     // What is switched off leaves nothing behind, whatever the constants that describe it say.
@@ -191,7 +196,8 @@ TEST_CASE("every feature costs instructions only where a scene has it", "[gpu][s
 TEST_CASE("what few scenes have is compiled in a form of its own", "[cpu][specialization]") {
     const Kernel plain = read_kernel(Words(std::begin(fused_spv), std::end(fused_spv)));
     const Kernel full = read_kernel(Words(std::begin(fused_full_spv), std::end(fused_full_spv)));
-    for (const int binding : {BINDING_LIGHTS, BINDING_LIGHT_TREE, BINDING_SKY, BINDING_SKY_ALIAS, BINDING_PHASE}) {
+    for (const int binding :
+         {BINDING_LIGHTS, BINDING_LIGHT_TREE, BINDING_SKY, BINDING_SKY_ALIAS, BINDING_PHASE, BINDING_MAPS}) {
         CAPTURE(binding);
         CHECK(!plain.bindings.contains(binding)); // declared they may be, by newer compilers
         CHECK(full.bindings.contains(binding));

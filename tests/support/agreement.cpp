@@ -100,6 +100,14 @@ std::vector<NamedScene> agreement_scenes() {
     several.volumes.push_back(noisy);
     several.volumes.push_back(medium(Box{{-1.5, 1.0, 0.0}, {3.0, 2.0, 4.0}}, 0.3, 0.5));
     scenes.push_back({"several media", several});
+    Volume scan = medium(cloud_file(), 1.0, 1.0, 0.3);
+    scan.map.points = {{0.0, 0.02, Rgb(0.9), Rgb(0.0)},
+                       {0.25, 0.3, {0.9, 0.5, 0.3}, Rgb(0.0)},
+                       {0.5, 2.0, {0.8, 0.6, 0.5}, {0.5, 0.1, 0.02}},
+                       {0.5, 0.6, {1.0, 0.95, 0.9}, Rgb(0.0)},
+                       {0.9, 1.5, {0.4, 0.5, 0.9}, {0.0, 0.0, 0.2}}};
+    scan.map.is_transfer = true;
+    scenes.push_back({"transfer function", picture_of(scan, 11.0, 1000)});
     return scenes;
 }
 

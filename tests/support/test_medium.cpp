@@ -5,12 +5,11 @@
 #include <numeric>
 #include <random>
 
-#include "flight.spv.h"
-#include "flight_chromatic.spv.h"
+#include "flight_forms.h"
 #include "test_meshes.h"
 #include "tests/reference/quadrature.h"
-#include "transmittance.spv.h"
-#include "transmittance_chromatic.spv.h"
+#include "transmittance_forms.h"
+#include "value_map.h"
 
 namespace vkvol {
 
@@ -36,6 +35,8 @@ Volume volume_of(const MediumRecipe& recipe) {
     volume.sigma_s = 0.6 * recipe.sigma_t;
     volume.unit = CoefficientUnit::world;
     volume.shape = Sphere{{0.2, 0.1, 0.0}, 1.7};
+    if (recipe.is_mapped)
+        volume.map = bumpy_map();
     if (recipe.kind == MediumKind::noise_sphere || recipe.kind == MediumKind::noise_cubes)
         volume.noise = recipe.noise;
     return volume;
@@ -43,6 +44,26 @@ Volume volume_of(const MediumRecipe& recipe) {
 
 bool grey(const Rgb& c) {
     return c == Rgb(c.x);
+}
+
+} // namespace
+
+ValueMap bumpy_map() {
+    ValueMap map;
+    map.points = {{0.05, 0.0}, {0.3, 1.2}, {0.5, 0.2}, {0.5, 0.8}, {0.9, 0.5}, {1.2, 0.0}, {1.2, 0.6}};
+    map.rise = 0.5;
+    return map;
+}
+
+namespace {
+
+// Of a kernel.
+unsigned form_of(const TestScene& scene) {
+    return (scene.chromatic ? form_chromatic : 0) | (scene.specialization[SPEC_MAP] != MAP_NONE ? form_full : 0);
+}
+
+bool bends(const MediumRecipe& recipe) {
+    return recipe.is_mapped && recipe.filter != Filter::nearest;
 }
 
 } // namespace
@@ -60,7 +81,9 @@ bool flies(int free_flight, const MediumRecipe& recipe) {
     const bool homogeneous = recipe.kind == MediumKind::sphere || recipe.kind == MediumKind::cubes;
     if (free_flight == FREE_FLIGHT_ANALYTIC)
         return homogeneous;
-    if (free_flight == FREE_FLIGHT_REGULAR && recipe.kind != MediumKind::grid)
+    if (free_flight == FREE_FLIGHT_REGULAR && (recipe.kind != MediumKind::grid || bends(recipe)))
+        return false;
+    if (recipe.is_mapped && recipe.filter == Filter::stochastic)
         return false;
     if (!is_null_flight(free_flight))
         return recipe.filter != Filter::stochastic;
@@ -71,7 +94,9 @@ bool sees(int transmittance, const MediumRecipe& recipe) {
     const bool homogeneous = recipe.kind == MediumKind::sphere || recipe.kind == MediumKind::cubes;
     if (transmittance == TRANSMITTANCE_ANALYTIC)
         return homogeneous;
-    if (transmittance == TRANSMITTANCE_REGULAR && recipe.kind != MediumKind::grid)
+    if (transmittance == TRANSMITTANCE_REGULAR && (recipe.kind != MediumKind::grid || bends(recipe)))
+        return false;
+    if (recipe.is_mapped && recipe.filter == Filter::stochastic)
         return false;
     return is_null_transmittance(transmittance) || recipe.filter != Filter::stochastic;
 }
@@ -83,6 +108,11 @@ TestMedium::TestMedium(const MediumRecipe& recipe) {
     const Filter filter = recipe.filter == Filter::nearest ? Filter::nearest : Filter::trilinear;
     if (recipe.kind == MediumKind::grid) {
         grid_ = make_test_grid(recipe.grid);
+        if (recipe.is_mapped)
+            grid_->change_majorants([&](MajorantGrid& majorants) {
+                majorants = make_majorant_grid(grid_->field(), recipe.grid.cell, volume.map);
+            });
+        grid_->volume.map_knots = make_knots(volume.map);
         add_controls(grid_->volume, volume, estimators);
         const float scale = static_cast<float>(recipe.majorant_scale);
         grid_->change_majorants([&](MajorantGrid& majorants) {
@@ -153,8 +183,7 @@ std::vector<RayInput> TestMedium::flights_along(const reference::Ray& ray, int c
 }
 
 std::vector<FlightOutput> TestMedium::fly(const std::vector<RayInput>& inputs) const {
-    const auto spirv = scene_->chromatic ? std::span<const std::uint32_t>(flight_chromatic_spv) : flight_spv;
-    KernelRunner runner(spirv, scene_->specialization, scene_->kernel);
+    KernelRunner runner(flight_forms[form_of(*scene_)], scene_->specialization, scene_->kernel);
     runner.push.step_limit = 15000;
     return runner.run<FlightOutput>(inputs);
 }
@@ -179,9 +208,7 @@ std::vector<FlightOutput> TestMedium::see(const std::vector<reference::Ray>& ray
     for (std::size_t i = 0; i < rays.size(); ++i)
         inputs.push_back({scene_->to_render(rays[i].origin), rays[i].direction, seed + std::uint32_t(i), 0.0f, 0.0f,
                           glm::vec3(1.0f)});
-    const auto spirv =
-        scene_->chromatic ? std::span<const std::uint32_t>(transmittance_chromatic_spv) : transmittance_spv;
-    KernelRunner runner(spirv, scene_->specialization, scene_->kernel);
+    KernelRunner runner(transmittance_forms[form_of(*scene_)], scene_->specialization, scene_->kernel);
     runner.push.step_limit = 15000;
     runner.push.sample_end = count;
     const auto threads = static_cast<std::uint32_t>(rays.size() * count);

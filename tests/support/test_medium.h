@@ -20,14 +20,18 @@ struct MediumRecipe {
     Filter filter = Filter::trilinear;
     double majorant_scale = 1.0;
     GridRecipe grid = rough_recipe();
-    bool leaps = true; // over its empty majorant cells
+    bool leaps = true;      // over its empty majorant cells
+    bool is_mapped = false; // the grid's values, by bumpy_map()
     Noise noise{1.3, 3, 0.6, 2.1};
 };
+
+// Rises, falls, has two steps and goes on rising: for values from 0 to 2.
+ValueMap bumpy_map();
 
 bool is_null_flight(int free_flight);
 bool is_null_transmittance(int transmittance);
 // Where an estimator can be used: analytic with density 1, regular in grids, grey ones only where all channels agree,
-// stochastic lookup only where the density enters linearly.
+// stochastic lookup only where the density enters linearly; of mapped values regular ones only without interpolation.
 bool flies(int free_flight, const MediumRecipe& recipe);
 bool sees(int transmittance, const MediumRecipe& recipe);
 

@@ -36,7 +36,7 @@ void add_controls(LoadedMedium& loaded, const Volume& volume, const TestEstimato
     const Rgb sigma_t = volume.sigma_a + volume.sigma_s;
     const double largest = std::max({sigma_t.x, sigma_t.y, sigma_t.z}) * loaded.field->voxel_size();
     const bool decomposes = estimators.free_flight == FREE_FLIGHT_DECOMPOSITION;
-    loaded.controls = make_controls(*loaded.field, *loaded.majorants, decomposes ? 0.0 : largest);
+    loaded.controls = make_controls(*loaded.field, *loaded.majorants, decomposes ? 0.0 : largest, volume.map);
 }
 
 TestScene make_test_scene(const LoadedMedium& loaded, Volume volume, Filter filter, const TestEstimators& estimators) {

@@ -131,7 +131,9 @@ class LightsTest(unittest.TestCase):
                                 ("<camera lensRadius='0.5' focus='3'/>", "lenses are not translated"),
                                 ("<pixelFilter>tent</pixelFilter>", "<pixelFilter> is not translated"),
                                 ("<pixelFilter radius='1'>box</pixelFilter>", "<pixelFilter> is not translated"),
-                                ("<albedo grid='Cd'/>", "(<albedo>), which is not translated")):
+                                ("<albedo grid='Cd'/>", "(<albedo>), which is not translated"),
+                                ("<densityMap gain='2'/>", "(<densityMap>), which is not translated"),
+                                ("<transferFunction/>", "(<transferFunction>), which is not translated")):
             with self.assertRaises(SystemExit) as stopped:
                 read(elements)
             self.assertIn(words, str(stopped.exception))

@@ -26,6 +26,7 @@ const std::vector<Recipe>& recipes() {
         {"cumulus", "a cumulus cloud, about 60 units wide, in a box SIZE samples wide", 464, make_cumulus},
         {"explosion", "a rising fireball: density and temperature, SIZE samples wide", 160, make_explosion},
         {"broken_cloud", "a layer of broken cloud over haze, SIZE samples wide", 320, make_broken_cloud},
+        {"head", "a head as a scanner sees it: skin, skull and brain, SIZE samples tall", 176, make_head},
         {"bunny_cloud", "a cumulus where the thesis' scenes look for a bunny, SIZE samples wide", 256,
          make_bunny_cloud},
         {"fire", "a fireball where the thesis' scenes look for one: density and temperature, SIZE samples wide", 160,

@@ -42,6 +42,7 @@ Field make_glow(int size, std::uint32_t seed);
 Field make_cumulus(int size, std::uint32_t seed);
 Field make_explosion(int size, std::uint32_t seed);
 Field make_broken_cloud(int size, std::uint32_t seed);
+Field make_head(int size, std::uint32_t seed);
 
 // Stand-ins for the two grids of the thesis' scenes, which are not ours to pass on.
 Field make_bunny_cloud(int size, std::uint32_t seed);

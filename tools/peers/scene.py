@@ -172,6 +172,9 @@ class Reader:
                 self.fail(f"has {what} (<{name}>), which is not translated; take a scene with a grid, a sphere or a box")
         if self.find("albedo") is not None:
             self.fail("has an albedo of its own in each place (<albedo>), which is not translated; remove it")
+        for name in ("densityMap", "transferFunction"):
+            if self.find(name) is not None:
+                self.fail(f"maps the values of its grid (<{name}>), which is not translated; remove it")
         if self.color("medium").any() or self.color("emission").any():
             self.fail("the medium glows, which is not translated; remove <medium> and <emission>")
         integrator = self.text("integrator")

@@ -1,0 +1,136 @@
+// The part of SceneReader that reads maps from a grid's values to densities and colours.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "scene_reader.h"
+
+namespace vkvol {
+
+namespace {
+
+constexpr std::size_t most_points = 256;
+
+// The values of a grid, as they are stored, are at least 0.
+constexpr Limits grid_value{
+    0.0, no_limit, true, true,
+    "a number >= 0, as grids' values below 0 count as 0 (add 1000 to Hounsfield units where the grid is written)"};
+constexpr Limits part{0.0, 1.0, true, true, "numbers from 0 to 1"};
+constexpr Limits radiance{0.0, brightest_light, true, true, "numbers from 0 to 1e12"};
+
+void check_order(const std::vector<MapPoint>& points, const XmlElement& last) {
+    if (points.size() < 2)
+        return;
+    const MapPoint &from = points[points.size() - 2], &to = points.back();
+    const bool third = points.size() > 2 && points[points.size() - 3].value == to.value;
+    if (to.value < from.value || third)
+        last.fail_attribute("value",
+                            fmt::format("<point> value: {:g} after {:g}; values ascend from point to point, and two "
+                                        "that are alike make a step",
+                                        to.value, from.value));
+    const double values = to.value - from.value;
+    const double most = std::max({std::abs(to.density - from.density), 1.0, to.emission.x, to.emission.y, to.emission.z,
+                                  from.emission.x, from.emission.y, from.emission.z});
+    if (values > 0.0 && !(most / values <= no_limit))
+        last.fail(
+            fmt::format("<point> changes too much within {:g} of value for single precision; give both points the "
+                        "same value, which makes a step",
+                        values));
+}
+
+} // namespace
+
+// In the element of that name. Of a density map each point has a density, of a transfer function its like, sigma_t.
+std::vector<MapPoint> SceneReader::map_points(const char* name, bool is_transfer) const {
+    const std::vector<std::string> attributes = is_transfer
+                                                    ? std::vector<std::string>{"value", "sigma_t", "albedo", "emission"}
+                                                    : std::vector<std::string>{"value", "density"};
+    const std::string& amount = attributes[1];
+    std::vector<MapPoint> points;
+    for (const pugi::xml_node node : find({name}).children("point")) {
+        const XmlElement element(document_, node);
+        element.allow(attributes);
+        for (const std::string& needed : {attributes[0], amount})
+            if (!element.has(needed.c_str()))
+                element.fail(fmt::format("<point> lacks {}", needed));
+        if (points.size() == most_points)
+            element.fail(fmt::format("<{}> has more than {} points; leave some out", name, most_points));
+        MapPoint& point = points.emplace_back();
+        point.value = element.attribute_number("value", 0.0, grid_value);
+        point.density = element.attribute_number(amount.c_str(), 0.0, not_negative);
+        point.albedo = channels(element, "albedo", part, point.albedo);
+        point.emission = channels(element, "emission", radiance, point.emission);
+        check_order(points, element);
+    }
+    return points;
+}
+
+// Of values v: gain v + offset, where that is more than 0 and v is not below the threshold; else 0.
+ValueMap SceneReader::ramp(const XmlElement& element) const {
+    const double gain = element.attribute_number("gain", 1.0, any_number);
+    const double offset = element.attribute_number("offset", 0.0, any_number);
+    const double threshold = element.attribute_number("threshold", 0.0, grid_value);
+    ValueMap map;
+    if (threshold > 0.0)
+        map.points = {{0.0, 0.0}, {threshold, 0.0}};
+    map.points.push_back({threshold, std::max(gain * threshold + offset, 0.0)});
+    const double root = gain != 0.0 ? -offset / gain : 0.0;
+    if (root > no_limit || map.points.back().density > no_limit)
+        element.fail(fmt::format("<densityMap> ends beyond {:g}, and single precision with it; bring gain, offset and "
+                                 "threshold nearer to 1",
+                                 no_limit));
+    if (root > threshold)
+        map.points.push_back({root, 0.0});
+    map.rise = std::max(gain, 0.0);
+    return map;
+}
+
+ValueMap SceneReader::density_map(const XmlElement& element) const {
+    element.allow({"gain", "offset", "threshold"}, false, {"point"});
+    ValueMap map;
+    map.points = map_points("densityMap", false);
+    if (!map.exists())
+        return ramp(element);
+    for (const char* name : {"gain", "offset", "threshold"})
+        if (element.has(name))
+            element.fail_attribute(name, fmt::format("<densityMap> {}: its points say all; remove it, or them", name));
+    return map;
+}
+
+ValueMap SceneReader::transfer_function(const XmlElement& element) const {
+    element.allow({"unit"}, false, {"point"});
+    for (const char* name : {"sigma_a", "sigma_s"})
+        if (const XmlElement other = one(name); other.exists())
+            other.fail(fmt::format("<{}> beside a <transferFunction>, whose points have sigma_t and albedo; remove one",
+                                   name));
+    ValueMap map;
+    map.points = map_points("transferFunction", true);
+    map.is_transfer = true;
+    if (!map.exists())
+        element.fail("<transferFunction> has no points; give it some, e.g. <point value=\"0.5\" sigma_t=\"2\" "
+                     "albedo=\"0.9 0.6 0.4\"/>");
+    return map;
+}
+
+void SceneReader::read_map(Volume& volume) const {
+    const XmlElement density = one("densityMap"), transfer = one("transferFunction");
+    if (!density.exists() && !transfer.exists())
+        return;
+    if (density.exists() && transfer.exists())
+        transfer.fail(
+            fmt::format("a <transferFunction> beside the <densityMap> at {}; a grid's values are mapped once: "
+                        "remove one",
+                        density.place()));
+    const XmlElement& element = density.exists() ? density : transfer;
+    if (!std::holds_alternative<GridFile>(volume.shape))
+        element.fail(fmt::format("<{}> maps the values of a <densityField>, and this volume has none; remove it",
+                                 element.name()));
+    volume.map = density.exists() ? density_map(density) : transfer_function(transfer);
+    if (!transfer.exists())
+        return;
+    volume.sigma_a = Rgb(0.0);
+    volume.sigma_s = Rgb(1.0);
+    volume.unit = unit(transfer, transfer, true);
+}
+
+} // namespace vkvol
