@@ -62,6 +62,8 @@ std::optional<Corners> corners_of(const Volume& volume, FieldCache& fields) {
         return moved(volume, corners_between(sphere->center - sphere->radius, sphere->center + sphere->radius));
     if (const auto* box = std::get_if<Box>(&volume.shape))
         return moved(volume, corners_between(box->center - 0.5 * box->size, box->center + 0.5 * box->size));
+    if (is_everywhere(volume))
+        return std::nullopt; // there is no seeing all of it
     if (const auto* files = std::get_if<MeshFiles>(&volume.shape))
         return corners_of(load_mesh(*files, volume.transform));
     const GridFile& file = std::get<GridFile>(volume.shape);

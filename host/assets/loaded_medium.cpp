@@ -8,6 +8,7 @@
 
 #include "blackbody.h"
 #include "error.h"
+#include "layers.h"
 #include "phase_params.h"
 #include "phase_table.h"
 #include "pilot_paths.h"
@@ -99,6 +100,9 @@ private:
     void load_phase_nodes(const Volume& volume, LoadedMedium& loaded);
     void load_grid(const Volume& volume, const GridFile& file, LoadedMedium& loaded);
     void load_majorants(const Volume& volume, const DensityField& field, LoadedMedium& loaded);
+    void load_layers(const Volume& volume, LoadedMedium& loaded);
+    void scale_bounds(MajorantGrid& cells, LoadedMedium& loaded) const;
+    SharedArray<shared::MapKnot> knots_of(const Volume& volume);
     void load_map(const Volume& volume, const GridFile& file, const DensityField& field, LoadedMedium& loaded);
     void load_temperature(const Volume& volume, const GridFile& file, LoadedMedium& loaded);
     void load_blackbody(const TemperatureEmission& emission, const GridFile& file, LoadedMedium& loaded);
@@ -213,6 +217,14 @@ PilotScene pilot_scene(const Scene& scene, const Volume& volume, const Method& m
     return pilot;
 }
 
+void Loader::scale_bounds(MajorantGrid& cells, LoadedMedium& loaded) const {
+    const auto scale = static_cast<float>(scene_.settings.majorant_scale);
+    for (float& bound : cells.bounds)
+        bound *= scale;
+    for (shared::ControlCell& cell : loaded.controls)
+        cell.residual *= scale;
+}
+
 // The cells' bounds are scaled after the controls are made: these bound the density itself. Of several media there are
 // no controls, and cells are a matter of speed alone: then all that have the grid make do with those of the first.
 void Loader::load_majorants(const Volume& volume, const DensityField& field, LoadedMedium& loaded) {
@@ -230,24 +242,35 @@ void Loader::load_majorants(const Volume& volume, const DensityField& field, Loa
     const bool decomposes = method_.flights_have(TRAIT_CONTROL);
     if (decomposes || method_.shadow_rays_have(TRAIT_CONTROL))
         loaded.controls = make_controls(field, cells, decomposes ? 0.0 : voxel_sigma_t, volume.map);
-    for (float& bound : cells.bounds)
-        bound *= static_cast<float>(scale);
-    for (shared::ControlCell& cell : loaded.controls)
-        cell.residual *= static_cast<float>(scale);
+    scale_bounds(cells, loaded);
     loaded.majorants = known = std::make_shared<const Majorants>(std::move(cells));
 }
 
-void Loader::load_map(const Volume& volume, const GridFile& file, const DensityField& field, LoadedMedium& loaded) {
+SharedArray<shared::MapKnot> Loader::knots_of(const Volume& volume) {
     if (!volume.map.exists())
-        return;
+        return {};
     SharedArray<shared::MapKnot>& known = maps_[numbers_of(volume.map)];
     if (known.empty()) {
         std::vector<shared::MapKnot> knots = make_knots(volume.map);
         pad_knots(knots, knots_);
         known = std::move(knots);
     }
-    loaded.map_knots = known;
-    if (loaded.majorants->most == 0.0)
+    return known;
+}
+
+void Loader::load_layers(const Volume& volume, LoadedMedium& loaded) {
+    loaded.is_layered = true;
+    MajorantGrid cells = layer_cells(volume);
+    if (method_.flights_have(TRAIT_CONTROL) || method_.shadow_rays_have(TRAIT_CONTROL))
+        loaded.controls = layer_controls(volume);
+    scale_bounds(cells, loaded);
+    loaded.majorants = std::make_shared<const Majorants>(std::move(cells));
+    loaded.map_knots = knots_of(volume);
+}
+
+void Loader::load_map(const Volume& volume, const GridFile& file, const DensityField& field, LoadedMedium& loaded) {
+    loaded.map_knots = knots_of(volume);
+    if (volume.map.exists() && loaded.majorants->most == 0.0)
         warn(loaded, fmt::format("{}: \"{}\" has values up to {:g}, which <{}> maps to nothing: there is no medium; "
                                  "give points among these values more than 0",
                                  file.path.string(), file.grid, largest_value(field),
@@ -297,6 +320,8 @@ LoadedMedium Loader::load(const Volume& volume) {
     load_phase_nodes(volume, loaded);
     if (const auto* file = std::get_if<GridFile>(&volume.shape))
         load_grid(volume, *file, loaded);
+    if (volume.layers)
+        load_layers(volume, loaded);
     if (const auto* files = std::get_if<MeshFiles>(&volume.shape))
         load_models(volume, *files, loaded);
     return loaded;

@@ -23,7 +23,7 @@ struct Majorants : MajorantGrid {
     double mean = 0.0, most = 0.0; // of the bounds
 };
 
-// A grid with its majorants, or a mesh. Empty for spheres, boxes, no
+// A grid with its majorants, layers with theirs, or a mesh. Empty for other spheres, boxes and what is everywhere, no
 // volume, or a grid without voxels. What is large in it is shared by all that have the same.
 struct LoadedMedium {
     std::optional<DensityField> field;
@@ -36,6 +36,7 @@ struct LoadedMedium {
     double hottest = 0.0;                       // kelvin
     SharedArray<shared::PhaseNode> phase_nodes; // of a phase function that is a table
     SharedArray<shared::MapKnot> map_knots;     // of a map from the grid's values; all of a scene's are as long
+    bool is_layered = false;                    // whose majorants are across layers: see layers.h
     std::optional<Mesh> mesh;
     std::optional<Bvh> bvh;            // about the middle of the mesh
     std::vector<std::string> warnings; // what the scene asks for and its files do not hold

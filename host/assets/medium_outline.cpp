@@ -8,6 +8,7 @@
 
 #include "cell_walk.h"
 #include "noise.h"
+#include "placement.h"
 
 namespace vkvol {
 
@@ -60,7 +61,15 @@ MediumOutline make_outline(const Scene& scene, const Volume& volume, const Loade
     outline.emits = emits;
     outline.has_temperature = loaded.temperature.has_value();
     outline.hottest = loaded.hottest;
-    if (const auto* sphere = std::get_if<Sphere>(&volume.shape)) {
+    if (loaded.is_layered) {
+        const MediumBounds bounds = medium_bounds(loaded);
+        outline.to_world = medium_to_world(volume, loaded);
+        outline.low = bounds.low;
+        outline.high = bounds.high;
+        outline.densest = loaded.majorants->most / scene.settings.majorant_scale;
+    } else if (is_everywhere(volume)) {
+        outline.to_world = medium_to_world(volume, loaded);
+    } else if (const auto* sphere = std::get_if<Sphere>(&volume.shape)) {
         outline.is_ball = true;
         outline.to_world = volume.transform * placed(sphere->center, glm::dvec3(sphere->radius));
     } else if (const auto* box = std::get_if<Box>(&volume.shape)) {
@@ -89,7 +98,10 @@ MediumOutline make_outline(const Superposition& whole, bool emits) {
     outline.to_world = placed(whole.origin, glm::dvec3(whole.edge));
     outline.low = whole.low();
     outline.high = whole.high();
-    outline.cells = std::make_shared<const MajorantGrid>(whole.cells);
+    if (whole.unbounded)
+        outline.to_world = placed(whole.origin, glm::dvec3(everywhere_reach)); // whose cells go on beyond their grid
+    else
+        outline.cells = std::make_shared<const MajorantGrid>(whole.cells);
     outline.densest = *std::max_element(whole.cells.bounds.begin(), whole.cells.bounds.end());
     return outline;
 }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "layers.h"
 #include "noise.h"
 #include "placement.h"
 
@@ -54,6 +56,9 @@ bool has_matter(const Volume& volume, const LoadedMedium& loaded) {
 }
 
 double usual_cell(const Volume& volume, const LoadedMedium& loaded) {
+    if (is_everywhere(volume))
+        return loaded.is_layered ? layer_box(volume).size[volume.layers->axis] / double(loaded.majorants->bounds.size())
+                                 : std::numeric_limits<double>::infinity();
     return loaded.field ? loaded.majorants->cell * loaded.field->voxel_size()
                         : diagonal_of(volume, loaded) / std::sqrt(3.0) / pieces;
 }
@@ -63,6 +68,8 @@ const Pieces& PieceStore::of(const Volume& volume, const LoadedMedium& loaded, d
     const double size = usual_cell(volume, loaded);
     if (loaded.field) // whose bounds the scene's scale is in already
         return of_grid(loaded, level_for(size, finest, most_grid_levels));
+    if (loaded.is_layered)
+        return of_grid(loaded, 0);
     const double density = volume.noise ? noise_bound(*volume.noise) : 1.0;
     return of_shape(std::holds_alternative<Sphere>(volume.shape), density * scale_,
                     level_for(size, finest, most_shape_levels));
@@ -74,7 +81,7 @@ const Pieces& PieceStore::of_grid(const LoadedMedium& loaded, int level) {
         std::shared_ptr<const MajorantGrid> cells = loaded.majorants;
         if (!levels.empty())
             cells = std::make_shared<const MajorantGrid>(merge_cells(*levels.back().first));
-        levels.emplace_back(cells, pieces_of_cells(*cells, index_base(*loaded.field)));
+        levels.emplace_back(cells, pieces_of_cells(*cells, loaded.field ? index_base(*loaded.field) : glm::ivec3(0)));
     }
     return levels[std::size_t(level)].second;
 }

@@ -31,6 +31,8 @@ class PieceStore {
 public:
     explicit PieceStore(double majorant_scale) : scale_(majorant_scale) {}
 
+    double scale() const { return scale_; }
+
     // As fine as there are, or as suits who wants to know about places of this size [world units] and no smaller ones.
     // Until the next call of it.
     const Pieces& of(const Volume& volume, const LoadedMedium& loaded, double finest);

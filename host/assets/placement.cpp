@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "layers.h"
+
 namespace vkvol {
 
 glm::ivec3 index_base(const DensityField& field) {
@@ -22,18 +24,27 @@ UnmovedShape unmoved_shape(const Volume& volume, const LoadedMedium& loaded) {
         return {sphere->center, glm::dvec3(sphere->radius)};
     if (const auto* box = std::get_if<Box>(&volume.shape))
         return {box->center, box->size / 2.0};
+    if (is_everywhere(volume))
+        return {glm::dvec3(0.0), glm::dvec3(everywhere_reach)};
     return loaded.mesh ? UnmovedShape{box_center(*loaded.mesh)} : UnmovedShape{};
 }
 
 glm::dmat4 medium_to_world(const Volume& volume, const LoadedMedium& loaded) {
     if (loaded.field)
         return index_to_world(*loaded.field);
+    if (loaded.is_layered) {
+        const LayerBox box = layer_box(volume);
+        return volume.transform *
+               glm::scale(glm::translate(glm::dmat4(1.0), box.low), box.size / glm::dvec3(loaded.majorants->dims));
+    }
     const UnmovedShape shape = unmoved_shape(volume, loaded);
     const glm::dmat4 placed = glm::scale(glm::translate(glm::dmat4(1.0), shape.center), shape.half);
     return loaded.mesh ? placed : volume.transform * placed; // a mesh's vertices have been moved
 }
 
 MediumBounds medium_bounds(const LoadedMedium& loaded) {
+    if (loaded.is_layered)
+        return {glm::dvec3(0.0), glm::dvec3(loaded.majorants->dims)};
     if (!loaded.field)
         return {};
     const glm::ivec3 base = index_base(*loaded.field);

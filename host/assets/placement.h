@@ -13,7 +13,7 @@ glm::ivec3 index_base(const DensityField& field);
 // Index space counted from there -> world.
 glm::dmat4 index_to_world(const DensityField& field);
 
-// Medium space -> world: a ball, a cube, the grid's own index space, or a mesh about its middle.
+// Medium space -> world: a ball, a cube, the grid's own index space, a mesh about its middle, or cells across layers.
 glm::dmat4 medium_to_world(const Volume& volume, const LoadedMedium& loaded);
 
 // Where the shape of a ball, a cube or a mesh has its middle, and half of its edges, before its volume's transform.
@@ -22,7 +22,7 @@ struct UnmovedShape {
 };
 UnmovedShape unmoved_shape(const Volume& volume, const LoadedMedium& loaded);
 
-// Medium space, where the density can differ from 0: one voxel around the active ones, for interpolation.
+// Medium space, where the density can differ from 0: of a grid one voxel around the active ones, for interpolation.
 struct MediumBounds {
     glm::dvec3 low{-1.0}, high{1.0};
 };

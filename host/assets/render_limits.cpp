@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "error.h"
+#include "layers.h"
 #include "noise.h"
 #include "shared/estimators.h"
 
@@ -35,6 +36,10 @@ Extent moved(const Volume& volume, glm::dvec3 center, double diagonal) {
 }
 
 Extent extent_of(const Volume& volume, const LoadedMedium& loaded) {
+    if (loaded.is_layered) {
+        const LayerBox box = layer_box(volume);
+        return moved(volume, box.low + 0.5 * box.size, glm::length(box.size));
+    }
     if (const auto* sphere = std::get_if<Sphere>(&volume.shape))
         return moved(volume, sphere->center, 2.0 * sphere->radius);
     if (const auto* box = std::get_if<Box>(&volume.shape))
@@ -55,7 +60,7 @@ double majorant_depth(const Scene& scene, const Volume& volume, const LoadedMedi
         const double bound = volume.noise ? noise_bound(*volume.noise) : 1.0;
         return sigma_t * bound * scene.settings.majorant_scale * diagonal;
     }
-    const double cell = std::sqrt(3.0) * loaded.majorants->cell * loaded.field->voxel_size();
+    const double cell = loaded.field ? std::sqrt(3.0) * loaded.majorants->cell * loaded.field->voxel_size() : diagonal;
     return sigma_t * (loaded.majorants->mean * diagonal + loaded.majorants->most * std::min(cell, diagonal));
 }
 
@@ -97,6 +102,21 @@ void check_distance(const Scene& scene, const Extent& extent) {
                                      extent.diagonal, glm::length(scene.camera.position - extent.center), farthest));
 }
 
+// A path that never comes to an end would be followed for ever.
+void check_everywhere(const Scene& scene, const Volume& volume, const LoadedMedium& loaded) {
+    constexpr double thinnest = 1e-15; // whose mean free path is a hundred thousandth of the way to where it ends
+    const double sigma_t = largest(world_sigma_t(volume, nullptr));
+    if (sigma_t > 0.0 && sigma_t < thinnest)
+        throw InputError(fmt::format("the extinction, {:.3g} per world unit, is too thin to be <everywhere>; expected "
+                                     "at least {:g}, or a <box>",
+                                     sigma_t, thinnest));
+    const Rgb lost = volume.sigma_a + (Rgb(1.0) - most_map_albedo(volume)) * volume.sigma_s;
+    const bool for_ever = std::min({lost.x, lost.y, lost.z}) < 1e-6 * largest(volume.sigma_a + volume.sigma_s);
+    if (!loaded.is_layered && sigma_t > 0.0 && for_ever && !scene.settings.max_depth)
+        throw InputError("a medium that is <everywhere> and absorbs nothing keeps its paths for ever; raise sigma_a, "
+                         "or give a <maxDepth>");
+}
+
 void check_glow(const Volume& volume, const LoadedMedium& loaded) {
     if (!loaded.temperature)
         return;
@@ -122,6 +142,8 @@ void check_limits(const Scene& scene, const Volume& volume, const LoadedMedium& 
     if (empty_grid)
         return;
     check_extinction(volume, loaded);
+    if (is_everywhere(volume))
+        return check_everywhere(scene, volume, loaded);
     const Extent extent = extent_of(volume, loaded);
     check_distance(scene, extent);
     const double sigma_t = largest(world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr));

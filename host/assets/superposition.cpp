@@ -9,6 +9,7 @@
 
 #include "empty_space.h"
 #include "error.h"
+#include "layers.h"
 #include "medium_pieces.h"
 #include "placement.h"
 
@@ -54,15 +55,82 @@ std::vector<Member> members_of(const Scene& scene, Media media) {
     return members;
 }
 
+// Where in the world a volume that is everywhere and has layers has its height: an axis, and the factor and the offset
+// that make a height of it. Upright in cells that go on for ever, or these would have no end of it.
+struct Upright {
+    int axis = 1;
+    double factor = 1.0, offset = 0.0; // height = factor * place + offset
+};
+
+Upright upright(const Volume& volume) {
+    const glm::dmat4 to_unmoved = glm::inverse(volume.transform);
+    Upright found;
+    double most = 0.0, others = 0.0;
+    for (int column = 0; column < 3; ++column) {
+        const double part = to_unmoved[column][volume.layers->axis];
+        others += std::abs(part);
+        if (std::abs(part) > std::abs(most)) {
+            most = part;
+            found.axis = column;
+        }
+    }
+    if (others - std::abs(most) > 1e-9 * std::abs(most))
+        throw InputError(fmt::format("{}<layers> that are <everywhere> beside other volumes stand along an axis of the "
+                                     "world; leave the tilt out of their <transform>, or give them a <box>",
+                                     volume.place.empty() ? "" : volume.place + ": "));
+    found.factor = most;
+    found.offset = to_unmoved[3][volume.layers->axis];
+    return found;
+}
+
 AxisBox box_around(const std::vector<Member>& members) {
     AxisBox box;
     for (const Member& member : members) {
+        if (is_everywhere(member.volume))
+            continue;
         const MediumBounds bounds = medium_bounds(member.loaded);
         const AxisBox other =
             around(member.to_world, 0.5 * (bounds.low + bounds.high), 0.5 * (bounds.high - bounds.low));
         box = {glm::min(box.low, other.low), glm::max(box.high, other.high)};
     }
     return box;
+}
+
+// What is everywhere has cells about the camera, if there is nothing else, and all of its layers in them: beyond, what
+// bounds an outermost cell must come to an end of its own.
+void take_in(const std::vector<Member>& members, const glm::dvec3& camera, double wanted, AxisBox& box) {
+    if (box.low.x > box.high.x)
+        box = {camera - 2.0 * wanted, camera + 2.0 * wanted};
+    for (const Member& member : members) {
+        const std::optional<Layers>& layers = member.volume.layers;
+        if (!is_everywhere(member.volume) || !layers)
+            continue;
+        const Upright place = upright(member.volume);
+        for (const double height : {layers->bottom, layers->top}) {
+            const double at = (height - place.offset) / place.factor;
+            // A cell more, so that what is beyond the layers lies beyond their cells, too.
+            box.low[place.axis] = std::min(box.low[place.axis], at - wanted);
+            box.high[place.axis] = std::max(box.high[place.axis], at + wanted);
+        }
+    }
+}
+
+// Bounds of the extinction between the faces of cells along that axis, outermost ones of which have none beyond.
+std::vector<double> layers_in_cells(const Volume& volume, const Upright& place, const Superposition& whole,
+                                    double sigma_t) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    std::vector<double> bounds;
+    const int count = whole.dims()[place.axis];
+    for (int k = 0; k < count; ++k) {
+        // A point on the device may be as far aside as single precision lets it be.
+        const double margin = 1e-3 * whole.edge;
+        const double low = whole.origin[place.axis] + whole.edge * (whole.cells.origin[place.axis] + k);
+        const double from = k == 0 ? -infinity : low - margin;
+        const double to = k == count - 1 ? infinity : low + whole.edge + margin;
+        const auto [a, b] = std::minmax({place.factor * from + place.offset, place.factor * to + place.offset});
+        bounds.push_back(sigma_t * layer_range(volume, a, b).most);
+    }
+    return bounds;
 }
 
 // Cells of this edge [world units] over the box, all of them coarse if `bits` is not 0. There are no bricks yet.
@@ -95,6 +163,19 @@ public:
 
     // Calls visit(entry, bound) for each of them once. `finest`: of the places that are told apart, world units.
     template <class Visit> void operator()(const Member& member, double finest, const Visit& visit) {
+        if (is_everywhere(member.volume))
+            raise_everywhere(member);
+        else
+            raise_pieces(member, finest);
+        for (const std::uint32_t entry : touched_) {
+            visit(entry, bounds_[entry]);
+            bounds_[entry] = 0.0f;
+        }
+        touched_.clear();
+    }
+
+private:
+    void raise_pieces(const Member& member, double finest) {
         const Pieces& pieces = pieces_.of(member.volume, member.loaded, finest);
         const glm::dmat4 map = to_cells_ * member.to_world;
         const glm::ivec3 dims = whole_.dims();
@@ -108,14 +189,24 @@ public:
                 glm::clamp(glm::ivec3(glm::floor(box.high + margin)) - whole_.cells.origin, glm::ivec3(0), dims - 1);
             raise(low, high, static_cast<float>(member.sigma_t * piece.bound * (1.0 + 1e-6)));
         }
-        for (const std::uint32_t entry : touched_) {
-            visit(entry, bounds_[entry]);
-            bounds_[entry] = 0.0f;
-        }
-        touched_.clear();
     }
 
-private:
+    // All cells, or those in which there are layers.
+    void raise_everywhere(const Member& member) {
+        const glm::ivec3 last = whole_.dims() - 1;
+        const double sigma_t = member.sigma_t * pieces_.scale() * (1.0 + 1e-6);
+        if (!member.loaded.is_layered)
+            return raise(glm::ivec3(0), last, static_cast<float>(sigma_t));
+        const Upright place = upright(member.volume);
+        const std::vector<double> bounds = layers_in_cells(member.volume, place, whole_, sigma_t);
+        for (int k = 0; k <= last[place.axis]; ++k) {
+            glm::ivec3 low(0), high = last;
+            low[place.axis] = high[place.axis] = k;
+            if (bounds[std::size_t(k)] > 0.0)
+                raise(low, high, static_cast<float>(bounds[std::size_t(k)]));
+        }
+    }
+
     // All entries of the cells from `low` to `high`.
     void raise(glm::ivec3 low, glm::ivec3 high, float bound) {
         const glm::ivec3 first = low >> whole_.bits, last = high >> whole_.bits;
@@ -164,7 +255,7 @@ std::size_t make_bricks(const std::vector<Member>& members, PieceStore& pieces, 
     std::vector<std::uint32_t> bricks(whole.bricks.size(), 0);
     Touch touch(whole, pieces);
     for (const Member& member : members)
-        if (member.cell < 0.5 * coarse)
+        if (member.cell < 0.5 * coarse && !is_everywhere(member.volume))
             touch(member, coarse, [&](std::uint32_t entry, float) {
                 if (bricks[entry] == 0)
                     bricks[entry] = ++count;
@@ -175,11 +266,14 @@ std::size_t make_bricks(const std::vector<Member>& members, PieceStore& pieces, 
 
 // Cells as small as the smallest that any medium wants, as far as there may be so many: everywhere, or where small
 // media are.
-Superposition lay_out(const std::vector<Member>& members, PieceStore& pieces) {
-    const AxisBox box = box_around(members);
+Superposition lay_out(const std::vector<Member>& members, const glm::dvec3& camera, PieceStore& pieces) {
+    AxisBox box = box_around(members);
     double wanted = std::numeric_limits<double>::infinity();
     for (const Member& member : members)
         wanted = std::min(wanted, member.cell);
+    if (!std::isfinite(wanted)) // all are everywhere, and the same there
+        wanted = 1.0;
+    take_in(members, camera, wanted, box);
     const glm::dvec3 size = box.high - box.low;
     const double longest = std::max({size.x, size.y, size.z}), volume = size.x * size.y * size.z;
     if (!(longest < 1e6 * 8.0 * wanted))
@@ -300,7 +394,8 @@ Superposition superpose(const Scene& scene, Media media, const Method& method) {
     if (members.empty())
         return {};
     PieceStore pieces(scene.settings.majorant_scale);
-    Superposition whole = lay_out(members, pieces);
+    Superposition whole = lay_out(members, scene.camera.position, pieces);
+    whole.unbounded = any_medium(scene, is_everywhere);
     fill(members, pieces, whole);
     // Worth the look at how far they reach where there are some.
     const auto empty = std::count(whole.cells.bounds.begin(), whole.cells.bounds.end(), 0.0f) +

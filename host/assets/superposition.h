@@ -16,7 +16,8 @@ struct LoadedMedium;
 // Its space is that of render space, axes along the world's, in units of a cell. Where cells as fine as small media
 // want them would be too many for the whole box, it has coarse cells, and those where small media are are bricks of
 // finer ones. Entries of tables are those of coarse cells, or of all if there are no others, z fastest; then those of
-// bricks, likewise.
+// bricks, likewise. Where media are everywhere, its outermost cells go on for ever, and what bounds them bounds all
+// that is beyond.
 struct Superposition {
     glm::dvec3 origin{0.0}; // of that space, world: amid the box
     double edge = 1.0;      // of a cell, world units
@@ -28,6 +29,7 @@ struct Superposition {
     // their number in the scene.
     std::vector<std::uint32_t> overlaps;
     std::uint32_t most_overlaps = 0; // of a cell
+    bool unbounded = false;          // some medium is everywhere
 
     glm::ivec3 dims() const { return cells.dims << bits; } // cells
     std::size_t entries() const { return cells.bounds.size() + brick_bounds.size(); }

@@ -30,6 +30,7 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
     specialization_[SPEC_TEXELS] = buffers_.texels() && fits ? 1 : 0;
     if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN || specialization_[SPEC_PHASE] != PHASE_HENYEY_GREENSTEIN ||
         specialization_[SPEC_ALBEDO] != ALBEDO_CONSTANT || specialization_[SPEC_MAP] != MAP_NONE ||
+        specialization_[SPEC_UNBOUNDED] != 0 || specialization_[SPEC_FIELD] == FIELD_LAYERS ||
         specialization_[SPEC_TEMPERATURE_TYPE] == GRID_COLOR || specialization_[SPEC_SENSOR] != SENSOR_PINHOLE ||
         specialization_[SPEC_PIXEL_FILTER] != 0)
         form_ |= form_full;
@@ -45,7 +46,7 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
 }
 
 void DeviceScene::make_lights(const Scene& scene, const Assets& assets) {
-    double radius = 0.5 * longest_diagonal(scene, assets.media, whole_of(assets));
+    double radius = lit_radius(scene, assets, frame_.media[0]);
     if (const double reach = reach_of_surfaces(scene.surfaces, origin_); std::isfinite(reach))
         radius = std::max(radius, reach);
     lights_ = make_light_table(scene, assets, origin_, radius);

@@ -40,7 +40,10 @@ std::string kernel_text(const Specialization& s, const Assets& assets, bool chro
                            filters[s[SPEC_FILTER]], assets.media.front().majorants->cell,
                            s[SPEC_LEAPS] ? ", empty ones leapt" : "");
     else
-        text = (s[SPEC_FIELD] == FIELD_NOISE ? "noise in a " : "homogeneous ") + text;
+        text = (s[SPEC_FIELD] == FIELD_NOISE    ? "noise in a "
+                : s[SPEC_FIELD] == FIELD_LAYERS ? "layers in a "
+                                                : "homogeneous ") +
+               (s[SPEC_UNBOUNDED] != 0 ? "medium everywhere" : text);
     if (s[SPEC_MAP] != MAP_NONE)
         text += s[SPEC_MAP] >= MAP_ALBEDO ? ", transfer function" : ", mapped values";
     text += fmt::format("{}, {} flight", chromatic ? ", chromatic" : "", choice(1, s[SPEC_FREE_FLIGHT]));

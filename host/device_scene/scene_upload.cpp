@@ -11,6 +11,7 @@
 #include "camera_rays.h"
 #include "camera_view.h"
 #include "error.h"
+#include "layers.h"
 #include "light_cache.h"
 #include "light_table.h"
 #include "noise.h"
@@ -30,10 +31,11 @@ static_assert(sizeof(shared::SensorParams) == 6 * 12 + 4 * 4 + 2 * 8);
 static_assert(sizeof(shared::GridParams) == 4 * 12 + 2 * 4);
 static_assert(sizeof(shared::AlbedoParams) == sizeof(shared::GridParams) + 3 * 16);
 static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 6 * 4);
-static_assert(sizeof(shared::MediumParams) == 3 * 16 + 3 * 12 + sizeof(shared::GridParams) + 12 + 6 * 4 + 2 * 12 +
+static_assert(sizeof(shared::LayerParams) == 12 + 2 * 4);
+static_assert(sizeof(shared::MediumParams) == 3 * 16 + 4 * 12 + sizeof(shared::GridParams) + 12 + 6 * 4 + 2 * 12 +
                                                   sizeof(shared::PhaseParams) + sizeof(shared::AlbedoParams) +
-                                                  sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) + 8 +
-                                                  sizeof(shared::MediumKinds));
+                                                  sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) +
+                                                  sizeof(shared::LayerParams) + 8 + sizeof(shared::MediumKinds));
 static_assert(sizeof(shared::LatticeParams) == 3 * 12);
 static_assert(sizeof(shared::PassPush) <= 128, "the least push constant space that Vulkan promises");
 
@@ -46,7 +48,8 @@ int shape_kind(const Volume& volume, const LoadedMedium& loaded) {
         return SHAPE_SPHERE;
     if (std::holds_alternative<MeshFiles>(volume.shape))
         return SHAPE_MESH;
-    return loaded.field || std::holds_alternative<Box>(volume.shape) ? SHAPE_BOX : SHAPE_NONE;
+    const bool is_box = std::holds_alternative<Box>(volume.shape) || is_everywhere(volume);
+    return loaded.field || is_box ? SHAPE_BOX : SHAPE_NONE;
 }
 
 shared::GridParams make_grid(const DensityField& field, const UploadLayout& layout) {
@@ -111,7 +114,21 @@ double usual_density(const Volume& volume, const LoadedMedium& loaded) {
         return 0.5;
     if (!loaded.majorants)
         return 1.0;
+    if (loaded.is_layered) // most of which has next to nothing
+        return 0.5 * loaded.majorants->most;
     return 0.5 * loaded.majorants->mean;
+}
+
+shared::LayerParams make_layers(const Volume& volume, const MajorantGrid& cells) {
+    const Layers& layers = *volume.layers;
+    const LayerBox box = layer_box(volume);
+    shared::LayerParams params{};
+    params.up[layers.axis] = static_cast<float>(box.size[layers.axis] / cells.dims[layers.axis]);
+    if (layers.scale_height > 0.0) {
+        params.bottom = static_cast<float>(layer_density(volume, box.low[layers.axis]));
+        params.decay = static_cast<float>(1.0 / layers.scale_height);
+    }
+    return params;
 }
 
 int emission_kind(const Volume& volume, const LoadedMedium& loaded, const Method& method) {
@@ -130,7 +147,7 @@ int map_kind(const Volume& volume) {
 }
 
 int density_kind(const Volume& volume, const LoadedMedium& loaded) {
-    return loaded.field ? FIELD_GRID : volume.noise ? FIELD_NOISE : FIELD_CONSTANT;
+    return loaded.field ? FIELD_GRID : loaded.is_layered ? FIELD_LAYERS : volume.noise ? FIELD_NOISE : FIELD_CONSTANT;
 }
 
 shared::MediumKinds kinds_of(const Volume& volume, const LoadedMedium& loaded, const Method& method) {
@@ -143,7 +160,7 @@ shared::MediumKinds kinds_of(const Volume& volume, const LoadedMedium& loaded, c
     kinds.temperature_type = loaded.temperature ? loaded.temperature->type : GRID_FLOAT;
     kinds.albedo = loaded.albedo ? ALBEDO_GRID : ALBEDO_CONSTANT;
     kinds.albedo_type = loaded.albedo ? loaded.albedo->type : GRID_FLOAT;
-    kinds.map = loaded.field ? map_kind(volume) : MAP_NONE;
+    kinds.map = loaded.field || loaded.is_layered ? map_kind(volume) : MAP_NONE;
     return kinds;
 }
 
@@ -161,6 +178,12 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
         params.density = make_grid(*loaded.field, layout);
         params.cell_dims = loaded.majorants->dims;
         params.cell_size = static_cast<float>(loaded.majorants->cell);
+    }
+    params.cells_min = params.bounds_min;
+    if (loaded.is_layered) {
+        params.cell_dims = loaded.majorants->dims;
+        params.cell_size = 1.0f;
+        params.layers = make_layers(volume, *loaded.majorants);
     }
     fill_density(volume, scene.settings.majorant_scale, method.flights_have(TRAIT_CONTROL), params);
     if (volume.noise)
@@ -188,8 +211,12 @@ shared::MediumParams make_whole(const Superposition& whole) {
     shared::MediumParams params{};
     fill_rows(params.to_medium, glm::scale(glm::translate(glm::dmat4(1.0), whole.origin), glm::dvec3(whole.edge)),
               whole.origin);
-    params.bounds_min = whole.low();
+    params.cells_min = params.bounds_min = whole.low();
     params.bounds_max = whole.high();
+    if (whole.unbounded) {
+        params.bounds_min = glm::vec3(static_cast<float>(-everywhere_reach / whole.edge));
+        params.bounds_max = -params.bounds_min;
+    }
     params.extent = glm::vec3(static_cast<float>(whole.edge));
     params.cell_dims = whole.dims();
     params.cell_size = 1.0f;
@@ -218,11 +245,17 @@ bool gains_by_looks_along(const Scene& scene, Media media) {
 
 double longest_diagonal(const Scene& scene, Media media, const Superposition* whole) {
     if (whole)
-        return whole->diagonal();
+        return whole->unbounded ? everywhere_reach : whole->diagonal();
     double longest = 0.0;
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         longest = std::max(longest, diagonal_of(scene.volumes[i], media[i]));
     return longest;
+}
+
+double lit_radius(const Scene& scene, const Assets& assets, const shared::MediumParams& medium) {
+    if (any_medium(scene, is_everywhere))
+        return 1.0 / std::max(double(medium.usual_sigma_t), 1e-12);
+    return 0.5 * longest_diagonal(scene, assets.media, whole_of(assets));
 }
 
 namespace {
@@ -364,6 +397,7 @@ Specialization specialize(const Scene& scene, Media media, const Method& method,
     for (const LoadedMedium& medium : media)
         if (!medium.map_knots.empty())
             constants[SPEC_MAP_HALVINGS] = std::bit_width(medium.map_knots.size()) - 1;
+    constants[SPEC_UNBOUNDED] = any_medium(scene, is_everywhere) ? 1 : 0;
     constants[SPEC_FIELD] = density_kind(scene);
     constants[SPEC_FILTER] = method.filter == Filter::nearest     ? FILTER_NEAREST
                              : method.filter == Filter::trilinear ? FILTER_TRILINEAR
@@ -448,6 +482,8 @@ shared::LatticeParams make_lattice_of(const Volume& volume, const LoadedMedium& 
 glm::dvec3 render_origin(const Scene& scene, Media media, const Superposition* whole) {
     if (whole && !whole->cells.bounds.empty())
         return whole->origin;
+    if (any_medium(scene, is_everywhere))
+        return scene.camera.position;
     glm::dvec3 sum(0.0);
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         sum += middle_of(scene.volumes[i], media[i]);

@@ -24,6 +24,9 @@ glm::dvec3 render_origin(const Scene& scene, Media media, const Superposition* w
 // Of the boxes around the media; world units, 0 where there is none.
 double longest_diagonal(const Scene& scene, Media media, const Superposition* whole = nullptr);
 
+// Half of that: within which lights matter. Of what is everywhere, a mean free path. `medium`: the frame's.
+double lit_radius(const Scene& scene, const Assets& assets, const shared::MediumParams& medium);
+
 // All but the lights of a table, and the fields that change during a render (crop_y) or belong to the queues.
 shared::FrameParams make_frame(const Scene& scene, Media media, const Method& method, Crop crop, std::uint32_t seed,
                                const Superposition* whole = nullptr);

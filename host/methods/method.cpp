@@ -28,6 +28,11 @@ bool has_map(const Scene& scene) {
     return any_medium(scene, [](const Volume& volume) { return volume.map.exists(); });
 }
 
+bool fades(const Scene& scene) {
+    const Volume& volume = scene.volumes.front();
+    return volume.layers && volume.layers->scale_height > 0.0;
+}
+
 bool can_scatter(const Volume& volume) {
     return volume.sigma_s * most_map_albedo(volume) != Rgb(0.0);
 }
@@ -46,6 +51,9 @@ private:
     void choose_flight();
     const char* without_voxels() const;
     bool bends_voxels() const;
+    // Optical depths are closed forms: of one density, or of one that falls exponentially.
+    bool is_closed() const { return field_ == FIELD_CONSTANT || (field_ == FIELD_LAYERS && fades(scene_)); }
+    bool has_no_end() const { return any_medium(scene_, is_everywhere); }
     void choose_nee();
     void choose_mis();
     void choose_distance();
@@ -91,7 +99,7 @@ void Resolution::choose_scattering() {
 void Resolution::choose_flight() {
     int& flight = method_.free_flight;
     flight = choices_.free_flight.value_or(preset_.free_flight);
-    if (field_ == FIELD_CONSTANT) {
+    if (is_closed()) {
         const bool explicitly = choices_.free_flight.has_value();
         if (flight == FREE_FLIGHT_REGULAR || (flight_has(flight, TRAIT_NULL) && !explicitly))
             flight = FREE_FLIGHT_ANALYTIC;
@@ -110,6 +118,10 @@ void Resolution::choose_flight() {
         warn(fmt::format("flights are delta: {}", no_polynomials));
         flight = FREE_FLIGHT_DELTA;
     }
+    if (has_no_end() && flight_has(flight, TRAIT_MARCH)) {
+        warn("flights do not march: a march comes to no end of what is everywhere");
+        flight = is_closed() ? FREE_FLIGHT_ANALYTIC : FREE_FLIGHT_DELTA;
+    }
     if (!chromatic_ || !flight_has(flight, TRAIT_GREY))
         return;
     if (choices_.free_flight)
@@ -118,7 +130,9 @@ void Resolution::choose_flight() {
 }
 
 const char* Resolution::without_voxels() const {
-    return field_ == FIELD_NOISE ? "noise has none" : "several volumes share none";
+    return field_ == FIELD_NOISE    ? "noise has none"
+           : field_ == FIELD_LAYERS ? "layers have none"
+                                    : "several volumes share none";
 }
 
 // A map of the values between voxels leaves no polynomial of them; of each voxel's own it leaves one.
@@ -151,7 +165,7 @@ void Resolution::choose_nee() {
         if (choices_.nee)
             warn("these flights have no null collisions; shadow rays start at real ones");
         nee = NEE_COLLISIONS;
-    } else if (nee == NEE_CACHED && (field_ == FIELD_CONSTANT || !can_cache_light(scene_))) {
+    } else if (nee == NEE_CACHED && (is_closed() || !can_cache_light(scene_))) {
         if (choices_.nee)
             warn("a cache of transmittances is for grids, and for noise in spheres and boxes, without surfaces; shadow "
                  "rays start at every collision");
@@ -186,7 +200,12 @@ void Resolution::choose_transmittance() {
     transmittance = choices_.transmittance.value_or(preset_.transmittance);
     if (choices_.transmittance && method_.nee == NEE_NONE)
         warn("transmittance is without effect: there are no shadow rays");
-    if (field_ == FIELD_CONSTANT) {
+    if (has_no_end() && transmittance_has(transmittance, TRAIT_MARCH)) {
+        if (method_.nee != NEE_NONE)
+            warn("shadow rays do not march: a march comes to no end of what is everywhere");
+        transmittance = is_closed() ? TRANSMITTANCE_ANALYTIC : TRANSMITTANCE_RATIO;
+    }
+    if (is_closed()) {
         if (!choices_.transmittance || transmittance == TRANSMITTANCE_REGULAR)
             transmittance = TRANSMITTANCE_ANALYTIC;
         return;
@@ -308,7 +327,10 @@ int density_kind(const Scene& scene) {
     int kind = FIELD_CONSTANT;
     for (const Volume& volume : scene.volumes) {
         const bool is_grid = std::holds_alternative<GridFile>(volume.shape);
-        kind = std::max(kind, is_grid ? FIELD_GRID : volume.noise ? FIELD_NOISE : FIELD_CONSTANT);
+        kind = std::max(kind, is_grid         ? FIELD_GRID
+                              : volume.layers ? FIELD_LAYERS
+                              : volume.noise  ? FIELD_NOISE
+                                              : FIELD_CONSTANT);
     }
     return kind;
 }
@@ -316,7 +338,7 @@ int density_kind(const Scene& scene) {
 bool can_cache_light(const Scene& scene) {
     const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
     return !scene.lights.empty() && scene.surfaces.empty() && density_kind(scene) != FIELD_CONSTANT &&
-           !any_medium(scene, is_mesh);
+           !any_medium(scene, is_mesh) && !any_medium(scene, is_everywhere);
 }
 
 bool has_chromatic_extinction(const Scene& scene) {

@@ -47,9 +47,15 @@ void add_shape(Writer& writer, const Volume& volume) {
         add_file(writer, grid->path);
         writer.add("grid", grid->grid);
         writer.add("unit", volume.unit == CoefficientUnit::world ? 1 : 0);
+    } else if (is_everywhere(volume)) {
+        writer.add("everywhere", 1.0);
     } else if (const MeshFiles* mesh = std::get_if<MeshFiles>(&volume.shape)) {
         for (const std::filesystem::path& path : mesh->paths)
             add_file(writer, path);
+    }
+    if (volume.layers) {
+        writer.add("layers", glm::dvec3(volume.layers->axis, volume.layers->bottom, volume.layers->top));
+        writer.add("scale_height", glm::dvec3(volume.layers->scale_height, volume.layers->reference, 0.0));
     }
     if (volume.noise) {
         writer.add("noise", volume.noise->frequency);

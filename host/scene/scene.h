@@ -74,6 +74,12 @@ struct Box {
     glm::dvec3 size{1.0}; // full edge lengths, > 0
 };
 
+// All of space, but for what its layers leave out.
+struct Everywhere {};
+
+// World units: so far single precision takes what is everywhere, a billion times as far as anything else may be.
+inline constexpr double everywhere_reach = 1e20;
+
 // Closed surfaces from .obj files, in world space; the medium fills what any of them encloses.
 struct MeshFiles {
     std::vector<std::filesystem::path> paths;
@@ -111,6 +117,17 @@ struct Noise {
     double lacunarity = 2.0; // >= 1
 };
 
+// A density by height alone, along an axis of the volume's own space, as it is before it is moved; there is none beyond
+// `bottom` and `top`. Exponential, exp(-(height - reference) / scale_height), or by the volume's map, whose values are
+// heights above the bottom.
+struct Layers {
+    int axis = 1;        // 0 to 2: x, y, z
+    double bottom = 0.0; // world units, below `top`
+    double top = 1.0;
+    double scale_height = 0.0; // > 0; or 0: by the map
+    double reference = 0.0;    // height of density 1
+};
+
 // As PHASE_... of shaders/shared/constants.h.
 enum class PhaseFunction { henyey_greenstein, rayleigh, double_henyey_greenstein, draine, droplets, table };
 
@@ -144,13 +161,14 @@ struct ValueMap {
 
 // A participating medium filling a shape. Coefficients multiply the density: that of the grid, of the noise, or 1.
 struct Volume {
-    std::variant<Sphere, Box, MeshFiles, GridFile> shape;
-    glm::dmat4 transform{1.0};  // of the shape with all that is in it, in world space; affine, with an inverse
-    std::string place;          // of the shape, "file:line:column", for messages; or empty
-    std::optional<Noise> noise; // not for grids
-    ValueMap map;               // for grids only
-    Rgb sigma_a{0.5};           // absorption, >= 0 [1/unit]
-    Rgb sigma_s{0.5};           // scattering, >= 0 [1/unit]
+    std::variant<Sphere, Box, MeshFiles, GridFile, Everywhere> shape;
+    glm::dmat4 transform{1.0};    // of the shape with all that is in it, in world space; affine, with an inverse
+    std::string place;            // of the shape, "file:line:column", for messages; or empty
+    std::optional<Noise> noise;   // not for grids, nor everywhere
+    std::optional<Layers> layers; // for boxes and everywhere
+    ValueMap map;                 // for grids and layers
+    Rgb sigma_a{0.5};             // absorption, >= 0 [1/unit]
+    Rgb sigma_s{0.5};             // scattering, >= 0 [1/unit]
     CoefficientUnit unit = CoefficientUnit::voxel; // without meaning but for grids: else always world
     double density_scale = 1.0;                    // >= 0, multiplies the density
     PhaseFunction phase = PhaseFunction::henyey_greenstein;
@@ -161,6 +179,10 @@ struct Volume {
     Rgb Le{0.0};     // radiance emitted per absorption event: emission is sigma_a * Le
     TemperatureEmission temperature; // adds to Le
 };
+
+inline bool is_everywhere(const Volume& volume) {
+    return std::holds_alternative<Everywhere>(volume.shape);
+}
 
 // Whether its albedo differs from place to place.
 inline bool has_albedo_of_place(const Volume& volume) {

@@ -18,49 +18,55 @@ constexpr Limits grid_value{
 constexpr Limits part{0.0, 1.0, true, true, "numbers from 0 to 1"};
 constexpr Limits radiance{0.0, brightest_light, true, true, "numbers from 0 to 1e12"};
 
-void check_order(const std::vector<MapPoint>& points, const XmlElement& last) {
+} // namespace
+
+// After the last of them has been added.
+void SceneReader::check_points(const std::vector<MapPoint>& points, const char* value, const XmlElement& last) const {
+    if (points.size() > most_points)
+        last.fail(fmt::format("more than {} points; leave some out", most_points));
     if (points.size() < 2)
         return;
     const MapPoint &from = points[points.size() - 2], &to = points.back();
     const bool third = points.size() > 2 && points[points.size() - 3].value == to.value;
     if (to.value < from.value || third)
-        last.fail_attribute("value",
-                            fmt::format("<point> value: {:g} after {:g}; values ascend from point to point, and two "
-                                        "that are alike make a step",
-                                        to.value, from.value));
+        last.fail_attribute(value, fmt::format("<{}> {}: {:g} after {:g}; values ascend from one to the next, and two "
+                                               "that are alike make a step",
+                                               last.name(), value, to.value, from.value));
     const double values = to.value - from.value;
     const double most = std::max({std::abs(to.density - from.density), 1.0, to.emission.x, to.emission.y, to.emission.z,
                                   from.emission.x, from.emission.y, from.emission.z});
     if (values > 0.0 && !(most / values <= no_limit))
-        last.fail(
-            fmt::format("<point> changes too much within {:g} of value for single precision; give both points the "
-                        "same value, which makes a step",
-                        values));
+        last.fail(fmt::format("<{}> changes too much within {:g} of {} for single precision; give both the same, which "
+                              "makes a step",
+                              last.name(), values, value));
 }
 
-} // namespace
+// Of a density map or layers it has a density, of a transfer function or layers with colours its like, sigma_t.
+MapPoint SceneReader::map_point(const XmlElement& element, const char* value, const Limits& limits,
+                                bool is_transfer) const {
+    const char* amount = is_transfer ? "sigma_t" : "density";
+    if (is_transfer)
+        element.allow({value, amount, "albedo", "emission"});
+    else
+        element.allow({value, amount});
+    for (const char* needed : {value, amount})
+        if (!element.has(needed))
+            element.fail(fmt::format("<{}> lacks {}", element.name(), needed));
+    MapPoint point;
+    point.value = element.attribute_number(value, 0.0, limits);
+    point.density = element.attribute_number(amount, 0.0, not_negative);
+    point.albedo = channels(element, "albedo", part, point.albedo);
+    point.emission = channels(element, "emission", radiance, point.emission);
+    return point;
+}
 
-// In the element of that name. Of a density map each point has a density, of a transfer function its like, sigma_t.
+// In the element of that name.
 std::vector<MapPoint> SceneReader::map_points(const char* name, bool is_transfer) const {
-    const std::vector<std::string> attributes = is_transfer
-                                                    ? std::vector<std::string>{"value", "sigma_t", "albedo", "emission"}
-                                                    : std::vector<std::string>{"value", "density"};
-    const std::string& amount = attributes[1];
     std::vector<MapPoint> points;
     for (const pugi::xml_node node : find({name}).children("point")) {
         const XmlElement element(document_, node);
-        element.allow(attributes);
-        for (const std::string& needed : {attributes[0], amount})
-            if (!element.has(needed.c_str()))
-                element.fail(fmt::format("<point> lacks {}", needed));
-        if (points.size() == most_points)
-            element.fail(fmt::format("<{}> has more than {} points; leave some out", name, most_points));
-        MapPoint& point = points.emplace_back();
-        point.value = element.attribute_number("value", 0.0, grid_value);
-        point.density = element.attribute_number(amount.c_str(), 0.0, not_negative);
-        point.albedo = channels(element, "albedo", part, point.albedo);
-        point.emission = channels(element, "emission", radiance, point.emission);
-        check_order(points, element);
+        points.push_back(map_point(element, "value", grid_value, is_transfer));
+        check_points(points, "value", element);
     }
     return points;
 }
@@ -99,13 +105,8 @@ ValueMap SceneReader::density_map(const XmlElement& element) const {
 
 ValueMap SceneReader::transfer_function(const XmlElement& element) const {
     element.allow({"unit"}, false, {"point"});
-    for (const char* name : {"sigma_a", "sigma_s"})
-        if (const XmlElement other = one(name); other.exists())
-            other.fail(fmt::format("<{}> beside a <transferFunction>, whose points have sigma_t and albedo; remove one",
-                                   name));
     ValueMap map;
     map.points = map_points("transferFunction", true);
-    map.is_transfer = true;
     if (!map.exists())
         element.fail("<transferFunction> has no points; give it some, e.g. <point value=\"0.5\" sigma_t=\"2\" "
                      "albedo=\"0.9 0.6 0.4\"/>");
@@ -125,12 +126,22 @@ void SceneReader::read_map(Volume& volume) const {
     if (!std::holds_alternative<GridFile>(volume.shape))
         element.fail(fmt::format("<{}> maps the values of a <densityField>, and this volume has none; remove it",
                                  element.name()));
-    volume.map = density.exists() ? density_map(density) : transfer_function(transfer);
-    if (!transfer.exists())
-        return;
+    if (transfer.exists())
+        take_transfer(volume, transfer_function(transfer));
+    else
+        volume.map = density_map(density);
+    if (transfer.exists())
+        volume.unit = unit(transfer, transfer, true);
+}
+
+void SceneReader::take_transfer(Volume& volume, ValueMap map) const {
+    for (const char* name : {"sigma_a", "sigma_s"})
+        if (const XmlElement other = one(name); other.exists())
+            other.fail(fmt::format("<{}> beside points that have sigma_t and albedo; remove one", name));
+    map.is_transfer = true;
+    volume.map = std::move(map);
     volume.sigma_a = Rgb(0.0);
     volume.sigma_s = Rgb(1.0);
-    volume.unit = unit(transfer, transfer, true);
 }
 
 } // namespace vkvol

@@ -12,8 +12,7 @@ std::optional<Volume> SceneReader::volume(const std::string& integrator) const {
     const std::optional<Shape> authored = shape(integrator, volume.place);
     if (authored)
         volume.shape = *authored;
-    const bool is_grid = std::holds_alternative<GridFile>(volume.shape);
-    volume.noise = noise(is_grid);
+    volume.noise = noise(volume);
     read_coefficients(volume);
     if (authored)
         return volume;
@@ -51,6 +50,7 @@ void SceneReader::read_coefficients(Volume& volume) const {
     volume.temperature = temperature_emission(is_grid);
     volume.albedo_grid = albedo_grid(is_grid);
     read_map(volume);
+    read_layers(volume);
 
     const XmlElement path_density = one("lightRayDensityMultiplier");
     const XmlElement shadow_density = one("shadowRayDensityMultiplier");
@@ -155,7 +155,7 @@ CoefficientUnit SceneReader::unit(const XmlElement& sigma_a, const XmlElement& s
 
 void SceneReader::warn_without_volume() const {
     for (const char* name : {"sigma_a", "sigma_s", "heyneygreenstein_g", "heynegreenstein_g", "phase", "medium",
-                             "albedo", "densityMap", "transferFunction", "noise"})
+                             "albedo", "densityMap", "transferFunction", "noise", "layers"})
         if (const XmlElement element = one(name); element.exists()) {
             element.warn(
                 fmt::format("<{}> is without effect: the scene has no densityField, sphere, box or model", name));

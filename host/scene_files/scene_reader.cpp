@@ -13,11 +13,12 @@ namespace vkvol {
 namespace {
 
 const std::vector<std::string> vocabulary = {
-    "densityField", "sphere", "box", "models", "volumes", "surfaces", "noise", "sigma_a", "sigma_s",
-    "heyneygreenstein_g", "phase", "medium", "emission", "albedo", "densityMap", "transferFunction", "light", "lights",
-    "backgroundColor", "camera", "width", "height", "rayPerPixelCount", "maxDepth", "integrator", "march", "filter",
-    "russianRoulette", "majorant", "pixelFilter", "lightRayDensityMultiplier", "shadowRayDensityMultiplier", "stepSize",
-    "importanceSampling", "fileName", "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds", "expected",
+    "densityField", "sphere", "box", "everywhere", "layers", "models", "volumes", "surfaces", "noise", "sigma_a",
+    "sigma_s", "heyneygreenstein_g", "phase", "medium", "emission", "albedo", "densityMap", "transferFunction", "light",
+    "lights", "backgroundColor", "camera", "width", "height", "rayPerPixelCount", "maxDepth", "integrator", "march",
+    "filter", "russianRoulette", "majorant", "pixelFilter", "lightRayDensityMultiplier", "shadowRayDensityMultiplier",
+    "stepSize", "importanceSampling", "fileName", "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds",
+    "expected",
     // Names that are read for old files' sake: a misspelling in the original's report, and the old name of integrator.
     "heynegreenstein_g", "intersectionHandler"};
 

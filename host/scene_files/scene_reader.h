@@ -67,11 +67,15 @@ private:
     XmlElement shape_element(pugi::xml_node scope, const std::string& integrator) const;
     Sphere sphere(const XmlElement& element) const;
     Box box(const XmlElement& element) const;
+    Everywhere everywhere(const XmlElement& element) const;
     std::filesystem::path file_path(const XmlElement& element, const char* example) const;
     std::filesystem::path file_path(const XmlElement& element, const std::string& name) const;
     GridFile grid_file(const XmlElement& element) const;
     MeshFiles mesh_files() const;
-    std::optional<Noise> noise(bool is_grid) const;
+    std::optional<Noise> noise(const Volume& volume) const;
+    void read_layers(Volume& volume) const;
+    Layers exponential_layers(const XmlElement& element, const Volume& volume) const;
+    Layers layer_table(const XmlElement& element, Volume& volume) const;
     Rgb coefficient(const char* name, const Rgb& fallback) const;
     void read_coefficients(Volume& volume) const;
     void read_phase(Volume& volume) const;
@@ -83,6 +87,9 @@ private:
     ValueMap transfer_function(const XmlElement& element) const;
     ValueMap ramp(const XmlElement& element) const;
     std::vector<MapPoint> map_points(const char* name, bool is_transfer) const;
+    MapPoint map_point(const XmlElement& element, const char* value, const Limits& limits, bool is_transfer) const;
+    void take_transfer(Volume& volume, ValueMap map) const;
+    void check_points(const std::vector<MapPoint>& points, const char* value, const XmlElement& last) const;
     CoefficientUnit unit(const XmlElement& sigma_a, const XmlElement& sigma_s, bool is_grid) const;
     std::optional<Expected> expected() const;
     Rgb channels(const XmlElement& element, const char* attribute, const Limits& limits, const Rgb& fallback) const;

@@ -15,6 +15,8 @@ std::optional<Shape> SceneReader::shape(const std::string& integrator, std::stri
         shape = sphere(element);
     else if (element.exists() && element.name() == "box")
         shape = box(element);
+    else if (element.exists() && element.name() == "everywhere")
+        shape = everywhere(element);
     else if (element.exists() && element.name() == "models")
         shape = mesh_files();
     else if (element.exists())
@@ -45,7 +47,7 @@ XmlElement SceneReader::shape_element(pugi::xml_node scope, const std::string& i
     const Integrator* row = find_integrator(integrator);
     const bool of_thesis = row && row->origin != Integrator::Origin::own;
     XmlElement found(document_, {});
-    for (const char* name : {"densityField", "sphere", "box", "models"}) {
+    for (const char* name : {"densityField", "sphere", "box", "everywhere", "models"}) {
         const pugi::xml_node node = find_one(document_, scope, {name});
         const XmlElement element(document_, node);
         if (!element.exists())
@@ -94,6 +96,11 @@ Box SceneReader::box(const XmlElement& element) const {
     return {{number("x"), number("y"), number("z")}, {edge("width"), edge("height"), edge("depth")}};
 }
 
+Everywhere SceneReader::everywhere(const XmlElement& element) const {
+    element.allow({});
+    return {};
+}
+
 // baseDir is the folder of the named file, with either kind of slash; relative paths start from the scene file.
 std::filesystem::path SceneReader::file_path(const XmlElement& element, const char* example) const {
     const std::string name = element.text();
@@ -135,7 +142,8 @@ MeshFiles SceneReader::mesh_files() const {
     return files;
 }
 
-std::optional<Noise> SceneReader::noise(bool is_grid) const {
+std::optional<Noise> SceneReader::noise(const Volume& volume) const {
+    const bool is_grid = std::holds_alternative<GridFile>(volume.shape);
     const XmlElement element = one("noise");
     if (!element.exists())
         return std::nullopt;
@@ -146,6 +154,8 @@ std::optional<Noise> SceneReader::noise(bool is_grid) const {
     noise.gain = element.attribute_number("gain", noise.gain, {0, 1, true, true, "a number from 0 to 1"});
     noise.lacunarity =
         element.attribute_number("lacunarity", noise.lacunarity, {1, no_limit, true, true, "a number >= 1"});
+    if (is_everywhere(volume))
+        element.fail("<noise> is for spheres, boxes and models, and has no end <everywhere>; take a <box>");
     if (!is_grid)
         return noise;
     if (!overrides_.grid)

@@ -6,9 +6,18 @@
 #include "field/density.glsl"
 #include "shapes/shape.glsl"
 
-// The density's grid at a point of render space, for its map: as interpolated for the density.
+// What the medium's map is of, at a point of render space: the density's grid, as interpolated for the density, or height.
 float mapped_value(MediumParams v, vec3 position) {
-    return lookup(v.density, KIND(GRID_TYPE, v, grid_type), to_medium(v, position, vec3(0.0)).origin, vec3(0.0));
+#ifdef SEVERAL
+    const int field = KIND(MEMBER_FIELD, v, field);
+#else
+    const int field = FIELD;
+#endif
+    vec3 p = to_medium(v, position, vec3(0.0)).origin;
+    float value = layer_height(v, p);
+    if (field == FIELD_GRID)
+        value = lookup(v.density, KIND(GRID_TYPE, v, grid_type), p, vec3(0.0));
+    return value;
 }
 
 // `position`: of render space.

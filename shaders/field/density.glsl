@@ -7,7 +7,7 @@
 #define DENSITY_GLSL
 #include "field/grid.glsl"
 #include "field/noise.glsl"
-#include "field/value_map.glsl"
+#include "field/layers.glsl"
 
 // Word offsets within a leaf node of NanoVDB 32.x.
 const uint LEAF_FLAGS = 3u;    // quantised: bits 29-31 are log2 of the bits per value
@@ -130,6 +130,8 @@ float density(MediumParams v, vec3 p, vec3 tap) {
         return 1.0;
     if (FIELD == FIELD_NOISE)
         return noise_density(v.noise, 0u, v.extent * p);
+    if (LAYERED)
+        return layered_density(MAP, v, p);
     return mapped_density(MAP, v.first_knot, lookup(v.density, GRID_TYPE, p, tap));
 }
 #endif

@@ -54,6 +54,9 @@ float extinction_of(MediumParams v, uint row, vec3 position, vec3 tap) {
     float found = 1.0;
     if (field == FIELD_NOISE) {
         found = noise_density(media[row].noise, row, media[row].extent * p);
+    } else if (field == FIELD_LAYERS) {
+        inside = all(greaterThanEqual(p, vec3(0.0))) && all(lessThanEqual(p, media[row].bounds_max));
+        found = layered_density(map, media[row], p);
     } else if (field == FIELD_GRID) {
         GridParams grid = member_grid(v, rest.z);
         vec3 low = vec3(grid.voxel_min - 1), high = vec3(grid.voxel_max + 1);
@@ -93,7 +96,7 @@ Matter matter_in(MediumParams v, uint entry, vec3 p, vec3 tap, float u) {
 
 Matter matter_at(MediumParams v, vec3 p, vec3 tap, float u) {
     int edge;
-    ivec3 cell = clamp(ivec3(floor(p - v.bounds_min)), ivec3(0), v.cell_dims - 1);
+    ivec3 cell = ivec3(clamp(floor(p - v.cells_min), vec3(0.0), vec3(v.cell_dims - 1)));
     return matter_in(v, cell_entry(v, cell, edge), p, tap, u);
 }
 

@@ -48,6 +48,7 @@ layout(constant_id = SPEC_ALBEDO) const int ALBEDO = ALBEDO_CONSTANT;
 layout(constant_id = SPEC_ALBEDO_TYPE) const int ALBEDO_TYPE = GRID_FLOAT;
 layout(constant_id = SPEC_MAP) const int MAP = MAP_NONE;
 layout(constant_id = SPEC_MAP_HALVINGS) const int MAP_HALVINGS = 0;
+layout(constant_id = SPEC_UNBOUNDED) const int UNBOUNDED = 0;
 const bool HAS_COLORS = true; // in grids
 layout(constant_id = SPEC_SENSOR) const int SENSOR = SENSOR_PINHOLE;
 layout(constant_id = SPEC_PIXEL_FILTER) const int PIXEL_FILTER = 0;
@@ -59,6 +60,7 @@ const int ALBEDO = ALBEDO_CONSTANT;
 const int ALBEDO_TYPE = GRID_FLOAT;
 const int MAP = MAP_NONE;
 const int MAP_HALVINGS = 0;
+const int UNBOUNDED = 0;
 const bool HAS_COLORS = false;
 const int SENSOR = SENSOR_PINHOLE;
 const int PIXEL_FILTER = 0;
@@ -76,10 +78,16 @@ const bool HAS_SURFACES = false;
 #define KIND(CONSTANT, v, kind) (CONSTANT == EACH ? v.kinds.kind : CONSTANT)
 const bool SEVERAL_MEDIA = true;
 const bool HAS_CELLS = true; // of majorants
+const bool LAYERED = false;  // by itself
 #else
 #define KIND(CONSTANT, v, kind) CONSTANT
 const bool SEVERAL_MEDIA = false;
-const bool HAS_CELLS = FIELD == FIELD_GRID;
+#ifdef FULL
+const bool LAYERED = FIELD == FIELD_LAYERS;
+#else
+const bool LAYERED = false;
+#endif
+const bool HAS_CELLS = (int(FIELD == FIELD_GRID) | int(LAYERED)) != 0;
 #endif
 
 const bool SEES_SKY = (LIGHTS & LIGHTS_SKY) != 0;

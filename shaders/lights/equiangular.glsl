@@ -27,7 +27,10 @@ Stretch stretch_of(MediumParams v, LightRow light, vec3 position, vec3 direction
     vec3 apart = light.position - position;
     s.foot = dot(apart, direction);
     // Lamps are no points: nearer than half their size nothing grows any more. And no ray hits a point.
-    float least = max(0.3 * sqrt(light.kind >= LIGHT_SPHERE ? light.area : 0.0), 1.0e-5 * (s.t.y - s.t.x));
+    float size = s.t.y - s.t.x;
+    if (UNBOUNDED != 0)
+        size = min(size, 100.0 / v.usual_sigma_t);
+    float least = max(0.3 * sqrt(light.kind >= LIGHT_SPHERE ? light.area : 0.0), 1.0e-5 * size);
     s.off = max(length(apart - s.foot * direction), max(least, 1.0e-30));
     vec2 x = (s.t - s.foot) / s.off;
     s.y = 1.0 / (1.0 + abs(x));

@@ -87,7 +87,7 @@ void load_cell(MediumParams v, bool residual, inout Walk w) {
 void begin_cells(MediumParams v, bool residual, inout Walk w) {
     w.cell = ivec3(0);
     if (HAS_CELLS)
-        w.cell = clamp(ivec3(floor((w.origin - v.bounds_min) / v.cell_size)), ivec3(0), v.cell_dims - 1);
+        w.cell = ivec3(clamp(floor((w.origin - v.cells_min) / v.cell_size), vec3(0.0), vec3(v.cell_dims - 1)));
     load_cell(v, residual, w);
 }
 
@@ -104,12 +104,21 @@ ivec3 first_axis(vec3 t_face) {
     return ivec3(equal(ivec3(0, 1, 2), ivec3(axis)));
 }
 
+// Where media are everywhere the outermost cells go on for ever: along which axes the walk is on its way there.
+bvec3 outward(MediumParams v, Walk w, CellBlock block) {
+    bvec3 up = greaterThanEqual(block.low + block.edge, v.cell_dims);
+    bvec3 down = lessThanEqual(block.low, ivec3(0));
+    return mix(down, up, greaterThan(w.direction, vec3(0.0)));
+}
+
 // Where the walk leaves its cell and the empty ones around it, at most t_end.
 float cell_exit(MediumParams v, Walk w, out vec3 t_face) {
     t_face = vec3(FAR);
     if (HAS_CELLS) {
         CellBlock block = cells_passed(w);
-        t_face = far_faces(w, v.bounds_min + v.cell_size * vec3(block.low), v.cell_size * float(block.edge));
+        t_face = far_faces(w, v.cells_min + v.cell_size * vec3(block.low), v.cell_size * float(block.edge));
+        if (UNBOUNDED != 0)
+            t_face = mix(t_face, vec3(FAR), outward(v, w, block));
     }
     return max(w.t, min(min(t_face.x, t_face.y), min(t_face.z, w.t_end)));
 }
@@ -124,7 +133,10 @@ uint next_cell(MediumParams v, bool residual, float t_exit, vec3 t_face, inout W
     ivec3 next = w.cell + axis * side;
     if (LONG_STEPS) {
         ivec3 last = last_cell(cells_passed(w), w.cell, side);
-        ivec3 there = ivec3(floor((w.origin - v.bounds_min + t_exit * w.direction) * (1.0 / v.cell_size)));
+        vec3 point = floor((w.origin - v.cells_min + t_exit * w.direction) * (1.0 / v.cell_size));
+        if (UNBOUNDED != 0)
+            point = clamp(point, vec3(-1.0), vec3(v.cell_dims)); // integers end sooner
+        ivec3 there = ivec3(point);
         ivec3 most = clamp(last, ivec3(0), v.cell_dims - 1);
         next = clamp(there, min(w.cell, most), max(w.cell, most));
         next += axis * (last + side - next);

@@ -107,11 +107,15 @@ uint search_part(MediumParams v, vec3 position, vec3 direction, float reach, boo
     return event;
 }
 
-// Transmittance of a homogeneous sphere or box, up to a distance of `reach`.
+// Transmittance of a homogeneous sphere or box, or of an exponential, up to a distance of `reach`.
 Spectrum analytic_shadow(MediumParams v, vec3 position, vec3 direction, float reach) {
     vec2 t;
-    float inside = medium_interval(v, to_medium(v, position, direction), t) ? cut_short(t.y, reach) - t.x : 0.0;
-    return analytic_transmittance(v, max(inside, 0.0));
+    Ray ray = to_medium(v, position, direction);
+    float inside = medium_interval(v, ray, t) ? cut_short(t.y, reach) - t.x : 0.0;
+    inside = max(inside, 0.0);
+    if (LAYERED)
+        inside = faded_depth(fading_along(v, ray.origin + t.x * ray.direction, ray.direction), inside);
+    return analytic_transmittance(v, inside);
 }
 
 #endif

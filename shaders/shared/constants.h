@@ -87,7 +87,8 @@
 #define SPEC_MATERIALS 28    // bits, 1 << MATERIAL_..., of those that the surfaces have
 #define SPEC_MAP 29          // MAP_...
 #define SPEC_MAP_HALVINGS 30 // log2 of the knots in a map's table
-#define SPEC_COUNT 31
+#define SPEC_UNBOUNDED 31    // 1: some medium is everywhere
+#define SPEC_COUNT 32
 
 // Of several media that differ in it: each one's own, which is in its row.
 #define EACH -1
@@ -101,6 +102,7 @@
 #define FIELD_NOISE 1
 #define FIELD_GRID 2
 #define FIELD_SUPERPOSITION 3 // of several media: its density is their extinction [1 / world unit]
+#define FIELD_LAYERS 4 // by height
 
 #define GRID_FLOAT 0
 #define GRID_FP4 1

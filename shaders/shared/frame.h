@@ -55,6 +55,13 @@ struct EmissionParams {
     uint first_entry; // of that table
 };
 
+// Where the density depends on height: exponentially, or by a map; see layers.glsl.
+struct LayerParams {
+    vec3 up;      // a point of medium space, times this, has that height above the bottom [world units]
+    float bottom; // density there
+    float decay;  // per world unit
+};
+
 // Where the density is procedural; see noise.glsl. Each octave has its own map, so that its offset can be wrapped to
 // the noise's period of 256 in double precision, however far the medium is from the world's origin.
 struct NoiseParams {
@@ -153,9 +160,10 @@ struct MediumParams {
     vec4 to_medium[3]; // rows of the affine map render -> medium
     vec3 bounds_min;   // medium space; where the filtered density can differ from 0
     vec3 bounds_max;
+    vec3 cells_min; // where majorant cells begin: at bounds_min, but where these are beyond all cells
     vec3 extent; // sphere, box, mesh: a point of medium space times this is one of render space
     GridParams density;
-    ivec3 cell_dims;  // majorant cells, the first begins at bounds_min
+    ivec3 cell_dims;  // majorant cells, the first begins at cells_min
     float cell_size;  // edge of a cell, voxels
     float majorant;   // of the density, where there are no cells
     float control;    // likewise a control density
@@ -168,6 +176,7 @@ struct MediumParams {
     PhaseParams phase;
     EmissionParams emission;
     NoiseParams noise;
+    LayerParams layers;
     uint bvh_nodes; // of a mesh
     uint first_knot; // of the map
     MediumKinds kinds;

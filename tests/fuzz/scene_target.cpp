@@ -66,6 +66,8 @@ std::string attribute_value(std::string_view name, Source& random) {
         return one_of("equirectangular|equalArea", random);
     if (name == "distance")
         return one_of("flights|mixed", random);
+    if (name == "up" && random.one_in(2))
+        return one_of("x|y|z", random);
     if (name == "lookAt" || name == "up")
         return one_of("0 0 0|1 2 3|0 0", random);
     if (name == "values")
@@ -129,8 +131,9 @@ std::string volume(Source& random) {
             xml += fmt::format(" {}=\"{}\"", attribute, names[random.below(4)]);
     xml += ">\n";
     if (!random.one_in(4))
-        xml += element(grammar[random.below(3)], random);
-    for (const char* name : {"noise", "sigma_a", "sigma_s", "phase", "medium", "emission", "albedo", "densityMap"})
+        xml += element(grammar[random.below(4)], random);
+    for (const char* name :
+         {"noise", "layers", "sigma_a", "sigma_s", "phase", "medium", "emission", "albedo", "densityMap"})
         if (random.one_in(3))
             xml += element(words_of(name), random);
     if (random.one_in(4))
@@ -160,12 +163,12 @@ std::string build(Source& random) {
         xml += "  <models><model>ball.obj</model></models>\n";
         break;
     default:
-        xml += element(grammar[1 + random.below(2)], random);
+        xml += element(grammar[1 + random.below(3)], random);
     }
     bool both_sigmas[2] = {false, false};
-    for (std::size_t i = 3; i < std::size(grammar); ++i) {
+    for (std::size_t i = 4; i < std::size(grammar); ++i) {
         const std::string_view name = grammar[i].element;
-        if (!random.one_in(4) || (name == "noise" && !random.one_in(3)))
+        if (!random.one_in(4) || ((name == "noise" || name == "layers") && !random.one_in(3)))
             continue;
         if (name.starts_with("sigma") && std::exchange(both_sigmas[name.back() == 's'], true))
             continue;

@@ -199,9 +199,11 @@ void use_scene(const Scene& authored) {
                 check_volume(row);
     }
     is_chromatic(scene);
+    const Crop crop{0, scene.picture.width, 0, scene.picture.height};
+    const shared::FrameParams frame = make_frame(scene, assets.media, method, crop, 1, whole);
     if (constants[SPEC_LIGHTS] != LIGHTS_SUN) {
         const LightTable table = make_light_table(scene, assets, render_origin(scene, assets.media, whole),
-                                                  0.5 * longest_diagonal(scene, assets.media, whole));
+                                                  lit_radius(scene, assets, frame.media[0]));
         for (const shared::LightRow& row : table.rows)
             check_light(row);
         for (std::uint32_t i = 0; i < table.choices; ++i)
@@ -212,8 +214,7 @@ void use_scene(const Scene& authored) {
             expect_finite(node.high, "a light's bounds are not finite");
         }
     }
-    const Crop crop{0, scene.picture.width, 0, scene.picture.height};
-    check_frame(make_frame(scene, assets.media, method, crop, 1, whole), static_cast<int>(constants[SPEC_SHAPE]));
+    check_frame(frame, static_cast<int>(constants[SPEC_SHAPE]));
 }
 
 } // namespace vkvol::fuzz

@@ -61,7 +61,7 @@ TEST_CASE("each estimator equals the reference's own", "[gpu][agreement]") {
     // One axis at a time, from delta flights with ratio-tracked shadow rays at collisions: the rest is for the table.
     for (const NamedScene& named : agreement_scenes()) {
         if (named.name != "thick cloud" && named.name != "chromatic cloud" && named.name != "fire" &&
-            named.name != "noise in a mesh" && named.name != "transfer function")
+            named.name != "noise in a mesh" && named.name != "transfer function" && named.name != "atmosphere")
             continue;
         Scene scene = named.scene;
         scene.settings.spp = 256;
@@ -106,7 +106,7 @@ TEST_CASE("marches through the medium scatter once", "[gpu][agreement]") {
     // steps so small that the bias is below the noise. (Not per pixel: where a path of a hundred collides, the normal
     // limit is far off.)
     for (const NamedScene& named : agreement_scenes()) {
-        if (named.name == "noise in a mesh")
+        if (named.name == "noise in a mesh" || named.name == "atmosphere") // which has no end to march to
             continue;
         Scene scene = named.scene;
         scene.settings.spp = 128;

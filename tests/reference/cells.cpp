@@ -25,6 +25,8 @@ bool CellWalk::next(Cell& cell) {
     }
     if (interval_ == intervals_.size())
         return false;
+    if (medium_.layers)
+        return next_layer(cell);
     const Interval& interval = intervals_[interval_++];
     if (medium_.noise) {
         const double bound = noise_bound(*medium_.noise), control = 0.5 * bound;
@@ -32,6 +34,40 @@ bool CellWalk::next(Cell& cell) {
     } else {
         cell = {interval.t0, interval.t1, scale, 1.0, std::max(scale - 1.0, 0.0)};
     }
+    return true;
+}
+
+// Steps of equal height, of which each has the extremes of its layers; of a level ray there is but one.
+bool CellWalk::next_layer(Cell& cell) {
+    constexpr int steps = 40;
+    const vkvol::Layers& layers = *medium_.layers;
+    const Ray ray = medium_.unmoved(index_ray_);
+    const double rise = ray.direction[layers.axis], edge = (layers.top - layers.bottom) / steps;
+    const Interval& interval = intervals_[interval_];
+    const double t0 = layer_ == 0 ? interval.t0 : layer_end_, from = medium_.height(ray.at(t0));
+    ++layer_;
+    double t1 = interval.t1, to = from;
+    if (rise != 0.0) {
+        const int at = static_cast<int>(std::floor(from / edge + (rise > 0.0 ? 1e-9 : -1e-9)));
+        t1 = std::min(t1, t0 + ((at + (rise > 0.0)) * edge - from) / rise);
+        to = medium_.height(ray.at(t1));
+    }
+    t1 = std::max(t1, t0);
+    layer_end_ = t1;
+    if (t1 >= interval.t1) {
+        ++interval_;
+        layer_ = 0;
+    }
+    const auto [low, high] = std::minmax({from, to});
+    Extremes range{};
+    if (layers.scale_height > 0.0)
+        range = {std::exp((layers.reference - layers.bottom - high) / layers.scale_height),
+                 std::exp((layers.reference - layers.bottom - low) / layers.scale_height)};
+    else
+        range = mapped_extremes(medium_.map, std::max(low, 0.0), high);
+    const double scale = medium_.majorant_scale, slack = 1e-9 * range.most; // of heights found in two ways
+    cell = {t0, t1, (range.most + slack) * scale, std::max(range.least - slack, 0.0),
+            (range.most - range.least + 2.0 * slack) * scale};
     return true;
 }
 

@@ -23,10 +23,14 @@ public:
     bool next(Cell& cell);
 
 private:
+    bool next_layer(Cell& cell);
+
     const Medium& medium_;
     Ray index_ray_;
     std::vector<Interval> intervals_;
-    std::size_t interval_ = 0;              // the next one
+    std::size_t interval_ = 0;              // the next one, or that whose layers are passed
+    int layer_ = 0;                         // cells of it that have been passed,
+    double layer_end_ = 0.0;                // and where the last of them ended
     std::optional<MajorantWalk> grid_walk_; // of the present one
 };
 

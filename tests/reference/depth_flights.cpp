@@ -44,17 +44,36 @@ Flight DepthSample::escaped(double D) const {
     return {{}, beta_ * T / glm::dot(probability_, T)};
 }
 
+namespace {
+
+// Of the part's beginning, in which the integral of the density is `depth`, by bisection.
+double fading_length(const Medium& medium, const Ray& ray, const Interval& part, double depth) {
+    double low = 0.0, high = 1.0;
+    const auto integral = [&](double length) { return medium.fading_integral(ray, {part.t0, part.t0 + length}); };
+    while (integral(high) < depth && high < part.length())
+        high *= 2.0;
+    for (int bisection = 0; bisection < 80; ++bisection) {
+        const double middle = 0.5 * (low + high);
+        (integral(middle) < depth ? low : high) = middle;
+    }
+    return high;
+}
+
+} // namespace
+
 Flight analytic_flight(const Medium& medium, const Ray& ray, const DepthSample& sample, const FlightEvents& events) {
-    if (!medium.homogeneous())
-        throw std::runtime_error("analytic flights are for homogeneous media");
-    double D = 0.0; // the density is 1
+    if (!medium.homogeneous() && !medium.fades())
+        throw std::runtime_error("analytic flights are for homogeneous media and exponentials");
+    double D = 0.0;
     for (const Interval& interval : support(medium, ray)) {
-        const double t = interval.t0 + (sample.depth() - D);
-        const bool collides = t < interval.t1;
+        const double left = sample.depth() - D;
+        const double through = medium.fades() ? medium.fading_integral(ray, interval) : interval.length();
+        const bool collides = left < through;
+        const double t = interval.t0 + (medium.fades() ? fading_length(medium, ray, interval, left) : left);
         report(events, interval.t0, collides ? t : interval.t1, sample.escaped(D).beta);
         if (collides)
             return sample.collided(t, sample.depth());
-        D += interval.length();
+        D += through;
     }
     return sample.escaped(D);
 }

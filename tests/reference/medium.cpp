@@ -59,6 +59,7 @@ Medium with_shape(Shape shape, const vkvol::Volume& volume, std::optional<vkvol:
     load_phase(volume, medium);
     medium.emission.constant = volume.Le;
     medium.map = volume.map;
+    medium.layers = volume.layers;
     medium.filter = filter.value_or(vkvol::Filter::trilinear);
     if (Grid* grid = std::get_if<Grid>(&medium.shape)) {
         grid->move(volume.transform);
@@ -75,7 +76,32 @@ Medium with_shape(Shape shape, const vkvol::Volume& volume, std::optional<vkvol:
 double Medium::density(const glm::dvec3& p) const {
     if (grid())
         return mapped(map, grid_value(p)).density;
-    return noise ? noise_density(*noise, p) : 1.0;
+    if (!layers)
+        return noise ? noise_density(*noise, p) : 1.0;
+    const double above = height(p);
+    if (above < 0.0 || above > layers->top - layers->bottom)
+        return 0.0;
+    if (layers->scale_height > 0.0)
+        return std::exp((layers->reference - p[layers->axis]) / layers->scale_height);
+    return mapped(map, above).density;
+}
+
+// rho is rho0 exp(-k (t - t0)) along the ray.
+double Medium::fading_integral(const Ray& ray, const Interval& part) const {
+    if (part.empty())
+        return 0.0;
+    const Ray along = unmoved(ray);
+    const double k = along.direction[layers->axis] / layers->scale_height, length = part.length();
+    const double rho0 = std::exp((layers->reference - along.origin[layers->axis]) / layers->scale_height - k * part.t0);
+    return k == 0.0 ? rho0 * length : -rho0 * std::expm1(-k * length) / k;
+}
+
+double Medium::height(const glm::dvec3& unmoved) const {
+    return unmoved[layers->axis] - layers->bottom;
+}
+
+double Medium::mapped_value(const glm::dvec3& world) const {
+    return grid() ? grid_value(grid()->to_index(world)) : height(glm::dvec3(to_unmoved * glm::dvec4(world, 1.0)));
 }
 
 double Medium::grid_value(const glm::dvec3& index) const {
@@ -85,14 +111,14 @@ double Medium::grid_value(const glm::dvec3& index) const {
 Rgb Medium::albedo_at(const glm::dvec3& world) const {
     Rgb here = albedo_grid.empty() ? albedo : albedo * glm::min(albedo_grid.clamped(world), Rgb(1.0));
     if (map.is_transfer)
-        here *= mapped(map, grid_value(grid()->to_index(world))).albedo;
+        here *= mapped(map, mapped_value(world)).albedo;
     return here;
 }
 
 Rgb Medium::emission_at(const glm::dvec3& world) const {
     Rgb here = emission.at(world);
     if (map.is_transfer)
-        here += mapped(map, grid_value(grid()->to_index(world))).emission;
+        here += mapped(map, mapped_value(world)).emission;
     return here;
 }
 
@@ -109,6 +135,8 @@ Medium load(const vkvol::Volume& volume, std::optional<vkvol::Filter> filter) {
         return with_shape(*sphere, volume, filter);
     if (const auto* box = std::get_if<vkvol::Box>(&volume.shape))
         return with_shape(*box, volume, filter);
+    if (const auto* all = std::get_if<vkvol::Everywhere>(&volume.shape))
+        return with_shape(*all, volume, filter);
     if (const auto* files = std::get_if<vkvol::MeshFiles>(&volume.shape))
         return with_shape(load_mesh(*files), volume, filter);
     const auto& file = std::get<vkvol::GridFile>(volume.shape);
@@ -126,6 +154,24 @@ Medium with_grid(Grid grid, const vkvol::Volume& volume, std::optional<vkvol::Fi
     return with_shape(std::move(grid), volume, filter);
 }
 
+namespace {
+
+// What of each part is at heights that have layers.
+std::vector<Interval> between_layers(const Medium& medium, const Ray& ray, const std::vector<Interval>& parts) {
+    const Ray unmoved = medium.unmoved(ray);
+    const vkvol::Layers& layers = *medium.layers;
+    const double from = unmoved.origin[layers.axis], rise = unmoved.direction[layers.axis];
+    if (rise == 0.0)
+        return from >= layers.bottom && from <= layers.top ? parts : std::vector<Interval>();
+    const auto [first, last] = std::minmax({(layers.bottom - from) / rise, (layers.top - from) / rise});
+    std::vector<Interval> within;
+    for (const Interval& part : parts)
+        within.push_back(clip(part, {first, last}));
+    return within;
+}
+
+} // namespace
+
 std::vector<Interval> support(const Medium& medium, const Ray& ray) {
     if (medium.largest() == 0.0)
         return {};
@@ -136,9 +182,13 @@ std::vector<Interval> support(const Medium& medium, const Ray& ray) {
         parts = {intersect(*box, medium.unmoved(ray))};
     else if (const auto* mesh = std::get_if<Mesh>(&medium.shape))
         parts = intersect(*mesh, ray);
+    else if (medium.unbounded())
+        parts = {{0.0, std::numeric_limits<double>::infinity()}};
     else
         parts = {medium.grid()->support(medium.grid()->to_index(ray))};
 
+    if (medium.layers)
+        parts = between_layers(medium, ray, parts);
     std::vector<Interval> ahead;
     for (const Interval& part : parts)
         if (const Interval clipped = clip(part, {0.0, ray.reach}); !clipped.empty())

@@ -13,13 +13,14 @@
 namespace reference {
 
 struct Medium {
-    std::variant<vkvol::Sphere, vkvol::Box, Mesh, Grid> shape;
-    glm::dmat4 to_unmoved{1.0};        // world -> where a sphere or a box is, and its noise, before it is moved
-    std::optional<vkvol::Noise> noise; // the density, but for grids; none: 1
-    vkvol::Rgb sigma_t{0.0};           // extinction at density 1 [1/world unit], density_scale included
+    std::variant<vkvol::Sphere, vkvol::Box, Mesh, Grid, vkvol::Everywhere> shape;
+    glm::dmat4 to_unmoved{1.0};          // world -> where a sphere or a box is, and its noise, before it is moved
+    std::optional<vkvol::Noise> noise;   // the density, but for grids; none: 1,
+    std::optional<vkvol::Layers> layers; // or by these
+    vkvol::Rgb sigma_t{0.0};             // extinction at density 1 [1/world unit], density_scale included
     vkvol::Rgb albedo{0.0};
     ColorGrid albedo_grid; // multiplies it; or empty
-    vkvol::ValueMap map;   // of the grid's values; or none
+    vkvol::ValueMap map;   // of the grid's values, or of heights above the bottom of layers; or none
     vkvol::PhaseFunction phase = vkvol::PhaseFunction::henyey_greenstein;
     double g = 0.0;
     double g2 = 0.0, share = 0.0, alpha = 0.0; // of a second function and its part
@@ -29,12 +30,17 @@ struct Medium {
     double majorant_scale = 1.0;
 
     const Grid* grid() const { return std::get_if<Grid>(&shape); }
-    bool homogeneous() const { return !grid() && !noise; } // density 1 throughout
-    double density(const glm::dvec3& p) const;             // at index coordinates of a grid, else before it is moved
+    bool homogeneous() const { return !grid() && !noise && !layers; }   // density 1 throughout
+    bool fades() const { return layers && layers->scale_height > 0.0; } // exponentially
+    double fading_integral(const Ray& ray, const Interval& part) const; // of that density, world-space ray
+    bool unbounded() const { return std::holds_alternative<vkvol::Everywhere>(shape); }
+    double density(const glm::dvec3& p) const; // at index coordinates of a grid, else before it is moved
 
     vkvol::Rgb albedo_at(const glm::dvec3& world) const;
     vkvol::Rgb emission_at(const glm::dvec3& world) const; // per absorption event
     double grid_value(const glm::dvec3& index) const;      // as interpolated, before it is mapped
+    double height(const glm::dvec3& unmoved) const;        // above the bottom of layers
+    double mapped_value(const glm::dvec3& world) const;    // what its map is of
 
     double largest() const;            // of sigma_t's channels
     Ray unmoved(const Ray& ray) const; // direction: what one world unit becomes there

@@ -66,7 +66,7 @@ void check(const Method& method, const Medium& medium) {
         if (!allowed)
             throw std::runtime_error(why);
     };
-    if (!medium.homogeneous()) {
+    if (!medium.homogeneous() && !medium.fades()) {
         require(method.free_flight != FREE_FLIGHT_ANALYTIC, "analytic flights are for homogeneous media");
         require(method.transmittance != TRANSMITTANCE_ANALYTIC || method.nee == NEE_NONE,
                 "analytic transmittance is for homogeneous media");
@@ -97,7 +97,8 @@ vkvol::Volume preset_volume(const std::string& integrator, vkvol::Volume volume)
 Method resolve_method(const vkvol::Scene& scene, Medium& medium) {
     const vkvol::RenderSettings& settings = scene.settings;
     const vkvol::AxisChoices& choices = settings.choices;
-    const bool cached = !scene.lights.empty() && !medium.homogeneous() && !std::holds_alternative<Mesh>(medium.shape);
+    const bool cached = !scene.lights.empty() && !medium.homogeneous() && !medium.fades() && !medium.unbounded() &&
+                        !std::holds_alternative<Mesh>(medium.shape);
     const bool far = std::none_of(scene.lights.begin(), scene.lights.end(), vkvol::has_place);
     const std::string best = scene.lights.empty() ? "deltaTracking"
                              : cached && far      ? "cachedRatioTracking"
@@ -118,7 +119,7 @@ Method resolve_method(const vkvol::Scene& scene, Medium& medium) {
         medium.sigma_t *= 1.0 - medium.albedo;
         medium.albedo = Rgb(0.0);
     }
-    if (medium.homogeneous())
+    if (medium.homogeneous() || medium.fades())
         resolve_homogeneous(method, choices);
     if (!medium.grey() && (method.free_flight == FREE_FLIGHT_DELTA || method.free_flight == FREE_FLIGHT_WEIGHTED ||
                            method.free_flight == FREE_FLIGHT_DECOMPOSITION))

@@ -63,11 +63,11 @@ const auto unweighted = [](Rgb&, const Cell&, double) {};
 } // namespace
 
 Rgb analytic_transmittance(const Medium& medium, const Ray& ray) {
-    if (!medium.homogeneous())
-        throw std::runtime_error("analytic transmittance is for homogeneous media");
+    if (!medium.homogeneous() && !medium.fades())
+        throw std::runtime_error("analytic transmittance is for homogeneous media and exponentials");
     double length = 0.0;
     for (const Interval& interval : support(medium, ray))
-        length += interval.length();
+        length += medium.fades() ? medium.fading_integral(ray, interval) : interval.length();
     return glm::exp(-medium.sigma_t * length);
 }
 

@@ -108,6 +108,9 @@ std::vector<NamedScene> agreement_scenes() {
                        {0.9, 1.5, {0.4, 0.5, 0.9}, {0.0, 0.0, 0.2}}};
     scan.map.is_transfer = true;
     scenes.push_back({"transfer function", picture_of(scan, 11.0, 1000)});
+    Volume air = medium(Everywhere{}, 0.6, 0.9, 0.3);
+    air.layers = Layers{1, -2.0, 18.0, 1.0, 0.0};
+    scenes.push_back({"atmosphere", picture_of(air, 11.0, 400)});
     return scenes;
 }
 

@@ -15,7 +15,7 @@ struct NamedScene {
 };
 
 // A homogeneous slab, spheres with g = +-0.8, a thin and a thick cloud, a spike, a chromatic cloud, fire, noise in a
-// mesh, several media in one another, and a cloud by a transfer function. Small pictures.
+// mesh, several media in one another, a cloud by a transfer function, and an atmosphere. Small pictures.
 std::vector<NamedScene> agreement_scenes();
 
 // Choices along all axes, named as on the command line.

@@ -19,7 +19,8 @@ NOT_MULTIPLE = ("densitySampling", "homogeneousRayMarcherNEE", "homogeneousRayMa
                 "heterogeneousPerlinNoise", "nanoVDBSimple", "nanoVDBEmission")
 WITHOUT_LIGHT = ("deltaTracking", "densitySampling")
 PHASES = ("henyeyGreenstein", "doubleHenyeyGreenstein", "rayleigh")
-LEFT_OUT = {"noise": "procedural noise", "models": "a medium in a mesh"}
+LEFT_OUT = {"noise": "procedural noise", "models": "a medium in a mesh", "everywhere": "a medium without end",
+            "layers": "a density by height"}
 
 
 @dataclasses.dataclass
