@@ -147,7 +147,7 @@ Material SceneReader::material(const XmlElement& element) const {
     return material;
 }
 
-// `scope_` is the element.
+// `scopes_` are the element.
 Surface SceneReader::surface(const XmlElement& element) const {
     Surface surface;
     surface.place = element.place();
@@ -197,13 +197,13 @@ Surface SceneReader::surface(const XmlElement& element) const {
 
 void SceneReader::read_surfaces(Scene& scene) {
     one("surfaces").allow({}, false, shapes);
-    const pugi::xml_node root = scope_;
-    for (const pugi::xml_node node : root.child("surfaces").children()) {
+    const std::vector<pugi::xml_node> around = scopes_;
+    for (const pugi::xml_node node : document_.root().child("surfaces").children()) {
         if (node.type() != pugi::node_element)
             continue;
-        scope_ = node;
+        scopes_ = {node};
         scene.surfaces.push_back(surface(XmlElement(document_, node)));
-        scope_ = root;
+        scopes_ = around;
     }
 }
 
