@@ -47,7 +47,7 @@ std::string attribute_value(std::string_view name, Source& random) {
     if (name == "baseDir")
         return one_of(".|./|", random);
     if (name == "file")
-        return one_of("phase.txt|phase.txt|none.txt|.", random);
+        return one_of("phase.txt|ball.obj|none.txt|.", random);
     if (name == "jitter")
         return one_of("true|false", random);
     if (name == "scattering")
@@ -76,6 +76,14 @@ std::string attribute_value(std::string_view name, Source& random) {
         return one_of("0.5|0.9 0.5 0.2|1|0 1", random);
     if (name == "kelvin")
         return one_of("|2000|6500", random);
+    if (name == "material")
+        return one_of("diffuse|mirror|conductor|dielectric", random);
+    if (name == "metal")
+        return one_of("gold|copper|silver|aluminium|tin", random);
+    if (name == "sides")
+        return one_of("1|2", random);
+    if (name == "eta" || name == "k")
+        return one_of("1.5|0.2 0.9 1.1|1 2", random);
     if (name == "octaves" || name == "cell")
         return std::to_string(1 + random.below(16));
     if (name == "lacunarity" || name == "reference")
@@ -147,6 +155,22 @@ std::string volume(Source& random) {
     return xml + "  </volume>\n";
 }
 
+// With what it holds between its tags.
+std::string surface(Source& random) {
+    const Words& words = random.pick(surface_grammar);
+    std::string xml = element(words, random);
+    xml.replace(xml.rfind("/>"), 2, ">");
+    if (random.one_in(3))
+        xml += element(random.pick(shine_grammar), random);
+    if (random.one_in(3)) {
+        xml += "  <transform>\n";
+        for (std::uint64_t steps = random.below(3); steps > 0; --steps)
+            xml += element(random.pick(step_grammar), random);
+        xml += "  </transform>\n";
+    }
+    return xml + fmt::format("  </{}>\n", words.element);
+}
+
 std::string build(Source& random) {
     std::string xml = "<options>\n";
     if (random.one_in(3)) {
@@ -176,6 +200,12 @@ std::string build(Source& random) {
     }
     if (random.one_in(6))
         xml += map_by_points(random);
+    if (random.one_in(4)) {
+        xml += "  <surfaces>\n";
+        for (std::uint64_t surfaces = random.below(4); surfaces > 0; --surfaces)
+            xml += surface(random);
+        xml += "  </surfaces>\n";
+    }
     if (random.one_in(3)) {
         xml += "  <lights>\n";
         for (std::uint64_t lights = random.below(4); lights > 0; --lights)

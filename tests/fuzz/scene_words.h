@@ -24,6 +24,7 @@ inline constexpr const char* element_names[] = {"densityField",
                                                 "transferFunction",
                                                 "light",
                                                 "lights",
+                                                "surfaces",
                                                 "directional",
                                                 "sun",
                                                 "point",
@@ -121,6 +122,17 @@ inline constexpr Words step_grammar[] = {{"translate", "", {"x", "y", "z"}},
                                          {"rotate", "", {"x", "y", "z", "angle"}},
                                          {"scale", "", {"value", "x", "y", "z"}},
                                          {"matrix", "", {"values"}}};
+
+// Within <surfaces>, and what each of them may hold.
+inline constexpr Words surface_grammar[] = {
+    {"sphere", "", {"x", "y", "z", "radius", "material", "ior", "multiplier"}},
+    {"disk", "", {"x", "y", "z", "lookAt", "radius", "material", "metal"}},
+    {"plane", "", {"x", "y", "z", "lookAt", "material", "eta", "k"}},
+    {"rectangle", "", {"x", "lookAt", "up", "width", "height", "r", "g", "b", "multiplier"}},
+    {"box", "", {"x", "y", "z", "width", "height", "depth", "material"}},
+    {"mesh", "", {"file", "baseDir", "material", "multiplier"}}};
+inline constexpr Words shine_grammar[] = {{"emission", "", {"r", "g", "b", "multiplier", "sides"}},
+                                          {"emission", "", {"kelvin", "multiplier"}}};
 
 // Within <lights>.
 inline constexpr Words light_grammar[] = {

@@ -8,6 +8,8 @@
 #include "scene_hash.h"
 #include "scene_upload.h"
 #include "shared/constants.h"
+#include "surface_mesh.h"
+#include "surface_table.h"
 #include "target.h"
 
 namespace vkvol::fuzz {
@@ -182,8 +184,28 @@ void check_field(const DensityField& field) {
     }
 }
 
+void check_surfaces(const std::vector<Surface>& surfaces, const glm::dvec3& origin) {
+    const SurfaceTable table = make_surface_table(surfaces, origin);
+    for (const shared::SurfaceRow& row : table.rows) {
+        expect_radiance(row.emission, "a surface's light is out of range");
+        expect_finite(row.eta, "an index of refraction is not finite");
+        expect_finite(row.k, "an index of refraction is not finite");
+        for (int i = 0; i < 3; ++i)
+            expect(row.color[i] >= 0.0f && row.color[i] <= 1.0f, "a surface scatters more than it gets");
+    }
+    for (const shared::SurfacePrimitive& piece : table.primitives) {
+        expect_finite(piece.a, "a piece of a surface is not finite");
+        expect_finite(piece.b, "a piece of a surface is not finite");
+        expect_finite(piece.c, "a piece of a surface is not finite");
+        expect(piece.surface < table.rows.size(), "a piece of no surface");
+    }
+    for (const shared::BvhNode& node : table.nodes)
+        expect(node.skip <= table.nodes.size() && (node.leaf >> 3) + (node.leaf & 7) <= table.primitives.size(),
+               "a node of the surfaces' hierarchy leads astray");
+}
+
 void use_scene(const Scene& authored) {
-    const Scene scene = with_preset(authored);
+    const Scene scene = with_surface_meshes(with_preset(authored));
     const Method method = choose_method(scene);
     expect(scene_hash(scene).size() == 16, "a scene hash has 16 digits");
     const Assets assets = load_assets(scene, method);
@@ -201,6 +223,7 @@ void use_scene(const Scene& authored) {
     is_chromatic(scene);
     const Crop crop{0, scene.picture.width, 0, scene.picture.height};
     const shared::FrameParams frame = make_frame(scene, assets.media, method, crop, 1, whole);
+    check_surfaces(scene.surfaces, render_origin(scene, assets.media, whole));
     if (constants[SPEC_LIGHTS] != LIGHTS_SUN) {
         const LightTable table = make_light_table(scene, assets, render_origin(scene, assets.media, whole),
                                                   lit_radius(scene, assets, frame.media[0]));

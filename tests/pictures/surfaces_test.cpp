@@ -220,6 +220,13 @@ TEST_CASE("a pane of glass and a metal reflect what Fresnel says", "[gpu][image]
         CHECK_AGREEMENT(agree_with_escapes(film, std::vector<double>(film.mean.size(), (1.0 - F) / (1.0 + F)), Rgb(1.0),
                                            Rgb(0.0), "pane"));
     }
+    // Within the glass what shines is as bright as it says, and outside by 1 / n^2 of that.
+    std::get<PlaneSurface>(scene.surfaces.back().shape).point.y = 0.0;
+    scene.camera.pitch = -90.0;
+    scene.camera.position = {0.0, 3.0, 0.0};
+    const Film within = render_here(scene, 1).film;
+    CHECK_AGREEMENT(agree_with_escapes(within, std::vector<double>(within.mean.size(), 0.96), Rgb(1.0 / 2.25), Rgb(0.0),
+                                       "within glass"));
     // Straight on, F = ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
     Surface metal;
     metal.shape = PlaneSurface{};
@@ -308,6 +315,10 @@ TEST_CASE("surfaces are read, moved and refused by name", "[xml][surfaces]") {
     CHECK(box.vertices.front() == glm::dvec3(-2.0, 4.0, -1.0));
     CHECK(box.vertices.back() == glm::dvec3(2.0, 6.0, 1.0));
     CHECK(scene.surfaces[4].material.k.x == 3.983);
+
+    const std::string glass = "<surfaces><box material=\"dielectric\"/></surfaces>";
+    CHECK(warns(parse(glass + "<lights><point/><sphere/></lights>"), "no path finds what directional lights"));
+    CHECK_FALSE(warns(parse(glass + "<lights><sun y=\"1\"/><sphere/></lights>"), "no path finds"));
 
     const auto refused = [](const std::string& surface) { return error_of("<surfaces>" + surface + "</surfaces>"); };
     CHECK_THAT(refused("<sphere material=\"gold\"/>"), Contains("2:19") && Contains("'gold' is unknown"));
