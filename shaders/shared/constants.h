@@ -188,8 +188,9 @@
 #define MATERIAL_CONDUCTOR 2
 #define MATERIAL_DIELECTRIC 3
 
-// In place of a primitive's number.
+// In place of a primitive's number; and a bit that is set where there is one.
 #define NO_SURFACE 0xffffffffu
+#define AT_SURFACE 0x80000000u
 
 // How what looks toward a light and what flights meet of it share the work.
 #define MIS_BALANCE 0

@@ -31,8 +31,7 @@
     ROW(uint, sample_index)                                                                                           \
     ROW(uint, draw)  /* random draws consumed; 0 at the camera, whose draw also holds the first free flight */        \
     ROW(uint, depth) /* scattering events, this one included; 0 at the camera */                                      \
-    ROW(uint, medium) /* of several, the row of that which it collided with */                                        \
-    ROW(uint, surface) /* the primitive that it is at; NO_SURFACE: none */                                            \
+    ROW(uint, medium) /* of several, the row of that which it collided with; at a surface AT_SURFACE + its primitive */ \
     ROW(uint, todo)  /* TODO_...: what comes next */
 
 // ROW(type, name, when): `when` is what has to hold for the field to mean something, see lane.glsl. A SPECTRUM_ROW has

@@ -24,7 +24,7 @@ void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spec
         lane.resume = next;
         lane.leg = LEG_LOOK;
 #ifdef SURFACES
-        lane.lit_surface = s.is_surface ? lane.path.surface : NO_SURFACE;
+        lane.lit_surface = s.is_surface ? surface_at(lane.path) : NO_SURFACE;
 #endif
         lane.to_light = drawn.direction;
         lane.light_distance = drawn.distance;
@@ -71,8 +71,6 @@ void gather_light(MediumParams v, MediumParams met, vec3 position, float t, Spec
 // At a real collision: emission, absorption, light. Then the path departs, or ends.
 void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, inout Tally tally) {
     lane.path.medium = lane.walk.met;
-    if (HAS_SURFACES)
-        lane.path.surface = NO_SURFACE;
     MediumParams met = medium_of(v, lane.walk.met);
     if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_COLLISIONS)
         lane.path.radiance += lane.beta * emitted_radiance(met, lane.path.position);

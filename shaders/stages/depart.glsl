@@ -43,7 +43,7 @@ void scatter(MediumParams v, vec4 u, inout Lane lane) {
 // Likewise at a surface.
 void scatter_at_surface(vec4 u, inout Lane lane) {
     vec3 wo = -lane.path.direction;
-    SurfacePoint at = surface_point(lane.path.surface, lane.path.position);
+    SurfacePoint at = surface_point(surface_at(lane.path), lane.path.position);
     Bsdf bsdf = bsdf_of(surfaces[at.row], at.normal, wo);
     BsdfSample drawn = bsdf_sample(bsdf, wo, u.yzx);
     bool crosses = dot(drawn.direction, bsdf.normal) < 0.0;
@@ -56,7 +56,7 @@ void scatter_at_surface(vec4 u, inout Lane lane) {
 
 // What mirrors and glass show of lamps is seen as the camera sees them.
 bool look_at_shown_lamps(inout Lane lane, inout Rng rng) {
-    bool is_shown = lane.todo == TODO_FLY && lane.path.surface != NO_SURFACE && lane.phase_pdf == 0.0;
+    bool is_shown = lane.todo == TODO_FLY && surface_at(lane.path) != NO_SURFACE && lane.phase_pdf == 0.0;
     LightSample seen = seen_lamp(lane.path.position, lane.path.direction, to_uniform(next_words(rng)).w);
     bool sees = is_shown && seen.distance < FAR;
     if (sees)
@@ -85,7 +85,7 @@ void begin_going(MediumParams v, uvec4 words, bool looks, bool at_camera, inout 
         lane.flight = lane.walk;
 #ifdef SURFACES
     Ray ray = Ray(looks ? looking_from(lane) : lane.path.position, looks ? looking_along(lane) : lane.path.direction);
-    lane.seek = begin_seek(ray, looks ? looking_as_far_as(lane) : FAR, looks ? lane.lit_surface : lane.path.surface);
+    lane.seek = begin_seek(ray, looks ? looking_as_far_as(lane) : FAR, looks ? lane.lit_surface : surface_at(lane.path));
     lane.todo = looks ? TODO_CHECK : lane.todo == TODO_FLY ? TODO_SEEK : lane.todo;
 #else
     set_going(v, words, looks, at_camera, lane);
@@ -105,9 +105,9 @@ void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
         lane.phase_pdf = 0.0;
     bool scatters = !looks && !at_camera && !has_looked;
 #ifdef SURFACES
-    if (scatters && lane.path.surface != NO_SURFACE)
+    if (scatters && surface_at(lane.path) != NO_SURFACE)
         scatter_at_surface(to_uniform(words), lane);
-    scatters = scatters && lane.path.surface == NO_SURFACE;
+    scatters = scatters && surface_at(lane.path) == NO_SURFACE;
 #endif
     if (scatters)
         scatter(medium_of(v, lane.path.medium), to_uniform(words), lane);

@@ -26,7 +26,7 @@ void generate(MediumParams v, inout Lane lane, out Rng rng) {
     lane.path.draw = 0u;
     lane.path.depth = 0u;
     if (HAS_SURFACES)
-        lane.path.surface = NO_SURFACE;
+        lane.path.medium = 0u;
     lane.beta = to_spectrum(vec3(1.0));
     lane.todo = TODO_DEPART;
     rng = pixel_rng(lane.path.place, lane.path.sample_index, 0u);

@@ -85,6 +85,10 @@ float looking_as_far_as(Lane lane) {
            : is_along(lane)     ? distance(lane.path.position, lane.position)
                                 : lane.light_distance;
 }
+// The primitive that the path is at, or NO_SURFACE.
+uint surface_at(PathState path) {
+    return (path.medium & AT_SURFACE) != 0u ? path.medium & ~AT_SURFACE : NO_SURFACE;
+}
 // How far a flight goes, unless it collides.
 float flying_as_far_as(Lane lane) {
 #ifdef SURFACES

@@ -14,7 +14,7 @@ void look_straight(LightSample seen, Spectrum lit, uint next, inout Lane lane) {
     lane.light_distance = seen.distance;
     lane.light = seen.light;
     if (HAS_SURFACES)
-        lane.lit_surface = lane.path.surface;
+        lane.lit_surface = surface_at(lane.path);
     look_in_full(lane);
     lane.todo = TODO_LOOK;
 }

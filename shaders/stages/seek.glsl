@@ -9,7 +9,7 @@
 void seek(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     bool looks = at_shadow_ray(lane.todo == TODO_CHECK);
     Ray ray = Ray(looks ? looking_from(lane) : lane.path.position, looks ? looking_along(lane) : lane.path.direction);
-    uint from = looks ? lane.lit_surface : lane.path.surface;
+    uint from = looks ? lane.lit_surface : surface_at(lane.path);
     MeshRay mesh_ray = make_mesh_ray(frame.first_surface_node, frame.surface_nodes, ray);
     bool over = looks && lane.seek.primitive != NO_SURFACE;
     for (int k = 0; k < SURFACE_NODES_PER_TURN && !over; ++k) {

@@ -17,7 +17,7 @@ void arrive_at_surface(MediumParams v, inout Lane lane, inout Rng rng, inout Tal
     lane.path.radiance += lane.beta * surface_emission(row, at.normal, lane.path.direction);
     Bsdf bsdf = bsdf_of(row, at.normal, -lane.path.direction);
     lane.path.position = at.position + at.apart * bsdf.normal;
-    lane.path.surface = lane.struck;
+    lane.path.medium = AT_SURFACE | lane.struck;
     bool capped = SCATTERING != SCATTERING_NONE && lane.path.depth >= frame.max_depth;
     tally.depth_caps += capped ? 1u : 0u;
     lane.path.depth += 1u;
