@@ -95,6 +95,16 @@ no further part of a mesh ~ shaders/shapes/segment.glsl ~ event == EVENT_LEFT &&
 a flight stays in its part after a shadow ray ~ shaders/stages/shadow.glsl ~ lane.search.stage = SEARCH_OVER; ~ ; ~ flights go on to the next body*
 a search laid aside forgets its crossings ~ shaders/shared/path_state.h ~ ROW(PartSearch, search, under_way && SHAPE == SHAPE_MESH) ~ ROW(PartSearch, search, false) ~ [closed_form]
 octaves lost to a driver's loops ~ host/render/plan.cpp ~ const std::uint32_t octaves = loops.octaves > 0 ? loops.octaves + 1 : 0; ~ const std::uint32_t octaves = 0; ~ [determinism]
+irradiance without its cosine ~ shaders/sensors/flux.glsl ~ max(dot(direction, frame.sensors[0].corner), 0.0) / PI ~ 0.25 / PI ~ [flux]
+fluence by a half of all directions ~ shaders/sensors/camera.glsl ~ turned(vec3(0.0, 1.0, 0.0), 2.0 * u.x, ~ turned(vec3(0.0, 1.0, 0.0), u.x, ~ [flux]
+a sensor's rays and looks both in full ~ shaders/stages/depart.glsl ~ READS_FLUX ? flux_pdf(lane.path.direction) : 0.0 ~ 0.0 ~ [flux]
+rows of points mixed up ~ shaders/sensors/camera.glsl ~ (place >> 16u) * camera.row ~ (place >> 16u) ~ [flux]
+light scattered twice counted as once ~ shaders/film/layers.glsl ~ scatterings == 1u ? LIGHT_ONCE ~ scatterings <= 2u ? LIGHT_ONCE ~ [layers]
+a look's label without its group ~ shaders/stages/collide.glsl ~ label |= group_label(row.group); ~ ; ~ [layers]
+a path's first medium forgotten ~ shaders/shared/path_state.h ~ ROW(uint, first_label, has_layers) ~ ROW(uint, first_label, false) ~ [layers]
+depth from where rays begin ~ shaders/film/layers.glsl ~ s.start > 0.0 ? ~ false ? ~ [layers]
+layers lost at a checkpoint ~ host/render/session.cpp ~ device_scene_->frame().layers, from.layers); ~ device_scene_->frame().layers, std::vector<glm::vec3>(from.layers.size())); ~ [layers]
+depths merged without their weights ~ host/cli/merge.cpp ~ double(coverage->mean[i].x) * input.film.samples[i] ~ 1.0 ~ [layers]
 an output over an input by a link ~ host/scene_files/file_uses.cpp ~ if (is_same_file(output.file, input.file)) ~ if (output.file == input.file) ~ no output is an input or another output
 a checkpoint written over ~ host/cli/checkpoint_file.cpp ~ if (!options_.resume && is_checkpoint(path_)) ~ if (false) ~ [checkpoint]
 azimuth clockwise ~ host/scene/camera_view.cpp ~ camera.yaw = orbit.azimuth; ~ camera.yaw = -orbit.azimuth; ~ [xml]

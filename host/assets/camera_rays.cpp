@@ -18,11 +18,12 @@ void set_angles(const Picture& picture, CameraRays& rays) {
 } // namespace
 
 glm::dvec3 CameraRays::origin(double x, double y) const {
-    return projection == Projection::orthographic ? position + corner + x * right + y * down : position;
+    const bool from_plane = projection == Projection::orthographic || projection == Projection::irradiance;
+    return from_plane ? position + corner + x * right + y * down : position;
 }
 
 glm::dvec3 CameraRays::direction(double x, double y) const {
-    if (projection == Projection::orthographic)
+    if (projection == Projection::orthographic || projection == Projection::irradiance)
         return forward;
     if (projection == Projection::perspective)
         return corner + x * right + y * down;
@@ -31,16 +32,20 @@ glm::dvec3 CameraRays::direction(double x, double y) const {
 }
 
 double CameraRays::pixel_at(double distance) const {
-    return projection == Projection::perspective    ? distance * glm::length(down)
-           : projection == Projection::orthographic ? glm::length(down)
-                                                    : distance * -angle_step.y;
+    return projection == Projection::perspective       ? distance * glm::length(down)
+           : projection != Projection::equirectangular ? glm::length(down)
+                                                       : distance * -angle_step.y;
 }
 
 CameraRays camera_rays(const Camera& camera, const Picture& picture) {
-    const bool is_orthographic = camera.projection == Projection::orthographic;
+    const bool is_rectangle = camera.projection == Projection::irradiance;
+    const bool from_plane = is_rectangle || camera.projection == Projection::orthographic;
     // Half of the reference frame's height, on the plane at distance 1, or in the world.
-    const double s = is_orthographic ? camera.view_height / 2.0 : std::tan(glm::radians(camera.fov) / 2.0);
-    const double aspect = picture.reference_width / picture.reference_height;
+    const double s = is_rectangle ? camera.size.y / 2.0
+                     : from_plane ? camera.view_height / 2.0
+                                  : std::tan(glm::radians(camera.fov) / 2.0);
+    const double aspect =
+        is_rectangle ? camera.size.x / camera.size.y : picture.reference_width / picture.reference_height;
     const double dx = 2.0 * aspect * s / picture.reference_width;
     const double dy = -2.0 * s / picture.reference_height;
     const glm::dmat3 rotation = camera_rotation(camera);
@@ -48,8 +53,8 @@ CameraRays camera_rays(const Camera& camera, const Picture& picture) {
     rays.projection = camera.projection;
     rays.position = camera.position;
     rays.forward = rotation * glm::dvec3(0.0, 0.0, -1.0);
-    rays.corner = rotation * glm::dvec3(-aspect * s + picture.start_x * dx, s + picture.start_y * dy,
-                                        is_orthographic ? 0.0 : -1.0);
+    rays.corner =
+        rotation * glm::dvec3(-aspect * s + picture.start_x * dx, s + picture.start_y * dy, from_plane ? 0.0 : -1.0);
     rays.right = rotation * glm::dvec3(dx, 0.0, 0.0);
     rays.down = rotation * glm::dvec3(0.0, dy, 0.0);
     if (camera.projection == Projection::equirectangular) {
@@ -58,6 +63,19 @@ CameraRays camera_rays(const Camera& camera, const Picture& picture) {
         rays.down = rotation * glm::dvec3(0.0, -1.0, 0.0);
     }
     return rays;
+}
+
+std::vector<glm::dvec3> reading_places(const Camera& camera, const Picture& picture, const Crop& window) {
+    std::vector<glm::dvec3> places;
+    if (!reads_flux(camera))
+        return places;
+    const CameraRays rays = camera_rays(camera, picture);
+    for (int y = window.y0; y < window.y1; ++y)
+        for (int x = window.x0; x < window.x1; ++x)
+            places.push_back(camera.projection == Projection::fluence
+                                 ? camera.points[std::size_t(y) * std::size_t(picture.width) + std::size_t(x)]
+                                 : rays.origin(x + 0.5, y + 0.5));
+    return places;
 }
 
 } // namespace vkvol

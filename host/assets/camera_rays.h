@@ -1,13 +1,15 @@
 // Where the camera's rays go, in the world and in double precision.
 #pragma once
 
+#include "crop.h"
 #include "scene.h"
 
 namespace vkvol {
 
 // The ray through the point (x, y) of the picture, in pixels from its left and top edge, and the middle of the lens.
 // Perspective: it starts at `position` and has the direction corner + x right + y down, which is 1 long along the view.
-// Orthographic: it starts at position + corner + x right + y down and goes forward. Equirectangular: it starts at
+// Orthographic: it starts at position + corner + x right + y down and goes forward; so it does from a rectangle that
+// reads irradiance, along whose normal that is. Equirectangular: it starts at
 // `position` at angles first_angle + (x, y) * angle_step (radians: longitude to the right of `forward`, latitude);
 // right and down are unit vectors then.
 struct CameraRays {
@@ -23,5 +25,8 @@ struct CameraRays {
 };
 
 CameraRays camera_rays(const Camera& camera, const Picture& picture);
+
+// Where a sensor of flux reads each pixel of the window, row by row, world; empty of cameras.
+std::vector<glm::dvec3> reading_places(const Camera& camera, const Picture& picture, const Crop& window);
 
 } // namespace vkvol

@@ -174,6 +174,10 @@ void check_focus(const Lens& lens) {
 } // namespace
 
 void frame_medium(Scene& scene, FieldCache& fields) {
+    if (reads_flux(scene.camera))
+        throw InputError(fmt::format("--frame: <{}> reads flux where the scene has it, and is no camera to be moved; "
+                                     "leave --frame out",
+                                     projection_name(scene.camera.projection)));
     const std::optional<Corners> corners = medium_corners(scene, fields);
     if (!corners)
         throw InputError(scene.volumes.empty()
@@ -185,6 +189,26 @@ void frame_medium(Scene& scene, FieldCache& fields) {
     frame(scene.camera, scene.picture, *corners);
     if (scene.camera.lens.radius > 0.0)
         check_focus(scene.camera.lens);
+}
+
+std::string give_camera(Scene& scene, FieldCache& fields) {
+    if (scene.has_camera)
+        return "";
+    const std::optional<Corners> corners = medium_corners(scene, fields);
+    if (!corners)
+        return "";
+    scene.camera.fov = usual_fov;
+    Orbit orbit;
+    orbit.azimuth = usual_azimuth;
+    orbit.elevation = usual_elevation;
+    place_on_orbit(scene.camera, orbit);
+    frame(scene.camera, scene.picture, *corners);
+    const glm::dvec3 forward = -camera_rotation(scene.camera)[2];
+    const double distance = glm::dot(middle_of(*corners) - scene.camera.position, forward);
+    const glm::dvec3 target = scene.camera.position + distance * forward;
+    return fmt::format("the scene has no <camera>: this one frames its media, <camera lookAt=\"{:.6g} {:.6g} {:.6g}\" "
+                       "distance=\"{:.6g}\" azimuth=\"{:g}\" elevation=\"{:g}\" fov=\"{:g}\"/>",
+                       target.x, target.y, target.z, distance, orbit.azimuth, orbit.elevation, scene.camera.fov);
 }
 
 } // namespace vkvol

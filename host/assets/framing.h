@@ -30,4 +30,8 @@ void frame(Camera& camera, const Picture& picture, const Corners& corners);
 // The same for the scene's medium. Throws InputError if there is none, and where a lens cannot have sharp what it had.
 void frame_medium(Scene& scene, FieldCache& fields);
 
+// Gives a scene without a camera the usual view of all its media, framed so. In one line, which it is; empty where the
+// scene has a camera or no medium. Throws InputError for files that cannot be read.
+std::string give_camera(Scene& scene, FieldCache& fields);
+
 } // namespace vkvol

@@ -1,14 +1,12 @@
 #include "phase_table.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
-#include <fstream>
 #include <numbers>
 
 #include "error.h"
-#include "one_line.h"
+#include "number_table.h"
 
 namespace vkvol {
 
@@ -16,80 +14,25 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::size_t most_lines = 65536;
-constexpr std::size_t longest_line = 4096;
-constexpr double largest_value = 1e30;
 constexpr int moment_angles = 16384; // at which a series is evaluated: 0.011 degrees apart
 
-// The file's numbers, a row a line that has some, all of as many.
-struct Rows {
-    std::vector<double> numbers;
-    std::vector<int> lines; // where each row was
-    std::size_t width = 0;
-};
-
-[[noreturn]] void fail(const std::filesystem::path& file, int line, const std::string& message) {
-    throw InputError(fmt::format("{}:{}: {}", file.string(), line, message));
-}
-
-void read_row(const std::filesystem::path& file, int number, std::string line, Rows& rows) {
-    line.erase(std::find(line.begin(), line.end(), '#'), line.end());
-    std::replace_if(
-        line.begin(), line.end(), [](char c) { return c == ',' || c == ';' || c == '\t' || c == '\r'; }, ' ');
-    const char *at = line.data(), *end = at + line.size();
-    std::size_t width = 0;
-    while ((at = std::find_if(at, end, [](char c) { return c != ' '; })) != end) {
-        const char* word_end = std::find(at, end, ' ');
-        double value = 0.0;
-        const auto [read, error] = std::from_chars(at + (*at == '+' ? 1 : 0), word_end, value);
-        if (error != std::errc() || read != word_end || !(std::abs(value) <= largest_value))
-            fail(file, number,
-                 fmt::format("'{}' is no number; lines are \"angle value\", or one Legendre moment each",
-                             one_line(std::string(at, std::min(word_end, at + 40)))));
-        rows.numbers.push_back(value);
-        ++width;
-        at = word_end;
-    }
-    if (width == 0)
-        return;
-    if (rows.width == 0)
-        rows.width = width;
-    if (width != rows.width || width > 2)
-        fail(file, number,
-             fmt::format("has {} numbers; every line has two, an angle and a value, or every line one, a "
-                         "Legendre moment",
-                         width));
-    rows.lines.push_back(number);
-    if (rows.lines.size() > most_lines)
-        fail(file, number, fmt::format("more than {} lines; thin it out", most_lines));
-}
-
-Rows read_rows(const std::filesystem::path& file) {
-    std::ifstream stream(file);
-    if (!stream || std::filesystem::is_directory(file))
+NumberTable read_rows(const std::filesystem::path& file) {
+    const NumberTable rows = read_number_table(file, {"<phase> names a text file of angles and values",
+                                                      "lines are \"angle value\", or one Legendre moment each", 1, 2});
+    if (rows.rows() < 2)
         throw InputError(
-            fmt::format("{}: cannot be read; <phase> names a text file of angles and values", file.string()));
-    Rows rows;
-    std::string line;
-    for (int number = 1; std::getline(stream, line); ++number) {
-        if (line.size() > longest_line)
-            fail(file, number, "a very long line; is this the text file that was meant?");
-        read_row(file, number, line, rows);
-    }
-    if (rows.lines.size() < 2)
-        throw InputError(
-            fmt::format("{}: holds {} lines with numbers; at least two are needed", file.string(), rows.lines.size()));
+            fmt::format("{}: holds {} lines with numbers; at least two are needed", file.string(), rows.rows()));
     return rows;
 }
 
-PhaseTable from_angles(const std::filesystem::path& file, const Rows& rows) {
+PhaseTable from_angles(const std::filesystem::path& file, const NumberTable& rows) {
     std::vector<double> angles, values;
     for (std::size_t i = 0; i < rows.lines.size(); ++i) {
         const double angle = rows.numbers[2 * i], value = rows.numbers[2 * i + 1];
         if (angle < 0.0 || angle > 180.0 || (i > 0 && angle <= rows.numbers[2 * i - 2]))
-            fail(file, rows.lines[i], fmt::format("angle {:g}; angles go from 0 to 180 degrees, and rise", angle));
+            fail_line(file, rows.lines[i], fmt::format("angle {:g}; angles go from 0 to 180 degrees, and rise", angle));
         if (value < 0.0)
-            fail(file, rows.lines[i], fmt::format("value {:g}; values are 0 or more", value));
+            fail_line(file, rows.lines[i], fmt::format("value {:g}; values are 0 or more", value));
         angles.push_back(angle / 180.0 * pi);
         values.push_back(value);
     }
@@ -114,16 +57,17 @@ double series(const std::vector<double>& moments, double mu) {
 }
 
 // A series that ends too soon swings about what it is to be, below 0 as well.
-PhaseTable from_moments(const std::filesystem::path& file, const Rows& rows) {
+PhaseTable from_moments(const std::filesystem::path& file, const NumberTable& rows) {
     const std::vector<double>& moments = rows.numbers;
     if (std::abs(moments[0] - 1.0) > 1e-3)
-        fail(file, rows.lines[0], fmt::format("the first moment is {:g}; it is the mean of 1, and so 1", moments[0]));
+        fail_line(file, rows.lines[0],
+                  fmt::format("the first moment is {:g}; it is the mean of 1, and so 1", moments[0]));
     for (std::size_t i = 0; i < moments.size(); ++i)
         if (std::abs(moments[i]) > 1.001)
-            fail(file, rows.lines[i],
-                 fmt::format("moment {:g}; means of Legendre's polynomials are from -1 to 1 (without "
-                             "the factor 2 l + 1)",
-                             moments[i]));
+            fail_line(file, rows.lines[i],
+                      fmt::format("moment {:g}; means of Legendre's polynomials are from -1 to 1 (without "
+                                  "the factor 2 l + 1)",
+                                  moments[i]));
     std::vector<double> angles, values;
     double below = 0.0, above = 0.0;
     for (int i = 0; i <= moment_angles; ++i) {
@@ -173,7 +117,7 @@ std::vector<shared::PhaseNode> make_phase_nodes(std::span<const double> angles, 
 }
 
 PhaseTable load_phase_table(const std::filesystem::path& file) {
-    const Rows rows = read_rows(file);
+    const NumberTable rows = read_rows(file);
     PhaseTable table = rows.width == 2 ? from_angles(file, rows) : from_moments(file, rows);
     if (!(table.nodes.back().share > 0.0f)) // all of it between angles that are one in single precision
         throw InputError(fmt::format("{}: scatters nowhere; give values above 0 at more angles", file.string()));

@@ -96,10 +96,16 @@ void check_extinction(const Volume& volume, const LoadedMedium& loaded) {
 // Nothing so small is seen, and squares of distances in units of the medium must be finite.
 void check_distance(const Scene& scene, const Extent& extent) {
     constexpr double farthest = 1e12; // diagonals
-    if (!(extent.diagonal * farthest >= glm::length(scene.camera.position - extent.center)))
-        throw InputError(fmt::format("the medium measures {:.3g} and the camera is {:.3g} away, more than {:g} times "
-                                     "that; move the camera or enlarge the medium",
-                                     extent.diagonal, glm::length(scene.camera.position - extent.center), farthest));
+    const auto check = [&](const char* what, glm::dvec3 place) {
+        const double distance = glm::length(place - extent.center);
+        if (!(extent.diagonal * farthest >= distance))
+            throw InputError(fmt::format("the medium measures {:.3g} and the {} is {:.3g} away, more than {:g} times "
+                                         "that; move the {} or enlarge the medium",
+                                         extent.diagonal, what, distance, farthest, what));
+    };
+    check(reads_flux(scene.camera) ? "sensor" : "camera", scene.camera.position);
+    for (const glm::dvec3& point : scene.camera.points)
+        check("point", point);
 }
 
 // A path that never comes to an end would be followed for ever.

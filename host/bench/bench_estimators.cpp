@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "framing.h"
 #include "integrators.h"
 #include "scene_hash.h"
 #include "scene_xml.h"
@@ -16,7 +17,10 @@ namespace {
 Estimator load_estimator(const RenderRequest& request, const std::optional<std::string>& integrator) {
     Estimator estimator;
     estimator.scene = load_scene(request.scene, request.defines, {request.grid, integrator});
-    resize_picture(estimator.scene.picture, request.width, request.height);
+    estimator.scene.layers = 0; // of radiance alone
+    resize_picture(estimator.scene, request.width, request.height);
+    FieldCache fields;
+    give_camera(estimator.scene, fields);
     estimator.method = choose_method(with_preset(estimator.scene));
     estimator.integrator = estimator.method.integrator;
     return estimator;

@@ -39,6 +39,8 @@ void check_pair(const MergeInput& a, const MergeInput& b) {
     for (const char* key : {"vkvol/sceneHash", "vkvol/integrator"})
         if (text_of(a.metadata, key) != text_of(b.metadata, key))
             refuse(a, b, fmt::format("{} is '{}' and '{}'", key, text_of(a.metadata, key), text_of(b.metadata, key)));
+    if (layer_list(a.film) != layer_list(b.film))
+        refuse(a, b, fmt::format("their layers are '{}' and '{}'", layer_list(a.film), layer_list(b.film)));
     if (same_window(a.film.crop, b.film.crop)) {
         const std::string shared =
             shared_samples(sample_ranges_of(a.metadata, a.name), sample_ranges_of(b.metadata, b.name));
@@ -99,15 +101,72 @@ void check_coverage(const std::vector<MergeInput>& inputs, const Crop& window) {
                                      pixels, width, height));
 }
 
-void add_film(const Film& film, const Crop& window, std::vector<Moments>& moments) {
-    const std::size_t row_length = std::size_t(window.x1 - window.x0);
+// Where a film's pixel lies in the window.
+std::size_t place_in(const Crop& window, const Film& film, std::size_t i) {
+    const std::size_t x = i % std::size_t(film.width()) + std::size_t(film.crop.x0 - window.x0);
+    const std::size_t y = i / std::size_t(film.width()) + std::size_t(film.crop.y0 - window.y0);
+    return y * std::size_t(window.x1 - window.x0) + x;
+}
+
+// Of the film's means, or of a layer's.
+void add_means(const Film& film, const std::vector<glm::vec3>& mean, const std::vector<glm::vec3>& variance,
+               const Crop& window, std::vector<Moments>& moments) {
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
-        const std::size_t x = i % std::size_t(film.width()) + std::size_t(film.crop.x0 - window.x0);
-        const std::size_t y = i / std::size_t(film.width()) + std::size_t(film.crop.y0 - window.y0);
         const double n = film.samples[i];
         // variance = squares / (n (n - 1))
-        moments[y * row_length + x].add(film.samples[i], film.mean[i], glm::dvec3(film.variance[i]) * n * (n - 1));
+        moments[place_in(window, film, i)].add(film.samples[i], mean[i], glm::dvec3(variance[i]) * n * (n - 1));
     }
+}
+
+void take_means(const std::vector<Moments>& moments, std::vector<glm::vec3>& mean, std::vector<glm::vec3>& variance) {
+    for (const Moments& pixel : moments) {
+        const double n = double(pixel.n);
+        mean.push_back(pixel.n > 0 ? glm::vec3(pixel.sum / n) : glm::vec3(0.0f));
+        variance.push_back(pixel.n > 1 ? glm::vec3(pixel.squares / (n * (n - 1))) : glm::vec3(0.0f));
+    }
+}
+
+// Of means over collisions: weighted by how many there were, and the variance is that of such a mean.
+FilmLayer merge_collisions(const std::vector<MergeInput>& inputs, std::size_t which, const Crop& window) {
+    const std::size_t pixels = std::size_t(window.x1 - window.x0) * std::size_t(window.y1 - window.y0);
+    std::vector<double> weights(pixels, 0.0);
+    std::vector<glm::dvec3> sums(pixels, glm::dvec3(0.0)), squares(pixels, glm::dvec3(0.0));
+    const FilmLayer& first = inputs.front().film.layers[which];
+    for (const MergeInput& input : inputs) {
+        const FilmLayer& layer = input.film.layers[which];
+        const FilmLayer* coverage = input.film.layer("coverage");
+        for (std::size_t i = 0; i < input.film.pixel_count(); ++i) {
+            const double weight = coverage ? double(coverage->mean[i].x) * input.film.samples[i] : 0.0;
+            const std::size_t at = place_in(window, input.film, i);
+            weights[at] += weight;
+            sums[at] += weight * glm::dvec3(layer.mean[i]);
+            if (!layer.variance.empty())
+                squares[at] += weight * weight * glm::dvec3(layer.variance[i]);
+        }
+    }
+    FilmLayer merged{first.name, {}, {}};
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const double weight = weights[i];
+        merged.mean.emplace_back(weight > 0.0 ? sums[i] / weight : glm::dvec3(0.0));
+        if (!first.variance.empty())
+            merged.variance.emplace_back(weight > 0.0 ? squares[i] / (weight * weight) : glm::dvec3(0.0));
+    }
+    return merged;
+}
+
+FilmLayer merge_layer(const std::vector<MergeInput>& inputs, std::size_t which, const Crop& window) {
+    const FilmLayer& first = inputs.front().film.layers[which];
+    if (first.is_of_collisions())
+        return merge_collisions(inputs, which, window);
+    std::vector<Moments> moments(std::size_t(window.x1 - window.x0) * std::size_t(window.y1 - window.y0));
+    for (const MergeInput& input : inputs) {
+        const FilmLayer& layer = input.film.layers[which];
+        const std::vector<glm::vec3> none(layer.variance.empty() ? layer.mean.size() : 0, glm::vec3(0.0f));
+        add_means(input.film, layer.mean, layer.variance.empty() ? none : layer.variance, window, moments);
+    }
+    FilmLayer merged{first.name, {}, {}};
+    take_means(moments, merged.mean, merged.variance);
+    return merged;
 }
 
 Film film_of(const std::vector<Moments>& moments, const Film& like, const Crop& window) {
@@ -115,13 +174,10 @@ Film film_of(const std::vector<Moments>& moments, const Film& like, const Crop& 
     film.picture_width = like.picture_width;
     film.picture_height = like.picture_height;
     film.crop = window;
-    for (const Moments& pixel : moments) {
-        const double n = double(pixel.n);
-        film.mean.push_back(pixel.n > 0 ? glm::vec3(pixel.sum / n) : glm::vec3(0.0f));
-        film.variance.push_back(pixel.n > 1 ? glm::vec3(pixel.squares / (n * (n - 1))) : glm::vec3(0.0f));
+    take_means(moments, film.mean, film.variance);
+    for (const Moments& pixel : moments)
         film.samples.push_back(
             static_cast<std::uint32_t>(std::min<std::uint64_t>(pixel.n, std::numeric_limits<std::uint32_t>::max())));
-    }
     return film;
 }
 
@@ -160,9 +216,11 @@ MergeResult merge_films(const std::vector<MergeInput>& inputs) {
     check_coverage(inputs, window);
     std::vector<Moments> moments(std::size_t(window.x1 - window.x0) * std::size_t(window.y1 - window.y0));
     for (const MergeInput& input : inputs)
-        add_film(input.film, window, moments);
+        add_means(input.film, input.film.mean, input.film.variance, window, moments);
     MergeResult result;
     result.film = film_of(moments, inputs.front().film, window);
+    for (std::size_t i = 0; i < inputs.front().film.layers.size(); ++i)
+        result.film.layers.push_back(merge_layer(inputs, i, window));
     result.metadata = merged_metadata(inputs, result.film);
     warn_of_unknown_ranges(inputs, result.warnings);
     warn_of_holes(result.film, result.warnings);

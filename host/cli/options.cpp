@@ -8,6 +8,7 @@
 #include "frames.h"
 #include "integrators.h"
 #include "nearest_name.h"
+#include "one_line.h"
 #include "option_groups.h"
 #include "option_values.h"
 #include "options_help.h"
@@ -44,7 +45,7 @@ struct RenderTexts {
 
 void add_picture_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
     const char* group = "Picture";
-    add_list(app, "-o,--output", texts.outputs, "Where to write, .exr or .png; may be given several times")
+    add_list(app, "-o,--output", texts.outputs, "Where to write, .exr, .png or .csv; may be given several times")
         ->option_text("FILE [SCENE.exr and SCENE.png here]")
         ->group(group);
     add_size_options(app, render);
@@ -54,6 +55,14 @@ void add_picture_options(CLI::App& app, RenderOptions& render, RenderTexts& text
         ->option_text("X0,X1,Y0,Y1")
         ->group(group);
     app.add_flag("--frame", render.frame, "Move the camera, without turning it, so that the medium fills the picture")
+        ->group(group);
+    app.add_option("--aov", render.aov,
+                   "Layers of the EXR besides radiance: background, emission, direct, indirect, groups, media, depth, "
+                   "position, albedo, transmittance, alpha")
+        ->option_text("NAME,NAME...")
+        ->group(group);
+    app.add_flag("--alpha", render.alpha,
+                 "Leave out what is behind the media, for compositing: premultiplied, with alpha in EXR and PNG")
         ->group(group);
     app.add_option("--up", texts.up, "Of a grid file without a scene: y, or z as Blender has it")
         ->option_text("AXIS [y]")
@@ -209,6 +218,8 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
     if (!texts.schedule.empty())
         render.plan = parse_schedule(texts.schedule);
     render.tone = texts.tone.request();
+    if (std::string wrong; !parse_layers(render.aov, wrong))
+        fail_command_line(fmt::format("--aov: unknown layer '{}'{}", one_line(wrong), name_hint(wrong, layer_names())));
     if (render.integrator)
         try {
             parse_integrator(*render.integrator);
@@ -285,7 +296,7 @@ void parse_merge(const std::vector<std::string>& arguments, Options& options) {
     std::vector<std::string> inputs, outputs;
     ToneTexts tone;
     app.add_option("images", inputs, "Renders of one picture")->option_text("A.exr B.exr ...");
-    add_list(app, "-o,--output", outputs, "Where to write, .exr or .png; may be given several times")
+    add_list(app, "-o,--output", outputs, "Where to write, .exr, .png or .csv; may be given several times")
         ->option_text("FILE")
         ->group("Picture");
     tone.add(app, "as rendered", "as rendered");

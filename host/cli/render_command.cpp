@@ -158,6 +158,9 @@ int render_picture(const RenderOptions& options, Workshop& workshop) {
     print_reading(options);
     if (!options.quiet)
         print_warnings(workshop.new_warnings(scene.warnings));
+    const bool gave_camera = loaded.xml.empty() && !loaded.assumed.empty();
+    if (!options.quiet && gave_camera && !workshop.new_warnings({loaded.assumed}).empty()) // once in a sequence
+        tell(stderr, "vkvol: note: {}\n", loaded.assumed);
     CheckpointFile checkpoint(options);
     check_files(options, loaded, checkpoint);
     keep_made_scene(options, loaded);

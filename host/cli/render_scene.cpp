@@ -61,7 +61,14 @@ RenderScene load_render_scene(const RenderOptions& options, FieldCache& fields) 
         scene.settings.spp = *options.spp;
     else if (options.time_limit) // time alone decides
         scene.settings.spp = std::numeric_limits<std::int32_t>::max() - options.sample_offset;
-    resize_picture(scene.picture, options.width, options.height);
+    resize_picture(scene, options.width, options.height);
+    std::string wrong; // none: the command line was read
+    scene.layers |= parse_layers(options.aov, wrong).value_or(0) | (options.alpha ? unsigned(layer_alpha) : 0u);
+    scene.holds_out = scene.holds_out || options.alpha;
+    if (const std::string trouble = trouble_with_layers(scene); !trouble.empty())
+        throw InputError("--aov, --alpha: " + trouble);
+    if (result.xml.empty())
+        result.assumed = give_camera(scene, fields);
     if (options.frame && result.xml.empty()) // what was made for a file is framed
         frame_medium(scene, fields);
     return result;

@@ -10,7 +10,7 @@ struct RenderScene {
     Scene scene;
     std::string xml;                // made for a grid file; empty: the scene has a file of its own
     std::filesystem::path xml_file; // where it is kept, beside the first picture
-    std::string assumed;            // in it, in one line
+    std::string assumed;            // in it, in one line; of a scene without a camera, which it has got
 };
 
 // With the samples, size and view of the command line; `fields` as in framing.h. Throws InputError.

@@ -18,9 +18,9 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
     : device_(device), commands_(commands), specialization_(specialize(scene, assets.media, method, whole_of(assets))),
       frame_(make_frame(scene, assets.media, method, crop, seed, whole_of(assets))),
       buffers_(device, commands, assets.media, whole_of(assets), most_grid_bytes, most_texel_bytes),
-      form_(is_chromatic(scene) ? form_chromatic : 0), text_(kernel_text(specialization_, assets, is_chromatic(scene))),
-      origin_(render_origin(scene, assets.media, whole_of(assets))),
-      cache_directions_(cache_layout(scene.lights).directions) {
+      layers_(plan_layers(scene)), form_(is_chromatic(scene) ? form_chromatic : 0),
+      text_(kernel_text(specialization_, assets, is_chromatic(scene))),
+      origin_(render_origin(scene, assets.media, whole_of(assets))), cache_directions_(cache_layout(scene).directions) {
     if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN)
         make_lights(scene, assets);
     if (assets.superposition)
@@ -36,6 +36,9 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
         form_ |= form_full;
     if (!scene.surfaces.empty())
         make_surfaces(scene, assets);
+    for (const glm::dvec3& point : scene.camera.points)
+        points_.emplace_back(point - origin_);
+    buffers_.upload_points(device, commands, points_);
     if (assets.superposition)
         form_ |= form_full | form_several;
     if (const std::optional<std::uint32_t> bits = buffers_.window_bits()) {

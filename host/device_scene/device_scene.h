@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "crop.h"
+#include "layer_plan.h"
 #include "light_cache.h"
 #include "medium_outline.h"
 #include "scene_buffers.h"
@@ -26,6 +27,8 @@ public:
     void compile_light_cache(VkPipelineCache cache);
     void fill_light_cache();
     void set_queues(std::uint32_t slots, std::uint32_t queue_capacity);
+    // Paths that have a record of layers at a time.
+    void set_records(std::uint32_t records) { frame_.layers.records = records; }
     // The first row of the part of the picture that is rendered next.
     void set_first_row(std::uint32_t row);
 
@@ -33,11 +36,13 @@ public:
     const Specialization& specialization() const { return specialization_; }
     unsigned form() const { return form_; } // of its kernels, see specialization.h
     bool emits() const { return specialization_[SPEC_EMISSION] != EMISSION_NONE; }
-    const std::string& text() const { return text_; }                      // of its kernels
-    glm::dvec3 origin() const { return origin_; }                          // of render space, in world space
+    const std::string& text() const { return text_; } // of its kernels
+    glm::dvec3 origin() const { return origin_; }     // of render space, in world space
+    const LayerPlan& layers() const { return layers_; }
     const LightTable& lights() const { return lights_; }                   // empty where there is no choice
     std::span<const shared::MediumParams> media() const { return media_; } // of several
     const SurfaceTable& surfaces() const { return surfaces_; }
+    std::span<const glm::vec3> points() const { return points_; }          // where flux is read, render space
     BoundBuffers bound() const;
     std::uint64_t bytes() const;
 
@@ -53,7 +58,9 @@ private:
     SceneBuffers buffers_;
     LightTable lights_;
     SurfaceTable surfaces_;
+    LayerPlan layers_;
     std::vector<shared::MediumParams> media_;
+    std::vector<glm::vec3> points_;
     std::optional<LightCache> light_cache_;
     unsigned form_;
     std::string text_;

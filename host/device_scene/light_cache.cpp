@@ -36,8 +36,8 @@ shared::LatticeParams make_lattice(glm::dvec3 low, glm::dvec3 high, glm::dvec3 e
     return lattice;
 }
 
-CacheLayout cache_layout(const std::vector<Light>& lights) {
-    if (const DirectionalLight* sun = only_directional(lights))
+CacheLayout cache_layout(const Scene& scene) {
+    if (const DirectionalLight* sun = lone_sun(scene))
         return {{glm::vec3(sun->direction)}, 64}; // twice as many nodes were no better
     CacheLayout all{{}, 32};
     for (int axis = 0; axis < 3; ++axis)

@@ -21,7 +21,7 @@ struct CacheLayout {
     std::vector<glm::vec3> directions;
     int most_nodes = 0;
 };
-CacheLayout cache_layout(const std::vector<Light>& lights);
+CacheLayout cache_layout(const Scene& scene);
 
 // vec4s that it holds.
 std::uint64_t cache_entries(const shared::LatticeParams& lattice, std::size_t directions);

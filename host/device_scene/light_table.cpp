@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "alias_table.h"
+#include "layer_plan.h"
 #include "light_tree.h"
 
 namespace vkvol {
@@ -188,9 +189,10 @@ PlacedLight placed(const Entry& entry, std::uint32_t row) {
 
 } // namespace
 
-int lights_kind(const std::vector<Light>& lights) {
+int lights_kind(const Scene& scene) {
+    const std::vector<Light>& lights = scene.lights;
     const auto any = [&](bool (*is)(const Light&)) { return std::any_of(lights.begin(), lights.end(), is); };
-    if (lights.empty() || only_directional(lights))
+    if (lights.empty() || lone_sun(scene))
         return LIGHTS_SUN;
     const auto is_square = [](const Light& light) {
         const auto* sky = std::get_if<SkyLight>(&light);
@@ -201,13 +203,15 @@ int lights_kind(const std::vector<Light>& lights) {
            (somewhere > 1 ? LIGHTS_TREE : 0) | (any(is_square) ? LIGHTS_EQUAL_AREA : 0);
 }
 
-std::uint32_t loop_iterations(const std::vector<Light>& lights) {
-    if (lights_kind(lights) == LIGHTS_SUN)
+std::uint32_t loop_iterations(const Scene& scene) {
+    if (lights_kind(scene) == LIGHTS_SUN)
         return 0;
+    const std::vector<Light>& lights = scene.lights;
     const auto count = [&](bool (*is)(const Light&)) { return std::count_if(lights.begin(), lights.end(), is); };
     const auto levels = std::bit_width(lights.size()) + 1;
-    // The tree is gone down from a collision, and from along a flight.
-    return static_cast<std::uint32_t>(count(is_lamp) + 1 + count(is_met_by_chance) + 1 + 2 * (levels + 1));
+    // The tree is gone down from a collision, from along a flight, and from a sensor of flux.
+    const int places = reads_flux(scene.camera) ? 3 : 2;
+    return static_cast<std::uint32_t>(count(is_lamp) + 1 + count(is_met_by_chance) + 1 + places * (levels + 1));
 }
 
 double reach_of_lamps(const std::vector<Light>& lights, const glm::dvec3& origin) {
@@ -226,13 +230,16 @@ double reach_of_lamps(const std::vector<Light>& lights, const glm::dvec3& origin
 
 LightTable make_light_table(const Scene& scene, const Assets& assets, const glm::dvec3& origin, double radius) {
     std::vector<Entry> entries;
-    for (const Light& light : scene.lights)
+    const std::vector<std::string> groups = plan_layers(scene).groups;
+    for (const Light& light : scene.lights) {
         entries.push_back(std::visit(Rows(assets, origin, radius), light));
+        entries.back().row.group = group_layer(groups, group_of(light));
+    }
     std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.place < b.place; });
     LightTable table;
     std::vector<double> fluences;
     std::vector<PlacedLight> somewhere;
-    const bool has_tree = (lights_kind(scene.lights) & LIGHTS_TREE) != 0;
+    const bool has_tree = (lights_kind(scene) & LIGHTS_TREE) != 0;
     for (const Entry& entry : entries) {
         const auto row = static_cast<std::uint32_t>(table.rows.size());
         table.rows.push_back(entry.row);

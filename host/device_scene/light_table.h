@@ -18,7 +18,7 @@ struct LightTable {
 };
 
 // LIGHTS_...: what has to be done to see all of them.
-int lights_kind(const std::vector<Light>& lights);
+int lights_kind(const Scene& scene);
 
 // `origin`: of render space, world; `radius`: of the media about it. A look's chance to go toward a light, or
 // toward the tree, is in proportion to its fluence amid the media, and never less than a tenth of an even share.
@@ -26,7 +26,7 @@ LightTable make_light_table(const Scene& scene, const Assets& assets, const glm:
 
 // Iterations of the loops in which a kernel asks all of some kind, or goes down the tree; each with the one that ends
 // it.
-std::uint32_t loop_iterations(const std::vector<Light>& lights);
+std::uint32_t loop_iterations(const Scene& scene);
 
 // World units: how far from `origin` lamps reach; 0 without any.
 double reach_of_lamps(const std::vector<Light>& lights, const glm::dvec3& origin);

@@ -111,6 +111,15 @@ void SceneBuffers::upload_media(const Device& device, Commands& commands, const 
     find_texels(most_texel_bytes);
 }
 
+void SceneBuffers::upload_points(const Device& device, Commands& commands, const std::vector<glm::vec3>& points) {
+    if (bytes_of(points).size() > device.limits().maxStorageBufferRange)
+        throw InputError(fmt::format("{} points take {:.1f} MiB, but \"{}\" holds no more than {:.1f} MiB of them; "
+                                     "read some of them at a time",
+                                     points.size(), bytes_of(points).size() / mebibyte, device.info().name,
+                                     device.limits().maxStorageBufferRange / mebibyte));
+    make_buffer(device, commands, points_, "points", bytes_of(points));
+}
+
 void SceneBuffers::upload_lights(const Device& device, Commands& commands, const LightTable& table, const SkyMap* sky) {
     check_size(device, "the lights", bytes_of(table.rows).size(), "leave some out");
     make_buffer(device, commands, lights_, "lights", bytes_of(table.rows));
@@ -198,6 +207,7 @@ BoundBuffers SceneBuffers::bound() const {
     buffers[BINDING_OVERLAPS] = place(overlaps_);
     buffers[BINDING_SURFACES] = place(surfaces_);
     buffers[BINDING_PRIMITIVES] = place(primitives_);
+    buffers[BINDING_POINTS] = place(points_);
     buffers[BINDING_LIGHTS] = place(lights_);
     buffers[BINDING_LIGHT_TREE] = place(light_tree_);
     buffers[BINDING_SKY] = place(sky_);
@@ -209,7 +219,7 @@ std::uint64_t SceneBuffers::bytes() const {
     std::uint64_t total = frame_.bytes();
     for (const auto* buffer :
          {&grids_, &leaf_table_, &majorants_, &controls_, &blackbody_, &triangles_, &bvh_, &lights_, &light_tree_,
-          &sky_, &sky_alias_, &phase_, &media_, &overlaps_, &maps_, &surfaces_, &primitives_})
+          &sky_, &sky_alias_, &phase_, &media_, &overlaps_, &maps_, &surfaces_, &primitives_, &points_})
         total += *buffer ? (*buffer)->bytes() : 0;
     for (const Buffer& window : windows_)
         total += window.bytes();

@@ -27,6 +27,9 @@ public:
     void upload_media(const Device& device, Commands& commands, const std::vector<shared::MediumParams>& rows,
                       const std::vector<std::uint32_t>& overlaps, std::uint64_t most_texel_bytes);
 
+    // Where flux is read, render space. Throws InputError if they are too many for the device.
+    void upload_points(const Device& device, Commands& commands, const std::vector<glm::vec3>& points);
+
     // `sky`: null without a map. Throws InputError if that is too large for the device.
     void upload_lights(const Device& device, Commands& commands, const LightTable& table, const SkyMap* sky);
 
@@ -57,7 +60,7 @@ private:
     Buffer frame_;
     std::optional<Buffer> grids_, leaf_table_, majorants_, controls_, blackbody_, triangles_, bvh_;
     std::optional<Buffer> lights_, light_tree_, sky_, sky_alias_, phase_, media_, overlaps_, maps_;
-    std::optional<Buffer> surfaces_, primitives_;
+    std::optional<Buffer> surfaces_, primitives_, points_;
     std::vector<Buffer> windows_;
     bool texels_ = false;
     std::optional<std::uint32_t> window_bits_;

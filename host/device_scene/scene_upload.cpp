@@ -11,6 +11,7 @@
 #include "camera_rays.h"
 #include "camera_view.h"
 #include "error.h"
+#include "layer_plan.h"
 #include "layers.h"
 #include "light_cache.h"
 #include "light_table.h"
@@ -27,7 +28,7 @@
 namespace vkvol {
 
 static_assert(std::is_standard_layout_v<shared::FrameParams>);
-static_assert(sizeof(shared::SensorParams) == 6 * 12 + 4 * 4 + 2 * 8);
+static_assert(sizeof(shared::SensorParams) == 7 * 12 + 4 * 4 + 2 * 8 + 4);
 static_assert(sizeof(shared::GridParams) == 4 * 12 + 2 * 4);
 static_assert(sizeof(shared::AlbedoParams) == sizeof(shared::GridParams) + 3 * 16);
 static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 6 * 4);
@@ -35,7 +36,7 @@ static_assert(sizeof(shared::LayerParams) == 12 + 2 * 4);
 static_assert(sizeof(shared::MediumParams) == 3 * 16 + 4 * 12 + sizeof(shared::GridParams) + 12 + 6 * 4 + 2 * 12 +
                                                   sizeof(shared::PhaseParams) + sizeof(shared::AlbedoParams) +
                                                   sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) +
-                                                  sizeof(shared::LayerParams) + 8 + sizeof(shared::MediumKinds));
+                                                  sizeof(shared::LayerParams) + 12 + sizeof(shared::MediumKinds));
 static_assert(sizeof(shared::LatticeParams) == 3 * 12);
 static_assert(sizeof(shared::PassPush) <= 128, "the least push constant space that Vulkan promises");
 
@@ -203,6 +204,9 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
     params.first_knot = layout.first_knot(loaded);
     params.emission = make_emission(volume, loaded, layout, method, origin);
     params.kinds = kinds_of(volume, loaded, method);
+    if (scene.layers & layer_media)
+        params.layer =
+            place_among(medium_names(scene), medium_name(scene, std::size_t(&volume - scene.volumes.data())));
     return params;
 }
 
@@ -277,6 +281,7 @@ shared::SensorParams make_pinhole(const Scene& scene, const CameraRays& rays, gl
     params.corner = rays.corner;
     params.right = rays.right;
     params.down = rays.down;
+    params.forward = rays.forward;
     const Lens& lens = scene.camera.lens;
     if (lens.radius > 0.0) {
         const glm::dmat3 rotation = camera_rotation(scene.camera);
@@ -296,8 +301,12 @@ shared::SensorParams make_sensor(const Scene& scene, glm::dvec3 origin, double r
         return make_pinhole(scene, rays, origin, radius);
     shared::SensorParams params{};
     params.position = rays.origin(0.0, 0.0) - origin;
-    if (rays.projection == Projection::orthographic)
-        params.position += ray_start(scene, rays.forward, origin, radius) * rays.forward;
+    if (rays.projection == Projection::orthographic) {
+        const double start = ray_start(scene, rays.forward, origin, radius);
+        params.position += start * rays.forward;
+        params.start = static_cast<float>(start);
+    }
+    params.forward = rays.forward;
     params.corner = rays.forward;
     params.right = rays.right;
     params.down = rays.down;
@@ -305,6 +314,7 @@ shared::SensorParams make_sensor(const Scene& scene, glm::dvec3 origin, double r
     params.first_angle = {std::remainder(rays.first_angle.x, 2.0 * std::numbers::pi),
                           std::remainder(rays.first_angle.y, 2.0 * std::numbers::pi)};
     params.angle_step = rays.angle_step;
+    params.row = static_cast<std::uint32_t>(scene.picture.width);
     return params;
 }
 
@@ -314,6 +324,10 @@ int sensor_kind(const Camera& camera) {
         return SENSOR_ORTHOGRAPHIC;
     case Projection::equirectangular:
         return SENSOR_EQUIRECTANGULAR;
+    case Projection::irradiance:
+        return SENSOR_IRRADIANCE;
+    case Projection::fluence:
+        return SENSOR_FLUENCE;
     default:
         return camera.lens.radius > 0.0 ? SENSOR_LENS : SENSOR_PINHOLE;
     }
@@ -410,7 +424,7 @@ Specialization specialize(const Scene& scene, Media media, const Method& method,
     constants[SPEC_TRANSMITTANCE] = method.nee != NEE_NONE ? method.transmittance : TRANSMITTANCE_ANALYTIC;
     constants[SPEC_STEPS] = 1;
     // Without looks only what flights meet by themselves is seen.
-    const int lights = lights_kind(scene.lights);
+    const int lights = lights_kind(scene);
     const int seen = method.nee == NEE_NONE ? lights & ~LIGHTS_LAMPS : lights;
     constants[SPEC_LIGHTS] = seen == LIGHTS_TABLE && method.nee == NEE_NONE ? LIGHTS_SUN : seen;
     if (!scene.surfaces.empty()) { // segments then have an end
@@ -422,6 +436,7 @@ Specialization specialize(const Scene& scene, Media media, const Method& method,
     constants[SPEC_PIXEL_FILTER] = has_plain_pixels(scene.settings)                  ? PIXEL_EVEN
                                    : scene.settings.pixel_filter == PixelFilter::box ? PIXEL_BOX
                                                                                      : PIXEL_QUANTILES;
+    constants[SPEC_LAYERS] = plan_layers(scene).kinds;
     constants[SPEC_DISTANCE] =
         method.distance.value_or(gains_by_looks_along(scene, media) ? DISTANCE_MIXED : DISTANCE_FLIGHTS);
     return constants;
@@ -507,7 +522,7 @@ shared::FrameParams make_frame(const Scene& scene, Media media, const Method& me
     shared::FrameParams frame{};
     const glm::dvec3 origin = render_origin(scene, media, whole);
     const double diagonal = longest_diagonal(scene, media, whole);
-    const int nodes = cache_layout(scene.lights).most_nodes;
+    const int nodes = cache_layout(scene).most_nodes;
     if (whole) {
         frame.media[0] = make_whole(*whole);
         if (method.nee == NEE_CACHED && !whole->cells.bounds.empty())
@@ -521,9 +536,12 @@ shared::FrameParams make_frame(const Scene& scene, Media media, const Method& me
     frame.sensors[0] = make_sensor(
         scene, origin,
         std::max({0.5 * diagonal, reach_of_lamps(scene.lights, origin), reach_of_surfaces(scene.surfaces, origin)}));
+    const LayerPlan layers = plan_layers(scene);
+    frame.layers = layers.params;
     frame.lights[LIGHT_BACKGROUND].radiance = scene.background;
-    if (const DirectionalLight* sun = only_directional(scene.lights))
-        frame.lights[LIGHT_SUN] = {sun->direction, sun->irradiance};
+    frame.lights[LIGHT_BACKGROUND].group = group_layer(layers.groups, scene.background_group);
+    if (const DirectionalLight* sun = lone_sun(scene))
+        frame.lights[LIGHT_SUN] = {sun->direction, sun->irradiance, group_layer(layers.groups, sun->group)};
     const std::vector<double> quantiles = filter_quantiles(scene.settings, FILTER_QUANTILES);
     std::copy(quantiles.begin(), quantiles.end(), frame.filter_quantiles);
     frame.march = make_march(scene, media, method, diagonal);

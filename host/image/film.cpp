@@ -4,6 +4,24 @@
 
 namespace vkvol {
 
+const char* FilmLayer::channels() const {
+    return name == "depth" ? "Z" : name == "alpha" || name == "coverage" ? "A" : name == "position" ? "XYZ" : "RGB";
+}
+
+const FilmLayer* Film::layer(const std::string& name) const {
+    for (const FilmLayer& each : layers)
+        if (each.name == name)
+            return &each;
+    return nullptr;
+}
+
+std::string layer_list(const Film& film) {
+    std::string names;
+    for (const FilmLayer& layer : film.layers)
+        names += (names.empty() ? "" : " ") + layer.name;
+    return names;
+}
+
 std::optional<double> relative_noise(const Film& film) {
     double error = 0.0, signal = 0.0;
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {

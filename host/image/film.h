@@ -13,6 +13,17 @@
 
 namespace vkvol {
 
+// One more image of the same samples, by its name in an EXR: "direct", "group.key", "depth". Of layers of a single
+// channel all three are the same.
+struct FilmLayer {
+    std::string name;
+    std::vector<glm::vec3> mean;     // of depth and position over the samples that collide; else over all
+    std::vector<glm::vec3> variance; // of the mean; empty where none is known
+
+    const char* channels() const;                                                   // a letter each, "RGB"
+    bool is_of_collisions() const { return name == "depth" || name == "position"; } // weighted by "coverage"
+};
+
 // Pixels of the crop window, rows top to bottom. A pixel without samples has mean and variance 0.
 struct Film {
     int picture_width = 0; // the whole picture (EXR display window)
@@ -21,10 +32,13 @@ struct Film {
     std::vector<glm::vec3> mean;        // radiance, linear Rec.709
     std::vector<glm::vec3> variance;    // of the mean: s^2 / n with the unbiased s^2; 0 if n < 2
     std::vector<std::uint32_t> samples; // per pixel
+    std::vector<FilmLayer> layers;      // those asked for
+    std::vector<glm::dvec3> places;     // where a sensor of flux reads each, its patch's middle, world; else none
 
     int width() const { return crop.x1 - crop.x0; }
     int height() const { return crop.y1 - crop.y0; }
     std::size_t pixel_count() const { return mean.size(); }
+    const FilmLayer* layer(const std::string& name) const; // null if there is none
 };
 
 // The picture's noise: its root mean square error over its root mean square signal, sqrt(sum of the variances / sum of
@@ -34,6 +48,10 @@ struct Film {
 // falls as 1 / sqrt(samples). Since squared means hold their own variance it never exceeds 1, unless samples are below
 // 0. Unknown if no pixel has two samples, or none has light.
 std::optional<double> relative_noise(const Film& film);
+
+// Metadata by which an image's layers are found: their names, between spaces.
+inline constexpr const char* layers_key = "vkvol/layers";
+std::string layer_list(const Film& film);
 
 // Of the picture, over the pixels that have samples. Pixels are independent, so their variances add; of a pixel with a
 // single sample none is known, nor then of the picture.

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <functional>
 #include <memory>
+#include <sstream>
 #include <system_error>
 #include <unistd.h>
 
@@ -18,6 +19,7 @@
 #include "error.h"
 #include "exr_check.h"
 #include "file_ending.h"
+#include "film_table.h"
 #include "image_input.h"
 #include "input_file.h"
 #include "one_line.h"
@@ -28,8 +30,23 @@ namespace {
 
 using std::filesystem::path;
 
-constexpr int channel_count = 7;
-const std::vector<std::string> channel_names = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "samples"};
+// What an image has without layers: the picture, the variance of its means, and whole numbers of samples.
+const std::vector<std::string> plain_channels = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "samples"};
+
+// Of a layer: "direct.R"; "variance.direct.R". Alpha is the picture's own, "A".
+std::string channel_name(const std::string& prefix, const FilmLayer& layer, char letter) {
+    return prefix + (layer.name == "alpha" ? "" : layer.name + ".") + letter;
+}
+
+std::vector<std::string> channels_of(const Film& film) {
+    std::vector<std::string> names = plain_channels;
+    for (const FilmLayer& layer : film.layers)
+        for (const char* const prefix : {"", "variance."})
+            if (*prefix == 0 || !layer.variance.empty())
+                for (const char* letter = layer.channels(); *letter != 0; ++letter)
+                    names.push_back(channel_name(prefix, layer, *letter));
+    return names;
+}
 
 const char* remedy_of(int error) {
     switch (error) {
@@ -133,22 +150,34 @@ void get_attributes(const OIIO::ImageSpec& spec, Metadata& metadata) {
 void check_consistent(const Film& film) {
     const Crop& crop = film.crop;
     const std::size_t pixels = crop.x1 > crop.x0 && crop.y1 > crop.y0 ? std::size_t(film.width()) * film.height() : 0;
-    if (pixels == 0 || film.mean.size() != pixels || film.variance.size() != pixels || film.samples.size() != pixels)
+    const bool has_layers = std::all_of(film.layers.begin(), film.layers.end(), [&](const FilmLayer& layer) {
+        return layer.mean.size() == pixels && (layer.variance.empty() || layer.variance.size() == pixels);
+    });
+    if (!has_layers || pixels == 0 || film.mean.size() != pixels || film.variance.size() != pixels ||
+        film.samples.size() != pixels)
         throw std::runtime_error(fmt::format("the film of {}x{} pixels holds {} means, {} variances and {} counts",
                                              film.width(), film.height(), film.mean.size(), film.variance.size(),
                                              film.samples.size()));
 }
 
-// As the file has them: six floats and a whole number for each pixel.
-std::vector<std::uint32_t> interleaved(const Film& film) {
+// As the file has them, of each pixel all channels: floats, but for the number of samples.
+std::vector<std::uint32_t> interleaved(const Film& film, std::size_t channels) {
     std::vector<std::uint32_t> pixels;
-    pixels.reserve(film.pixel_count() * channel_count);
+    pixels.reserve(film.pixel_count() * channels);
+    const auto push = [&pixels](const glm::vec3& value, int count) {
+        for (int c = 0; c < count; ++c)
+            pixels.push_back(std::bit_cast<std::uint32_t>(value[c]));
+    };
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
-        for (int c = 0; c < 3; ++c)
-            pixels.push_back(std::bit_cast<std::uint32_t>(film.mean[i][c]));
-        for (int c = 0; c < 3; ++c)
-            pixels.push_back(std::bit_cast<std::uint32_t>(film.variance[i][c]));
+        push(film.mean[i], 3);
+        push(film.variance[i], 3);
         pixels.push_back(film.samples[i]);
+        for (const FilmLayer& layer : film.layers) {
+            const auto letters = static_cast<int>(std::strlen(layer.channels()));
+            push(layer.mean[i], letters);
+            if (!layer.variance.empty())
+                push(layer.variance[i], letters);
+        }
     }
     return pixels;
 }
@@ -156,6 +185,29 @@ std::vector<std::uint32_t> interleaved(const Film& film) {
 int channel_of(const OIIO::ImageSpec& spec, const char* name) {
     const auto found = std::find(spec.channelnames.begin(), spec.channelnames.end(), name);
     return found == spec.channelnames.end() ? -1 : int(found - spec.channelnames.begin());
+}
+
+// By the names in the image's metadata: other channels are no concern of ours.
+void read_layers(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, Film& film) {
+    std::istringstream names{std::string(spec.get_string_attribute(layers_key))};
+    for (std::string name; names >> name;) {
+        FilmLayer layer{name, {}, {}};
+        for (const char* const prefix : {"", "variance."}) {
+            std::vector<int> channels;
+            for (const char* letter = layer.channels(); *letter != 0; ++letter)
+                channels.push_back(channel_of(spec, channel_name(prefix, layer, *letter).c_str()));
+            if (*std::min_element(channels.begin(), channels.end()) < 0)
+                continue;
+            std::vector<glm::vec3>& values = *prefix == 0 ? layer.mean : layer.variance;
+            for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+                const float* pixel = &pixels[i * std::size_t(spec.nchannels)];
+                const auto value = [&](std::size_t c) { return pixel[channels[std::min(c, channels.size() - 1)]]; };
+                values.emplace_back(value(0), value(1), value(2));
+            }
+        }
+        if (!layer.mean.empty())
+            film.layers.push_back(std::move(layer));
+    }
 }
 
 Film film_of(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, const path& file) {
@@ -187,6 +239,7 @@ Film film_of(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, cons
         if (samples >= 0 && pixel[samples] > 0.0f && pixel[samples] < 4294967296.0f)
             film.samples[i] = static_cast<std::uint32_t>(pixel[samples]);
     }
+    read_layers(spec, pixels, film);
     return film;
 }
 
@@ -194,8 +247,8 @@ Film film_of(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, cons
 
 void check_writable(const path& target) {
     const std::string extension = file_ending(target);
-    if (extension != ".exr" && !is_display_file(target))
-        throw InputError(fmt::format("{}: unknown kind of picture '{}'; expected .exr or .png", target.string(),
+    if (extension != ".exr" && extension != ".csv" && !is_display_file(target))
+        throw InputError(fmt::format("{}: unknown kind of picture '{}'; expected .exr, .png or .csv", target.string(),
                                      extension.empty() ? target.filename().string() : extension));
     check_directory_writable(target);
 }
@@ -227,6 +280,8 @@ bool is_display_file(const path& target) {
 void write_image(const path& target, const Film& film, const Metadata& metadata, const ToneMapping& mapping) {
     if (is_display_file(target))
         write_display(target, film, mapping);
+    else if (file_ending(target) == ".csv")
+        write_text(target, film_table(film));
     else
         write_exr(target, film, metadata);
 }
@@ -248,10 +303,12 @@ void write_images(const std::vector<path>& targets, const Film& film, const Meta
 void write_exr(const path& target, const Film& film, const Metadata& metadata, const char* option) {
     write_atomically(target, option, [&](AtomicFile& file) {
         check_consistent(film);
-        OIIO::ImageSpec spec(film.width(), film.height(), channel_count, OIIO::TypeDesc::FLOAT);
-        spec.channelnames = channel_names;
-        spec.channelformats.assign(channel_count, OIIO::TypeDesc::FLOAT);
-        spec.channelformats.back() = OIIO::TypeDesc::UINT32;
+        const std::vector<std::string> channels = channels_of(film);
+        OIIO::ImageSpec spec(film.width(), film.height(), int(channels.size()), OIIO::TypeDesc::FLOAT);
+        spec.channelnames = channels;
+        spec.channelformats.assign(channels.size(), OIIO::TypeDesc::FLOAT);
+        spec.channelformats[plain_channels.size() - 1] = OIIO::TypeDesc::UINT32;
+        spec.alpha_channel = spec.channelindex("A");
         spec.x = film.crop.x0;
         spec.y = film.crop.y0;
         spec.full_width = film.picture_width;
@@ -261,16 +318,22 @@ void write_exr(const path& target, const Film& film, const Metadata& metadata, c
         const float chromaticities[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
         spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
         set_attributes(spec, metadata);
-        write_pixels(file, "a.exr", spec, OIIO::TypeDesc::UNKNOWN, interleaved(film).data()); // unknown: its own types
+        if (!film.layers.empty())
+            spec.attribute(layers_key, layer_list(film));
+        write_pixels(file, "a.exr", spec, OIIO::TypeDesc::UNKNOWN,
+                     interleaved(film, channels.size()).data()); // unknown: its own types
     });
 }
 
 void write_display(const path& target, const Film& film, const ToneMapping& mapping) {
     write_atomically(target, "-o", [&](AtomicFile& file) {
         check_consistent(film);
-        OIIO::ImageSpec spec(film.width(), film.height(), 3, OIIO::TypeDesc::UINT8);
+        const FilmLayer* alpha = film.layer("alpha");
+        OIIO::ImageSpec spec(film.width(), film.height(), alpha ? 4 : 3, OIIO::TypeDesc::UINT8);
         spec.attribute("oiio:ColorSpace", "sRGB");
-        const std::vector<std::uint8_t> pixels = tone_map(film, mapping);
+        if (alpha)
+            spec.attribute("oiio:UnassociatedAlpha", 1); // the division by alpha is done, without its rounding twice
+        const std::vector<std::uint8_t> pixels = alpha ? tone_map(film, mapping, *alpha) : tone_map(film, mapping);
         write_pixels(file, "a.png", spec, OIIO::TypeDesc::UINT8, pixels.data());
     });
 }

@@ -22,7 +22,7 @@ void check_directory_writable(const std::filesystem::path& path, const char* opt
 // Whether it is for looking at: .png.
 bool is_display_file(const std::filesystem::path& path);
 
-// By extension: .exr, or for looking at.
+// By extension: .exr, .csv (see film_table.h), or for looking at.
 void write_image(const std::filesystem::path& path, const Film& film, const Metadata& metadata,
                  const ToneMapping& mapping);
 

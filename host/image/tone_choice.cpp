@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <fmt/format.h>
 #include <utility>
 
@@ -19,16 +20,20 @@ constexpr const char* curve_key = "vkvol/tonemap";
 constexpr const char* exposure_key = "vkvol/exposure"; // as text: a float would round it
 constexpr const char* automatic = "auto";
 
+std::optional<double> stops_in(const Metadata& metadata, const char* key) {
+    const std::string text = text_of(metadata, key);
+    double exposure = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), exposure);
+    const bool good = error == std::errc() && end == text.data() + text.size() && std::abs(exposure) <= 100.0;
+    return good ? std::optional(exposure) : std::nullopt;
+}
+
 // Of a file that may be anyone's: what cannot be read says nothing.
 ToneRequest recorded(const Metadata& metadata) {
     ToneRequest request;
     request.curve = find_tone_curve(text_of(metadata, curve_key));
-    const std::string text = text_of(metadata, exposure_key);
-    double exposure = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), exposure);
-    if (error == std::errc() && end == text.data() + text.size() && exposure >= -100.0 && exposure <= 100.0)
-        request.exposure = exposure;
-    request.automatic_exposure = text == automatic;
+    request.exposure = stops_in(metadata, exposure_key);
+    request.automatic_exposure = text_of(metadata, exposure_key) == automatic;
     return request;
 }
 
@@ -75,8 +80,9 @@ Tone choose_tone(const ToneRequest& request, const Film& film, const Metadata& m
         tone.for_glow = text_of(metadata, glow_key) == "1";
         tone.mapping.curve = tone.for_glow ? ToneCurve::agx : ToneCurve::srgb;
     }
-    tone.mapping.exposure =
-        exposing.automatic_exposure ? suitable_exposure(film, tone.mapping.curve) : exposing.exposure.value_or(0.0);
+    const double camera = stops_in(metadata, camera_exposure_key).value_or(0.0);
+    tone.mapping.exposure = exposing.automatic_exposure ? suitable_exposure(film, tone.mapping.curve)
+                                                        : camera + exposing.exposure.value_or(0.0);
     tone.clipped = clipped_pixels(film, tone.mapping);
     tone.pixels = film.pixel_count();
     return tone;

@@ -27,13 +27,17 @@ struct Tone {
 const char* name_of(ToneCurve curve);
 std::optional<ToneCurve> find_tone_curve(const std::string& name);
 
+// Metadata: stops, as text, by which a camera's settings raise radiance; those that are asked for come on top.
+inline constexpr const char* camera_exposure_key = "vkvol/cameraExposure";
+
 // Whether the medium glows, and what was asked for, so that the image can be developed again as it was.
 void record_tone(const ToneRequest& request, bool glows, Metadata& metadata);
 // What was asked for in addition; the rest is as it was.
 void record_tone(const ToneRequest& request, Metadata& metadata);
 
-// What is not asked for is as the image's metadata say; else the exposure is 0, and the curve is agx for what glows,
-// since it keeps the colours of fire, which srgb cuts to yellow and white, and srgb for all else.
+// What is not asked for is as the image's metadata say; else the exposure is that of the camera's settings, or 0, and
+// the curve is agx for what glows, since it keeps the colours of fire, which srgb cuts to yellow and white, and srgb
+// for all else.
 Tone choose_tone(const ToneRequest& request, const Film& film, const Metadata& metadata);
 
 // What is worth telling of it: "tone curve agx since it glows, exposure -1, 12 % of the pixels clip". Empty for the

@@ -114,20 +114,38 @@ double rounding_of(ToneCurve curve) {
 
 } // namespace
 
-std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping) {
+namespace {
+
+// `alpha`: null without one.
+std::vector<std::uint8_t> to_bytes(const Film& film, const ToneMapping& mapping, const FilmLayer* alpha) {
     const double gain = std::exp2(mapping.exposure);
     double white = 0.0;
     for (const glm::vec3& mean : film.mean)
         white = std::max(white, brightest_channel(exposed(mean, gain)));
     const double rounding = rounding_of(mapping.curve);
     std::vector<std::uint8_t> bytes;
-    bytes.reserve(film.mean.size() * 3);
-    for (const glm::vec3& mean : film.mean) {
-        const Vec3 v = display_value(exposed(mean, gain), mapping.curve, white);
+    bytes.reserve(film.mean.size() * (alpha ? 4 : 3));
+    for (std::size_t i = 0; i < film.mean.size(); ++i) {
+        Vec3 v = display_value(exposed(film.mean[i], gain), mapping.curve, white);
+        const double a = alpha ? std::clamp(double(alpha->mean[i].x), 0.0, 1.0) : 1.0;
+        if (alpha)
+            v = a > 0.0 ? clamped(v / a) : Vec3(0.0);
         for (int channel = 0; channel < 3; ++channel)
             bytes.push_back(static_cast<std::uint8_t>(255.0 * v[channel] + rounding));
+        if (alpha)
+            bytes.push_back(static_cast<std::uint8_t>(255.0 * a + 0.5));
     }
     return bytes;
+}
+
+} // namespace
+
+std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping) {
+    return to_bytes(film, mapping, nullptr);
+}
+
+std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping, const FilmLayer& alpha) {
+    return to_bytes(film, mapping, &alpha);
 }
 
 std::size_t clipped_pixels(const Film& film, const ToneMapping& mapping) {

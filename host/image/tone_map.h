@@ -23,6 +23,11 @@ struct ToneMapping {
 // Three bytes a pixel, rows top to bottom. Values that are not finite become black.
 std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping);
 
+// Four bytes a pixel, the last of alpha. Means are premultiplied by it, and colours in such files, as PNG has it, are
+// not: what the curve makes of a mean is divided by alpha, and cut at white. Readers that multiply again get the
+// picture over black; light where alpha is 0, as flames may be, is lost.
+std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping, const FilmLayer& alpha);
+
 // Pixels brighter than the curve has values for, in one channel or more: what they differ by is lost.
 std::size_t clipped_pixels(const Film& film, const ToneMapping& mapping);
 

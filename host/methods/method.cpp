@@ -145,10 +145,11 @@ void Resolution::choose_nee() {
     nee = choices_.nee.value_or(preset_.nee);
     const bool scatters =
         method_.scattering != SCATTERING_NONE && (!scene_.surfaces.empty() || any_medium(scene_, can_scatter));
-    // The camera sees lamps by shadow rays, whether or not anything scatters.
-    const bool shows_lamps = std::any_of(scene_.lights.begin(), scene_.lights.end(), is_lamp) &&
-                             !(is_through(method_) && method_.scattering == SCATTERING_NONE);
-    if (scene_.lights.empty() || (!scatters && !shows_lamps)) {
+    // The camera sees lamps by shadow rays, and a sensor of flux all lights, whether or not anything scatters.
+    const bool looks_first =
+        (reads_flux(scene_.camera) || std::any_of(scene_.lights.begin(), scene_.lights.end(), is_lamp)) &&
+        !(is_through(method_) && method_.scattering == SCATTERING_NONE);
+    if (scene_.lights.empty() || (!scatters && !looks_first)) {
         if (choices_.nee.value_or(NEE_NONE) != NEE_NONE)
             warn(scene_.lights.empty() ? "nee is without effect: the scene has no light"
                                        : "nee is without effect: nothing scatters");
@@ -175,8 +176,8 @@ void Resolution::choose_nee() {
 
 void Resolution::choose_mis() {
     const std::vector<Light>& lights = scene_.lights;
-    const bool met =
-        method_.scattering == SCATTERING_MULTIPLE && std::any_of(lights.begin(), lights.end(), is_met_by_chance);
+    const bool looks_too = method_.scattering == SCATTERING_MULTIPLE || reads_flux(scene_.camera);
+    const bool met = looks_too && std::any_of(lights.begin(), lights.end(), is_met_by_chance);
     const bool shared = method_.nee != NEE_NONE && (met || std::any_of(lights.begin(), lights.end(), is_lamp));
     if (choices_.mis && !shared)
         warn("mis is without effect: no light is found in two ways");

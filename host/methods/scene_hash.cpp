@@ -222,6 +222,10 @@ void add_view(Writer& writer, const Camera& camera, const Picture& picture) {
         writer.add("fov", camera.fov);
     else
         writer.add("projection", static_cast<int>(camera.projection));
+    if (camera.projection == Projection::irradiance)
+        writer.add("size", glm::dvec3(camera.size, 0.0));
+    for (const glm::dvec3& point : camera.points)
+        writer.add("at", point);
     if (camera.projection == Projection::orthographic)
         writer.add("view_height", camera.view_height);
     if (camera.lens.radius > 0.0)
@@ -284,6 +288,8 @@ std::string scene_hash(const Scene& authored) {
     if (method.biases & bias_shadow_steps)
         writer.add("mis", method.mis);
     writer.add("background", scene.background);
+    if (scene.holds_out)
+        writer.add("holdout", 1);
     add_method(writer, scene.settings, method);
     return writer.hash();
 }

@@ -22,8 +22,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-// magic, bytes of the header, header (JSON), film, pixels, digest of all before.
-constexpr char magic[] = {'v', 'k', 'v', 'o', 'l', 'c', 'h', '3'};
+// magic, bytes of the header, header (JSON), film, layers, pixels, digest of all before.
+constexpr char magic[] = {'v', 'k', 'v', 'o', 'l', 'c', 'h', '4'};
 
 template <class T> void append(std::string& text, std::span<const T> values) {
     text.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
@@ -44,6 +44,7 @@ Json header_of(const Checkpoint& c) {
             {"wholeBand", !c.pixels},
             {"pixels", c.pixels ? c.pixels->size() : 0},
             {"film", c.film.size()},
+            {"layers", c.layers.size()},
             {"counts", counts},
             {"nonFinite", non_finite},
             {"seconds", c.seconds},
@@ -60,6 +61,7 @@ Checkpoint from_header(const Json& header) {
     if (!header.at("wholeBand").get<bool>())
         c.pixels.emplace(header.at("pixels").get<std::size_t>());
     c.film.resize(header.at("film").get<std::size_t>());
+    c.layers.resize(header.at("layers").get<std::size_t>());
     c.counts =
         std::bit_cast<RenderCounts>(header.at("counts").get<std::array<std::uint64_t, sizeof(RenderCounts) / 8>>());
     for (const Json& s : header.at("nonFinite"))
@@ -107,6 +109,7 @@ Checkpoint parse(std::string_view bytes) {
     Checkpoint checkpoint = from_header(Json::parse(bytes.substr(0, header_size)));
     bytes.remove_prefix(header_size);
     take(bytes, std::span(checkpoint.film));
+    take(bytes, std::span(checkpoint.layers));
     if (checkpoint.pixels)
         take(bytes, std::span(*checkpoint.pixels));
     return checkpoint;
@@ -116,7 +119,8 @@ Checkpoint parse(std::string_view bytes) {
 
 RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization, const Assets& assets,
                         const LightTable& lights, std::span<const shared::MediumParams> media,
-                        const SurfaceTable& surfaces, std::uint32_t sample_offset, const std::string& device,
+                        const SurfaceTable& surfaces, std::span<const glm::vec3> points, std::uint32_t sample_offset,
+                        const std::string& device,
                         std::vector<std::uint32_t> band_rows) {
     Digest digest;
     digest.add(std::as_bytes(std::span(&sample_offset, 1)));
@@ -126,6 +130,7 @@ RenderIdentity identify(const shared::FrameParams& frame, const Specialization& 
     digest.add_all(media);
     digest.add_all(surfaces.rows);
     digest.add_all(surfaces.primitives);
+    digest.add_all(points);
     if (assets.sky)
         digest.add_all(assets.sky->texels);
     std::set<const void*> seen; // what media share counts once
@@ -155,6 +160,7 @@ void save_checkpoint(const std::filesystem::path& file, const Checkpoint& checkp
     append(bytes, std::span<const std::uint64_t>(&header_size, 1));
     bytes += header;
     append(bytes, std::span<const shared::FilmPixel>(checkpoint.film));
+    append(bytes, std::span<const glm::vec3>(checkpoint.layers));
     if (checkpoint.pixels)
         append(bytes, std::span<const std::uint32_t>(*checkpoint.pixels));
     const std::uint64_t sum = checksum(bytes);

@@ -36,16 +36,18 @@ struct Checkpoint {
     std::uint32_t band = 0;                           // in which it is
     std::optional<std::vector<std::uint32_t>> pixels; // of that band, still without the batch's samples; none: all
     std::vector<shared::FilmPixel> film;              // all bands, row by row
+    std::vector<glm::vec3> layers;                    // likewise their sums
     RenderCounts counts;
     std::vector<NonFiniteSample> non_finite;
     double seconds = 0.0; // of rendering
     Schedule schedule = Schedule::fused;
 };
 
-// `media`: rows, of several.
+// `media`: rows, of several. `points`: where flux is read.
 RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization, const Assets& assets,
                         const LightTable& lights, std::span<const shared::MediumParams> media,
-                        const SurfaceTable& surfaces, std::uint32_t sample_offset, const std::string& device,
+                        const SurfaceTable& surfaces, std::span<const glm::vec3> points, std::uint32_t sample_offset,
+                        const std::string& device,
                         std::vector<std::uint32_t> band_rows);
 
 // Atomically: the file is the last checkpoint or this one. Throws RenderError.

@@ -10,10 +10,19 @@ namespace vkvol {
 
 namespace {
 
+constexpr double layer_bytes = 4.0 * sizeof(glm::vec3); // of a pixel
+
+constexpr double mebibyte = 1048576.0;
+
+std::uint64_t record_bytes(const shared::AovParams& layers) {
+    return std::uint64_t{layers.records} * layers.count * sizeof(glm::vec3);
+}
+
 // What is too much would not fail: the system would end the program later, without a word.
-void check_memory(const Device& device, const Crop& crop) {
+void check_memory(const Device& device, const Crop& crop, std::uint32_t layers) {
     // As sums, in memory of this machine if that is the device; the same read back; mean, variance and samples.
-    const double bytes = sizeof(shared::FilmPixel) * (device.is_cpu() ? 2.0 : 1.0) + 2.0 * sizeof(glm::vec3) + 4.0;
+    const double sums = sizeof(shared::FilmPixel) + layers * layer_bytes;
+    const double bytes = sums * (device.is_cpu() ? 2.0 : 1.0) + (1.0 + layers) * 2.0 * sizeof(glm::vec3) + 4.0;
     const double width = crop.x1 - crop.x0, height = crop.y1 - crop.y0;
     const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
     if (width * height * bytes > memory)
@@ -24,21 +33,41 @@ void check_memory(const Device& device, const Crop& crop) {
 
 } // namespace
 
-std::vector<Band> make_bands(const Device& device, Commands& commands, const Crop& crop, std::uint64_t most_bytes) {
-    check_memory(device, crop);
-    const std::uint64_t row_bytes = std::uint64_t(crop.x1 - crop.x0) * sizeof(shared::FilmPixel);
-    const std::uint64_t most = std::max<std::uint64_t>(most_bytes / row_bytes, 1);
+std::vector<Band> make_bands(const Device& device, Commands& commands, const Crop& crop, std::uint64_t most_bytes,
+                             const shared::AovParams& layers) {
+    check_memory(device, crop, layers.count);
+    const std::uint64_t width = static_cast<std::uint64_t>(crop.x1 - crop.x0);
+    const std::uint64_t row_bytes = width * sizeof(shared::FilmPixel);
+    const std::uint64_t records = record_bytes(layers), layer_row = width * layers.count * std::uint64_t(layer_bytes);
+    if (records + layer_row > most_bytes)
+        throw InputError(fmt::format("{} layers of {} paths and a row of pixels take {:.1f} MiB, but \"{}\" holds no "
+                                     "more than {:.1f} MiB of them; ask for fewer layers, or for --schedule with fewer "
+                                     "slots",
+                                     layers.count, layers.records, double(records + layer_row) / mebibyte,
+                                     device.info().name, double(most_bytes) / mebibyte));
+    std::uint64_t most = std::max<std::uint64_t>(most_bytes / row_bytes, 1);
+    if (layers.count > 0)
+        most = std::min(most, (most_bytes - records) / layer_row);
     const auto height = static_cast<std::uint32_t>(crop.y1 - crop.y0);
     std::vector<Band> bands;
     for (std::uint32_t row = 0; row < height;) {
         const auto rows = static_cast<std::uint32_t>(std::min<std::uint64_t>(most, height - row));
-        bands.push_back(
-            {row, rows,
-             Buffer(device, "film", rows * row_bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device)});
-        commands.fill(bands.back().film, 0);
+        const auto make = [&](const char* name, std::uint64_t bytes) {
+            return Buffer(device, name, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device);
+        };
+        bands.push_back({row, rows, make("film", rows * row_bytes), std::nullopt});
+        if (layers.count > 0)
+            bands.back().layers.emplace(make("layers", records + rows * layer_row));
+        clear(commands, bands.back());
         row += rows;
     }
     return bands;
+}
+
+void clear(Commands& commands, const Band& band) {
+    commands.fill(band.film, 0);
+    if (band.layers)
+        commands.fill(*band.layers, 0);
 }
 
 namespace {
@@ -63,6 +92,28 @@ void write_bands(Commands& commands, const std::vector<Band>& bands, std::uint32
                  std::span<const shared::FilmPixel> pixels) {
     for (const Band& band : bands)
         commands.upload(band.film, std::as_bytes(pixels.subspan(first_pixel(band, width), pixel_count(band, width))));
+}
+
+std::vector<glm::vec3> read_layers(Commands& commands, const std::vector<Band>& bands, std::uint32_t width,
+                                   const shared::AovParams& layers) {
+    const std::size_t each = 4 * std::size_t(layers.count);
+    std::vector<glm::vec3> sums((first_pixel(bands.back(), width) + pixel_count(bands.back(), width)) * each);
+    for (const Band& band : bands)
+        if (band.layers) {
+            const auto part = std::span(sums).subspan(first_pixel(band, width) * each, pixel_count(band, width) * each);
+            commands.download(*band.layers, std::as_writable_bytes(part), record_bytes(layers));
+        }
+    return sums;
+}
+
+void write_layers(Commands& commands, const std::vector<Band>& bands, std::uint32_t width,
+                  const shared::AovParams& layers, std::span<const glm::vec3> sums) {
+    const std::size_t each = 4 * std::size_t(layers.count);
+    for (const Band& band : bands)
+        if (band.layers) {
+            const auto part = sums.subspan(first_pixel(band, width) * each, pixel_count(band, width) * each);
+            commands.upload(*band.layers, std::as_bytes(part), record_bytes(layers));
+        }
 }
 
 void develop(std::span<const shared::FilmPixel> pixels, Film& film) {

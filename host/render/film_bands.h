@@ -1,10 +1,12 @@
 // The film on the device: in bands of whole rows, each within what one storage buffer may span.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "commands.h"
 #include "film.h"
+#include "shared/frame.h"
 #include "shared/items.h"
 
 namespace vkvol {
@@ -13,15 +15,25 @@ struct Band {
     std::uint32_t first_row;
     std::uint32_t rows;
     Buffer film;
+    std::optional<Buffer> layers; // records of paths, then sums of pixels; where layers are asked for
 };
 
-// Bands without samples. `most_bytes`: of one of them.
-std::vector<Band> make_bands(const Device& device, Commands& commands, const Crop& crop, std::uint64_t most_bytes);
+// Bands without samples. `most_bytes`: of one buffer of them. `layers`: how many, and of how many paths they have
+// records. Throws InputError if the film is too large.
+std::vector<Band> make_bands(const Device& device, Commands& commands, const Crop& crop, std::uint64_t most_bytes,
+                             const shared::AovParams& layers);
+void clear(Commands& commands, const Band& band);
 
 // All bands' pixels, row by row.
 std::vector<shared::FilmPixel> read_bands(Commands& commands, const std::vector<Band>& bands, std::uint32_t width);
 void write_bands(Commands& commands, const std::vector<Band>& bands, std::uint32_t width,
                  std::span<const shared::FilmPixel> pixels);
+
+// Likewise the sums of layers, four for each of each pixel.
+std::vector<glm::vec3> read_layers(Commands& commands, const std::vector<Band>& bands, std::uint32_t width,
+                                   const shared::AovParams& layers);
+void write_layers(Commands& commands, const std::vector<Band>& bands, std::uint32_t width,
+                  const shared::AovParams& layers, std::span<const glm::vec3> sums);
 
 // Means, and variances of the means. What else the film says is not touched.
 void develop(std::span<const shared::FilmPixel> pixels, Film& film);

@@ -29,7 +29,9 @@ std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
     const std::uint32_t of_one = octaves + search;
     const std::uint32_t look_up = loops.media > 0 ? 1 + loops.media * (1 + of_one) : of_one;
     iterations += (4 * steps + 1) * look_up + 4 * search; // colours are looked up at collisions
-    return iterations + loops.phase + loops.lights;
+    // A record is begun and added, and lights in the sky are noted one by one.
+    const std::uint32_t records = loops.layers > 0 ? 2 * (loops.layers + 1) + loops.lights : 0;
+    return iterations + loops.phase + loops.lights + records;
 }
 
 // Turns whose loops stay below the limit.
@@ -55,8 +57,8 @@ Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish) {
     const std::uint32_t longest = longest_budget(loops, plan.steps);
     plan.budget = std::min(pick(wish.budget, longest), longest);
     plan.step_limit = pick(wish.step_limit, 1u << 26);
-    plan.most_batch =
-        std::min(pick(wish.most_batch, longest_batch), longest_batch / (1 + loops.lights)); // each looks at them
+    plan.most_batch = std::min(pick(wish.most_batch, longest_batch),
+                               longest_batch / (1 + loops.lights + loops.layers)); // each looks at them
     plan.waiting = staged ? std::max(wish.waiting, 4 * plan.slots) : 0;
     if (staged) // so that two pixels and more have a place
         plan.most_batch = std::min(plan.most_batch, plan.waiting / 2);

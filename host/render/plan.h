@@ -43,6 +43,7 @@ struct LoopSizes {
     std::uint32_t halvings = 0; // of a search in a map of values; 0 without one
     std::uint32_t media = 0;    // that a look-up asks, at most; 0 where there is but one
     std::uint32_t phase = 0;    // iterations within phase functions
+    std::uint32_t layers = 0;   // of a path's record
     std::uint32_t lights = 0;   // iterations over lamps, suns and the levels of a tree; 0 without a choice of lights
 };
 

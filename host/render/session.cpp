@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "camera_rays.h"
 #include "error.h"
 
 namespace vkvol {
@@ -92,6 +93,7 @@ void Session::resume(const Checkpoint& from) {
                                      "asked for; ask for more with --spp",
                                      from.done + from.batch, wanted_));
     write_bands(commands_, bands_, width(), from.film);
+    write_layers(commands_, bands_, width(), device_scene_->frame().layers, from.layers);
     done_ = from.done;
     batch_ = from.batch;
     band_ = from.band;
@@ -108,6 +110,7 @@ void Session::save_checkpoint() {
                           band_,
                           pixels_,
                           read_bands(commands_, bands_, width()),
+                          read_layers(commands_, bands_, width(), device_scene_->frame().layers),
                           result_.counts,
                           result_.non_finite,
                           result_.render_seconds + watch_.seconds(),
@@ -150,7 +153,7 @@ bool Session::out_of_patience() {
 
 void Session::begin_band(const Band& band) {
     device_scene_->set_first_row(static_cast<std::uint32_t>(job_.crop.y0) + band.first_row);
-    wavefront_->bind_film(band.film);
+    wavefront_->bind_film(band);
     const std::uint32_t begin = job_.sample_offset + done_;
     if (pixels_)
         wavefront_->begin_batch(begin, begin + batch_, *pixels_);
@@ -217,7 +220,12 @@ void Session::develop_film() {
     film.picture_width = scene_.picture.width;
     film.picture_height = scene_.picture.height;
     film.crop = job_.crop;
-    develop(read_bands(commands_, bands_, width()), film);
+    film.places = reading_places(scene_.camera, scene_.picture, job_.crop);
+    const std::vector<shared::FilmPixel> pixels = read_bands(commands_, bands_, width());
+    develop(pixels, film);
+    film.layers =
+        develop_layers(device_scene_->layers(), read_layers(commands_, bands_, width(), device_scene_->frame().layers),
+                       pixels, device_scene_->origin());
 }
 
 RenderResult render(const Device& device, const Scene& scene, const RenderJob& job) {

@@ -96,7 +96,8 @@ private:
     double paths_per_second(Wavefront& wavefront, const Plan& plan);
     std::uint32_t first_batch() const;
     std::uint32_t next_batch(std::uint32_t batch, double seconds) const;
-    void begin_identity(const Device& device, const Assets& assets);
+    std::vector<std::uint32_t> make_film(const Device& device);
+    void begin_identity(const Device& device, const Assets& assets, std::vector<std::uint32_t> rows);
     void resume(const Checkpoint& from);
     void save_checkpoint();
     bool checkpoint_due() const;

@@ -75,8 +75,7 @@ void Session::load(const Device& device, const std::vector<std::string>& authore
     result_.plan = plan_by(device, wish_.schedule);
     device_scene_.emplace(device, commands_, scene_, method_, assets, job_.crop, job_.seed,
                           result_.plan.most_grid_bytes, result_.plan.most_texel_bytes);
-    bands_ = make_bands(device, commands_, job_.crop, result_.plan.most_film_bytes);
-    begin_identity(device, assets);
+    begin_identity(device, assets, make_film(device));
     result_.glows = device_scene_->emits() && !has_colour;
     result_.integrator = method_.integrator;
     result_.biased = method_.biased;
@@ -88,9 +87,10 @@ void Session::load(const Device& device, const std::vector<std::string>& authore
 
 void Session::find_wish(const Assets& assets, const Specialization& specialization) {
     wish_ = job_.plan;
-    loops_.lights = loop_iterations(scene_.lights);
+    loops_.lights = loop_iterations(scene_);
     loops_.surfaces = !scene_.surfaces.empty();
     loops_.halvings = static_cast<std::uint32_t>(specialization[SPEC_MAP_HALVINGS]);
+    loops_.layers = plan_layers(scene_).params.count;
     for (std::size_t i = 0; i < assets.media.size(); ++i) {
         const Volume& volume = scene_.volumes[i];
         const LoadedMedium& medium = assets.media[i];
@@ -156,7 +156,7 @@ void Session::compile(const Device& device) {
     most_batch_ = std::min<std::uint32_t>(result_.plan.most_batch, std::max<std::uint64_t>((1ull << 31) / pixels, 1));
     result_.device_bytes = device_scene_->bytes() + wavefront_->bytes();
     for (const Band& band : bands_)
-        result_.device_bytes += band.film.bytes();
+        result_.device_bytes += band.film.bytes() + (band.layers ? band.layers->bytes() : 0);
     result_.pipeline_seconds = watch.lap();
 }
 
@@ -208,7 +208,7 @@ double Session::paths_per_second(Wavefront& wavefront, const Plan& plan) {
     const auto samples = static_cast<std::uint32_t>(std::clamp<std::uint64_t>((1u << 22) / pixels, 1, plan.most_batch));
     device_scene_->set_queues(plan.slots, queue_capacity(plan));
     device_scene_->set_first_row(static_cast<std::uint32_t>(job_.crop.y0) + band.first_row);
-    wavefront.bind_film(band.film);
+    wavefront.bind_film(band);
     wavefront.begin_batch(0, samples, pixels);
     Stopwatch watch;
     double counted_from = 0.0;
@@ -222,19 +222,34 @@ double Session::paths_per_second(Wavefront& wavefront, const Plan& plan) {
         }
     }
     const double seconds = watch.seconds() - counted_from;
-    commands_.fill(band.film, 0);
+    clear(commands_, band);
     return static_cast<double>(paths) / seconds;
 }
 
-void Session::begin_identity(const Device& device, const Assets& assets) {
-    if (!job_.checkpoint && !job_.resume)
-        return;
+// Rows of its bands. Where either schedule may be taken there is room for the paths of both.
+std::vector<std::uint32_t> Session::make_film(const Device& device) {
+    shared::AovParams layers = device_scene_->frame().layers;
+    for (const Schedule schedule : {Schedule::fused, Schedule::staged})
+        if (layers.count > 0 && (wish_.schedule == schedule || wish_.schedule == Schedule::automatic)) {
+            const Plan plan = plan_by(device, schedule);
+            layers.records = std::max({layers.records, plan.slots, plan.waiting});
+        }
+    bands_ = make_bands(device, commands_, job_.crop, result_.plan.most_film_bytes, layers);
+    device_scene_->set_records(layers.records);
     std::vector<std::uint32_t> rows;
     for (const Band& band : bands_)
         rows.push_back(band.rows);
-    identity_ = identify(device_scene_->frame(), device_scene_->specialization(), assets, device_scene_->lights(),
-                         device_scene_->media(), device_scene_->surfaces(), job_.sample_offset,
-                         fmt::format("{}, {}", device.info().name, device.info().driver), rows);
+    return rows;
+}
+
+void Session::begin_identity(const Device& device, const Assets& assets, std::vector<std::uint32_t> rows) {
+    if (!job_.checkpoint && !job_.resume)
+        return;
+    shared::FrameParams frame = device_scene_->frame();
+    frame.layers.records = 0; // how it is carried out
+    identity_ = identify(frame, device_scene_->specialization(), assets, device_scene_->lights(),
+                         device_scene_->media(), device_scene_->surfaces(), device_scene_->points(), job_.sample_offset,
+                         fmt::format("{}, {}", device.info().name, device.info().driver), std::move(rows));
     if (job_.resume)
         check_identity(job_.resume->identity, identity_);
 }

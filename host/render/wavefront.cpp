@@ -144,8 +144,10 @@ std::uint64_t Wavefront::bytes() const {
     return bytes;
 }
 
-void Wavefront::bind_film(const Buffer& film) {
-    bindings_->bind(BINDING_FILM, film);
+void Wavefront::bind_film(const Band& band) {
+    bindings_->bind(BINDING_FILM, band.film);
+    if (band.layers)
+        bindings_->bind(BINDING_LAYERS, *band.layers);
 }
 
 void Wavefront::begin_batch(std::uint32_t begin, std::uint32_t end, std::uint32_t pixels) {

@@ -11,6 +11,7 @@
 
 #include "commands.h"
 #include "compute_pass.h"
+#include "film_bands.h"
 #include "plan.h"
 #include "shared/items.h"
 
@@ -34,7 +35,7 @@ public:
     Wavefront(const Wavefront&) = delete;
     Wavefront& operator=(const Wavefront&) = delete;
 
-    void bind_film(const Buffer& film);
+    void bind_film(const Band& band);
 
     // Samples [begin, end) of pixels [0, pixels) of the bound film. Then call advance() until it returns true.
     void begin_batch(std::uint32_t begin, std::uint32_t end, std::uint32_t pixels);

@@ -22,7 +22,7 @@ std::optional<Odd> oddity(const FilmLook& look, const Scene& scene, const Tone& 
     const bool has_screen = tone.pixels > 0;
     if (look.brightest == 0.0 || (has_screen && few(look.shown, look)))
         return Odd::black;
-    if (few(look.apart, look) && scene.background != Rgb(0.0))
+    if (few(look.apart, look) && scene.background != Rgb(0.0) && !scene.holds_out)
         return Odd::background;
     if (has_screen && 20 * look.shown >= look.pixels && 5 * tone.clipped >= 4 * look.shown)
         return Odd::white;
@@ -76,7 +76,8 @@ bool sees_light(const Scene& scene, const Method& method) {
     const auto any = [&](bool (*is)(const Light&)) {
         return std::any_of(scene.lights.begin(), scene.lights.end(), is);
     };
-    if (any(is_met_by_chance) || (any(is_lamp) && method.nee != NEE_NONE))
+    if (any(is_met_by_chance) ||
+        ((any(is_lamp) || reads_flux(scene.camera)) && !scene.lights.empty() && method.nee != NEE_NONE))
         return true;
     return !scene.lights.empty() && method.nee != NEE_NONE && scene.settings.max_depth != 0u;
 }
@@ -93,14 +94,22 @@ std::optional<Explanation> foresee(const Scene& authored) {
     return find_cause(evidence);
 }
 
+namespace {
+
+Rgb background_shown(const Scene& scene) {
+    return scene.holds_out ? Rgb(0.0) : reading_of_unit_radiance(scene.camera) * scene.background;
+}
+
+} // namespace
+
 std::optional<Explanation> explain(const Scene& authored, const RenderResult& result, const Tone& tone) {
     if (!authored.surfaces.empty()) // what is said is about pictures of media
         return std::nullopt;
     const Scene scene = with_preset(authored);
-    const FilmLook seen = look(result.film, scene.background, tone.mapping);
+    const FilmLook seen = look(result.film, background_shown(scene), tone.mapping);
     std::optional<Odd> odd = oddity(seen, scene, tone);
     std::optional<Sight> sight;
-    if (result.outline.exists)
+    if (result.outline.exists && !reads_flux(scene.camera)) // which looks nowhere
         sight = look(scene, result.outline, result.film.crop);
     // Only where all that is seen is medium: elsewhere noise may hide a thing or two.
     if (!odd && sight && sight->inside && sight->least_depth >= deep && is_without_structure(result.film))

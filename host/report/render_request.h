@@ -28,6 +28,8 @@ struct RenderRequest {
     std::optional<std::filesystem::path> grid;
     std::optional<std::string> integrator; // NAME:axis=choice...
     std::optional<int> width, height;
+    std::string aov;      // names of layers, besides the scene's
+    bool alpha = false;   // what is behind the media stays out of the picture, which has alpha
     bool frame = false;   // move the camera so that the medium fills the picture
     std::optional<Up> up; // of a grid file without a scene
     std::optional<CropRequest> crop;

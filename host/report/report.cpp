@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include "camera_view.h"
 #include "scene_hash.h"
 #include "version.h"
 
@@ -123,6 +124,24 @@ Json explanation_json(const std::optional<Explanation>& explanation, const Camer
     return json;
 }
 
+// Of a sensor of flux, where they are few enough to be read.
+Json readings_json(const Film& film, const Camera& camera) {
+    constexpr std::size_t most = 1024;
+    if (!reads_flux(camera))
+        return {};
+    Json readings = Json::array();
+    for (std::size_t i = 0; i < (film.pixel_count() <= most ? film.pixel_count() : 0); ++i) {
+        Json reading{{"position", vector_json(film.places[i])},
+                     {"value", vector_json(film.mean[i])},
+                     {"standardError", nullptr},
+                     {"samples", film.samples[i]}};
+        if (film.samples[i] > 1)
+            reading["standardError"] = vector_json(glm::sqrt(film.variance[i]));
+        readings.push_back(reading);
+    }
+    return {{"reads", projection_name(camera.projection)}, {"readings", readings}};
+}
+
 Json mean_json(const Film& film) {
     const auto [value, error] = image_mean(film);
     Json json{{"value", {value.x, value.y, value.z}}, {"standardError", nullptr}};
@@ -180,6 +199,13 @@ Metadata make_metadata(const RenderRequest& request, const Scene& scene, const D
                       {"vkvol/queueOverflows", metadata_count(result.counts.queue_overflows)},
                       {"vkvol/abandonedPaths", metadata_count(result.counts.abandoned)},
                       {"vkvol/nonFiniteSamples", metadata_count(result.counts.non_finite)}};
+    if (const std::optional<Exposure>& exposure = scene.camera.exposure) {
+        metadata["isoSpeed"] =
+            static_cast<float>(exposure->iso); // by OpenEXR's names, which OpenImageIO has others for
+        metadata["ExposureTime"] = static_cast<float>(exposure->shutter);
+        metadata["FNumber"] = static_cast<float>(exposure->f_number);
+        metadata[camera_exposure_key] = fmt::format("{}", stops_of(*exposure));
+    }
     record_tone(request.tone, result.glows, metadata);
     return metadata;
 }
@@ -218,6 +244,7 @@ std::string make_report(const RenderRequest& request, const Scene& scene, const 
     report["laneUse"] = {{"track", result.counts.lane_use()}};
     report["caps"] = caps_json(result);
     report["mean"] = mean_json(result.film);
+    report["sensor"] = readings_json(result.film, scene.camera);
     const std::optional<double> noise = relative_noise(result.film);
     report["noise"] = noise ? Json(*noise) : Json();
     report["tone"] = tone_json(shown.tone);

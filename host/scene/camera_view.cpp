@@ -70,9 +70,18 @@ const char* projection_name(Projection projection) {
         return "orthographic";
     case Projection::equirectangular:
         return "equirectangular";
+    case Projection::irradiance:
+        return "irradiance";
+    case Projection::fluence:
+        return "fluence";
     default:
         return "perspective";
     }
+}
+
+double stops_of(const Exposure& exposure) {
+    const double white = 1.2 * exposure.f_number * exposure.f_number / exposure.shutter * 100.0 / exposure.iso;
+    return std::log2(exposure.luminance_unit / white);
 }
 
 ViewWindow view_window(const Camera& camera, const Picture& picture) {

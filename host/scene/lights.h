@@ -16,10 +16,13 @@ using Rgb = glm::dvec3;
 // samples in single precision, which ends at 3e38.
 inline constexpr double brightest_light = 1e12;
 
+// Every light may be in a group, by name, for layers of the picture; or in none.
+
 // Infinitely far away and without extent.
 struct DirectionalLight {
     glm::dvec3 direction{0.0, 1.0, 0.0}; // unit, from the scene towards the light
     Rgb irradiance{0.0};                 // on a plane perpendicular to `direction`
+    std::string group = {};
 };
 
 // A disc in the sky, a ball far away, which the camera sees. From middle to rim its radiance falls by the linear law of
@@ -30,6 +33,7 @@ struct SunLight {
     Rgb irradiance{0.0};                 // of all of it, on a plane perpendicular to `direction`
     double angle = 0.53;                 // degrees, its whole diameter, in (0, 180]
     double limb_darkening = 0.0;         // u, in [0, 1]; 0: even radiance
+    std::string group = {};
 };
 
 // Of the disc's middle, where it is brightest.
@@ -38,6 +42,7 @@ Rgb peak_radiance(const SunLight& sun);
 struct PointLight {
     glm::dvec3 position{0.0};
     Rgb intensity{0.0}; // per steradian
+    std::string group = {};
 };
 
 // A point that shines into a cone. Within `angle * (1 - blend)` it has its intensity, beyond `angle` none; in between
@@ -48,6 +53,7 @@ struct SpotLight {
     Rgb intensity{0.0};                   // per steradian, on the axis
     double angle = 45.0;                  // degrees, the cone's whole opening, in (0, 180]
     double blend = 0.2;                   // in [0, 1]
+    std::string group = {};
 };
 
 // Lamps shine and stop nothing: what passes through them goes on. The camera sees them.
@@ -57,6 +63,7 @@ struct SphereLight {
     glm::dvec3 center{0.0};
     double radius = 1.0; // > 0
     Rgb radiance{0.0};
+    std::string group = {};
 };
 
 // A disk that shines evenly from the side of its normal.
@@ -65,6 +72,7 @@ struct DiskLight {
     glm::dvec3 normal{0.0, -1.0, 0.0}; // unit
     double radius = 1.0;               // > 0
     Rgb radiance{0.0};
+    std::string group = {};
 };
 
 // A rectangle that does.
@@ -72,6 +80,7 @@ struct RectangleLight {
     glm::dvec3 center{0.0};
     glm::dvec3 edge_u{0.5, 0.0, 0.0}, edge_v{0.0, 0.0, 0.5}; // halves of its edges, across each other
     Rgb radiance{0.0};
+    std::string group = {};
 
     glm::dvec3 normal() const { return glm::normalize(glm::cross(edge_u, edge_v)); }
 };
@@ -104,10 +113,15 @@ struct SkyLight {
     SkyMapping mapping = SkyMapping::equirectangular;
     double rotation = 0.0; // degrees, positive turns it counter-clockwise as seen from above
     Rgb scale{1.0};        // multiplies the map
+    std::string group = {};
 };
 
 using Light =
     std::variant<DirectionalLight, SunLight, PointLight, SpotLight, SkyLight, SphereLight, DiskLight, RectangleLight>;
+
+inline const std::string& group_of(const Light& light) {
+    return std::visit([](const auto& kind) -> const std::string& { return kind.group; }, light);
+}
 
 // What a light sends out in all, for each unit of its intensity or radiance: the solid angle into which it shines, of a
 // spot with half of its rim, times the area that does, seen from each direction as it is [world units squared].

@@ -7,11 +7,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "aovs.h"
 #include "lights.h"
 #include "surfaces.h"
 
@@ -26,7 +28,11 @@ inline constexpr double hottest_kelvin = 1e9;
 // How directions become places in the picture. Equirectangular: longitude across it, latitude down it, the middle of
 // the reference frame straight ahead. Kernels tell more of them apart, SENSOR_... of shaders/shared/constants.h: a
 // perspective one with a lens is one of its own there.
-enum class Projection { perspective, orthographic, equirectangular };
+// The last two read flux in place of radiance. Irradiance: what arrives through a rectangle from the side that the
+// camera looks to, a pixel being a patch of it: the integral of radiance times cosine over that hemisphere. Fluence:
+// what arrives at points from everywhere, a pixel each: the integral of radiance over all directions. Both include
+// light that comes straight from its source.
+enum class Projection { perspective, orthographic, equirectangular, irradiance, fluence };
 
 // The largest radius of a lens, by the distance of what is sharp: single precision has no directions beyond.
 inline constexpr double widest_lens = 1000.0;
@@ -40,6 +46,14 @@ struct Lens {
         0.0; // degrees, of the polygon: at 0 it has a corner on the right; + counter-clockwise as seen from behind
 };
 
+// How a camera would be set. Without effect on radiance: it says which is white in pictures for looking at.
+struct Exposure {
+    double iso = 100.0;          // > 0
+    double shutter = 0.0;        // seconds, > 0
+    double f_number = 0.0;       // > 0; of no lens that is traced
+    double luminance_unit = 1.0; // cd/m^2 of radiance 1, > 0
+};
+
 // Looks along -z at zero rotation. Direction of a camera-space d: Rz(roll) * Ry(yaw) * Rx(pitch) * d.
 struct Camera {
     Projection projection = Projection::perspective;
@@ -50,7 +64,22 @@ struct Camera {
     double fov = 90.0;         // degrees, the full vertical angle of the reference frame, in (0, 180); perspective only
     double view_height = 10.0; // world units, of the reference frame, > 0; orthographic only
     Lens lens;
+    std::optional<Exposure> exposure;
+    glm::dvec2 size{1.0};              // irradiance: world units, of the rectangle that is the reference frame, > 0
+    std::vector<glm::dvec3> points;    // fluence: row by row, as many as the picture has pixels
+    std::filesystem::path points_file; // where they were read; or empty
 };
+
+inline bool reads_flux(const Camera& camera) {
+    return camera.projection == Projection::irradiance || camera.projection == Projection::fluence;
+}
+
+// What a sensor reads where the same radiance comes from everywhere, per unit of that [sr].
+inline double reading_of_unit_radiance(const Camera& camera) {
+    return camera.projection == Projection::irradiance ? std::numbers::pi
+           : camera.projection == Projection::fluence  ? 4.0 * std::numbers::pi
+                                                       : 1.0;
+}
 
 // The picture is a window of `width` x `height` pixels at (start_x, start_y) of a virtual reference frame.
 // Pixel (i, j) of the picture, row 0 on top, has its centre at u = (start_x + i + 1/2) / reference_width, likewise v.
@@ -162,6 +191,7 @@ struct ValueMap {
 // A participating medium filling a shape. Coefficients multiply the density: that of the grid, of the noise, or 1.
 struct Volume {
     std::variant<Sphere, Box, MeshFiles, GridFile, Everywhere> shape;
+    std::string name = {};        // of its layer; or empty
     glm::dmat4 transform{1.0};    // of the shape with all that is in it, in world space; affine, with an inverse
     std::string place;            // of the shape, "file:line:column", for messages; or empty
     std::optional<Noise> noise;   // not for grids, nor everywhere
@@ -272,16 +302,41 @@ struct BlackElement {
 
 struct Scene {
     Camera camera;
+    bool has_camera = true; // false: nobody said where it is
     Picture picture;
     std::vector<Volume> volumes; // the media
     std::vector<Light> lights;
     std::vector<Surface> surfaces;
-    Rgb background{0.0}; // constant radiance from every direction
+    Rgb background{0.0};               // constant radiance from every direction
+    std::string background_group = {}; // as of lights
+    unsigned layers = 0;               // Aovs, besides radiance
+    bool holds_out = false; // what is behind the media, light that was not scattered, stays out of the picture
     RenderSettings settings;
     std::optional<Expected> expected;
     std::vector<BlackElement> black;   // without effect on the picture
     std::vector<std::string> warnings; // "file:line:column: ..." for what was understood but is not honoured
 };
+
+// The light if there is but one, that has neither place nor extent, and only media look at it: then there is no choice
+// of lights.
+inline const DirectionalLight* lone_sun(const Scene& scene) {
+    return reads_flux(scene.camera) ? nullptr : only_directional(scene.lights);
+}
+
+// Names of the groups that lights are in, and the background, in the order of the lights. Their layers follow that of
+// what is in none.
+std::vector<std::string> light_groups(const Scene& scene);
+
+// Names of the layers of media: those of volumes, or "volume1", "volume2", ... by their order. Volumes of one name
+// share a layer.
+std::vector<std::string> medium_names(const Scene& scene);
+std::string medium_name(const Scene& scene, std::size_t volume);
+
+// What of the layers asked for makes no sense, and what would; empty: nothing.
+std::string trouble_with_layers(const Scene& scene);
+
+// Place of a name among names; how many there are if it is none of them.
+std::uint32_t place_among(const std::vector<std::string>& names, const std::string& name);
 
 // Whether one of its media is such.
 template <class Is> bool any_medium(const Scene& scene, const Is& is) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "camera_view.h"
 #include "error.h"
 #include "framing.h"
 #include "integrators.h"
@@ -14,10 +15,8 @@ namespace vkvol {
 
 namespace {
 
-// Of the view on a grid that has none: somewhat from the side and above, the sun high on the left, so that one sees lit
-// and shaded sides.
-constexpr double azimuth = 30.0, elevation = 12.0, fov = 30.0; // degrees
-constexpr double sun_azimuth = -75.0, sun_elevation = 42.0;    // degrees
+// In the usual view: the sun high on the left, so that one sees lit and shaded sides.
+constexpr double sun_azimuth = -75.0, sun_elevation = 42.0; // degrees
 
 std::string lower(std::string text) {
     for (char& c : text)
@@ -196,14 +195,14 @@ FileView view_file(const std::filesystem::path& file, const Picture& picture, Up
     const DensityField density = load_density(file, names, view);
     const std::optional<DensityField> temperature = load_temperature(file, names, view);
 
-    view.fov = fov;
+    view.fov = usual_fov;
     view.orbit.up = up == Up::y ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
-    view.orbit.azimuth = azimuth;
-    view.orbit.elevation = elevation;
+    view.orbit.azimuth = usual_azimuth;
+    view.orbit.elevation = usual_elevation;
     view.sun = on_orbit(sun_azimuth, sun_elevation, view.orbit.up);
     const Corners corners = corners_of(density);
     Camera camera;
-    camera.fov = fov;
+    camera.fov = usual_fov;
     place_on_orbit(camera, view.orbit);
     frame(camera, picture, corners);
     const glm::dvec3 forward = -camera_rotation(camera)[2];

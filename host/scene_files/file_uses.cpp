@@ -51,6 +51,8 @@ void FileUses::reads(const std::string& what, const path& file) {
 }
 
 void FileUses::reads_files_of(const Scene& scene) {
+    if (!scene.camera.points_file.empty())
+        reads("the scene's list of points", scene.camera.points_file);
     for (const Volume& volume : scene.volumes) {
         if (volume.phase == PhaseFunction::table)
             reads("the scene's phase function", volume.phase_details.file);

@@ -104,8 +104,7 @@ Projection projection_of(const XmlElement& element) {
     return projection;
 }
 
-// `target`: what the camera looks at, if that was said.
-Lens lens_of(const XmlElement& element, const Camera& camera, const std::optional<glm::dvec3>& target) {
+Lens lens_of(const XmlElement& element, const Camera& camera) {
     Lens lens;
     lens.radius = element.attribute_number("lensRadius", 0.0, {0.0, largest_length, true, true, "a number from 0"});
     if (lens.radius == 0.0) {
@@ -115,8 +114,8 @@ Lens lens_of(const XmlElement& element, const Camera& camera, const std::optiona
     }
     if (element.has("focus"))
         lens.focus = element.attribute_number("focus", 0.0, length);
-    else if (target)
-        lens.focus = glm::dot(*target - camera.position, -camera_rotation(camera)[2]);
+    else if (element.has("lookAt"))
+        lens.focus = glm::dot(point(element, "lookAt", coordinate) - camera.position, -camera_rotation(camera)[2]);
     else
         element.fail_attribute("lensRadius",
                                "<camera> lensRadius: what is sharp? add focus, the distance along the view, "
@@ -135,12 +134,57 @@ Lens lens_of(const XmlElement& element, const Camera& camera, const std::optiona
     return lens;
 }
 
+// By time and f-number, which go together.
+std::optional<Exposure> exposure_of(const XmlElement& element) {
+    constexpr Limits setting{1e-9, 1e9, true, true, "a number > 0, from 1e-9 to 1e9"};
+    const char* said = first_of(element, {"shutter", "fNumber", "iso", "luminanceUnit"});
+    if (!said)
+        return std::nullopt;
+    for (const char* needed : {"shutter", "fNumber"})
+        if (!element.has(needed))
+            element.fail_attribute(said, fmt::format("<camera> {}: an exposure is of shutter, in seconds, and fNumber; "
+                                                     "add {}=\"...\"",
+                                                     said, needed));
+    Exposure exposure;
+    exposure.shutter = element.attribute_number("shutter", 0.0, setting);
+    exposure.f_number = element.attribute_number("fNumber", 0.0, setting);
+    exposure.iso = element.attribute_number("iso", exposure.iso, setting);
+    exposure.luminance_unit = element.attribute_number("luminanceUnit", exposure.luminance_unit, setting);
+    if (const double stops = stops_of(exposure); std::abs(stops) > 100.0)
+        element.fail_attribute(said, fmt::format("<camera> {}: the exposure comes to {:.3g} stops, beyond 100; check "
+                                                 "shutter, fNumber, iso and luminanceUnit",
+                                                 said, stops));
+    return exposure;
+}
+
 } // namespace
+
+// What the picture is taken by.
+Camera SceneReader::sensor() const {
+    XmlElement found(document_, {});
+    for (const char* name : {"camera", "irradiance", "fluence"}) {
+        const XmlElement element = one(name);
+        if (!element.exists())
+            continue;
+        if (found.exists())
+            element.fail(fmt::format("a <{}> beside the <{}> at {}; a picture is taken by one of them: remove the "
+                                     "other",
+                                     name, found.name(), found.place()));
+        found = element;
+    }
+    if (found.exists() && found.name() == "irradiance")
+        return irradiance(found);
+    if (found.exists() && found.name() == "fluence")
+        return fluence(found);
+    return camera();
+}
 
 Camera SceneReader::camera() const {
     const XmlElement element = one("camera");
-    element.allow({"x", "y", "z", "pitch", "yaw", "roll", "fov", "lookAt", "up", "distance", "azimuth", "elevation",
-                   "projection", "viewHeight", "lensRadius", "focus", "blades", "bladeRotation"});
+    element.allow({"x",          "y",          "z",          "pitch",        "yaw",     "roll",
+                   "fov",        "lookAt",     "up",         "distance",     "azimuth", "elevation",
+                   "projection", "viewHeight", "lensRadius", "focus",        "blades",  "bladeRotation",
+                   "iso",        "shutter",    "fNumber",    "luminanceUnit"});
     const auto number = [&](const char* name, const Limits& limits) {
         return element.attribute_number(name, 0.0, limits);
     };
@@ -162,9 +206,8 @@ Camera SceneReader::camera() const {
     check_combination(element);
     if (element.has("lookAt"))
         look_at(element, camera);
-    const std::optional<glm::dvec3> target =
-        element.has("lookAt") ? std::optional(point(element, "lookAt", coordinate)) : std::nullopt;
-    camera.lens = lens_of(element, camera, target);
+    camera.lens = lens_of(element, camera);
+    camera.exposure = exposure_of(element);
     return camera;
 }
 

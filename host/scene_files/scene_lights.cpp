@@ -14,7 +14,7 @@ namespace {
 
 const std::vector<std::string> kinds = {"directional", "sun",       "point", "spot",    "sphere",
                                         "disk",        "rectangle", "sky",   "daylight"};
-const std::vector<std::string> light_colors = {"r", "g", "b", "kelvin", "multiplier"};
+const std::vector<std::string> light_colors = {"r", "g", "b", "kelvin", "multiplier", "group"};
 constexpr Limits part{0.0, 1.0, true, true, "a number from 0 to 1"};
 constexpr Limits flame{500.0, 40000.0, true, true, "a temperature from 500 to 40000 kelvin"};
 
@@ -155,7 +155,7 @@ Light SceneReader::light(const XmlElement& element) const {
 
 // A sky, and the sun in it.
 void SceneReader::read_daylight(const XmlElement& element, Scene& scene) const {
-    element.allow({"x", "y", "z", "turbidity", "ground", "multiplier"});
+    element.allow({"x", "y", "z", "turbidity", "ground", "multiplier", "group"});
     Daylight daylight;
     daylight.sun = direction(element);
     if (daylight.sun.y <= 0.0)
@@ -176,6 +176,7 @@ void SceneReader::read_daylight(const XmlElement& element, Scene& scene) const {
     SunLight sun;
     sun.direction = daylight.sun;
     sun.irradiance = sky.scale * sun_irradiance(daylight);
+    sky.group = sun.group = group_name(element);
     scene.lights.push_back(sky);
     scene.lights.push_back(sun);
 }
@@ -197,7 +198,8 @@ void SceneReader::read_lights(Scene& scene) const {
             read_daylight(element, scene);
             continue;
         }
-        const Light read = light(element);
+        Light read = light(element);
+        std::visit([&](auto& kind) { kind.group = group_name(element); }, read);
         const auto color_of = [](const auto& kind) {
             if constexpr (requires { kind.irradiance; })
                 return kind.irradiance;

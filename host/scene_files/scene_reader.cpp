@@ -1,12 +1,14 @@
 #include "scene_reader.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>
 
 #include "error.h"
 #include "nearest_name.h"
+#include "one_line.h"
 
 namespace vkvol {
 
@@ -15,10 +17,10 @@ namespace {
 const std::vector<std::string> vocabulary = {
     "densityField", "sphere", "box", "everywhere", "layers", "models", "volumes", "surfaces", "noise", "sigma_a",
     "sigma_s", "heyneygreenstein_g", "phase", "medium", "emission", "albedo", "densityMap", "transferFunction", "light",
-    "lights", "backgroundColor", "camera", "width", "height", "rayPerPixelCount", "maxDepth", "integrator", "march",
-    "filter", "russianRoulette", "majorant", "pixelFilter", "lightRayDensityMultiplier", "shadowRayDensityMultiplier",
-    "stepSize", "importanceSampling", "fileName", "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds",
-    "expected",
+    "lights", "backgroundColor", "camera", "irradiance", "fluence", "width", "height", "film", "rayPerPixelCount",
+    "maxDepth", "integrator", "march", "filter", "russianRoulette", "majorant", "pixelFilter",
+    "lightRayDensityMultiplier", "shadowRayDensityMultiplier", "stepSize", "importanceSampling", "fileName",
+    "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds", "expected",
     // Names that are read for old files' sake: a misspelling in the original's report, and the old name of integrator.
     "heynegreenstein_g", "intersectionHandler"};
 
@@ -28,11 +30,14 @@ Scene SceneReader::read() {
     XmlElement(document_, document_.root()).allow({"xmlns:xsi", "xsi:noNamespaceSchemaLocation"}, false, vocabulary);
     Scene scene;
     scene.settings = settings();
-    scene.camera = camera();
-    scene.picture = picture();
+    scene.camera = sensor();
+    scene.has_camera = one("camera").exists() || reads_flux(scene.camera);
+    scene.picture = picture(scene.camera);
     const XmlElement background = one("backgroundColor");
-    background.allow(color_attributes);
+    background.allow({"r", "g", "b", "multiplier", "group"});
     scene.background = color(background);
+    scene.background_group = group_name(background);
+    read_film(scene);
     read_light(scene);
     read_lights(scene);
     read_volumes(scene);
@@ -153,8 +158,12 @@ void SceneReader::read_edge(const char* name, int& size, double& start, double& 
             fmt::format("startOffset without a reference; the reference frame is taken to be {} pixels", size));
 }
 
-Picture SceneReader::picture() const {
+Picture SceneReader::picture(const Camera& camera) const {
+    if (camera.projection == Projection::fluence)
+        return picture_of_points(camera);
     Picture picture;
+    if (camera.projection == Projection::irradiance) // one reading, unless more are asked for
+        picture.width = picture.height = 1;
     read_edge("width", picture.width, picture.start_x, picture.reference_width);
     read_edge("height", picture.height, picture.start_y, picture.reference_height);
     return picture;
@@ -173,9 +182,38 @@ Rgb SceneReader::color(const XmlElement& element) const {
     return color;
 }
 
+// What the picture has besides radiance.
+void SceneReader::read_film(Scene& scene) const {
+    const XmlElement element = one("film");
+    element.allow({"aov", "alpha"});
+    std::string wrong;
+    const std::optional<unsigned> layers = parse_layers(element.attribute("aov"), wrong);
+    if (!layers)
+        element.fail_attribute("aov",
+                               fmt::format("<film> aov: unknown layer '{}'{}", wrong, name_hint(wrong, layer_names())));
+    scene.layers = *layers;
+    scene.holds_out = element.attribute_boolean("alpha", false);
+    if (scene.holds_out)
+        scene.layers |= layer_alpha;
+    if (const std::string trouble = trouble_with_layers(scene); !trouble.empty())
+        element.fail("<film> " + trouble);
+}
+
+// Of a light, for layers: as names of channels may be, in which a dot parts a layer from its channel.
+std::string SceneReader::group_name(const XmlElement& element) const {
+    const std::string name = element.attribute("group");
+    const bool good =
+        std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
+    if (!good || name.size() > 64 || name == "none")
+        element.fail_attribute("group", fmt::format("<{}> group: '{}' is no name of a layer; expected letters, digits, "
+                                                    "_ and -, 64 at most, and not none",
+                                                    element.name(), one_line(name.substr(0, 80))));
+    return name;
+}
+
 void SceneReader::read_light(Scene& scene) const {
     const XmlElement element = one("light");
-    element.allow({"x", "y", "z", "r", "g", "b", "multiplier"});
+    element.allow({"x", "y", "z", "r", "g", "b", "multiplier", "group"});
     const auto number = [&](const char* name) { return element.attribute_number(name, 0.0, any_number); };
     const glm::dvec3 direction(number("x"), number("y"), number("z"));
     const Rgb irradiance = color(element);
@@ -185,7 +223,7 @@ void SceneReader::read_light(Scene& scene) const {
     if (largest == 0.0)
         element.fail(
             "<light> has no direction; x, y, z point from the scene towards the light, e.g. x=\"0\" y=\"1\" z=\"0\"");
-    scene.lights.push_back(DirectionalLight{glm::normalize(direction / largest), irradiance});
+    scene.lights.push_back(DirectionalLight{glm::normalize(direction / largest), irradiance, group_name(element)});
 }
 
 // What asks for something that this renderer does not do, each with what is done in its place.

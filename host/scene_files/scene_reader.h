@@ -43,10 +43,16 @@ private:
     void check_method(const Scene& scene) const;
     void warn_about_light(const Scene& scene, const Method& method) const;
     void warn_about_steps(const Scene& scene, const Method& method) const;
+    Camera sensor() const;
     Camera camera() const;
-    Picture picture() const;
+    Camera irradiance(const XmlElement& element) const;
+    Camera fluence(const XmlElement& element) const;
+    Picture picture(const Camera& camera) const;
+    Picture picture_of_points(const Camera& camera) const;
     void read_edge(const char* name, int& size, double& start, double& reference) const;
     Rgb color(const XmlElement& element) const;
+    void read_film(Scene& scene) const;
+    std::string group_name(const XmlElement& element) const;
     void read_light(Scene& scene) const;
     void read_lights(Scene& scene) const;
     void read_daylight(const XmlElement& element, Scene& scene) const;

@@ -192,6 +192,7 @@ void SceneReader::read_volumes(Scene& scene) {
             XmlElement(document_, node)
                 .fail("<volume> has no shape; add a densityField, sphere, box or models to it, or say like=\"NAME\" of "
                       "a volume that has one");
+        medium->name = XmlElement(document_, node).attribute("name");
         medium->transform = transform();
         scene.volumes.push_back(*medium);
     }

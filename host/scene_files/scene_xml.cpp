@@ -59,4 +59,12 @@ void resize_picture(Picture& picture, std::optional<int> width, std::optional<in
     picture.reference_height *= scale_y;
 }
 
+void resize_picture(Scene& scene, std::optional<int> width, std::optional<int> height) {
+    if ((width || height) && scene.camera.projection == Projection::fluence)
+        throw InputError(
+            "--width and --height make another picture of the same view, and <fluence> has a pixel for each "
+            "of its points; leave them out");
+    resize_picture(scene.picture, width, height);
+}
+
 } // namespace vkvol

@@ -30,4 +30,7 @@ Scene parse_scene(const std::string& xml, const std::filesystem::path& file, con
 // The same view in `width` x `height` pixels; with only one given the aspect is kept. Start and reference scale along.
 void resize_picture(Picture& picture, std::optional<int> width, std::optional<int> height);
 
+// As the command line asks for it: InputError where pixels are not for a view.
+void resize_picture(Scene& scene, std::optional<int> width, std::optional<int> height);
+
 } // namespace vkvol

@@ -285,18 +285,32 @@ double XmlElement::attribute_number(const char* attribute_name, double fallback,
     return value;
 }
 
-std::vector<double> XmlElement::attribute_numbers(const char* attribute_name, const Limits& limits) const {
+namespace {
+
+// Numbers between spaces. `fail`: with what is wrong.
+template <class Fail> std::vector<double> numbers_of(const std::string& text, const Limits& limits, const Fail& fail) {
     std::vector<double> numbers;
-    if (!has(attribute_name))
-        return numbers;
-    std::istringstream words(attribute(attribute_name));
+    std::istringstream words(text);
     for (std::string word; words >> word;) {
         double value = 0.0;
         if (const std::string wrong = read_number(word, limits, value); !wrong.empty())
-            fail_attribute(attribute_name, fmt::format("<{}> {}: {}", name(), attribute_name, wrong));
+            fail(wrong);
         numbers.push_back(value);
     }
     return numbers;
+}
+
+} // namespace
+
+std::vector<double> XmlElement::attribute_numbers(const char* attribute_name, const Limits& limits) const {
+    return numbers_of(attribute(attribute_name), limits, [&](const std::string& wrong) {
+        fail_attribute(attribute_name, fmt::format("<{}> {}: {}", name(), attribute_name, wrong));
+    });
+}
+
+std::vector<double> XmlElement::text_numbers(const Limits& limits) const {
+    return numbers_of(text(), limits,
+                      [&](const std::string& wrong) { fail_text(fmt::format("<{}>: {}", name(), wrong)); });
 }
 
 bool XmlElement::attribute_boolean(const char* attribute_name, bool fallback) const {

@@ -99,6 +99,7 @@ public:
     std::string text() const;
     double number(double fallback, const Limits& limits) const;
     long long integer(long long fallback, long long low, long long high) const;
+    std::vector<double> text_numbers(const Limits& limits) const; // between spaces
     // As the original renderer read them: true starts with one of 1 t T y Y, false with one of 0 f F n N.
     bool boolean(bool fallback) const;
 

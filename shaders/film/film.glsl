@@ -17,6 +17,18 @@ void add_compensated(inout vec3 high, inout vec3 low, vec3 x) {
     low = left;
 }
 
+// To the sums of samples and of their squares.
+void add_sample(inout vec3 sum, inout vec3 sum_low, inout vec3 square, inout vec3 square_low, vec3 x) {
+    add_compensated(sum, sum_low, x);
+    // x^2 = head^2 + 2 head tail + tail^2, each of them exact with 12 significant bits in the head: so that a variance
+    // far below the mean is not lost in the rounding of squares.
+    vec3 head = uintBitsToFloat(floatBitsToUint(x) & 0xfffff000u);
+    vec3 tail = x - head;
+    add_compensated(square, square_low, head * head);
+    add_compensated(square, square_low, 2.0 * head * tail);
+    square_low += tail * tail;
+}
+
 // Radiance beyond this is as good as infinite: 2^32 squares of it are still a float.
 const float MOST_RADIANCE = 281474976710656.0; // 2^48
 
@@ -31,14 +43,7 @@ void film_add(inout FilmPixel pixel, vec3 radiance, uint place, uint sample_inde
         tally.non_finite += 1u;
         return;
     }
-    add_compensated(pixel.sum, pixel.sum_low, radiance);
-    // x^2 = head^2 + 2 head tail + tail^2, each of them exact with 12 significant bits in the head: so that a variance
-    // far below the mean is not lost in the rounding of squares.
-    vec3 head = uintBitsToFloat(floatBitsToUint(radiance) & 0xfffff000u);
-    vec3 tail = radiance - head;
-    add_compensated(pixel.square, pixel.square_low, head * head);
-    add_compensated(pixel.square, pixel.square_low, 2.0 * head * tail);
-    pixel.square_low += tail * tail;
+    add_sample(pixel.sum, pixel.sum_low, pixel.square, pixel.square_low, radiance);
     pixel.count += 1u;
 }
 

@@ -72,6 +72,7 @@ const bool HAS_SURFACES = true;
 #else
 const bool HAS_SURFACES = false;
 #endif
+layout(constant_id = SPEC_LAYERS) const int LAYERS = 0;
 
 // What a medium is: a constant, unless it is one of several that differ.
 #ifdef SEVERAL
@@ -94,6 +95,10 @@ const bool SEES_SKY = (LIGHTS & LIGHTS_SKY) != 0;
 const bool EQUAL_AREA = (LIGHTS & LIGHTS_EQUAL_AREA) != 0;
 const bool SEES_LAMPS = (LIGHTS & LIGHTS_LAMPS) != 0;
 const bool HAS_TREE = (LIGHTS & LIGHTS_TREE) != 0;
+const bool HAS_LAYERS = LAYERS != 0;
+const bool READS_FLUX = SENSOR >= SENSOR_IRRADIANCE; // and no radiance: see flux.glsl
+// (In bits, for the sake of glslang 12: see LOOKS.)
+const bool LOOKS_FROM_SENSOR = (int(READS_FLUX) & int(NEE != NEE_NONE) & int(LIGHTS != LIGHTS_SUN)) != 0;
 const bool LOOKS_ALONG = DISTANCE == DISTANCE_MIXED;
 const int FLIGHT_TRAITS = FREE_FLIGHT_TRAITS(FREE_FLIGHT);
 const int SHADOW_TRAITS = TRANSMITTANCE_TRAITS(TRANSMITTANCE);
@@ -143,6 +148,8 @@ layout(scalar, binding = BINDING_OVERLAPS) readonly buffer OverlapBlock { uint o
 layout(binding = BINDING_OVERLAP_TEXELS) uniform utextureBuffer overlap_texels;
 layout(binding = BINDING_MEMBER_TEXELS) uniform utextureBuffer member_texels;
 #endif
+layout(scalar, binding = BINDING_POINTS) readonly buffer PointBlock { vec3 sensor_points[]; };
+layout(scalar, binding = BINDING_LAYERS) buffer LayerBlock { vec3 layers[]; };
 layout(scalar, binding = BINDING_TRACE) buffer TraceBlock {
     uint trace_count;
     TraceRecord trace_records[];

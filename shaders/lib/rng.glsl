@@ -20,6 +20,7 @@
 //                          a draw for each four levels, a word each; of a map of the sky x, y: row; z, w: column
 //   look along a flight    x: how far on a light counts that is chosen down a tree; y: the distance; tap: its density. Then
 //                          the light's own draw, as of a choice. The flight takes a draw of its own after that
+//   light before a sensor  of flux: a choice of a light, behind the camera's draw; then as after a lamp before the camera
 //   lamp before the camera w of the camera's draw: which of those that the ray meets. After its shadow ray the first
 //                          flight takes a draw of its own, e_z as from the camera's
 //   scattering             e_x: next free flight; y, z: phase function; w: roulette; select

@@ -1,7 +1,8 @@
 // Lamps: lights of a shape and place. What passes through them is not stopped, and flights do not meet them: all their light is
 // found by looks, and the camera sees them by looks too.
 //
-// A look's direction is drawn from the lamp's own shape or, with chance c, by the phase function, or as a surface scatters: one sample of a mixture, weighted
+// A look's direction is drawn from the lamp's own shape or, with chance c, by the phase function, or as a surface scatters, or a
+// sensor of flux draws: one sample of a mixture, weighted
 // by the mixture's density. By its shape alone, near a lamp or in a sharp phase function the weight would have no bound.
 #ifndef LAMP_GLSL
 #define LAMP_GLSL
@@ -20,31 +21,46 @@ float lamp_pdf(LightRow light, vec3 from, vec3 direction, float t) {
 
 // c: next to nothing for what is small as seen from here, against the narrowest that the phase function draws; most for what is
 // large, but never all. What 0.85 is worth: tools/results/README.md.
-float scatterer_share(Scatterer scatterer, LightRow light, vec3 from) {
+float other_share(float peak, LightRow light, vec3 from) {
     vec3 apart = light.position - from;
-    float s = scatter_peak(scatterer) * light.area / max(dot(apart, apart), 1.0e-30);
-    return 0.85 * s / (1.0 + s);
+    float s = peak * light.area / max(dot(apart, apart), 1.0e-30);
+    float share = 0.85 * s / (1.0 + s);
+    return MIS == MIS_LIGHT ? 0.0 : MIS == MIS_PHASE ? 1.0 : share;
 }
 
-// `pdf` of what is returned: 0, for no flight meets it. Its light is over the mixture's density already.
-LightSample sample_lamp(Scatterer s, LightRow light, vec3 from, vec3 travel, vec2 u, float select) {
-    float share = MIS == MIS_LIGHT ? 0.0 : MIS == MIS_PHASE ? 1.0 : scatterer_share(s, light, from);
-    bool by_phase = select < share;
-    vec3 direction = by_phase                      ? scatter_direction(s, travel, u)
-                     : light.kind == LIGHT_SPHERE ? sphere_direction(light, from, u)
-                                                  : flat_direction(light, from, u);
-    float t = by_phase                      ? hit_lamp(light, from, direction)
-              : light.kind == LIGHT_SPHERE ? sphere_distance(light, from, direction)
-                                           : flat_distance(light, from, direction);
-    float density = mix(lamp_pdf(light, from, direction, t), scatter_pdf(s, travel, direction), share);
+vec3 shape_direction(LightRow light, vec3 from, vec2 u) {
+    return light.kind == LIGHT_SPHERE ? sphere_direction(light, from, u) : flat_direction(light, from, u);
+}
+// Along a direction that was drawn so.
+float shape_distance(LightRow light, vec3 from, vec3 direction) {
+    return light.kind == LIGHT_SPHERE ? sphere_distance(light, from, direction) : flat_distance(light, from, direction);
+}
+
+// `other`: density of the direction by what is not the shape. `pdf` of what is returned: 0, for no flight meets it. Its light is
+// over the mixture's density already.
+LightSample of_mixture(LightRow light, vec3 from, vec3 direction, float t, float other, float share) {
+    float density = mix(lamp_pdf(light, from, direction, t), other, share);
     bool seen = t < FAR && density > 0.0;
     return LightSample(direction, t, seen ? light.radiance / density : vec3(0.0), 0.0);
 }
 
+LightSample sample_lamp(Scatterer s, LightRow light, vec3 from, vec3 travel, vec2 u, float select) {
+    float share = other_share(scatter_peak(s), light, from);
+    bool by_phase = select < share;
+    vec3 direction;
+    if (by_phase)
+        direction = scatter_direction(s, travel, u);
+    else
+        direction = shape_direction(light, from, u);
+    float t = by_phase ? hit_lamp(light, from, direction) : shape_distance(light, from, direction);
+    return of_mixture(light, from, direction, t, scatter_pdf(s, travel, direction), share);
+}
+
 // What the camera sees along a ray: one of the lamps that it meets, drawn by u in [0, 1) from all of them alike.
-LightSample seen_lamp(vec3 from, vec3 direction, float u) {
+LightSample seen_lamp(vec3 from, vec3 direction, float u, out uint group) {
     LightSample seen = LightSample(direction, FAR, vec3(0.0), 0.0);
     float met = 0.0;
+    group = 0u;
     for (uint i = frame.lamp_first; i < frame.lamp_first + frame.lamp_count; ++i) {
         float t = hit_lamp(lights[i], from, direction);
         if (t < FAR) {
@@ -54,6 +70,7 @@ LightSample seen_lamp(vec3 from, vec3 direction, float u) {
             u = taken ? u * met : (u * met - 1.0) / max(met - 1.0, 1.0);
             seen.distance = taken ? t : seen.distance;
             seen.light = taken ? lights[i].radiance : seen.light;
+            group = taken ? lights[i].group : group;
         }
     }
     seen.light *= met;

@@ -36,12 +36,10 @@ uint choose_light(vec3 from, uvec4 words, inout Rng rng, out float chance) {
     return i;
 }
 
-LightSample sample_light(Scatterer s, LightRow light, vec3 from, vec3 travel, uvec4 words, inout Rng rng) {
-    vec2 u = to_uniform(words).zw;
+// Of one that is no lamp.
+LightSample sample_shapeless(LightRow light, vec3 from, vec2 u, inout Rng rng) {
     LightSample drawn;
-    if (SEES_LAMPS && light.kind >= LIGHT_SPHERE)
-        drawn = sample_lamp(s, light, from, travel, u, to_tap(words).z);
-    else if (SEES_SKY && light.kind == LIGHT_MAP)
+    if (SEES_SKY && light.kind == LIGHT_MAP)
         drawn = sample_sky(u, rng);
     else if (light.kind == LIGHT_DISC)
         drawn = sample_disc(light, u);
@@ -54,37 +52,53 @@ LightSample sample_light(Scatterer s, LightRow light, vec3 from, vec3 travel, uv
     return drawn;
 }
 
+LightSample sample_light(Scatterer s, LightRow light, vec3 from, vec3 travel, uvec4 words, inout Rng rng) {
+    vec2 u = to_uniform(words).zw;
+    LightSample drawn;
+    if (SEES_LAMPS && light.kind >= LIGHT_SPHERE)
+        drawn = sample_lamp(s, light, from, travel, u, to_tap(words).z);
+    else
+        drawn = sample_shapeless(light, from, u, rng);
+    return drawn;
+}
+
+// Over the density with which its direction was drawn, where its light was chosen with `chance`.
+LightSample over_density(LightSample drawn, float chance) {
+    drawn.pdf *= chance;
+    drawn.light /= drawn.pdf > 0.0 ? drawn.pdf : chance;
+    return drawn;
+}
+
 // Light that reaches `from`, over the density with which its direction was drawn: to be multiplied by scatter_value, and by
 // weight_of_look with scatter_pdf. `travel`: how the path came there.
 LightSample look_for_light(Scatterer s, vec3 from, vec3 travel, inout Rng rng, out LightRow light) {
     uvec4 words = next_words(rng);
     float chance;
     light = lights[choose_light(from, words, rng, chance)];
-    LightSample drawn = sample_light(s, light, from, travel, words, rng);
-    drawn.pdf *= chance;
-    drawn.light /= drawn.pdf > 0.0 ? drawn.pdf : chance;
-    return drawn;
+    return over_density(sample_light(s, light, from, travel, words, rng), chance);
 }
 
-// Radiance that a flight meets when it leaves along `direction`, which the phase function drew with density `phase_pdf`;
-// 0 of a camera ray, which sees all there is.
+// Radiance that a flight meets of one light when it leaves along `direction`, which the phase function drew with density
+// `phase_pdf`; 0 of a camera ray, which sees all there is.
+vec3 light_from_one(LightRow light, vec3 direction, float phase_pdf) {
+    vec3 shown = vec3(0.0);
+    float pdf = light.chance;
+    if (light.kind == LIGHT_MAP) {
+        vec2 place = sky_place(direction);
+        shown = sky_radiance(place);
+        pdf *= sky_pdf(place, direction);
+    } else {
+        float place = disc_place(light, direction);
+        shown = place < light.extent ? disc_radiance(light, place) : vec3(0.0);
+        pdf *= disc_pdf(light);
+    }
+    return shown * (phase_pdf > 0.0 ? weight_of_flight(phase_pdf, pdf) : 1.0);
+}
+
 vec3 light_from_beyond(vec3 direction, float phase_pdf) {
     vec3 radiance = vec3(0.0);
-    for (uint i = 0u; i < frame.sky_count; ++i) {
-        LightRow light = lights[i];
-        vec3 shown = vec3(0.0);
-        float pdf = light.chance;
-        if (light.kind == LIGHT_MAP) {
-            vec2 place = sky_place(direction);
-            shown = sky_radiance(place);
-            pdf *= sky_pdf(place, direction);
-        } else {
-            float place = disc_place(light, direction);
-            shown = place < light.extent ? disc_radiance(light, place) : vec3(0.0);
-            pdf *= disc_pdf(light);
-        }
-        radiance += shown * (phase_pdf > 0.0 ? weight_of_flight(phase_pdf, pdf) : 1.0);
-    }
+    for (uint i = 0u; i < frame.sky_count; ++i)
+        radiance += light_from_one(lights[i], direction, phase_pdf);
     return radiance;
 }
 

@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/pass.glsl"
 
-#include "film/film.glsl"
+#include "film/aovs.glsl"
 #include "sensors/camera.glsl"
 
 // Those of the pixel at a place that follow on what has been added.
@@ -18,7 +18,11 @@ void add_samples(uint place, uint index, SamplePlace at) {
     for (bool is_there = true; is_there;) {
         vec3 radiance = uintBitsToFloat(waiting_samples[first + at.added]);
         waiting_samples[first + at.added].x = NO_SAMPLE;
+        uint before = sums.count;
         film_add(sums, radiance, where, push.sample_begin + at.added, tally);
+        if (HAS_LAYERS)
+            if (sums.count != before)
+                add_layers(first + at.added, pixel);
         at.added += 1u;
         is_there = at.added < samples && waiting_samples[first + min(at.added, samples - 1u)].x != NO_SAMPLE;
     }

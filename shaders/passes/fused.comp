@@ -39,6 +39,7 @@ void main() {
     // What was laid aside is taken up here, once, and not in the loop: there every iteration would pay for it.
     if (pop_item(QUEUE_RESUME, slot)) {
         take_up(slot, lane, rng, true);
+        lane.record = slot;
         sums = film[lane.path.pixel];
     }
     for (uint i = 0u; i < push.budget; i += BURST) {
@@ -47,6 +48,7 @@ void main() {
                 break;
             lane.path.place = paths[slot].place;
             lane.path.sample_index = push.sample_begin;
+            lane.record = slot;
             sums = film[paths[slot].pixel];
             lane.todo = TODO_BEGIN;
         }

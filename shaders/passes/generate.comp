@@ -7,6 +7,7 @@
 
 #include "lib/queue.glsl"
 #include "stages/generate.glsl"
+#include "stages/send.glsl"
 
 // The slot's next sample: one it had been given before, or the next of the work list. False if none is left.
 bool has_sample(uint slot) {
@@ -36,6 +37,8 @@ void main() {
     Rng rng;
     lane.path.place = place_of(work[index]);
     lane.path.sample_index = paths[slot].sample_index;
+    lane.path.pixel = index;
+    lane.record = waiting_place(lane.path);
     generate(frame.media[0], lane, rng);
     lay_aside(slot, index, rng, lane, false);
     push_item(LOOKS && lane.todo == TODO_LOOK ? QUEUE_SHADOW : QUEUE_TRACK, slot);

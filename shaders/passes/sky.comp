@@ -16,7 +16,8 @@ void main() {
     FilmPixel entry = film[pixel];
     Tally tally = NOTHING_SEEN;
     uint place = place_of(pixel);
-    bool hit = frame.surface_nodes + frame.planes > 0u;
+    // Though rays miss the medium, they may meet surfaces, and looks may go through it; and layers are for paths to fill.
+    bool hit = READS_FLUX || HAS_LAYERS || frame.surface_nodes + frame.planes > 0u;
     for (uint i = push.sample_begin; i < push.sample_end && !hit; ++i) {
         CameraRay ray = camera_ray(place, i);
         hit = may_meet_medium(frame.media[0], to_medium(frame.media[0], ray.origin, ray.direction));
@@ -24,7 +25,8 @@ void main() {
         vec3 radiance = vec3(0.0);
         if (SEES_LAMPS) {
             Rng rng = pixel_rng(place, i, 0u);
-            radiance = seen_lamp(ray.origin, ray.direction, to_uniform(next_words(rng)).w).light;
+            uint group;
+            radiance = seen_lamp(ray.origin, ray.direction, to_uniform(next_words(rng)).w, group).light;
         }
         radiance += frame.lights[LIGHT_BACKGROUND].radiance;
         if (SEES_SKY)

@@ -1,4 +1,5 @@
-// Cameras: where the ray of a sample begins and goes. Each samples what it sees evenly, so that no ray has a weight.
+// Sensors: where the ray of a sample begins and goes. Cameras sample what they see evenly, so that no ray has a weight; what reads
+// flux draws directions as it weighs them, so that all have the same: see measured().
 #ifndef CAMERA_GLSL
 #define CAMERA_GLSL
 #include "lib/directions.glsl"
@@ -57,14 +58,16 @@ vec2 aperture_point(SensorParams s, vec2 u) {
     return p;
 }
 
-const uint LENS_DRAW = 0xffffffffu; // a number of its own, ahead of a path's first
+const uint LENS_DRAW = 0xffffffffu; // a number of its own, ahead of a path's first; or, of flux, whence the ray comes
 
 // The ray through the picture at (x, y) = p:
 // pinhole: along corner + x * right + y * down. It begins at position + start * (x * right + y * down): at the eye, with start
 // 0; or, for eyes far from the medium, on a plane between the two;
 // lens: through a point of the lens and the one of the plane that is sharp which the pinhole would see;
 // orthographic: from position + x * right + y * down along corner;
-// equirectangular: at angles that go evenly with p, from corner (ahead) to `right`, and away from `down`.
+// equirectangular: at angles that go evenly with p, from corner (ahead) to `right`, and away from `down`;
+// irradiance: from position + x * right + y * down, by the cosine to corner, which is the normal;
+// fluence: from the pixel's point, in any direction alike.
 CameraRay camera_ray(uint place, uint sample_index) {
     Rng rng = pixel_rng(place, sample_index, 0u);
     vec2 p = picture_point(place, to_uniform(next_words(rng)).xy);
@@ -87,7 +90,26 @@ CameraRay camera_ray(uint place, uint sample_index) {
         ray.direction = normalize(cos(angle.y) * (cos(angle.x) * camera.corner + sin(angle.x) * camera.right) -
                                   sin(angle.y) * camera.down);
     }
+    if (READS_FLUX) {
+        Rng from_rng = pixel_rng(place, sample_index, LENS_DRAW);
+        vec2 u = to_uniform(next_words(from_rng)).xy;
+        if (SENSOR == SENSOR_IRRADIANCE) // the sine's square is even, and 1 - cos without cancellation
+            ray = CameraRay(camera.position + aside, turned(camera.corner, u.x / (1.0 + sqrt(1.0 - u.x)), u.y));
+        if (SENSOR == SENSOR_FLUENCE)
+            ray = CameraRay(sensor_points[(place >> 16u) * camera.row + (place & 0xffffu)],
+                            turned(vec3(0.0, 1.0, 0.0), 2.0 * u.x, u.y));
+    }
     return ray;
+}
+
+// What the sensor reads of a ray's radiance: its integral over directions, weighted as they are drawn. Of cosines that is pi
+// times the mean, of all alike 4 pi times.
+vec3 measured(vec3 radiance) {
+    if (SENSOR == SENSOR_IRRADIANCE)
+        radiance *= PI;
+    if (SENSOR == SENSOR_FLUENCE)
+        radiance *= 4.0 * PI;
+    return radiance;
 }
 
 #endif

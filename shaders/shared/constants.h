@@ -33,8 +33,11 @@
 #define BINDING_SURFACES 27   // SurfaceRow
 #define BINDING_PRIMITIVES 28 // SurfacePrimitive
 #define BINDING_MAPS 29       // MapKnot, a table for each medium that has a map; see value_map.glsl
-#define BINDING_TEST_INPUT 30 // test kernels only
-#define BINDING_TEST_OUTPUT 31
+#define BINDING_POINTS 30     // vec3 per point of a sensor that reads flux at points, render space
+#define BINDING_LAYERS 31     // vec3 per layer of each path, then four of each pixel: see aovs.glsl
+// Test kernels only. They use none of the two, and drivers may allow no more buffers than there are.
+#define BINDING_TEST_INPUT BINDING_POINTS
+#define BINDING_TEST_OUTPUT BINDING_LAYERS
 #define BINDING_BUFFERS 32
 // The same buffers as texels: software drivers gather these, and read storage buffers lane by lane.
 #define BINDING_GRID_TEXELS 32
@@ -88,7 +91,8 @@
 #define SPEC_MAP 29          // MAP_...
 #define SPEC_MAP_HALVINGS 30 // log2 of the knots in a map's table
 #define SPEC_UNBOUNDED 31    // 1: some medium is everywhere
-#define SPEC_COUNT 32
+#define SPEC_LAYERS 32       // LAYERS_..., a sum
+#define SPEC_COUNT 33
 
 // Of several media that differ in it: each one's own, which is in its row.
 #define EACH -1
@@ -115,6 +119,8 @@
 #define SENSOR_LENS 1
 #define SENSOR_ORTHOGRAPHIC 2
 #define SENSOR_EQUIRECTANGULAR 3
+#define SENSOR_IRRADIANCE 4 // this and what follows read flux: see flux.glsl
+#define SENSOR_FLUENCE 5
 
 // Where samples lie: evenly in their pixel; evenly in a box about its middle; or as the quantiles of a filter have it, between
 // 0 and its radius.
@@ -122,6 +128,22 @@
 #define PIXEL_BOX 1
 #define PIXEL_QUANTILES 2
 #define FILTER_QUANTILES 64
+
+// Images of more than radiance; see aovs.glsl.
+#define LAYERS_KINDS 1     // of light: LIGHT_OF_...
+#define LAYERS_GROUPS 2    // by the group of the light that it comes from
+#define LAYERS_MEDIA 4     // by the medium that sends it toward the sensor
+#define LAYERS_COLLISION 8 // depth and coverage of the first, and its position
+#define LAYERS_ALBEDO 16   // there
+#define LAYERS_THROUGH 32  // transmittance of the sensor's rays, and its mean over colours
+#define LAYERS_HOLDOUT 64  // light that was not scattered, and no medium's, stays out of the picture
+
+// Layers by how often light was scattered on its way; of these LIGHT_KINDS.
+#define LIGHT_OF_SOURCES 0 // never: seen straight
+#define LIGHT_OF_MEDIA 1   // never, and sent out by a medium
+#define LIGHT_ONCE 2
+#define LIGHT_OFTEN 3
+#define LIGHT_KINDS 4
 
 #define ALBEDO_CONSTANT 0
 #define ALBEDO_GRID 1

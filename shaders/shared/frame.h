@@ -21,6 +21,19 @@ struct SensorParams {
     float blade_rotation; // radians
     vec2 first_angle;    // longitude, latitude
     vec2 angle_step;     // per pixel
+    uint row;            // points in a row of the picture
+    vec3 forward;        // unit
+};
+
+// Where the layers of a path, or a pixel, begin: see aovs.glsl. Those of light are the first.
+struct AovParams {
+    uint count;   // of all
+    uint records; // paths that have some, ahead of the pixels
+    uint groups;  // of group 0 first, which is that of lights without one
+    uint media;
+    uint collision; // two: (w d, w, w d + w) of the distance d and the weight w; w times the position
+    uint albedo;    // times w
+    uint through;   // two: transmittance, and its mean over the channels
 };
 
 // A grid within the buffers that hold all grids. Positions are in its index space, voxel centres at integers, counted
@@ -180,6 +193,7 @@ struct MediumParams {
     uint bvh_nodes; // of a mesh
     uint first_knot; // of the map
     MediumKinds kinds;
+    uint layer; // among those of media
 };
 
 // Nodes over the medium's box, z fastest. Lattices of these dimensions lie one after the other: of the density, and of
@@ -211,6 +225,7 @@ struct LightRow {
     float extent;   // of a disc: 1 - cos of the angle from its middle to its rim; of a sphere its radius
     float darkening; // of a disc toward its rim, in [0, 1]
     float area;     // of a lamp, as seen from in front
+    uint group;     // of layers
     float full_within; // of a spot, 1 - cos of angles to its axis: full intensity within,
     float none_beyond; // none beyond
 };
@@ -254,6 +269,7 @@ struct SkyParams {
 struct LightParams {
     vec3 direction; // unit, towards the light; none of the background
     vec3 radiance;  // of the background, from everywhere; of the sun its irradiance across `direction`
+    uint group;     // of layers
 };
 
 struct FrameParams {
@@ -276,6 +292,7 @@ struct FrameParams {
     float filter_quantiles[FILTER_QUANTILES + 1]; // of a pixel's filter: distance from the middle, pixels
     float roulette_threshold;
     uint max_depth;
+    AovParams layers;
     uint seed;
     uint crop_x; // the crop's first pixel within the picture
     uint crop_y;

@@ -54,6 +54,8 @@
                                                   throughput that it lights */                                        \
     SPECTRUM_ROW(cached, has_cache)            /* transmittance that the shadow ray corrects */                       \
     ROW(float, chance, looking && has_cache)   /* with which it was sent */                                           \
+    ROW(uint, label, looking && has_layers)    /* of what it brings: see aovs.glsl */                                 \
+    ROW(uint, first_label, has_layers)         /* part of it that is the same for all that comes later */             \
     ROW(PartSearch, search, under_way && SHAPE == SHAPE_MESH)                                                         \
     ROW(SurfaceSearch, seek, seeking)                                                                                 \
     ROW(float, reach, under_way && HAS_SURFACES) /* of the flight, to the surface that ends it, or FAR [world units] */ \

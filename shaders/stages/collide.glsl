@@ -9,11 +9,12 @@
 #include "lib/trace.glsl"
 
 // Likewise from one of many lights, which is drawn here.
-void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spectrum lit, uint next, inout Lane lane,
-                       inout Rng rng) {
+void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spectrum lit, uint label, uint next,
+                       inout Lane lane, inout Rng rng) {
     LightRow row;
     LightSample drawn = look_for_light(s, position, lane.path.direction, rng, row);
     float pdf = scatter_pdf(s, lane.path.direction, drawn.direction);
+    label |= group_label(row.group);
     vec3 light = drawn.light * scatter_value(s, lane.path.direction, drawn.direction) *
                  (drawn.pdf > 0.0 ? weight_of_look(drawn.pdf, pdf) : 1.0);
     if (LOOKS_ALONG)
@@ -29,26 +30,31 @@ void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spec
         lane.to_light = drawn.direction;
         lane.light_distance = drawn.distance;
         lane.light = light;
+        lane.label = label;
         lane.todo = largest(light) > 0.0 && largest(lit) > 0.0 ? TODO_LOOK : next;
         if (NEE == NEE_CACHED) {
             float looking;
             lane.cached = cached_transmittance_to(v, position, drawn.direction, drawn.distance, looking);
-            lane.path.radiance += lit * lane.cached * light;
+            add_light(lane, lit * lane.cached * light, label);
             lane.chance = looking_chance(largest(lit * light) / (INV_4PI * frame.fluence), lane.cached, looking);
             lane.todo = to_uniform(next_words(rng)).x < lane.chance ? lane.todo : next;
         }
     } else {
-        lane.path.radiance += lit * analytic_shadow(v, position, drawn.direction, drawn.distance) * light;
+        add_light(lane, lit * analytic_shadow(v, position, drawn.direction, drawn.distance) * light, label);
         lane.todo = next;
     }
 }
 
 // Light at a point, t along a flight, that an interaction of throughput `lit` with `met` scatters into the path. Known at once in a homogeneous
-// sphere or box, else the lane goes to look, or, by chance, makes do with the cache; and then does as `next` says.
-void gather_light(MediumParams v, MediumParams met, vec3 position, float t, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
+// sphere or box, else the lane goes to look, or, by chance, makes do with the cache; and then does as `next` says. `label`: of that
+// light, without its group.
+void gather_light(MediumParams v, MediumParams met, vec3 position, float t, Spectrum lit, uint label, uint next, inout Lane lane,
+                  inout Rng rng) {
+    uint sun_label = label | group_label(frame.lights[LIGHT_SUN].group);
     if (LIGHTS != LIGHTS_SUN) {
-        gather_some_light(v, matter_of(met), position, t, lit, next, lane, rng);
+        gather_some_light(v, matter_of(met), position, t, lit, label, next, lane, rng);
     } else if (LOOKS) {
+        lane.label = sun_label;
         lane.position = position;
         lane.lit = lit;
         lane.lit_medium = lane.walk.met;
@@ -57,13 +63,13 @@ void gather_light(MediumParams v, MediumParams met, vec3 position, float t, Spec
         if (NEE == NEE_CACHED) {
             lane.cached = cached_transmittance(v, position);
             Spectrum scattered = lit * phase_eval(met, lane.path.direction, frame.lights[LIGHT_SUN].direction);
-            lane.path.radiance += scattered * lane.cached * frame.lights[LIGHT_SUN].radiance;
+            add_light(lane, scattered * lane.cached * frame.lights[LIGHT_SUN].radiance, sun_label);
             lane.chance = looking_chance(largest(scattered) / INV_4PI, lane.cached, LOOKING);
             lane.todo = to_uniform(next_words(rng)).x < lane.chance ? TODO_LOOK : next;
         }
     } else {
         Spectrum T = analytic_shadow(v, position, frame.lights[LIGHT_SUN].direction, FAR);
-        lane.path.radiance += sun_contribution(met, frame.lights[LIGHT_SUN], lane.path.direction, lit * T);
+        add_light(lane, sun_contribution(met, frame.lights[LIGHT_SUN], lane.path.direction, lit * T), sun_label);
         lane.todo = next;
     }
 }
@@ -72,9 +78,14 @@ void gather_light(MediumParams v, MediumParams met, vec3 position, float t, Spec
 void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, inout Tally tally) {
     lane.path.medium = lane.walk.met;
     MediumParams met = medium_of(v, lane.walk.met);
+    lane.first_label = label_at(lane, met);
     if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_COLLISIONS)
-        lane.path.radiance += lane.beta * emitted_radiance(met, lane.path.position);
+        add_light(lane, lane.beta * emitted_radiance(met, lane.path.position), glow_label(lane.path.depth) | lane.first_label);
     vec3 albedo = albedo_at(met, lane.path.position);
+    if (HAS_LAYERS)
+        if (lane.path.depth == 0u)
+            note_collision(lane.record, vec3(lane.beta), lane.path.position, lane.path.direction, lane.walk.start + lane.walk.t,
+                           albedo);
     lane.beta *= to_spectrum(albedo);
     bool capped = SCATTERING != SCATTERING_NONE && lane.path.depth >= frame.max_depth;
     tally.depth_caps += capped ? 1u : 0u;
@@ -83,9 +94,18 @@ void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, i
     lane.todo = ended || SCATTERING == SCATTERING_SINGLE ? TODO_END : TODO_DEPART;
     if (NEE != NEE_NONE && !ended) {
         Spectrum lit = NEE == NEE_TENTATIVE ? deposit * to_spectrum(albedo) : lane.beta;
-        gather_light(v, met, lane.path.position, lane.walk.start + lane.walk.t, lit, lane.todo, lane, rng);
+        gather_light(v, met, lane.path.position, lane.walk.start + lane.walk.t, lit,
+                     kind_label(lane.path.depth) | lane.first_label, lane.todo, lane, rng);
     }
     trace(TRACE_COLLISION, lane, lane.path.position, lane.path.direction);
+}
+
+// The first collision of a flight that goes through: at each step as much as that takes away.
+void note_step(MediumParams v, MediumParams met, Spectrum deposit, float t, Lane lane) {
+    if (FREE_FLIGHT == FREE_FLIGHT_ANALYTIC)
+        t = lane.walk.start + mean_part(v.sigma_t * lane.walk.t_end) * lane.walk.t_end;
+    vec3 position = lane.path.position + t * lane.path.direction;
+    note_collision(lane.record, vec3(deposit), position, lane.path.direction, t, albedo_at(met, position));
 }
 
 // Amid a flight: a null collision, or a step of a march through.
@@ -94,14 +114,18 @@ void touch(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng) {
     vec3 position = lane.path.position + t * lane.path.direction;
     MediumParams met = medium_of(v, lane.walk.met);
     uint next = TODO_FLY;
+    uint label = label_at(lane, met);
     if (goes_through()) {
         if (EMISSION != EMISSION_NONE)
-            lane.path.radiance += deposit * emitted_radiance(met, position);
+            add_light(lane, deposit * emitted_radiance(met, position), glow_label(lane.path.depth) | label);
+        if (HAS_LAYERS)
+            note_step(v, met, deposit, t, lane);
         next = largest(lane.beta) == 0.0 ? TODO_END : TODO_FLY;
     }
     lane.todo = next;
     if (NEE == NEE_TENTATIVE && lane.path.depth < frame.max_depth)
-        gather_light(v, met, position, t, deposit * to_spectrum(albedo_at(met, position)), next, lane, rng);
+        gather_light(v, met, position, t, deposit * to_spectrum(albedo_at(met, position)),
+                     kind_label(lane.path.depth + 1u) | label, next, lane, rng);
 }
 
 #endif

@@ -3,6 +3,7 @@
 #define STAGE_DEPART_GLSL
 #include "lights/light_cache.glsl"
 #include "lib/trace.glsl"
+#include "sensors/flux.glsl"
 #include "stages/look_along.glsl"
 #include "stages/look_straight.glsl"
 #include "surfaces/nearest.glsl"
@@ -35,8 +36,10 @@ void scatter(MediumParams v, vec4 u, inout Lane lane) {
     lane.todo = survives(lane.beta, u.w) ? TODO_FLY : TODO_END;
     if (LIGHTS == LIGHTS_SUN) // in an `if` of its own, as below
         if (LOOKS && NEE == NEE_CACHED && PHASE_HAS_TWICE && lane.path.depth < frame.max_depth)
-            lane.path.radiance -= lane.beta * frame.lights[LIGHT_SUN].radiance *
-                              foreseen_light(v, lane.path.position, lane.cached, before, lane.path.direction);
+            add_light(lane,
+                      -lane.beta * frame.lights[LIGHT_SUN].radiance *
+                          foreseen_light(v, lane.path.position, lane.cached, before, lane.path.direction),
+                      kind_label(lane.path.depth + 1u) | group_label(frame.lights[LIGHT_SUN].group) | lane.first_label);
 }
 
 #ifdef SURFACES
@@ -57,10 +60,12 @@ void scatter_at_surface(vec4 u, inout Lane lane) {
 // What mirrors and glass show of lamps is seen as the camera sees them.
 bool look_at_shown_lamps(inout Lane lane, inout Rng rng) {
     bool is_shown = lane.todo == TODO_FLY && surface_at(lane.path) != NO_SURFACE && lane.phase_pdf == 0.0;
-    LightSample seen = seen_lamp(lane.path.position, lane.path.direction, to_uniform(next_words(rng)).w);
+    uint group;
+    LightSample seen = seen_lamp(lane.path.position, lane.path.direction, to_uniform(next_words(rng)).w, group);
     bool sees = is_shown && seen.distance < FAR;
+    uint label = kind_label(lane.path.depth) | group_label(group) | lane.first_label;
     if (sees)
-        look_straight(seen, lane.beta, TODO_SET_OUT, lane);
+        look_straight(seen, lane.beta, label, TODO_SET_OUT, lane);
     return sees;
 }
 #endif
@@ -102,7 +107,7 @@ void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     uvec4 words = first_words(looks, rng);
     lane.todo = looks ? TODO_SEE : TODO_FLY;
     if (SEES_SKY && at_camera)
-        lane.phase_pdf = 0.0;
+        lane.phase_pdf = READS_FLUX ? flux_pdf(lane.path.direction) : 0.0;
     bool scatters = !looks && !at_camera && !has_looked;
 #ifdef SURFACES
     if (scatters && surface_at(lane.path) != NO_SURFACE)

@@ -4,13 +4,28 @@
 #include "lights/table.glsl"
 #include "lib/trace.glsl"
 
+// Each light in its group's layer, and what of a sensor's ray has come through.
+void note_escape(Spectrum beta, uint label, Lane lane) {
+    note_light(lane.record, label | group_label(frame.lights[LIGHT_BACKGROUND].group),
+               beta * frame.lights[LIGHT_BACKGROUND].radiance);
+    if (SEES_SKY)
+        for (uint i = 0u; i < frame.sky_count; ++i)
+            note_light(lane.record, label | group_label(lights[i].group),
+                       beta * light_from_one(lights[i], lane.path.direction, lane.phase_pdf));
+    if (lane.path.depth == 0u)
+        note_transmittance(lane.record, vec3(beta));
+}
+
 void escape(MediumParams v, inout Lane lane) {
     Spectrum beta = lane.beta;
     if (!NULL_FLIGHT && !goes_through())
         beta *= depth_weight(v, beta, lane.walk.depth, false);
-    lane.path.radiance += beta * frame.lights[LIGHT_BACKGROUND].radiance;
+    uint label = kind_label(lane.path.depth) | lane.first_label;
+    if (HAS_LAYERS)
+        note_escape(beta, label, lane);
+    lane.path.radiance += held_out(beta * frame.lights[LIGHT_BACKGROUND].radiance, label);
     if (SEES_SKY)
-        lane.path.radiance += beta * light_from_beyond(lane.path.direction, lane.phase_pdf);
+        lane.path.radiance += held_out(beta * light_from_beyond(lane.path.direction, lane.phase_pdf), label);
     trace(TRACE_ESCAPE, lane, lane.path.position, lane.path.direction);
     lane.todo = TODO_END;
 }

@@ -2,20 +2,36 @@
 #ifndef STAGE_GENERATE_GLSL
 #define STAGE_GENERATE_GLSL
 #include "lights/lamp.glsl"
-#include "sensors/camera.glsl"
+#include "sensors/flux.glsl"
 #include "stages/look_straight.glsl"
 
-// Where the camera sees lamps, a look toward one of them comes before the first flight. Its random numbers begin behind the
-// camera's draw, of which it takes what is left.
-void look_at_lamps(MediumParams v, inout Lane lane, inout Rng rng) {
-    LightSample seen = seen_lamp(lane.path.position, lane.path.direction, to_uniform(next_words(rng)).w);
-    if (seen.distance == FAR) {
-        rng.draw = 0u;
-    } else if (LOOKS) {
-        look_straight(seen, to_spectrum(vec3(1.0)), TODO_DEPART, lane);
+// A look from the sensor comes before the first flight.
+void look_first(MediumParams v, LightSample seen, uint group, inout Lane lane) {
+    uint label = kind_label(0u) | group_label(group);
+    if (LOOKS) {
+        look_straight(seen, to_spectrum(vec3(1.0)), label, TODO_DEPART, lane);
     } else {
-        lane.path.radiance = analytic_shadow(v, lane.path.position, seen.direction, seen.distance) * seen.light;
+        add_light(lane, analytic_shadow(v, lane.path.position, seen.direction, seen.distance) * seen.light, label);
     }
+}
+
+// Where the camera sees lamps, toward one of them. Random numbers begin behind the camera's draw, of which it takes what is left.
+void look_at_lamps(MediumParams v, inout Lane lane, inout Rng rng) {
+    uint group;
+    LightSample seen = seen_lamp(lane.path.position, lane.path.direction, to_uniform(next_words(rng)).w, group);
+    if (seen.distance == FAR)
+        rng.draw = 0u;
+    else
+        look_first(v, seen, group, lane);
+}
+
+// Where flux is read, toward a light. Random numbers begin behind the camera's draw.
+void look_at_lights(MediumParams v, inout Lane lane, inout Rng rng) {
+    rng.draw = 1u;
+    uint group;
+    LightSample seen = look_from_sensor(lane.path.position, lane.path.direction, rng, group);
+    if (largest(seen.light) > 0.0)
+        look_first(v, seen, group, lane);
 }
 
 void generate(MediumParams v, inout Lane lane, out Rng rng) {
@@ -29,9 +45,14 @@ void generate(MediumParams v, inout Lane lane, out Rng rng) {
         lane.path.medium = 0u;
     lane.beta = to_spectrum(vec3(1.0));
     lane.todo = TODO_DEPART;
+    lane.first_label = 0u;
+    if (HAS_LAYERS)
+        begin_record(lane.record);
     rng = pixel_rng(lane.path.place, lane.path.sample_index, 0u);
-    if (SEES_LAMPS)
+    if (SEES_LAMPS && !READS_FLUX)
         look_at_lamps(v, lane, rng);
+    if (LOOKS_FROM_SENSOR)
+        look_at_lights(v, lane, rng);
 }
 
 #endif

@@ -1,6 +1,7 @@
 // A path as a lane holds it, and how it is laid aside and taken up again.
 #ifndef LANE_GLSL
 #define LANE_GLSL
+#include "film/aovs.glsl"
 #include "sensors/camera.glsl"
 #include "shapes/segment.glsl"
 
@@ -8,6 +9,7 @@ struct Lane {
     PathState path;
     Spectrum beta;
     uint todo;
+    uint record; // of its layers: fused, of its slot; staged, of the sample's place among those that wait
 #define LANE_FIELD(type, name, when) type name;
 #define LANE_SPECTRUM(name, when) Spectrum name;
 #define LANE_WALK(name, when) Walk name;
@@ -103,10 +105,22 @@ void look_in_full(inout Lane lane) {
     lane.chance = 1.0;
 }
 uint after_looking(Lane lane) {
-    bool at_camera = SEES_LAMPS && lane.path.depth == 0u;
+    bool at_camera = (SEES_LAMPS || LOOKS_FROM_SENSOR) && lane.path.depth == 0u;
     return KEEPS_PLACE                                        ? lane.resume
            : SCATTERING == SCATTERING_SINGLE && !at_camera ? TODO_END
                                                               : TODO_DEPART;
+}
+
+// Light that a path has gathered, with its label: see aovs.glsl.
+void add_light(inout Lane lane, vec3 light, uint label) {
+    lane.path.radiance += held_out(light, label);
+    if (HAS_LAYERS)
+        note_light(lane.record, label, light);
+}
+
+// Part of the label of light that the path gathers where it is `met`, at its first vertex or later.
+uint label_at(Lane lane, MediumParams met) {
+    return lane.path.depth == 0u ? medium_label(met) : lane.first_label;
 }
 
 // What the rows of path_state.h ask for.
@@ -122,6 +136,7 @@ uint after_looking(Lane lane) {
     bool sees_sky = SEES_SKY;                                                                             \
     bool chooses_light = LIGHTS != LIGHTS_SUN;                                                                        \
     bool has_cache = LOOKS && NEE == NEE_CACHED;                                                                      \
+    bool has_layers = HAS_LAYERS;                                                                                     \
     bool under_way = (amid && next == TODO_FLY) || seeing || (looking && flight_rests);
 
 // Of `pixel` see PathState. `amid`, a constant: it may be amid a segment; else that is not compiled.
@@ -132,7 +147,7 @@ void lay_aside(uint slot, uint pixel, Rng rng, Lane lane, const bool amid) {
     paths[slot] = lane.path;
     betas[slot] = lane.beta;
     STATE_CONDITIONS(lane.todo, amid)
-    if (!under_way && !looking && !seeking && !sets_out && !has_cache)
+    if (!under_way && !looking && !seeking && !sets_out && !has_cache && !has_layers)
         return;
 #define LAY_ASIDE(type, name, when)                                                                                   \
     if (when)                                                                                                         \
@@ -152,7 +167,7 @@ void take_up(uint slot, inout Lane lane, out Rng rng, const bool amid) {
     lane.todo = lane.path.todo;
     rng = pixel_rng(lane.path.place, lane.path.sample_index, lane.path.draw);
     STATE_CONDITIONS(lane.todo, amid)
-    if (!under_way && !looking && !seeking && !sets_out && !has_cache)
+    if (!under_way && !looking && !seeking && !sets_out && !has_cache && !has_layers)
         return;
 #define TAKE_UP(type, name, when)                                                                                     \
     if (when)                                                                                                         \

@@ -40,18 +40,22 @@ bool look_along(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tall
     lane.lit = lane.beta * (per_pdf * (v.sigma_t * matter.density)) *
                (matter.ratio * matter.share * to_spectrum(albedo_at(met, position)));
     lane.light = drawn.light * phase_eval(met, lane.path.direction, drawn.direction);
+    uint label = kind_label(lane.path.depth + 1u) | group_label(light.group) | label_at(lane, met);
     bool is_lit = is_open(s) && lane.path.depth < frame.max_depth && largest(lane.lit) > 0.0 && largest(lane.light) > 0.0;
     if (is_lit && LOOKS) {
         lane.position = position;
         lane.to_light = drawn.direction;
         lane.light_distance = drawn.distance;
         lane.leg = LEG_ALONG;
+        lane.label = label;
         lane.resume = TODO_SET_OUT;
         lane.todo = TODO_LOOK;
         look_in_full(lane);
     } else if (is_lit) {
-        lane.path.radiance += lane.lit * analytic_shadow(v, lane.path.position, lane.path.direction, t) *
-                              analytic_shadow(v, position, drawn.direction, drawn.distance) * lane.light;
+        add_light(lane,
+                  lane.lit * analytic_shadow(v, lane.path.position, lane.path.direction, t) *
+                      analytic_shadow(v, position, drawn.direction, drawn.distance) * lane.light,
+                  label);
     }
     return is_lit && LOOKS;
 }

@@ -4,8 +4,9 @@
 #include "lights/sample.glsl"
 #include "stages/lane.glsl"
 
-// Its light counts as often as `lit` says; then the path does as `next` says.
-void look_straight(LightSample seen, Spectrum lit, uint next, inout Lane lane) {
+// Its light, of this label, counts as often as `lit` says; then the path does as `next` says.
+void look_straight(LightSample seen, Spectrum lit, uint label, uint next, inout Lane lane) {
+    lane.label = label;
     lane.position = lane.path.position;
     lane.lit = lit;
     lane.resume = next;

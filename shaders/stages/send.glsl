@@ -3,14 +3,19 @@
 #define STAGE_SEND_GLSL
 #include "lib/queue.glsl"
 #include "lib/trace.glsl"
+#include "sensors/camera.glsl"
+
+// Where its sample will wait.
+uint waiting_place(PathState path) {
+    uint samples = push.sample_end - push.sample_begin;
+    return path.pixel % push.places * samples + path.sample_index - push.sample_begin;
+}
 
 // The path's sample waits for those before it to be added to the film.
 void finish(uint slot, Lane lane) {
     trace(TRACE_END, lane, lane.path.position, lane.path.direction);
-    uint samples = push.sample_end - push.sample_begin;
-    uint place = lane.path.pixel % push.places;
-    uint i = place * samples + lane.path.sample_index - push.sample_begin;
-    uvec3 words = floatBitsToUint(lane.path.radiance);
+    uint i = waiting_place(lane.path);
+    uvec3 words = floatBitsToUint(measured(lane.path.radiance));
     words.x = words.x == NO_SAMPLE ? 0x7fc00000u : words.x; // another NaN: it is there
     waiting_samples[i] = words;
     paths[slot].todo = TODO_TAKE;

@@ -13,10 +13,10 @@ void turn_to_light(Spectrum T, inout Lane lane) {
 
 void end_look(MediumParams v, Spectrum T, inout Lane lane) {
     Spectrum more = NEE == NEE_CACHED ? (T - lane.cached) / lane.chance : T;
-    lane.path.radiance +=
-        LIGHTS == LIGHTS_SUN ? sun_contribution(medium_of(v, lit_medium(lane)), frame.lights[LIGHT_SUN], lane.path.direction,
-                                                   lit_beta(lane) * more)
-                             : lit_beta(lane) * more * lane.light;
+    vec3 light = LIGHTS == LIGHTS_SUN ? sun_contribution(medium_of(v, lit_medium(lane)), frame.lights[LIGHT_SUN],
+                                                         lane.path.direction, lit_beta(lane) * more)
+                                      : lit_beta(lane) * more * lane.light;
+    add_light(lane, light, lane.label);
     lane.T = T;
     trace(TRACE_LIGHT, lane, looking_from(lane), looking_along(lane));
     lane.todo = after_looking(lane);

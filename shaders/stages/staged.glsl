@@ -14,13 +14,16 @@ void run_segments(const uint queue, const uint laid_aside) {
     Rng rng;
     Lane lane;
     lane.todo = TODO_TAKE;
-    if (pop_item(laid_aside, slot))
+    if (pop_item(laid_aside, slot)) {
         take_up(slot, lane, rng, true);
+        lane.record = waiting_place(lane.path);
+    }
     for (uint i = 0u; i < push.budget; i += BURST) {
         if (lane.todo == TODO_TAKE) {
             if (!pop_item(queue, slot))
                 break;
             take_up(slot, lane, rng, COMES_AMID);
+            lane.record = waiting_place(lane.path);
         }
         uint turns = min(BURST, push.budget - i);
         tally.room += turns * uint(STEPS);

@@ -14,7 +14,11 @@ void arrive_at_surface(MediumParams v, inout Lane lane, inout Rng rng, inout Tal
         lane.beta *= depth_weight(v, lane.beta, lane.walk.depth, false);
     SurfacePoint at = surface_point(lane.struck, lane.path.position + lane.reach * lane.path.direction);
     SurfaceRow row = surfaces[at.row];
-    lane.path.radiance += lane.beta * surface_emission(row, at.normal, lane.path.direction);
+    add_light(lane, lane.beta * surface_emission(row, at.normal, lane.path.direction),
+              glow_label(lane.path.depth) | lane.first_label);
+    if (HAS_LAYERS)
+        if (lane.path.depth == 0u)
+            note_collision(lane.record, vec3(lane.beta), at.position, lane.path.direction, lane.reach, row.color);
     Bsdf bsdf = bsdf_of(row, at.normal, -lane.path.direction);
     lane.path.position = at.position + at.apart * bsdf.normal;
     lane.path.medium = AT_SURFACE | lane.struck;
@@ -24,7 +28,8 @@ void arrive_at_surface(MediumParams v, inout Lane lane, inout Rng rng, inout Tal
     bool ended = capped || SCATTERING == SCATTERING_NONE || largest(lane.beta) == 0.0 || largest(row.color) == 0.0;
     lane.todo = ended || SCATTERING == SCATTERING_SINGLE ? TODO_END : TODO_DEPART;
     if (NEE != NEE_NONE && !ended && is_rough(bsdf))
-        gather_some_light(v, surface_of(v, bsdf), lane.path.position, 0.0, lane.beta, lane.todo, lane, rng);
+        gather_some_light(v, surface_of(v, bsdf), lane.path.position, 0.0, lane.beta,
+                          kind_label(lane.path.depth) | lane.first_label, lane.todo, lane, rng);
     trace(TRACE_SURFACE, lane, lane.path.position, lane.path.direction);
 }
 #endif

@@ -6,12 +6,13 @@
 #include "stages/lane.glsl"
 
 // Emission along what was just flown, by one sample: a track-length estimate.
-vec3 emission_along(MediumParams v, Spectrum beta, float from, Walk w, PathState path, inout Rng rng,
+vec3 emission_along(MediumParams v, Spectrum beta, float from, Walk w, PathState path, out uint medium, inout Rng rng,
                     inout Tally tally) {
     uvec4 words = next_words(rng);
     float t = mix(from, w.t, to_uniform(words).x);
     tally.lookups += 1u;
     Matter met = matter_at(v, w.origin + t * w.direction, to_tap(words), to_choice(words));
+    medium = met.medium;
     vec3 Le = emitted_radiance(medium_of(v, met.medium), path.position + (w.start + t) * path.direction);
     return beta * (w.t - from) * (v.sigma_t * met.density) * (met.ratio * met.share) * Le;
 }
@@ -33,8 +34,11 @@ uint step_segment(MediumParams v, inout Lane lane, inout Rng rng, out Spectrum d
         Spectrum before = lane.beta;
         event = fly(v, c, event, lane.walk, rng, lane.beta, deposit, tally);
         bool matter = !NULL_FLIGHT || c.sigma_maj > 0.0; // else the cell is empty
-        if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS && !goes_through() && matter)
-            lane.path.radiance += emission_along(v, before, from, lane.walk, lane.path, rng, tally);
+        if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS && !goes_through() && matter) {
+            uint medium;
+            vec3 light = emission_along(v, before, from, lane.walk, lane.path, medium, rng, tally);
+            add_light(lane, light, glow_label(lane.path.depth) | label_at(lane, medium_of(v, medium)));
+        }
     }
     return after_step(event, lane.walk, seeing ? looking_as_far_as(lane) : flying_as_far_as(lane), lane.search);
 }

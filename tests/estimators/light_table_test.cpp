@@ -45,7 +45,7 @@ std::vector<shared::LookOutput> look(const std::vector<Light>& lights, const glm
     kernel.frame.lamp_count = table.lamp_count;
     kernel.lights = &table;
     Specialization constants{};
-    constants[SPEC_LIGHTS] = lights_kind(lights);
+    constants[SPEC_LIGHTS] = lights_kind(scene);
     constants[SPEC_SCATTERING] = SCATTERING_MULTIPLE;
     constants[SPEC_NEE] = NEE_COLLISIONS;
     std::vector<shared::LookInput> inputs;

@@ -67,7 +67,7 @@ Looks look(const SkyMap& sky, double rotation, SkyMapping mapping = SkyMapping::
             looks.angles.push_back(2.0 * pi / columns * (std::cos(pi * row / rows) - std::cos(pi * (row + 1) / rows)));
         }
     Specialization constants{};
-    constants[SPEC_LIGHTS] = lights_kind(scene.lights);
+    constants[SPEC_LIGHTS] = lights_kind(scene);
     looks.outputs = KernelRunner(sky_map_spv, constants, kernel).run<shared::SkyOutput>(looks.inputs);
     return looks;
 }

@@ -205,3 +205,16 @@ TEST_CASE("develop refuses what it cannot do", "[cpu][command]") {
     refused("a.exr c.exr -o b.png", "unexpected argument 'c.exr'");
     CHECK_THAT(folder.vkvol("develop --help", false).text, Contains("same bytes") && Contains("--tonemap"));
 }
+
+TEST_CASE("a camera's exposure is where that which is asked for begins", "[cpu][develop]") {
+    const Metadata metadata = {{camera_exposure_key, std::string("-3.5")}};
+    Film film;
+    film.mean = {glm::vec3(1.0f)};
+    CHECK(choose_tone({}, film, metadata).mapping.exposure == -3.5);
+    ToneRequest brighter;
+    brighter.exposure = 2.0;
+    CHECK(choose_tone(brighter, film, metadata).mapping.exposure == -1.5);
+    brighter.exposure.reset();
+    brighter.automatic_exposure = true;
+    CHECK(choose_tone(brighter, film, metadata).mapping.exposure == suitable_exposure(film, ToneCurve::srgb));
+}

@@ -159,7 +159,7 @@ TEST_CASE("outputs are checked before rendering", "[cpu][image_io]") {
     const Scratch scratch;
     CHECK_NOTHROW(check_writable(scratch.path / "a.exr"));
     CHECK(scratch.files() == 0);
-    CHECK_THROWS_WITH(check_writable(scratch.path / "a.gif"), Catch::Contains("'.gif'; expected .exr or .png"));
+    CHECK_THROWS_WITH(check_writable(scratch.path / "a.gif"), Catch::Contains("'.gif'; expected .exr, .png or .csv"));
     CHECK_THROWS_AS(check_writable("exr"), InputError);
     CHECK_THROWS_WITH(check_writable(scratch.path / "none" / "a.exr"), Catch::Contains("does not exist"));
     CHECK_THROWS_AS(check_writable("/proc/a.exr"), InputError); // not even root may

@@ -62,6 +62,15 @@ Ray camera_ray(const vkvol::Camera& camera, const vkvol::Picture& picture, doubl
     return {camera.position + turned(through), turned(glm::normalize(towards))};
 }
 
+Ray rectangle_point(const vkvol::Camera& camera, const vkvol::Picture& picture, double x, double y) {
+    const double u = (picture.start_x + x) / picture.reference_width - 0.5;
+    const double v = 0.5 - (picture.start_y + y) / picture.reference_height;
+    const auto turned = [&](glm::dvec3 d) {
+        return rotate(rotate(rotate(d, 0, camera.pitch), 1, camera.yaw), 2, camera.roll);
+    };
+    return {camera.position + turned({u * camera.size.x, v * camera.size.y, 0.0}), turned({0.0, 0.0, -1.0})};
+}
+
 glm::dvec2 in_pixel(const vkvol::RenderSettings& settings, double u, double v) {
     // Inverts the distribution by bisection, of densities written down once more.
     const auto weight = [&](double x) {

@@ -10,6 +10,9 @@ namespace reference {
 Ray camera_ray(const vkvol::Camera& camera, const vkvol::Picture& picture, double x, double y, double u = 0.0,
                double v = 0.0);
 
+// Where a rectangle that reads irradiance has a point of the picture, and the direction that it faces.
+Ray rectangle_point(const vkvol::Camera& camera, const vkvol::Picture& picture, double x, double y);
+
 // Distance from a pixel's middle, pixels, with (u, v) in [0, 1)^2, spread as the filter weights.
 glm::dvec2 in_pixel(const vkvol::RenderSettings& settings, double u, double v);
 

@@ -201,9 +201,47 @@ Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng
     }
 }
 
+namespace {
+
+// A sensor of flux: directions are drawn evenly, and weighted; lamps, suns and the sky are met by chance alone, and
+// only lights without extent are asked.
+Rgb flux(const World& world, int x, int y, const Draw& draw, Rng& rng) {
+    const vkvol::Camera& camera = world.scene.camera;
+    const bool is_rectangle = camera.projection == vkvol::Projection::irradiance;
+    const Draw toward = rng.next();
+    const glm::dvec3 direction = turned({0.0, 0.0, 1.0}, 1.0 - 2.0 * toward.x(), toward.y());
+    glm::dvec3 from, normal(0.0);
+    if (is_rectangle) {
+        const Ray middle = rectangle_point(camera, world.scene.picture, x + draw.x(), y + draw.y());
+        from = middle.origin;
+        normal = middle.direction;
+    } else {
+        from = camera.points[std::size_t(y) * std::size_t(world.scene.picture.width) + std::size_t(x)];
+    }
+    const auto response = [&](const glm::dvec3& d) { return is_rectangle ? std::max(0.0, glm::dot(d, normal)) : 1.0; };
+    Rgb reading(0.0);
+    for (const vkvol::Light& light : world.scene.lights) {
+        const bool has_extent = vkvol::is_met_by_chance(light) || vkvol::is_lamp(light);
+        const auto found = has_extent || world.method.nee == NEE_NONE ? std::nullopt : towards(light, from, 0.0, 0.0);
+        if (found && response(found->ray.direction) > 0.0)
+            reading += response(found->ray.direction) * found->light *
+                       (world.medium ? transmittance(world, found->ray, rng) : Rgb(1.0));
+    }
+    const double weight = 4.0 * std::numbers::pi * response(direction);
+    if (weight == 0.0)
+        return reading;
+    const Ray ray{from, direction};
+    const Rgb lamps = lamps_seen(world, ray, rng);
+    return reading + weight * (lamps + radiance(world, ray, draw.exponential(2), draw.select(), rng));
+}
+
+} // namespace
+
 Rgb trace_path(const World& world, int x, int y, std::uint32_t sample, std::uint32_t seed) {
     Rng rng{static_cast<std::uint32_t>(x) | static_cast<std::uint32_t>(y) << 16, sample, seed};
     const Draw draw = rng.next();
+    if (vkvol::reads_flux(world.scene.camera))
+        return flux(world, x, y, draw, rng);
     const glm::dvec2 aside = in_pixel(world.scene.settings, draw.x(), draw.y());
     const Draw lens = world.scene.camera.lens.radius > 0.0 ? rng.next() : Draw{};
     const Ray ray =

@@ -61,7 +61,9 @@ TEST_CASE("the cache knows the depth of a uniform block to a cell of the lattice
     TestScene scene = make_test_scene(grid.volume, volume, Filter::trilinear);
     const DirectionalLight sun{glm::normalize(glm::dvec3(0.3, 1.0, -0.2)), Rgb(1.0)};
     const std::vector<Light> lights = GENERATE_COPY(std::vector<Light>{sun}, std::vector<Light>{sun, PointLight{}});
-    const std::vector<glm::vec3> directions = cache_layout(lights).directions;
+    Scene lit;
+    lit.lights = lights;
+    const std::vector<glm::vec3> directions = cache_layout(lit).directions;
     REQUIRE(directions.size() == (lights.size() == 1 ? 1 : CACHE_DIRECTIONS));
     const glm::dvec3 low(-1.0), high(40.0, 30.0, 20.0);
     const auto lattice = make_lattice(low, high, high - low, {12, 9, 6}, 64);

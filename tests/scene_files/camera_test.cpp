@@ -179,3 +179,47 @@ TEST_CASE("each kind of medium is framed by its box", "[cpu][xml]") {
     Scene nothing = parse("<camera/>");
     CHECK_THROWS_WITH(frame_medium(nothing, fields), Contains("no medium to frame"));
 }
+
+TEST_CASE("a scene without a camera gets one that frames all its media", "[cpu][camera][xml]") {
+    const std::string media = R"(<sphere x="40"/><volumes><volume><box y="-9" width="4"/></volume></volumes>)";
+    const auto parse = [](const std::string& elements) {
+        return parse_scene("<options>" + elements + "</options>", "s.xml");
+    };
+    FieldCache fields;
+    Scene scene = parse(media);
+    CHECK(!scene.has_camera);
+    const std::string line = give_camera(scene, fields);
+    CHECK_THAT(line, Contains("has no <camera>") && Contains("azimuth=\"30\" elevation=\"12\" fov=\"30\"/>"));
+    for (const glm::dvec3 corner : {glm::dvec3(41.0, 1.0, 1.0), glm::dvec3(39.0, -1.0, -1.0),
+                                    glm::dvec3(-2.0, -9.5, 0.5), glm::dvec3(2.0, -8.5, -0.5)}) {
+        const glm::dvec2 at = seen(scene.camera, scene.picture, corner);
+        CHECK((at.x > 0.0 && at.x < 1.0 && at.y > 0.0 && at.y < 1.0));
+    }
+    // What the line says is that view, to its digits.
+    const std::string element = line.substr(line.find("<camera "));
+    const Camera said = parse(media + element).camera;
+    CHECK(glm::distance(said.position, scene.camera.position) < 1e-3);
+    CHECK(said.fov == scene.camera.fov);
+    Scene given = parse(media + "<camera z=\"3\"/>");
+    CHECK(give_camera(given, fields).empty());
+    CHECK(given.camera.position == glm::dvec3(0.0, 0.0, 3.0));
+    Scene bare = parse("");
+    CHECK(give_camera(bare, fields).empty());
+}
+
+TEST_CASE("a camera's settings say which luminance is white", "[cpu][camera][xml]") {
+    const auto camera = [](const std::string& attributes) {
+        return parse_scene("<options><camera " + attributes + "/></options>", "s.xml").camera;
+    };
+    CHECK(!camera("").exposure);
+    // 1.2 * 8^2 * 100 = 7680 cd/m^2 is white; twice the speed, or the time, halves it.
+    CHECK(stops_of(*camera("shutter=\".01\" fNumber=\"8\"").exposure) == Approx(-std::log2(7680.0)));
+    CHECK(stops_of(*camera("shutter=\".01\" fNumber=\"8\" iso=\"200\"").exposure) == Approx(-std::log2(3840.0)));
+    CHECK(stops_of(*camera("shutter=\".02\" fNumber=\"8\" luminanceUnit=\"1000\"").exposure) ==
+          Approx(-std::log2(3.84)));
+    for (const auto& [attributes, message] :
+         {std::pair("iso=\"100\"", "add shutter"), std::pair("shutter=\"1\"", "add fNumber"),
+          std::pair("shutter=\"0\" fNumber=\"1\"", "shutter"),
+          std::pair("shutter=\"1e-9\" fNumber=\"1e9\" iso=\"1e-9\"", "beyond 100")})
+        CHECK_THROWS_WITH(camera(attributes), Contains(message) && Contains("s.xml:1:"));
+}

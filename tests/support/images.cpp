@@ -196,7 +196,11 @@ bool same_bits(const Film& a, const Film& b) {
     const auto same = [](const auto& x, const auto& y) {
         return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0;
     };
-    return same(a.mean, b.mean) && same(a.variance, b.variance) && same(a.samples, b.samples);
+    const auto same_layer = [&](const FilmLayer& x, const FilmLayer& y) {
+        return x.name == y.name && same(x.mean, y.mean) && same(x.variance, y.variance);
+    };
+    return same(a.mean, b.mean) && same(a.variance, b.variance) && same(a.samples, b.samples) &&
+           std::equal(a.layers.begin(), a.layers.end(), b.layers.begin(), b.layers.end(), same_layer);
 }
 
 double mean_of(const Film& film) {

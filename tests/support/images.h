@@ -45,7 +45,7 @@ Agreement agree_with_means(const Film& film, const std::vector<Rgb>& means, cons
 Agreement agree_with_escapes(const Film& film, const std::vector<double>& p, const Rgb& if_escaped,
                              const Rgb& otherwise, const std::string& name);
 
-// Every mean, variance and count has the same bits.
+// Every mean, variance and count has the same bits, those of layers too.
 bool same_bits(const Film& a, const Film& b);
 
 // Mean over pixels and channels.

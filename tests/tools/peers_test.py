@@ -23,7 +23,8 @@ RIGHT, LEFT, AHEAD, UP = (np.array(v, float) for v in ((1, 0, 0), (-1, 0, 0), (0
 def read(elements, keys=()):
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "scene.xml"
-        path.write_text(f"<options><sphere/>{elements}</options>")
+        camera = "" if any(f"<{name}" in elements for name in ("camera", "irradiance", "fluence")) else "<camera/>"
+        path.write_text(f"<options><sphere/>{camera}{elements}</options>")
         return scene.read(path, keys=keys)
 
 
@@ -128,6 +129,7 @@ class LightsTest(unittest.TestCase):
                                 ("<camera projection='orthographic'/>", "projection orthographic is not translated"),
                                 ("<camera projection='${p:-equirectangular}'/>", "projection equirectangular is not"),
                                 ("<camera viewHeight='3'/>", "viewHeight"),
+                                ("<fluence>0 0 0</fluence>", "<fluence> reads flux"),
                                 ("<camera lensRadius='0.5' focus='3'/>", "lenses are not translated"),
                                 ("<pixelFilter>tent</pixelFilter>", "<pixelFilter> is not translated"),
                                 ("<pixelFilter radius='1'>box</pixelFilter>", "<pixelFilter> is not translated"),

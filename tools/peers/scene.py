@@ -154,7 +154,11 @@ class Reader:
 
     def refuse_other_views(self):
         """The peers are told of pinholes, and of pixels that are boxes."""
-        camera, pixel = self.find("camera"), self.find("pixelFilter")
+        camera, pixel, flux = self.find("camera"), self.find("pixelFilter"), self.find("irradiance", "fluence")
+        if flux is not None:
+            self.fail(f"<{flux.tag}> reads flux, which is not translated; take a <camera>")
+        if camera is None:
+            self.fail("has no <camera>, and the one that vkvol gives it is not translated; write that which it names")
         said = {} if camera is None else {name: self.filled(text) for name, text in camera.attrib.items()}
         if said.get("projection", "perspective") != "perspective":
             self.fail(f"<camera> projection {said['projection']} is not translated; take perspective")

@@ -1,0 +1,161 @@
+#include "layer_plan.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+#include "error.h"
+#include "shared/constants.h"
+
+namespace vkvol {
+
+namespace {
+
+constexpr std::uint32_t most_layers = 64; // loops over them are short, see plan.h
+
+// Sums of a layer over the samples of a pixel.
+struct Sums {
+    glm::dvec3 value, square;
+};
+
+Sums sums_of(std::span<const glm::vec3> sums, std::size_t i) {
+    const auto pair = [&](std::size_t k) { return glm::dvec3(sums[4 * i + k]) + glm::dvec3(sums[4 * i + k + 1]); };
+    return {pair(0), pair(2)};
+}
+
+// Of what lies at a slot of each record.
+class Developer {
+public:
+    Developer(const LayerPlan& plan, std::span<const glm::vec3> sums, std::span<const shared::FilmPixel> pixels)
+        : plan_(plan), sums_(sums), pixels_(pixels) {}
+
+    Sums at(std::size_t pixel, std::uint32_t slot) const { return sums_of(sums_, pixel * plan_.params.count + slot); }
+
+    // Means over all samples.
+    FilmLayer means(const std::string& name, std::uint32_t slot) const {
+        FilmLayer layer{name, {}, {}};
+        for (std::size_t i = 0; i < pixels_.size(); ++i) {
+            const double n = pixels_[i].count;
+            const Sums s = at(i, slot);
+            const glm::dvec3 mean = n > 0 ? s.value / n : glm::dvec3(0.0);
+            const glm::dvec3 variance = n > 1 ? (s.square / n - mean * mean) / (n - 1.0) : glm::dvec3(0.0);
+            layer.mean.emplace_back(mean);
+            layer.variance.emplace_back(glm::max(variance, glm::dvec3(0.0)));
+        }
+        return layer;
+    }
+
+    FilmLayer alpha(std::uint32_t slot) const {
+        FilmLayer layer = means("alpha", slot);
+        for (std::size_t i = 0; i < pixels_.size(); ++i)
+            layer.mean[i] = pixels_[i].count > 0 ? 1.0f - layer.mean[i] : glm::vec3(0.0f);
+        return layer;
+    }
+
+    FilmLayer coverage(std::uint32_t slot) const {
+        FilmLayer layer = means("coverage", slot);
+        for (glm::vec3& mean : layer.mean)
+            mean = glm::vec3(mean.y);
+        for (glm::vec3& variance : layer.variance)
+            variance = glm::vec3(variance.y);
+        return layer;
+    }
+
+    // Sum of w d over sum of w, over the samples that collide: a quotient, whose variance is that of w (d - mean) over
+    // the mean of w squared, to first order (Cochran, "Sampling Techniques", 1977, ch. 6).
+    FilmLayer depth(std::uint32_t slot) const {
+        FilmLayer layer{"depth", {}, {}};
+        for (std::size_t i = 0; i < pixels_.size(); ++i) {
+            const double n = pixels_[i].count;
+            const Sums s = at(i, slot);
+            const double w = s.value.y, m = w > 0.0 ? s.value.x / w : 0.0;
+            const double mixed = 0.5 * (s.square.z - s.square.x - s.square.y); // of w d and w
+            const double spread = s.square.x - 2.0 * m * mixed + m * m * s.square.y;
+            const double variance = n > 1 && w > 0.0 ? n / (n - 1.0) * spread / (w * w) : 0.0;
+            layer.mean.emplace_back(static_cast<float>(m));
+            layer.variance.emplace_back(static_cast<float>(std::max(variance, 0.0)));
+        }
+        return layer;
+    }
+
+    FilmLayer position(std::uint32_t slot, const glm::dvec3& origin) const {
+        FilmLayer layer{"position", {}, {}};
+        for (std::size_t i = 0; i < pixels_.size(); ++i) {
+            const double w = at(i, slot).value.y;
+            layer.mean.emplace_back(w > 0.0 ? at(i, slot + 1).value / w + origin : glm::dvec3(0.0));
+        }
+        return layer;
+    }
+
+private:
+    const LayerPlan& plan_;
+    std::span<const glm::vec3> sums_;
+    std::span<const shared::FilmPixel> pixels_;
+};
+
+} // namespace
+
+LayerPlan plan_layers(const Scene& scene) {
+    LayerPlan plan;
+    plan.wanted = scene.layers;
+    plan.kinds = scene.holds_out ? LAYERS_HOLDOUT : 0;
+    shared::AovParams& params = plan.params;
+    const auto place = [&](unsigned layers, int kind, std::uint32_t& first, std::size_t count) {
+        if ((scene.layers & layers) == 0)
+            return;
+        plan.kinds |= kind;
+        first = params.count;
+        params.count += static_cast<std::uint32_t>(count);
+    };
+    std::uint32_t kinds = 0; // the first
+    place(layer_background | layer_emission | layer_direct | layer_indirect, LAYERS_KINDS, kinds, LIGHT_KINDS);
+    if (scene.layers & layer_groups)
+        plan.groups = light_groups(scene);
+    place(layer_groups, LAYERS_GROUPS, params.groups, 1 + plan.groups.size());
+    if (scene.layers & layer_media)
+        plan.media = medium_names(scene);
+    if (!plan.media.empty())
+        place(layer_media, LAYERS_MEDIA, params.media, plan.media.size());
+    place(layer_depth | layer_position, LAYERS_COLLISION, params.collision, 2);
+    place(layer_albedo, LAYERS_ALBEDO, params.albedo, 1);
+    place(layer_transmittance | layer_alpha, LAYERS_THROUGH, params.through, 2);
+    if (params.count > most_layers)
+        throw InputError(fmt::format("the picture would have {} layers, of which {} are of groups of lights and {} of "
+                                     "media, but {} is the most; give several one name, or leave a layer out",
+                                     params.count, plan.groups.size(), plan.media.size(), most_layers));
+    return plan;
+}
+
+std::uint32_t group_layer(const std::vector<std::string>& groups, const std::string& group) {
+    return group.empty() || groups.empty() ? 0 : 1 + place_among(groups, group);
+}
+
+std::vector<FilmLayer> develop_layers(const LayerPlan& plan, std::span<const glm::vec3> sums,
+                                      std::span<const shared::FilmPixel> pixels, const glm::dvec3& origin) {
+    const Developer developer(plan, sums, pixels);
+    const shared::AovParams& params = plan.params;
+    std::vector<FilmLayer> layers;
+    for (std::uint32_t kind = 0; kind < LIGHT_KINDS; ++kind)
+        if (plan.wanted & 1u << kind)
+            layers.push_back(developer.means(layer_names()[kind], kind));
+    if (plan.kinds & LAYERS_GROUPS)
+        layers.push_back(developer.means("group.none", params.groups));
+    for (std::size_t i = 0; i < plan.groups.size(); ++i)
+        layers.push_back(developer.means("group." + plan.groups[i], params.groups + 1 + std::uint32_t(i)));
+    for (std::size_t i = 0; i < plan.media.size(); ++i)
+        layers.push_back(developer.means("medium." + plan.media[i], params.media + std::uint32_t(i)));
+    if (plan.wanted & layer_depth)
+        layers.push_back(developer.depth(params.collision));
+    if (plan.wanted & layer_position)
+        layers.push_back(developer.position(params.collision, origin));
+    if (plan.kinds & LAYERS_COLLISION)
+        layers.push_back(developer.coverage(params.collision));
+    if (plan.wanted & layer_albedo)
+        layers.push_back(developer.means("albedo", params.albedo));
+    if (plan.wanted & layer_transmittance)
+        layers.push_back(developer.means("transmittance", params.through));
+    if (plan.wanted & layer_alpha)
+        layers.push_back(developer.alpha(params.through + 1));
+    return layers;
+}
+
+} // namespace vkvol

@@ -1,0 +1,44 @@
+// Sensors that read flux: irradiance through a rectangle, fluence at points. They stand among the lights as a collision does, with
+// the density of their rays in the place of a phase function: light that no ray meets by chance, of what has no extent or is a
+// lamp, they find by a look; what rays meet when they leave is shared between the two, by the same weights.
+#ifndef FLUX_GLSL
+#define FLUX_GLSL
+#include "lights/table.glsl"
+#include "sensors/camera.glsl"
+
+// Per steradian: of a ray that comes from `direction`.
+float flux_pdf(vec3 direction) {
+    float pdf = INV_4PI;
+    if (SENSOR == SENSOR_IRRADIANCE)
+        pdf = max(dot(direction, frame.sensors[0].corner), 0.0) / PI;
+    return pdf;
+}
+
+LightSample sample_lamp_by_ray(LightRow light, vec3 from, vec3 ray, vec2 u, float select) {
+    float share = other_share(SENSOR == SENSOR_IRRADIANCE ? 1.0 / PI : INV_4PI, light, from);
+    bool by_ray = select < share;
+    vec3 direction = by_ray ? ray : shape_direction(light, from, u);
+    float t = by_ray ? hit_lamp(light, from, direction) : shape_distance(light, from, direction);
+    return of_mixture(light, from, direction, t, flux_pdf(direction), share);
+}
+
+// Of one of all lights, what a ray from there would bring on average. The sample's own ray serves where lamps are looked for by rays.
+LightSample look_from_sensor(vec3 from, vec3 ray, inout Rng rng, out uint group) {
+    uvec4 words = next_words(rng);
+    vec2 u = to_uniform(words).zw;
+    float chance;
+    LightRow light = lights[choose_light(from, words, rng, chance)];
+    group = light.group;
+    LightSample drawn;
+    if (SEES_LAMPS && light.kind >= LIGHT_SPHERE)
+        drawn = sample_lamp_by_ray(light, from, ray, u, to_tap(words).z);
+    else
+        drawn = sample_shapeless(light, from, u, rng);
+    drawn = over_density(drawn, chance);
+    float by_ray = flux_pdf(drawn.direction);
+    float weight = MIS == MIS_LIGHT ? 1.0 : MIS == MIS_PHASE ? 0.0 : mis_weight(drawn.pdf, by_ray);
+    drawn.light *= by_ray * (drawn.pdf > 0.0 ? weight : 1.0);
+    return drawn;
+}
+
+#endif
