@@ -32,7 +32,7 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
         specialization_[SPEC_ALBEDO] != ALBEDO_CONSTANT || specialization_[SPEC_MAP] != MAP_NONE ||
         specialization_[SPEC_UNBOUNDED] != 0 || specialization_[SPEC_FIELD] == FIELD_LAYERS ||
         specialization_[SPEC_TEMPERATURE_TYPE] == GRID_COLOR || specialization_[SPEC_SENSOR] != SENSOR_PINHOLE ||
-        specialization_[SPEC_PIXEL_FILTER] != 0)
+        specialization_[SPEC_PIXEL_FILTER] != 0 || specialization_[SPEC_LAYERS] != 0)
         form_ |= form_full;
     if (!scene.surfaces.empty())
         make_surfaces(scene, assets);

@@ -6,7 +6,7 @@
 #include <future>
 #include <utility>
 
-#include "accumulate.spv.h"
+#include "accumulate_forms.h"
 #include "begin.spv.h"
 #include "fused_forms.h"
 #include "generate_forms.h"
@@ -54,7 +54,7 @@ std::vector<PassRow> passes_of(const Plan& plan, unsigned form, bool has_shadow_
                               {"track", track_forms[form], plan.lanes, QUEUE_TRACK, QUEUE_RESUME, true}};
     if (has_shadow_rays)
         rows.push_back({"shadow", shadow_forms[form], plan.lanes, QUEUE_SHADOW, QUEUE_LOOK, true});
-    rows.push_back({"accumulate", accumulate_spv, 0});
+    rows.push_back({"accumulate", accumulate_forms[form], 0});
     return rows;
 }
 

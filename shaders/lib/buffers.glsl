@@ -52,6 +52,7 @@ layout(constant_id = SPEC_UNBOUNDED) const int UNBOUNDED = 0;
 const bool HAS_COLORS = true; // in grids
 layout(constant_id = SPEC_SENSOR) const int SENSOR = SENSOR_PINHOLE;
 layout(constant_id = SPEC_PIXEL_FILTER) const int PIXEL_FILTER = 0;
+layout(constant_id = SPEC_LAYERS) const int LAYERS = 0;
 #else
 const int PHASE = PHASE_HENYEY_GREENSTEIN;
 const int LIGHTS = LIGHTS_SUN;
@@ -64,6 +65,7 @@ const int UNBOUNDED = 0;
 const bool HAS_COLORS = false;
 const int SENSOR = SENSOR_PINHOLE;
 const int PIXEL_FILTER = 0;
+const int LAYERS = 0;
 #endif
 layout(constant_id = SPEC_MIS) const int MIS = MIS_BALANCE;
 #ifdef SURFACES
@@ -72,7 +74,6 @@ const bool HAS_SURFACES = true;
 #else
 const bool HAS_SURFACES = false;
 #endif
-layout(constant_id = SPEC_LAYERS) const int LAYERS = 0;
 
 // What a medium is: a constant, unless it is one of several that differ.
 #ifdef SEVERAL

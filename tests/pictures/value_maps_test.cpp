@@ -226,7 +226,7 @@ TEST_CASE("maps in scene files", "[cpu][xml][value_map]") {
         {"<densityMap/><transferFunction/>", "mapped once"},
         {"<transferFunction/>", "has no points"},
         {"<sigma_a>1</sigma_a><transferFunction><point value='1' sigma_t='1'/></transferFunction>",
-         "<sigma_a> beside a <transferFunction>"},
+         "<sigma_a> beside points that have sigma_t"},
         {"<transferFunction><point value='1' sigma_t='1' albedo='1.1'/></transferFunction>", "from 0 to 1"},
         {"<transferFunction><point value='1' sigma_t='1' albedo='1 1'/></transferFunction>",
          "2 numbers; expected one, or three"},
