@@ -29,7 +29,7 @@ void look_up(MediumParams v, Walk w, float t[STEPS], vec3 tap[STEPS], out float 
     [[unroll]] for (int k = 0; k < STEPS; ++k)
         entry[k] = leaf_entry(place[k].entry);
     [[unroll]] for (int k = 0; k < STEPS; ++k)
-        sigma_t[k] = v.sigma_t * mapped_density(MAP, v.first_knot, voxel_value(v.density, GRID_TYPE, place[k], entry[k]));
+        sigma_t[k] = v.sigma_t * mapped(v, voxel_value(v.density, GRID_TYPE, place[k], entry[k]));
 }
 
 // Up to STEPS steps of a flight or, `seeing`, of a shadow ray of transmittance T. The walk is left at the event.

@@ -132,7 +132,7 @@ float density(MediumParams v, vec3 p, vec3 tap) {
         return noise_density(v.noise, 0u, v.extent * p);
     if (LAYERED)
         return layered_density(MAP, v, p);
-    return mapped_density(MAP, v.first_knot, lookup(v.density, GRID_TYPE, p, tap));
+    return mapped(v, lookup(v.density, GRID_TYPE, p, tap));
 }
 #endif
 

@@ -26,6 +26,14 @@ float mapped_density(int map, uint first_knot, float value) {
     return density;
 }
 
+// Of the one medium there is. In an `if` of its own, which kernels without maps are compiled without.
+float mapped(MediumParams v, float value) {
+    float density = value;
+    if (MAP != MAP_NONE)
+        density = mapped_density(MAP, v.first_knot, value);
+    return density;
+}
+
 vec3 mapped_albedo(MediumParams v, float value) {
     MapKnot knot = map_knots[map_knot(v.first_knot, value)];
     return clamp(knot.albedo + (value - knot.value) * knot.albedo_slope, vec3(0.0), vec3(1.0));

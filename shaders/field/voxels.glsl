@@ -19,7 +19,7 @@ void begin_voxels(MediumParams v, inout Walk w) {
 // Density along the piece as a polynomial in s in [0, 1].
 vec4 voxel_polynomial(MediumParams v, Walk w, float t_exit) {
     if (FILTER == FILTER_NEAREST)
-        return vec4(mapped_density(MAP, v.first_knot, voxel(v.density, GRID_TYPE, w.cell)), 0.0, 0.0, 0.0);
+        return vec4(mapped(v, voxel(v.density, GRID_TYPE, w.cell)), 0.0, 0.0, 0.0);
     float corner[8];
     [[unroll]] for (int i = 0; i < 8; ++i)
         corner[i] = voxel(v.density, GRID_TYPE, w.cell + ivec3(i >> 2, i >> 1 & 1, i & 1));

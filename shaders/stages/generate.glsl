@@ -51,8 +51,9 @@ void generate(MediumParams v, inout Lane lane, out Rng rng) {
     rng = pixel_rng(lane.path.place, lane.path.sample_index, 0u);
     if (SEES_LAMPS && !READS_FLUX)
         look_at_lamps(v, lane, rng);
-    if (LOOKS_FROM_SENSOR)
-        look_at_lights(v, lane, rng);
+    if (READS_FLUX) // in an `if` of its own, which kernels without such sensors are compiled without
+        if (LOOKS_FROM_SENSOR)
+            look_at_lights(v, lane, rng);
 }
 
 #endif
