@@ -67,8 +67,11 @@ RenderScene load_render_scene(const RenderOptions& options, FieldCache& fields) 
     scene.holds_out = scene.holds_out || options.alpha;
     if (const std::string trouble = trouble_with_layers(scene); !trouble.empty())
         throw InputError("--aov, --alpha: " + trouble);
-    if (result.xml.empty())
-        result.assumed = give_camera(scene, fields);
+    try {
+        if (result.xml.empty())
+            result.assumed = give_camera(scene, fields);
+    } catch (const InputError&) { // of a file, say: whoever loads it says so, once no output can be in danger
+    }
     if (options.frame && result.xml.empty()) // what was made for a file is framed
         frame_medium(scene, fields);
     return result;
