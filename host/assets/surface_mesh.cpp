@@ -52,6 +52,11 @@ std::optional<SurfaceBounds> bounds_of(const std::vector<Surface>& surfaces) {
             add(ball->center, ball->radius);
         if (const auto* disk = std::get_if<DiskSurface>(&surface.shape))
             add(disk->center, disk->radius);
+        if (const auto* rectangle = std::get_if<RectangleSurface>(&surface.shape))
+            for (const double sign : {-1.0, 1.0}) {
+                add(rectangle->center + sign * (rectangle->edge_u + rectangle->edge_v), 0.0);
+                add(rectangle->center + sign * (rectangle->edge_u - rectangle->edge_v), 0.0);
+            }
         if (const auto* mesh = std::get_if<TriangleSurface>(&surface.shape))
             for (const glm::dvec3& vertex : mesh->vertices)
                 add(vertex, 0.0);

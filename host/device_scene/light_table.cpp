@@ -211,7 +211,9 @@ std::uint32_t loop_iterations(const Scene& scene) {
     const auto levels = std::bit_width(lights.size()) + 1;
     // The tree is gone down from a collision, from along a flight, and from a sensor of flux.
     const int places = reads_flux(scene.camera) ? 3 : 2;
-    return static_cast<std::uint32_t>(count(is_lamp) + 1 + count(is_met_by_chance) + 1 + places * (levels + 1));
+    const int for_lamps = scene.surfaces.empty() ? 1 : 2; // among surfaces lamps may hide each other
+    return static_cast<std::uint32_t>(for_lamps * (count(is_lamp) + 1) + count(is_met_by_chance) + 1 +
+                                      places * (levels + 1));
 }
 
 double reach_of_lamps(const std::vector<Light>& lights, const glm::dvec3& origin) {
@@ -234,6 +236,7 @@ LightTable make_light_table(const Scene& scene, const Assets& assets, const glm:
     for (const Light& light : scene.lights) {
         entries.push_back(std::visit(Rows(assets, origin, radius), light));
         entries.back().row.group = group_layer(groups, group_of(light));
+        entries.back().row.body = body_of(light) == no_body ? NO_SURFACE : static_cast<std::uint32_t>(body_of(light));
     }
     std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.place < b.place; });
     LightTable table;

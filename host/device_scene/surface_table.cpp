@@ -30,6 +30,11 @@ public:
         planes_.push_back({plane.point - origin_, plane.normal, glm::vec3(0.0f), row_});
         return SURFACE_PLANE;
     }
+    std::uint32_t operator()(const RectangleSurface& r) const {
+        return (*this)(TriangleSurface{{r.center - r.edge_u - r.edge_v, r.center + r.edge_u - r.edge_v,
+                                        r.center + r.edge_u + r.edge_v, r.center - r.edge_u + r.edge_v},
+                                       {{0, 1, 2}, {0, 2, 3}}});
+    }
     std::uint32_t operator()(const MeshSurface&) const { return SURFACE_TRIANGLES; } // not loaded: none
     std::uint32_t operator()(const TriangleSurface& mesh) const {
         for (const glm::uvec3& t : mesh.triangles) {

@@ -8,6 +8,7 @@
 #include "estimator_traits.h"
 #include "integrators.h"
 #include "shared/constants.h"
+#include "surface_lamps.h"
 
 namespace vkvol {
 
@@ -428,7 +429,8 @@ Scene with_preset(Scene scene) {
     }
     if (adjusts(adjust_no_emission) && glows)
         warn("leaves emission out; nanoVDBEmission renders it");
-    return scene;
+    const bool looks = scene.settings.choices.nee.value_or(integrator.nee) != NEE_NONE;
+    return looks && scattering != SCATTERING_NONE ? with_lamps_of_surfaces(std::move(scene)) : scene;
 }
 
 } // namespace vkvol

@@ -7,6 +7,7 @@
 #include "digest.h"
 #include "method.h"
 #include "shared/constants.h"
+#include "surface_lamps.h"
 
 namespace vkvol {
 
@@ -181,6 +182,12 @@ void add_shape(Writer& writer, const DiskSurface& disk) {
     writer.add("disk_radius", disk.radius);
 }
 
+void add_shape(Writer& writer, const RectangleSurface& rectangle) {
+    writer.add("rectangle_center", rectangle.center);
+    writer.add("rectangle_edge", rectangle.edge_u);
+    writer.add("rectangle_other", rectangle.edge_v);
+}
+
 void add_shape(Writer& writer, const PlaneSurface& plane) {
     writer.add("plane", plane.point);
     writer.add("plane_normal", plane.normal);
@@ -276,9 +283,10 @@ std::string scene_hash(const Scene& authored) {
                    glm::dvec3(static_cast<int>(scene.settings.pixel_filter), scene.settings.pixel_filter_radius, 0.0));
     for (const Volume& volume : scene.volumes)
         add_volume(writer, volume);
-    for (const Surface& surface : scene.surfaces)
+    const Scene shining = without_lamps_of_surfaces(scene); // the same picture, whether they are met or looked for
+    for (const Surface& surface : shining.surfaces)
         add_surface(writer, surface);
-    for (const Light& light : scene.lights)
+    for (const Light& light : shining.lights)
         if (method.nee != NEE_NONE || is_met_by_chance(light))
             std::visit([&writer](const auto& kind) { add_light(writer, kind); }, light);
     // Where light scatters but once, what flights meet is scattered by looks alone.

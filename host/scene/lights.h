@@ -56,7 +56,9 @@ struct SpotLight {
     std::string group = {};
 };
 
-// Lamps shine and stop nothing: what passes through them goes on. The camera sees them.
+// Lamps shine and stop nothing: what passes through them goes on. The camera sees them. One that is a surface's light
+// has that as its body, a place in Scene::surfaces.
+inline constexpr int no_body = -1;
 
 // A ball that shines outwards, evenly.
 struct SphereLight {
@@ -64,6 +66,7 @@ struct SphereLight {
     double radius = 1.0; // > 0
     Rgb radiance{0.0};
     std::string group = {};
+    int body = no_body;
 };
 
 // A disk that shines evenly from the side of its normal.
@@ -73,6 +76,7 @@ struct DiskLight {
     double radius = 1.0;               // > 0
     Rgb radiance{0.0};
     std::string group = {};
+    int body = no_body;
 };
 
 // A rectangle that does.
@@ -81,6 +85,7 @@ struct RectangleLight {
     glm::dvec3 edge_u{0.5, 0.0, 0.0}, edge_v{0.0, 0.0, 0.5}; // halves of its edges, across each other
     Rgb radiance{0.0};
     std::string group = {};
+    int body = no_body;
 
     glm::dvec3 normal() const { return glm::normalize(glm::cross(edge_u, edge_v)); }
 };
@@ -121,6 +126,16 @@ using Light =
 
 inline const std::string& group_of(const Light& light) {
     return std::visit([](const auto& kind) -> const std::string& { return kind.group; }, light);
+}
+
+inline int body_of(const Light& light) {
+    return std::visit(
+        [](const auto& kind) {
+            if constexpr (requires { kind.body; })
+                return kind.body;
+            return no_body;
+        },
+        light);
 }
 
 // What a light sends out in all, for each unit of its intensity or radiance: the solid angle into which it shines, of a

@@ -22,6 +22,11 @@ struct DiskSurface {
     double radius = 1.0;              // > 0
 };
 
+struct RectangleSurface {
+    glm::dvec3 center{0.0};
+    glm::dvec3 edge_u{0.5, 0.0, 0.0}, edge_v{0.0, 0.0, -0.5}; // halves of its edges, across each other; front: u x v
+};
+
 // Without end.
 struct PlaneSurface {
     glm::dvec3 point{0.0};
@@ -38,7 +43,8 @@ struct MeshSurface {
     std::filesystem::path file; // .obj
 };
 
-using SurfaceShape = std::variant<BallSurface, DiskSurface, PlaneSurface, TriangleSurface, MeshSurface>;
+using SurfaceShape =
+    std::variant<BallSurface, DiskSurface, RectangleSurface, PlaneSurface, TriangleSurface, MeshSurface>;
 
 // As MATERIAL_... of shaders/shared/constants.h.
 enum class MaterialKind { diffuse, mirror, conductor, dielectric };

@@ -92,11 +92,15 @@ TriangleSurface moved(const glm::dmat4& map, TriangleSurface shape) {
     return shape;
 }
 
-TriangleSurface rectangle_of(const XmlElement& element) {
-    const Rectangle r = rectangle(element);
-    return {{r.center - r.edge_u - r.edge_v, r.center + r.edge_u - r.edge_v, r.center + r.edge_u + r.edge_v,
-             r.center - r.edge_u + r.edge_v},
-            {{0, 1, 2}, {0, 2, 3}}};
+// A mirror leaves its front where the mirrored front is; sheared it is a parallelogram, of triangles.
+SurfaceShape moved(const glm::dmat4& map, const Rectangle& r) {
+    const glm::dmat3 linear(map);
+    const double turn = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
+    const glm::dvec3 center = moved(map, r.center), u = turn * (linear * r.edge_u), v = linear * r.edge_v;
+    if (std::abs(glm::dot(u, v)) > 1e-9 * glm::length(u) * glm::length(v))
+        return TriangleSurface{{center - u - v, center + u - v, center + u + v, center - u + v},
+                               {{0, 1, 2}, {0, 2, 3}}};
+    return RectangleSurface{center, u, v};
 }
 
 TriangleSurface box_of(const Box& box) {
@@ -179,7 +183,7 @@ Surface SceneReader::surface(const XmlElement& element) const {
         surface.shape = PlaneSurface{moved(map, point), vkvol::unit(glm::dmat3(map) * normal)};
     } else if (kind == "rectangle") {
         allow({"x", "y", "z", "lookAt", "up", "width", "height"});
-        surface.shape = moved(map, rectangle_of(element));
+        surface.shape = moved(map, rectangle(element));
     } else if (kind == "box") {
         allow({"x", "y", "z", "width", "height", "depth"});
         const auto edge = [&](const char* name) { return element.attribute_number(name, 1.0, length); };

@@ -1,6 +1,7 @@
 // One kernel with its specialization, ready to be recorded.
 #pragma once
 
+#include <memory>
 #include <span>
 
 #include "bindings.h"
@@ -9,13 +10,12 @@
 
 namespace vkvol {
 
+class Pipeline;
+
 class ComputePass {
 public:
     ComputePass(const Device& device, const Bindings& bindings, std::span<const std::uint32_t> spirv,
                 const Specialization& specialization, VkPipelineCache cache);
-    ~ComputePass();
-    ComputePass(const ComputePass&) = delete;
-    ComputePass& operator=(const ComputePass&) = delete;
 
     // At least `threads` invocations, in whole groups.
     void record(VkCommandBuffer commands, const shared::PassPush& push, std::uint32_t threads) const;
@@ -26,9 +26,8 @@ public:
 private:
     void bind(VkCommandBuffer commands, const shared::PassPush& push) const;
 
-    const Device& device_;
     const Bindings& bindings_;
-    VkPipeline pipeline_ = VK_NULL_HANDLE;
+    std::shared_ptr<const Pipeline> pipeline_;
 };
 
 } // namespace vkvol

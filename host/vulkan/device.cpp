@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "pipeline_cache.h"
+#include "pipelines.h"
 #include "vulkan_error.h"
 
 namespace vkvol {
@@ -283,6 +284,7 @@ void Device::create_device(const DeviceOptions& options) {
                                       "another (`vkvol devices` lists them)",
                                       info_.name, result_name(result)));
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+    pipelines_ = std::make_unique<Pipelines>(device_);
 }
 
 Device::~Device() {
@@ -290,6 +292,7 @@ Device::~Device() {
 }
 
 void Device::destroy() {
+    pipelines_.reset();
     if (device_)
         vkDestroyDevice(device_, nullptr);
     if (messenger_)

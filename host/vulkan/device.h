@@ -3,11 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 #include <vulkan/vulkan.h>
 
 namespace vkvol {
+
+class Pipelines;
 
 struct DeviceOptions {
     std::string choice = "auto"; // auto | index | part of the name | uuid | cpu
@@ -53,6 +56,9 @@ public:
     // Index of a memory type in `allowed` with all `wanted` properties, or -1.
     int find_memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const;
 
+    // What has been compiled for it.
+    Pipelines& pipelines() const { return *pipelines_; }
+
     // What the validation layer has said so far; empty without --validate.
     const std::vector<std::string>& validation_messages() const { return messages_; }
 
@@ -69,6 +75,7 @@ private:
     VkQueue queue_ = VK_NULL_HANDLE;
     std::uint32_t queue_family_ = 0;
     bool timestamps_ = false;
+    std::unique_ptr<Pipelines> pipelines_;
     VkPhysicalDeviceProperties properties_{};
     VkPhysicalDeviceMemoryProperties memory_{};
     DeviceInfo info_;

@@ -8,6 +8,17 @@
 
 namespace vkvol {
 
+Specialization declared_of(std::span<const std::uint32_t> spirv, const Specialization& specialization) {
+    // SPIR-V 1.5, sections 2.3 and 3: five words of header, then instructions with their length in the upper half of
+    // the first word. Decorations come before the first function.
+    constexpr std::uint32_t header = 5, op_function = 54, op_decorate = 71, decoration_spec_id = 1;
+    Specialization declared{};
+    for (std::size_t i = header; i < spirv.size() && (spirv[i] & 0xffff) != op_function; i += spirv[i] >> 16)
+        if ((spirv[i] & 0xffff) == op_decorate && spirv[i + 2] == decoration_spec_id)
+            declared[spirv[i + 3]] = specialization[spirv[i + 3]];
+    return declared;
+}
+
 std::vector<std::uint32_t> specialized(std::span<const std::uint32_t> spirv, const Specialization& specialization) {
     std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> values;
     for (std::uint32_t id = 0; id < SPEC_COUNT; ++id)

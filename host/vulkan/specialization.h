@@ -17,6 +17,9 @@ using Specialization = std::array<std::int32_t, SPEC_COUNT>;
 // kernel's forms is indexed by their sum.
 inline constexpr unsigned form_chromatic = 1, form_windows = 2, form_full = 4, form_several = 8, form_surfaces = 16;
 
+// These values, with zero for the constants that the kernel does not declare: where two are equal, so are its codes.
+Specialization declared_of(std::span<const std::uint32_t> spirv, const Specialization& specialization);
+
 // The kernel as these values leave it: what they make unreachable is gone, and nothing is left to specialise. Drivers
 // could do that themselves, but pay for the whole kernel first: half of llvmpipe's start-up, and minutes in
 // SwiftShader.

@@ -56,21 +56,36 @@ LightSample sample_lamp(Scatterer s, LightRow light, vec3 from, vec3 travel, vec
     return of_mixture(light, from, direction, t, scatter_pdf(s, travel, direction), share);
 }
 
-// What the camera sees along a ray: one of the lamps that it meets, drawn by u in [0, 1) from all of them alike.
-LightSample seen_lamp(vec3 from, vec3 direction, float u, out uint group) {
+// The nearest of those that have bodies, which hides all lamps behind it; a row that is none if the ray meets none.
+uint nearest_body(vec3 from, vec3 direction, out float nearest) {
+    uint row = NO_LIGHT;
+    nearest = FAR;
+    if (HAS_SURFACES)
+        for (uint i = frame.lamp_first; i < frame.lamp_first + frame.lamp_count; ++i) {
+            float t = lights[i].body != NO_SURFACE ? hit_lamp(lights[i], from, direction) : FAR;
+            row = t < nearest ? i : row;
+            nearest = min(nearest, t);
+        }
+    return row;
+}
+
+// What the camera sees along a ray: one of the lamps that it meets, drawn by u in [0, 1) from all of them alike, and its row.
+LightSample seen_lamp(vec3 from, vec3 direction, float u, out uint row) {
     LightSample seen = LightSample(direction, FAR, vec3(0.0), 0.0);
     float met = 0.0;
-    group = 0u;
+    row = frame.lamp_first;
+    float hidden;
+    uint front = nearest_body(from, direction, hidden);
     for (uint i = frame.lamp_first; i < frame.lamp_first + frame.lamp_count; ++i) {
         float t = hit_lamp(lights[i], from, direction);
-        if (t < FAR) {
+        if (t < hidden || i == front) {
             // With chance 1 / met the latest takes the place of the one before: u is stretched to what is left of it.
             met += 1.0;
             bool taken = u * met < 1.0;
             u = taken ? u * met : (u * met - 1.0) / max(met - 1.0, 1.0);
             seen.distance = taken ? t : seen.distance;
             seen.light = taken ? lights[i].radiance : seen.light;
-            group = taken ? lights[i].group : group;
+            row = taken ? i : row;
         }
     }
     seen.light *= met;

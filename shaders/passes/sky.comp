@@ -25,8 +25,8 @@ void main() {
         vec3 radiance = vec3(0.0);
         if (SEES_LAMPS) {
             Rng rng = pixel_rng(place, i, 0u);
-            uint group;
-            radiance = seen_lamp(ray.origin, ray.direction, to_uniform(next_words(rng)).w, group).light;
+            uint row;
+            radiance = seen_lamp(ray.origin, ray.direction, to_uniform(next_words(rng)).w, row).light;
         }
         radiance += frame.lights[LIGHT_BACKGROUND].radiance;
         if (SEES_SKY)

@@ -23,12 +23,12 @@ LightSample sample_lamp_by_ray(LightRow light, vec3 from, vec3 ray, vec2 u, floa
 }
 
 // Of one of all lights, what a ray from there would bring on average. The sample's own ray serves where lamps are looked for by rays.
-LightSample look_from_sensor(vec3 from, vec3 ray, inout Rng rng, out uint group) {
+LightSample look_from_sensor(vec3 from, vec3 ray, inout Rng rng, out uint row) {
     uvec4 words = next_words(rng);
     vec2 u = to_uniform(words).zw;
     float chance;
-    LightRow light = lights[choose_light(from, words, rng, chance)];
-    group = light.group;
+    row = choose_light(from, words, rng, chance);
+    LightRow light = lights[row];
     LightSample drawn;
     if (SEES_LAMPS && light.kind >= LIGHT_SPHERE)
         drawn = sample_lamp_by_ray(light, from, ray, u, to_tap(words).z);

@@ -226,6 +226,7 @@ struct LightRow {
     float darkening; // of a disc toward its rim, in [0, 1]
     float area;     // of a lamp, as seen from in front
     uint group;     // of layers
+    uint body;      // of a lamp that is a surface, that; else NO_SURFACE
     float full_within; // of a spot, 1 - cos of angles to its axis: full intensity within,
     float none_beyond; // none beyond
 };

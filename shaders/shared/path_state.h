@@ -60,7 +60,8 @@
     ROW(SurfaceSearch, seek, seeking)                                                                                 \
     ROW(float, reach, under_way && HAS_SURFACES) /* of the flight, to the surface that ends it, or FAR [world units] */ \
     ROW(uint, struck, under_way && HAS_SURFACES) /* that surface's primitive */                                       \
-    ROW(uint, lit_surface, looking && HAS_SURFACES) /* the primitive that the shadow ray lights, or NO_SURFACE */
+    ROW(uint, lit_surface, looking && HAS_SURFACES) /* the primitive that the shadow ray lights, or NO_SURFACE */ \
+    ROW(uint, lamp_body, looking && HAS_SURFACES) /* the surface whose light it looks for, or NO_SURFACE */
 
 // ROW(type, name, when): a segment as far as it has gone, and which estimators need the field; see kept() in segment.glsl.
 #define WALK_STATE(ROW)                                                                                               \

@@ -26,6 +26,7 @@ void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spec
         lane.leg = LEG_LOOK;
 #ifdef SURFACES
         lane.lit_surface = s.is_surface ? surface_at(lane.path) : NO_SURFACE;
+        lane.lamp_body = row.body;
 #endif
         lane.to_light = drawn.direction;
         lane.light_distance = drawn.distance;

@@ -60,12 +60,12 @@ void scatter_at_surface(vec4 u, inout Lane lane) {
 // What mirrors and glass show of lamps is seen as the camera sees them.
 bool look_at_shown_lamps(inout Lane lane, inout Rng rng) {
     bool is_shown = lane.todo == TODO_FLY && surface_at(lane.path) != NO_SURFACE && lane.phase_pdf == 0.0;
-    uint group;
-    LightSample seen = seen_lamp(lane.path.position, lane.path.direction, to_uniform(next_words(rng)).w, group);
+    uint row;
+    LightSample seen = seen_lamp(lane.path.position, lane.path.direction, to_uniform(next_words(rng)).w, row);
     bool sees = is_shown && seen.distance < FAR;
-    uint label = kind_label(lane.path.depth) | group_label(group) | lane.first_label;
+    uint label = kind_label(lane.path.depth) | group_label(lights[row].group) | lane.first_label;
     if (sees)
-        look_straight(seen, lane.beta, label, TODO_SET_OUT, lane);
+        look_straight(seen, row, lane.beta, label, TODO_SET_OUT, lane);
     return sees;
 }
 #endif

@@ -6,10 +6,10 @@
 #include "stages/look_straight.glsl"
 
 // A look from the sensor comes before the first flight.
-void look_first(MediumParams v, LightSample seen, uint group, inout Lane lane) {
-    uint label = kind_label(0u) | group_label(group);
+void look_first(MediumParams v, LightSample seen, uint row, inout Lane lane) {
+    uint label = kind_label(0u) | group_label(lights[row].group);
     if (LOOKS) {
-        look_straight(seen, to_spectrum(vec3(1.0)), label, TODO_DEPART, lane);
+        look_straight(seen, row, to_spectrum(vec3(1.0)), label, TODO_DEPART, lane);
     } else {
         add_light(lane, analytic_shadow(v, lane.path.position, seen.direction, seen.distance) * seen.light, label);
     }
@@ -17,21 +17,21 @@ void look_first(MediumParams v, LightSample seen, uint group, inout Lane lane) {
 
 // Where the camera sees lamps, toward one of them. Random numbers begin behind the camera's draw, of which it takes what is left.
 void look_at_lamps(MediumParams v, inout Lane lane, inout Rng rng) {
-    uint group;
-    LightSample seen = seen_lamp(lane.path.position, lane.path.direction, to_uniform(next_words(rng)).w, group);
+    uint row;
+    LightSample seen = seen_lamp(lane.path.position, lane.path.direction, to_uniform(next_words(rng)).w, row);
     if (seen.distance == FAR)
         rng.draw = 0u;
     else
-        look_first(v, seen, group, lane);
+        look_first(v, seen, row, lane);
 }
 
 // Where flux is read, toward a light. Random numbers begin behind the camera's draw.
 void look_at_lights(MediumParams v, inout Lane lane, inout Rng rng) {
     rng.draw = 1u;
-    uint group;
-    LightSample seen = look_from_sensor(lane.path.position, lane.path.direction, rng, group);
+    uint row;
+    LightSample seen = look_from_sensor(lane.path.position, lane.path.direction, rng, row);
     if (largest(seen.light) > 0.0)
-        look_first(v, seen, group, lane);
+        look_first(v, seen, row, lane);
 }
 
 void generate(MediumParams v, inout Lane lane, out Rng rng) {

@@ -4,8 +4,8 @@
 #include "lights/sample.glsl"
 #include "stages/lane.glsl"
 
-// Its light, of this label, counts as often as `lit` says; then the path does as `next` says.
-void look_straight(LightSample seen, Spectrum lit, uint label, uint next, inout Lane lane) {
+// Its light, of this label and from that row, counts as often as `lit` says; then the path does as `next` says.
+void look_straight(LightSample seen, uint row, Spectrum lit, uint label, uint next, inout Lane lane) {
     lane.label = label;
     lane.position = lane.path.position;
     lane.lit = lit;
@@ -14,8 +14,10 @@ void look_straight(LightSample seen, Spectrum lit, uint label, uint next, inout 
     lane.to_light = seen.direction;
     lane.light_distance = seen.distance;
     lane.light = seen.light;
-    if (HAS_SURFACES)
+    if (HAS_SURFACES) {
         lane.lit_surface = surface_at(lane.path);
+        lane.lamp_body = lights[row].body;
+    }
     look_in_full(lane);
     lane.todo = TODO_LOOK;
 }

@@ -13,7 +13,7 @@ void seek(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     MeshRay mesh_ray = make_mesh_ray(frame.first_surface_node, frame.surface_nodes, ray);
     bool over = looks && lane.seek.primitive != NO_SURFACE;
     for (int k = 0; k < SURFACE_NODES_PER_TURN && !over; ++k) {
-        over = step_seek(mesh_ray, ray, from, lane.seek);
+        over = step_seek(mesh_ray, ray, from, looks ? lane.lamp_body : NO_SURFACE, lane.seek);
         over = over || (looks && lane.seek.primitive != NO_SURFACE);
     }
     if (over && looks && lane.seek.primitive != NO_SURFACE) {

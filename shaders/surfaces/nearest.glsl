@@ -4,8 +4,9 @@
 #define NEAREST_GLSL
 #include "surfaces/surface_point.glsl"
 
-void take_nearer(MeshRay m, Ray ray, uint i, uint from, inout SurfaceSearch s) {
-    float t = meet_primitive(m, ray, i, from);
+// `body`: the row of what is passed over, since it is the light that the ray goes to; or NO_SURFACE.
+void take_nearer(MeshRay m, Ray ray, uint i, uint from, uint body, inout SurfaceSearch s) {
+    float t = primitives[i].surface != body ? meet_primitive(m, ray, i, from) : FAR;
     s.primitive = t < s.nearest ? i : s.primitive;
     s.nearest = min(s.nearest, t);
 }
@@ -23,13 +24,13 @@ SurfaceSearch begin_seek(Ray ray, float reach, uint from) {
 }
 
 // One node: on to the next in depth-first order, or past its subtree. True once the search is over.
-bool step_seek(MeshRay m, Ray ray, uint from, inout SurfaceSearch s) {
+bool step_seek(MeshRay m, Ray ray, uint from, uint body, inout SurfaceSearch s) {
     if (s.node < frame.surface_nodes) {
         BvhNode node = bvh[frame.first_surface_node + s.node];
         bool met = meets(m, node, 0.0, s.nearest);
         uint first = node.leaf >> 3u, last = first + (met ? node.leaf & 7u : 0u);
         for (uint k = first; k < last; ++k) // at most MESH_LEAF
-            take_nearer(m, ray, k, from, s);
+            take_nearer(m, ray, k, from, body, s);
         s.node = met && node.leaf == 0u ? s.node + 1u : node.skip;
     }
     return s.node >= frame.surface_nodes;

@@ -30,6 +30,7 @@ SEEK_STATE(PUT_SEEK)
 PUT(laid_aside.reach)
 PUT(laid_aside.struck)
 PUT(laid_aside.lit_surface)
+PUT(laid_aside.lamp_body)
 #undef PUT_WALK
 #undef PUT_FLIGHT
 #undef PUT_SEARCH
@@ -65,6 +66,7 @@ PUT(light_row.extent)
 PUT(light_row.darkening)
 PUT(light_row.area)
 PUT(light_row.group)
+PUT(light_row.body)
 PUT(light_row.full_within)
 PUT(light_row.none_beyond)
 

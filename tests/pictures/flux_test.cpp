@@ -172,6 +172,25 @@ TEST_CASE("irradiance above and below a conservative slab", "[gpu][image][hard][
     }
 }
 
+// The sum over the times that light goes to and fro between slab and ground: of the slab, R and T are for the beam, R'
+// and T' for even light, from either side.
+TEST_CASE("a slab over a ground has the flux of the adding formula", "[gpu][image][hard][flux]") {
+    const double tau = GENERATE(1.0, 5.0), albedo = GENERATE(0.9, 1.0), ground = 0.3;
+    const reference::SlabSolution beam = reference::slab_in_beam(albedo, tau, 1.0, 400);
+    const reference::SlabSolution even = reference::slab_in_half_sky(albedo, tau, 400);
+    const double on_ground = beam.transmitted / (1.0 - ground * even.reflected / pi);
+    const double leaving = beam.reflected + ground * on_ground * even.transmitted / pi;
+    for (const bool above : {true, false}) {
+        Scene scene = above ? rectangle({0.0, 0.0, 1.0}, down, {1.0, 1.0}, 8, 1024)
+                            : rectangle({0.0, 0.0, -1.2}, up, {1.0, 1.0}, 8, 1024);
+        scene.volumes = {slab(tau, albedo)};
+        scene.surfaces.emplace_back().shape = PlaneSurface{{0.0, 0.0, -1.5}, up};
+        scene.surfaces.back().material.color = Rgb(ground);
+        scene.lights = {DirectionalLight{up, Rgb(1.0)}};
+        check_means(scene, above ? leaving : on_ground, fmt::format("slab {} of {}, {}", tau, albedo, above));
+    }
+}
+
 TEST_CASE("irradiance above a semi-infinite medium is Chandrasekhar's", "[gpu][image][hard][flux]") {
     const double albedo = GENERATE(0.5, 0.9, 0.99);
     Scene scene = rectangle({0.0, 0.0, 1.0}, down, {1.0, 1.0}, 8, 512);

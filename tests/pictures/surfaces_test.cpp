@@ -160,15 +160,27 @@ TEST_CASE("a floor under a lamp has the form factor of a disk", "[gpu][image][su
     scene.lights = {DiskLight{{0.0, h, 0.0}, {0.0, -1.0, 0.0}, r, Rgb(1.0)}};
     const Film looked = render_here(scene, 1).film;
     CHECK_AGREEMENT(agree_with_means(looked, std::vector<Rgb>(looked.mean.size(), Rgb(expected)), "lamp"));
-    // The same as a surface that glows, which paths meet by chance.
+    // The same as a surface that glows, which is looked for as a lamp is, or met by chance.
     scene.lights.clear();
     Surface glowing;
     glowing.shape = DiskSurface{{0.0, h, 0.0}, {0.0, -1.0, 0.0}, r};
     glowing.material = grey(0.0);
     glowing.emission = Rgb(1.0);
     scene.surfaces.push_back(glowing);
-    const Film met = render_here(scene, 2).film;
-    CHECK_AGREEMENT(agree_with_means(met, std::vector<Rgb>(met.mean.size(), Rgb(expected)), "glowing surface"));
+    const auto check = [&](const char* name) {
+        const Film film = render_here(scene, 2).film;
+        CHECK_AGREEMENT(agree_with_means(film, std::vector<Rgb>(film.mean.size(), Rgb(expected)), name));
+    };
+    check("glowing surface");
+    scene.settings.choices.nee = NEE_NONE;
+    check("glowing surface, met by chance");
+    // What looks are for: by chance p = r^2 / (r^2 + h^2) of the paths find it, and the variance of one is albedo^2 p.
+    const double small = 0.05, p = small * small / (small * small + h * h);
+    std::get<DiskSurface>(scene.surfaces.back().shape).radius = small;
+    scene.settings.choices.nee = NEE_COLLISIONS;
+    const Film looked_for = render_here(scene, 3).film;
+    CHECK_AGREEMENT(agree_with_means(looked_for, std::vector<Rgb>(looked_for.mean.size(), Rgb(albedo * p)), "small"));
+    CHECK(looked_for.variance.front().x < 0.01 * albedo * albedo * p / scene.settings.spp);
 }
 
 TEST_CASE("fog darkens a sunlit floor by both ways through it", "[gpu][image][surfaces]") {
@@ -279,6 +291,36 @@ TEST_CASE("surfaces among media equal the reference, by both schedules", "[gpu][
     Scene bare = scene;
     bare.volumes.clear();
     CHECK_AGREEMENT(agree(render_here(bare, 1).film, render_reference(bare, 2), "no medium"));
+}
+
+TEST_CASE("surfaces that shine are lamps with bodies", "[gpu][image][surfaces]") {
+    // All shapes, from both sides, before and behind each other, as mirrors and glass show them; against the reference,
+    // which meets them by chance.
+    Scene scene = still_life();
+    scene.lights = {sunlight({0.3, 0.25, 0.2})};
+    scene.surfaces.pop_back();
+    const auto add = [&](SurfaceShape shape, const Rgb& emission, bool both) {
+        Surface& surface = scene.surfaces.emplace_back();
+        surface.shape = std::move(shape);
+        surface.material = grey(0.6);
+        surface.emission = emission;
+        surface.shines_both_ways = both;
+    };
+    add(BallSurface{{0.1, -0.55, 1.2}, 0.35}, {1.0, 0.6, 0.3}, false);
+    add(BallSurface{{1.9, 1.0, 0.5}, 0.3}, {0.5, 0.9, 0.4}, true);
+    add(DiskSurface{{-1.7, 0.9, -0.4}, glm::normalize(glm::dvec3(1.0, -0.6, 0.5)), 0.5}, {1.5, 1.0, 0.5}, true);
+    add(RectangleSurface{{0.0, 1.3, -1.0}, {0.6, 0.0, 0.0}, {0.0, 0.3, 0.2}}, {0.4, 0.5, 1.2}, false);
+    const Film film = render_here(scene, 1).film;
+    CHECK_AGREEMENT(agree(film, render_reference(scene, 2), "lamps with bodies"));
+    RenderJob staged;
+    staged.plan.schedule = Schedule::staged;
+    CHECK(same_bits(film, render_here(scene, 1, staged).film));
+    Scene chance = scene;
+    chance.settings.choices.nee = NEE_NONE;
+    chance.lights.clear();
+    scene.lights.clear();
+    const Film by_chance = render_here(chance, 3).film, looked = render_here(scene, 4).film;
+    CHECK_AGREEMENT(agree(looked, by_chance, "by chance"));
 }
 
 TEST_CASE("surfaces among media are the same for every estimator", "[gpu][image][surfaces]") {

@@ -46,6 +46,13 @@ void meet(const vkvol::Surface& surface, const Ray& ray, std::optional<SurfaceHi
         const double t = glm::dot(disk->center - ray.origin, disk->normal) / glm::dot(ray.direction, disk->normal);
         if (glm::distance(ray.at(t), disk->center) <= disk->radius)
             keep_nearer(found, t, disk->normal, surface);
+    } else if (const auto* r = std::get_if<vkvol::RectangleSurface>(&surface.shape)) {
+        const glm::dvec3 normal = glm::normalize(glm::cross(r->edge_u, r->edge_v));
+        const double t = glm::dot(r->center - ray.origin, normal) / glm::dot(ray.direction, normal);
+        const glm::dvec3 at = ray.at(t) - r->center;
+        if (std::abs(glm::dot(at, r->edge_u)) <= glm::dot(r->edge_u, r->edge_u) &&
+            std::abs(glm::dot(at, r->edge_v)) <= glm::dot(r->edge_v, r->edge_v))
+            keep_nearer(found, t, normal, surface);
     } else if (const auto* plane = std::get_if<vkvol::PlaneSurface>(&surface.shape)) {
         const double t = glm::dot(plane->point - ray.origin, plane->normal) / glm::dot(ray.direction, plane->normal);
         keep_nearer(found, t, plane->normal, surface);

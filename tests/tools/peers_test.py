@@ -158,6 +158,35 @@ class SceneTest(unittest.TestCase):
         np.testing.assert_allclose(camera.up, UP)
 
 
+class SurfacesTest(unittest.TestCase):
+    def surface(self, text):
+        return read(f"<surfaces>{text}</surfaces>").surfaces[0]
+
+    def test_transforms_count_one_after_another(self):
+        box = self.surface('<box x="1"><transform><rotate y="1" angle="90"/><scale value="2"/><translate y="5"/></transform></box>')
+        np.testing.assert_allclose(box.matrix @ [0, 0, 0, 1], [0, 5, -2, 1], atol=1e-12)
+        np.testing.assert_allclose(box.matrix @ [0, 0, 1, 1], [1, 5, -2, 1], atol=1e-12)
+
+    def test_flat_ones_face_where_they_look(self):
+        for text, towards in (('<disk x="1" lookAt="1 -3 0"/>', -UP), ('<plane y="2"/>', UP),
+                              ('<rectangle y="-1" lookAt="0 0 0" width="2" height="4"/>', UP)):
+            matrix = self.surface(text).matrix
+            np.testing.assert_allclose(matrix[:3, 2], towards, atol=1e-12)
+        np.testing.assert_allclose(np.ptp(self.surface('<rectangle z="1" lookAt="0 0 9" width="2" height="4"/>').corners(),
+                                          axis=0)[:2], [2, 4], atol=1e-12)
+
+    def test_what_they_are_made_of(self):
+        glowing = self.surface('<sphere r="0.2" g="0.4" b="0.6" multiplier="0.5"><emission r="3" g="2" b="1"/></sphere>')
+        np.testing.assert_allclose(glowing.color, [0.1, 0.2, 0.3])
+        np.testing.assert_allclose(glowing.emission, [3, 2, 1])
+        metal = self.surface('<sphere material="conductor" eta="1 2 3" k="4"/>')
+        np.testing.assert_allclose([metal.color, metal.eta, metal.k], [[1, 1, 1], [1, 2, 3], [4, 4, 4]])
+        for text in ('<sphere material="conductor" metal="gold"/>', '<disk lookAt="0 1 0"><emission sides="2"/></disk>',
+                     "<cone/>", "<box><transform><matrix/></transform></box>"):
+            with self.assertRaises(SystemExit):
+                self.surface(text)
+
+
 class SpotPictureTest(unittest.TestCase):
     def test_interpolated_it_is_the_smooth_step_of_the_cosine(self):
         for angle, blend in ((40.0, 0.2), (100.0, 1.0)):

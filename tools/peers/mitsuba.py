@@ -24,6 +24,7 @@ import contest
 import grid as grids
 import lights
 import mitsuba_lights
+import mitsuba_surfaces
 import scene as scenes
 import vkvol
 
@@ -55,13 +56,16 @@ class Description:
 
     def dictionary(self, integrator):
         scene = self.scene
-        result = {"type": "scene", "integrator": self.integrator(integrator), "sensor": self.sensor(),
-                  "boundary": self.boundary()}
+        result = {"type": "scene", "integrator": self.integrator(integrator), "sensor": self.sensor()}
+        if scene.medium is not None:
+            result["boundary"] = self.boundary()
+        for i, surface in enumerate(scene.surfaces):
+            result[f"surface{i}"] = mitsuba_surfaces.entry(self.mi, surface)
         if scene.background.any() and not self.maps:
             result["sky"] = {"type": "constant", "radiance": mitsuba_lights.rgb(scene.background)}
             if self.options.sky == "escape" and scene.lights:
                 result["sky"]["sampling_weight"] = 0.0  # of shadow rays
-        corners = scene.medium.shape.corners()
+        corners = scene.corners()
         translate = mitsuba_lights.Lights(self.mi, corners.mean(axis=0), np.linalg.norm(np.ptp(corners, axis=0)), self.fail)
         result.update((f"light{i}", translate.entry(light)) for i, light in enumerate(scene.lights))
         return result
@@ -80,7 +84,7 @@ class Description:
         if any(v != int(v) for v in whole):
             sys.exit("the picture starts or its reference frame ends within a pixel, which Mitsuba cannot render; take "
                      "a --width and --height that divide the frame evenly")
-        distance = np.linalg.norm(self.scene.medium.shape.corners() - camera.position, axis=1).max()
+        distance = np.linalg.norm(self.scene.corners() - camera.position, axis=1).max()
         farthest = 1e3 * distance + 2 * mitsuba_lights.FAR * distance  # beyond the sun
         sensor = {
             "type": "perspective", "fov": camera.fov, "fov_axis": "y",
@@ -93,7 +97,7 @@ class Description:
                      "width": int(picture.reference[0]), "height": int(picture.reference[1]),
                      "crop_offset_x": int(picture.start[0]), "crop_offset_y": int(picture.start[1]),
                      "crop_width": picture.width, "crop_height": picture.height}}
-        if self.scene.medium.shape.contains(camera.position):
+        if self.scene.medium is not None and self.scene.medium.shape.contains(camera.position):
             sensor["medium"] = {"type": "ref", "id": "medium"}
         return sensor
 

@@ -111,6 +111,8 @@ def light_lines(scene):
 
 
 def scene_lines(scene, options):
+    if scene.surfaces:
+        sys.exit(f"{scene.path}: surfaces are not translated for pbrt; remove <surfaces>")
     medium, shape = scene.medium, scene.medium.shape
     is_grid = isinstance(shape, grids.Grid)
     if is_grid and medium.nearest:

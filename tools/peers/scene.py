@@ -1,7 +1,7 @@
 """Reads vkvol's scene files for other renderers: what scenes/README.md says, as far as they can follow.
 
 What they cannot, such as emission, noise or meshes, is an error here, so that no comparison is of different scenes. Lights:
-lights.py."""
+lights.py; surfaces: surfaces.py."""
 import dataclasses
 import math
 import pathlib
@@ -13,6 +13,7 @@ import numpy as np
 
 import grid as grids
 import lights
+import surfaces
 
 # Paths that scatter once, or not at all: no path tracer has them.
 NOT_MULTIPLE = ("densitySampling", "homogeneousRayMarcherNEE", "homogeneousRayMarcherImproved",
@@ -89,10 +90,18 @@ class Scene:
     path: pathlib.Path
     camera: Camera
     picture: Picture
-    medium: Medium
+    medium: Medium  # or None
+    surfaces: list  # of surfaces.Surface
     lights: list  # of what lights.py has
     background: np.ndarray
     max_depth: int  # scattering events; None: unlimited
+
+    def corners(self):
+        """Points that span all that is finite."""
+        found = [surface.corners() for surface in self.surfaces]
+        if self.medium is not None:
+            found.append(self.medium.shape.corners())
+        return np.concatenate([*found, self.camera.position[None]])
 
 
 def box_corners(low, high):
@@ -191,7 +200,7 @@ class Reader:
             found = [light for light in found if isinstance(light, lights.MET_BY_CHANCE)]
         depth = self.text("maxDepth")
         return Scene(path=self.path, camera=self.camera(), picture=self.picture(), medium=self.medium(grid_override),
-                     lights=found, background=self.color("backgroundColor"),
+                     surfaces=self.surfaces(), lights=found, background=self.color("backgroundColor"),
                      max_depth=int(depth) if depth else None)
 
     def camera(self):
@@ -223,7 +232,7 @@ class Reader:
         return np.full(3, self.to_number(self.text(name, "0.5") or "0"))
 
     def shape(self, grid_override):
-        """The grid, sphere or box."""
+        """The grid, sphere or box; None without a medium."""
         field, sphere, box = (self.find(name) for name in ("densityField", "sphere", "box"))
         if grid_override or field is not None:
             name = "density" if field is None else field.get("grid", "density")
@@ -234,7 +243,10 @@ class Reader:
             return Sphere(self.vector(sphere), self.number(sphere, "radius", 1.0))
         if box is not None:
             return Box(self.vector(box), np.array([self.number(box, name, 1.0) for name in ("width", "height", "depth")]))
-        return self.fail("has no medium; there is nothing to compare")
+        return None
+
+    def surfaces(self):
+        return surfaces.Surfaces(self).read()
 
     def phase(self):
         element, name = self.find("phase"), self.text("phase", PHASES[0])
@@ -245,6 +257,8 @@ class Reader:
 
     def medium(self, grid_override):
         shape = self.shape(grid_override)
+        if shape is None:
+            return None if self.surfaces() else self.fail("has no medium and no surfaces; there is nothing to compare")
         sigma_a, sigma_s = self.coefficient("sigma_a"), self.coefficient("sigma_s")
         scale = self.to_number(self.text("lightRayDensityMultiplier", "1"))
         units = {e.get("unit", "voxel") for e in (self.find("sigma_a"), self.find("sigma_s")) if e is not None}
