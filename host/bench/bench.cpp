@@ -43,7 +43,7 @@ public:
 
 private:
     void warm_up(const std::vector<Estimator>& estimators);
-    double warm_up(const Estimator& estimator, double& setup_seconds);
+    double warm_up(const Estimator& estimator, double& setup_seconds, double& pipeline_seconds);
     void leave_out_slow();
     void announce(double reference_seconds) const;
     std::uint32_t next_seed() { return seed_of_run(request_.render.seed, ++renders_); }
@@ -60,11 +60,12 @@ private:
 
 // One sample that is not measured, for kernels to be compiled and files to be in memory, and then one for the speed,
 // which is returned as seconds.
-double Bench::warm_up(const Estimator& estimator, double& setup_seconds) {
+double Bench::warm_up(const Estimator& estimator, double& setup_seconds, double& pipeline_seconds) {
     const double hopeless = std::max(request_.seconds, 10.0); // the second render is spared then
     RenderResult result = render_whole(request_, estimator, device_, 1, next_seed(), std::nullopt);
     if (!request_.quiet)
         print_warnings(result.warnings);
+    pipeline_seconds = result.pipeline_seconds;
     if (result.render_seconds < hopeless)
         result = render_whole(request_, estimator, device_, 1, next_seed(), std::nullopt);
     setup_seconds = result.load_seconds + result.upload_seconds + result.pipeline_seconds;
@@ -76,9 +77,10 @@ void Bench::warm_up(const std::vector<Estimator>& estimators) {
     for (const Estimator& estimator : estimators) {
         if (interrupted())
             return;
+        double pipeline_seconds = 0.0;
         try {
             double setup_seconds = 0.0;
-            seconds_per_sample_.push_back(warm_up(estimator, setup_seconds));
+            seconds_per_sample_.push_back(warm_up(estimator, setup_seconds, pipeline_seconds));
             setup_seconds_.push_back(setup_seconds);
         } catch (const InputError& error) {
             if (!request_.integrators.empty() || estimator.is_default)
@@ -87,7 +89,7 @@ void Bench::warm_up(const std::vector<Estimator>& estimators) {
                 tell(stderr, "vkvol: note: {} is left out: {}\n", estimator.integrator, error.what());
             continue;
         }
-        result_.measurements.push_back({estimator, {}, {}, {}});
+        result_.measurements.push_back({estimator, {}, {}, {}, pipeline_seconds});
     }
 }
 

@@ -17,6 +17,7 @@ struct Measurement {
     std::vector<BenchRun> runs;
     std::vector<RenderResult> results; // of the same runs, their films left out
     Film last;                         // of the last run
+    double pipeline_seconds = 0.0;     // of a render before them: these found their kernels compiled
 };
 
 struct BenchResult {

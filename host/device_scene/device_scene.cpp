@@ -36,6 +36,7 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
         form_ |= form_full;
     if (!scene.surfaces.empty())
         make_surfaces(scene, assets);
+    specialization_[SPEC_TABLE_TEXELS] = buffers_.find_table_texels(most_texel_bytes) ? 1 : 0;
     for (const glm::dvec3& point : scene.camera.points)
         points_.emplace_back(point - origin_);
     buffers_.upload_points(device, commands, points_);

@@ -42,7 +42,7 @@ public:
     const LightTable& lights() const { return lights_; }                   // empty where there is no choice
     std::span<const shared::MediumParams> media() const { return media_; } // of several
     const SurfaceTable& surfaces() const { return surfaces_; }
-    std::span<const glm::vec3> points() const { return points_; }          // where flux is read, render space
+    std::span<const glm::vec3> points() const { return points_; } // where flux is read, render space
     BoundBuffers bound() const;
     std::uint64_t bytes() const;
 

@@ -90,6 +90,13 @@ void SceneBuffers::find_texels(std::uint64_t most_bytes) {
         texels_ = texels_ && (!*buffer || (*buffer)->bytes() <= most_bytes);
 }
 
+bool SceneBuffers::find_table_texels(std::uint64_t most_bytes) {
+    table_texels_ = true;
+    for (const auto* buffer : {&bvh_, &primitives_, &surfaces_, &lights_})
+        table_texels_ = table_texels_ && (!*buffer || (*buffer)->bytes() <= most_bytes);
+    return table_texels_;
+}
+
 // What a medium has only where it is no part of several.
 void SceneBuffers::upload_alone(const Device& device, Commands& commands, const LoadedMedium& medium) {
     if (medium.bvh) {
@@ -196,6 +203,12 @@ BoundBuffers SceneBuffers::bound() const {
         buffers[BINDING_GRID_TEXELS] = place(grids_);
         buffers[BINDING_LEAF_TEXELS] = place(leaf_table_);
         buffers[BINDING_MAJORANT_TEXELS] = place(majorants_);
+    }
+    if (table_texels_) {
+        buffers[BINDING_NODE_TEXELS] = place(bvh_);
+        buffers[BINDING_PRIMITIVE_TEXELS] = place(primitives_);
+        buffers[BINDING_SURFACE_TEXELS] = place(surfaces_);
+        buffers[BINDING_LIGHT_TEXELS] = place(lights_);
     }
     buffers[BINDING_CONTROLS] = place(controls_);
     buffers[BINDING_BLACKBODY] = place(blackbody_);

@@ -45,6 +45,8 @@ public:
 
     // Whether all that kernels read at every step of a walk can be read as texels.
     bool texels() const { return texels_; }
+    // Once lights and surfaces are here: whether their tables, and the hierarchy, can; then they are bound so, too.
+    bool find_table_texels(std::uint64_t most_bytes);
 
     BoundBuffers bound() const;
     std::uint64_t bytes() const;
@@ -62,7 +64,7 @@ private:
     std::optional<Buffer> lights_, light_tree_, sky_, sky_alias_, phase_, media_, overlaps_, maps_;
     std::optional<Buffer> surfaces_, primitives_, points_;
     std::vector<Buffer> windows_;
-    bool texels_ = false;
+    bool texels_ = false, table_texels_ = false;
     std::optional<std::uint32_t> window_bits_;
 };
 

@@ -19,15 +19,15 @@ public:
         : row_(row), origin_(origin), planes_(planes), bounded_(bounded) {}
 
     std::uint32_t operator()(const BallSurface& ball) const {
-        add(ball.center, glm::vec3(0.0f), ball.radius);
+        add(SURFACE_SPHERE, ball.center, glm::vec3(0.0f), ball.radius);
         return SURFACE_SPHERE;
     }
     std::uint32_t operator()(const DiskSurface& disk) const {
-        add(disk.center, disk.normal, disk.radius);
+        add(SURFACE_DISK, disk.center, disk.normal, disk.radius);
         return SURFACE_DISK;
     }
     std::uint32_t operator()(const PlaneSurface& plane) const {
-        planes_.push_back({plane.point - origin_, plane.normal, glm::vec3(0.0f), row_});
+        planes_.push_back({plane.point - origin_, row_, plane.normal, SURFACE_PLANE, glm::vec3(0.0f), 0});
         return SURFACE_PLANE;
     }
     std::uint32_t operator()(const RectangleSurface& r) const {
@@ -38,8 +38,9 @@ public:
     std::uint32_t operator()(const MeshSurface&) const { return SURFACE_TRIANGLES; } // not loaded: none
     std::uint32_t operator()(const TriangleSurface& mesh) const {
         for (const glm::uvec3& t : mesh.triangles) {
-            Bounded piece{
-                {mesh.vertices[t.x] - origin_, mesh.vertices[t.y] - origin_, mesh.vertices[t.z] - origin_, row_}, {}};
+            Bounded piece{{mesh.vertices[t.x] - origin_, row_, mesh.vertices[t.y] - origin_, SURFACE_TRIANGLES,
+                           mesh.vertices[t.z] - origin_, 0},
+                          {}};
             // One of no area has no normal, and no ray meets it.
             if (glm::length(glm::cross(piece.primitive.b - piece.primitive.a, piece.primitive.c - piece.primitive.a)) ==
                 0.0f)
@@ -53,10 +54,10 @@ public:
 
 private:
     // The box errs by the rounding of its middle and radius.
-    void add(const glm::dvec3& center, const glm::dvec3& normal, double radius) const {
+    void add(std::uint32_t shape, const glm::dvec3& center, const glm::dvec3& normal, double radius) const {
         const glm::vec3 middle = center - origin_;
         const float r = static_cast<float>(radius);
-        Bounded piece{{middle, normal, {r, 0.0f, 0.0f}, row_}, {}};
+        Bounded piece{{middle, row_, normal, shape, {r, 0.0f, 0.0f}, 0}, {}};
         piece.box.add(middle - r * 1.000001f);
         piece.box.add(middle + r * 1.000001f);
         bounded_.push_back(piece);

@@ -28,6 +28,7 @@ layout(constant_id = SPEC_TEMPERATURE_TYPE) const int TEMPERATURE_TYPE = GRID_FL
 layout(constant_id = SPEC_STEPS) const int STEPS = 1;
 layout(constant_id = SPEC_TRACE) const int TRACE = 0;
 layout(constant_id = SPEC_TEXELS) const int TEXELS = 0;
+layout(constant_id = SPEC_TABLE_TEXELS) const int TABLE_TEXELS = 0;
 layout(constant_id = SPEC_LEAPS) const int LEAPS = 0;
 #if defined(SEVERAL) && !defined(FULL)
 #define FULL
@@ -142,6 +143,12 @@ layout(scalar, binding = BINDING_SKY) readonly buffer SkyBlock { vec4 sky_texels
 layout(scalar, binding = BINDING_SKY_ALIAS) readonly buffer SkyAliasBlock { AliasEntry sky_alias[]; };
 layout(scalar, binding = BINDING_SURFACES) readonly buffer SurfaceBlock { SurfaceRow surfaces[]; };
 layout(scalar, binding = BINDING_PRIMITIVES) readonly buffer PrimitiveBlock { SurfacePrimitive primitives[]; };
+#ifdef SURFACES
+layout(binding = BINDING_NODE_TEXELS) uniform utextureBuffer node_texels;
+layout(binding = BINDING_PRIMITIVE_TEXELS) uniform utextureBuffer primitive_texels;
+layout(binding = BINDING_SURFACE_TEXELS) uniform utextureBuffer surface_texels;
+#endif
+layout(binding = BINDING_LIGHT_TEXELS) uniform utextureBuffer light_texels;
 layout(scalar, binding = BINDING_LIGHT_TREE) readonly buffer LightTreeBlock { LightNode light_nodes[]; };
 #ifdef SEVERAL
 layout(scalar, binding = BINDING_MEDIA) readonly buffer MediumBlock { MediumParams media[]; };

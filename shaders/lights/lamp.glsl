@@ -7,6 +7,7 @@
 #ifndef LAMP_GLSL
 #define LAMP_GLSL
 #include "lights/flat.glsl"
+#include "lights/row.glsl"
 #include "lights/sphere.glsl"
 #include "surfaces/scatterer.glsl"
 
@@ -62,7 +63,7 @@ uint nearest_body(vec3 from, vec3 direction, out float nearest) {
     nearest = FAR;
     if (HAS_SURFACES)
         for (uint i = frame.lamp_first; i < frame.lamp_first + frame.lamp_count; ++i) {
-            float t = lights[i].body != NO_SURFACE ? hit_lamp(lights[i], from, direction) : FAR;
+            float t = light_at(i).body != NO_SURFACE ? hit_lamp(light_at(i), from, direction) : FAR;
             row = t < nearest ? i : row;
             nearest = min(nearest, t);
         }
@@ -77,14 +78,14 @@ LightSample seen_lamp(vec3 from, vec3 direction, float u, out uint row) {
     float hidden;
     uint front = nearest_body(from, direction, hidden);
     for (uint i = frame.lamp_first; i < frame.lamp_first + frame.lamp_count; ++i) {
-        float t = hit_lamp(lights[i], from, direction);
+        float t = hit_lamp(light_at(i), from, direction);
         if (t < hidden || i == front) {
             // With chance 1 / met the latest takes the place of the one before: u is stretched to what is left of it.
             met += 1.0;
             bool taken = u * met < 1.0;
             u = taken ? u * met : (u * met - 1.0) / max(met - 1.0, 1.0);
             seen.distance = taken ? t : seen.distance;
-            seen.light = taken ? lights[i].radiance : seen.light;
+            seen.light = taken ? light_at(i).radiance : seen.light;
             row = taken ? i : row;
         }
     }

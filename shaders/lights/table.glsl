@@ -26,8 +26,8 @@ float weight_of_flight(float phase_pdf, float pdf) {
 // The row of a light, and the chance with which it was chosen.
 uint choose_light(vec3 from, uvec4 words, inout Rng rng, out float chance) {
     uint i = below(frame.choices, words.x);
-    i = choose(lights[i].alias, i, words.y);
-    chance = lights[i].chance;
+    i = choose(light_at(i).alias, i, words.y);
+    chance = light_at(i).chance;
     if (HAS_TREE && i == frame.choices - 1u) {
         float of_leaf;
         i = descend(from, rng, of_leaf);
@@ -74,7 +74,7 @@ LightSample over_density(LightSample drawn, float chance) {
 LightSample look_for_light(Scatterer s, vec3 from, vec3 travel, inout Rng rng, out LightRow light) {
     uvec4 words = next_words(rng);
     float chance;
-    light = lights[choose_light(from, words, rng, chance)];
+    light = light_at(choose_light(from, words, rng, chance));
     return over_density(sample_light(s, light, from, travel, words, rng), chance);
 }
 
@@ -98,7 +98,7 @@ vec3 light_from_one(LightRow light, vec3 direction, float phase_pdf) {
 vec3 light_from_beyond(vec3 direction, float phase_pdf) {
     vec3 radiance = vec3(0.0);
     for (uint i = 0u; i < frame.sky_count; ++i)
-        radiance += light_from_one(lights[i], direction, phase_pdf);
+        radiance += light_from_one(light_at(i), direction, phase_pdf);
     return radiance;
 }
 

@@ -28,7 +28,7 @@ LightSample look_from_sensor(vec3 from, vec3 ray, inout Rng rng, out uint row) {
     vec2 u = to_uniform(words).zw;
     float chance;
     row = choose_light(from, words, rng, chance);
-    LightRow light = lights[row];
+    LightRow light = light_at(row);
     LightSample drawn;
     if (SEES_LAMPS && light.kind >= LIGHT_SPHERE)
         drawn = sample_lamp_by_ray(light, from, ray, u, to_tap(words).z);

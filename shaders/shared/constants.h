@@ -46,7 +46,11 @@
 #define BINDING_LATTICE_TEXELS 35
 #define BINDING_OVERLAP_TEXELS 36
 #define BINDING_MEMBER_TEXELS 37 // the same, four words at a time
-#define BINDING_COUNT 38
+#define BINDING_NODE_TEXELS 38 // of BINDING_BVH, two to a node
+#define BINDING_PRIMITIVE_TEXELS 39 // three to a primitive
+#define BINDING_SURFACE_TEXELS 40 // four to a row
+#define BINDING_LIGHT_TEXELS 41 // LIGHT_ROW_TEXELS to a row
+#define BINDING_COUNT 42
 
 #define WORKGROUP_SIZE 64
 
@@ -92,7 +96,8 @@
 #define SPEC_MAP_HALVINGS 30 // log2 of the knots in a map's table
 #define SPEC_UNBOUNDED 31    // 1: some medium is everywhere
 #define SPEC_LAYERS 32       // LAYERS_..., a sum
-#define SPEC_COUNT 33
+#define SPEC_TABLE_TEXELS 33 // 1: lights, surfaces, their pieces and the hierarchy of those are read as texels
+#define SPEC_COUNT 34
 
 // Of several media that differ in it: each one's own, which is in its row.
 #define EACH -1
@@ -288,6 +293,7 @@
 
 #define LAST_OF_LIST 0x80000000u // of media in a cell: set in the last one's word
 
+#define LIGHT_ROW_TEXELS 7u
 #define NO_LIGHT 0xffffffffu
 
 #define NO_PIXEL 0xffffffffu

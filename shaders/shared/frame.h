@@ -215,39 +215,44 @@ struct AliasEntry {
 struct LightRow {
     uint kind; // LIGHT_...
     AliasEntry alias;
-    float chance; // with which it is chosen; of the first that is in a tree, with which the tree is
-    vec3 position;  // render space
-    vec3 direction; // unit: towards the light, where it is infinitely far; of a spot, along its axis; of what is flat, its normal
-    vec3 edge_u;    // halves of the edges of a rectangle, or radii of a disk; across each other
-    vec3 edge_v;
-    vec3 radiance;  // from everywhere on it, of a disc from its middle; of a directional light its irradiance, of a point the
-                    // radiant intensity
-    float extent;   // of a disc: 1 - cos of the angle from its middle to its rim; of a sphere its radius
+    float chance;    // with which it is chosen; of the first that is in a tree, with which the tree is
+    vec3 position;   // render space
+    float extent;    // of a disc: 1 - cos of the angle from its middle to its rim; of a sphere its radius
+    vec3 direction;  // unit: towards the light, where it is infinitely far; of a spot, along its axis; of what is flat, its normal
     float darkening; // of a disc toward its rim, in [0, 1]
-    float area;     // of a lamp, as seen from in front
-    uint group;     // of layers
-    uint body;      // of a lamp that is a surface, that; else NO_SURFACE
+    vec3 edge_u;     // halves of the edges of a rectangle, or radii of a disk; across each other
+    float area;      // of a lamp, as seen from in front
+    vec3 edge_v;
+    uint group;      // of layers
+    vec3 radiance;   // from everywhere on it, of a disc from its middle; of a directional light its irradiance, of a point the
+                     // radiant intensity
+    uint body;       // of a lamp that is a surface, that; else NO_SURFACE
     float full_within; // of a spot, 1 - cos of angles to its axis: full intensity within,
     float none_beyond; // none beyond
+    uint unused_a;   // so that it is whole texels: see lights/row.glsl
+    uint unused_b;
 };
 
 // A surface; which fields mean something depends on its kinds.
 struct SurfaceRow {
-    uint shape;    // SURFACE_...
-    uint material; // MATERIAL_...
     vec3 color;    // share of the light that it scatters, of a conductor times Fresnel's
+    uint shape;    // SURFACE_...
     vec3 emission; // radiance, from its front, or from both sides
-    uint sides;    // that shine: 1 or 2
+    uint material; // MATERIAL_...
     vec3 eta;      // index of refraction, of a dielectric the same in all channels: of its inside to that of its outside
+    uint sides;    // that shine: 1 or 2
     vec3 k;        // of a conductor, the index's imaginary part
+    uint unused;   // so that it is four texels
 };
 
 // A piece of a surface that a ray meets at once. Render space.
 struct SurfacePrimitive {
     vec3 a; // a triangle's corners, counterclockwise as seen from without; or a middle,
-    vec3 b; // a unit normal
-    vec3 c; // and the radius, in x
     uint surface; // its row
+    vec3 b; // a unit normal
+    uint shape; // SURFACE_..., that row's
+    vec3 c; // and the radius, in x
+    uint unused; // so that it is three texels
 };
 
 // Of a binary tree over lights, in depth-first order; a branch's left one follows it.

@@ -47,7 +47,7 @@ void scatter(MediumParams v, vec4 u, inout Lane lane) {
 void scatter_at_surface(vec4 u, inout Lane lane) {
     vec3 wo = -lane.path.direction;
     SurfacePoint at = surface_point(surface_at(lane.path), lane.path.position);
-    Bsdf bsdf = bsdf_of(surfaces[at.row], at.normal, wo);
+    Bsdf bsdf = bsdf_of(surface_row(at.row), at.normal, wo);
     BsdfSample drawn = bsdf_sample(bsdf, wo, u.yzx);
     bool crosses = dot(drawn.direction, bsdf.normal) < 0.0;
     lane.path.position = at.position + (crosses ? -at.apart : at.apart) * bsdf.normal;
@@ -63,7 +63,7 @@ bool look_at_shown_lamps(inout Lane lane, inout Rng rng) {
     uint row;
     LightSample seen = seen_lamp(lane.path.position, lane.path.direction, to_uniform(next_words(rng)).w, row);
     bool sees = is_shown && seen.distance < FAR;
-    uint label = kind_label(lane.path.depth) | group_label(lights[row].group) | lane.first_label;
+    uint label = kind_label(lane.path.depth) | group_label(light_at(row).group) | lane.first_label;
     if (sees)
         look_straight(seen, row, lane.beta, label, TODO_SET_OUT, lane);
     return sees;

@@ -10,8 +10,8 @@ void note_escape(Spectrum beta, uint label, Lane lane) {
                beta * frame.lights[LIGHT_BACKGROUND].radiance);
     if (SEES_SKY)
         for (uint i = 0u; i < frame.sky_count; ++i)
-            note_light(lane.record, label | group_label(lights[i].group),
-                       beta * light_from_one(lights[i], lane.path.direction, lane.phase_pdf));
+            note_light(lane.record, label | group_label(light_at(i).group),
+                       beta * light_from_one(light_at(i), lane.path.direction, lane.phase_pdf));
     if (lane.path.depth == 0u)
         note_transmittance(lane.record, vec3(beta));
 }

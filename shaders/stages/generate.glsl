@@ -7,7 +7,7 @@
 
 // A look from the sensor comes before the first flight.
 void look_first(MediumParams v, LightSample seen, uint row, inout Lane lane) {
-    uint label = kind_label(0u) | group_label(lights[row].group);
+    uint label = kind_label(0u) | group_label(light_at(row).group);
     if (LOOKS) {
         look_straight(seen, row, to_spectrum(vec3(1.0)), label, TODO_DEPART, lane);
     } else {

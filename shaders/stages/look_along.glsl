@@ -18,7 +18,7 @@ LightRow choose_placed(MediumParams v, vec3 position, vec3 direction, float u, i
         float flown = min(t.x - log(1.0 - u) / v.usual_sigma_t, t.y);
         i = descend(position + flown * direction, rng, chance);
     }
-    return lights[i];
+    return light_at(i);
 }
 
 // Where shadow rays are walks, the lane goes to look, first along its way and then toward the light: true. Else what it

@@ -16,7 +16,7 @@ void look_straight(LightSample seen, uint row, Spectrum lit, uint label, uint ne
     lane.light = seen.light;
     if (HAS_SURFACES) {
         lane.lit_surface = surface_at(lane.path);
-        lane.lamp_body = lights[row].body;
+        lane.lamp_body = light_at(row).body;
     }
     look_in_full(lane);
     lane.todo = TODO_LOOK;

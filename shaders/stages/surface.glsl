@@ -13,9 +13,9 @@ void arrive_at_surface(MediumParams v, inout Lane lane, inout Rng rng, inout Tal
     if (!NULL_FLIGHT && !goes_through())
         lane.beta *= depth_weight(v, lane.beta, lane.walk.depth, false);
     SurfacePoint at = surface_point(lane.struck, lane.path.position + lane.reach * lane.path.direction);
-    SurfaceRow row = surfaces[at.row];
+    SurfaceRow row = surface_row(at.row);
     add_light(lane, lane.beta * surface_emission(row, at.normal, lane.path.direction),
-              glow_label(lane.path.depth) | lane.first_label);
+              kind_label(lane.path.depth) | lane.first_label);
     if (HAS_LAYERS)
         if (lane.path.depth == 0u)
             note_collision(lane.record, vec3(lane.beta), at.position, lane.path.direction, lane.reach, row.color);

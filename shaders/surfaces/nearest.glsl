@@ -6,7 +6,8 @@
 
 // `body`: the row of what is passed over, since it is the light that the ray goes to; or NO_SURFACE.
 void take_nearer(MeshRay m, Ray ray, uint i, uint from, uint body, inout SurfaceSearch s) {
-    float t = primitives[i].surface != body ? meet_primitive(m, ray, i, from) : FAR;
+    SurfacePrimitive p = primitive_at(i);
+    float t = p.surface != body ? meet_primitive(m, ray, p, i, from) : FAR;
     s.primitive = t < s.nearest ? i : s.primitive;
     s.nearest = min(s.nearest, t);
 }
@@ -15,7 +16,8 @@ void take_nearer(MeshRay m, Ray ray, uint i, uint from, uint body, inout Surface
 SurfaceSearch begin_seek(Ray ray, float reach, uint from) {
     SurfaceSearch s = SurfaceSearch(0u, reach, NO_SURFACE);
     for (uint i = 0u; i < frame.planes; ++i) { // at most MOST_PLANES
-        float t = i != from ? meet_disk(ray, primitives[i].a, primitives[i].b, FAR) : FAR;
+        SurfacePrimitive p = primitive_at(i);
+        float t = i != from ? meet_disk(ray, p.a, p.b, FAR) : FAR;
         bool nearer = t > 0.0 && t < s.nearest;
         s.primitive = nearer ? i : s.primitive;
         s.nearest = nearer ? t : s.nearest;
@@ -23,10 +25,20 @@ SurfaceSearch begin_seek(Ray ray, float reach, uint from) {
     return s;
 }
 
+BvhNode surface_node(uint i) {
+#ifdef SURFACES
+    if (TABLE_TEXELS != 0) {
+        uvec4 a = texelFetch(node_texels, int(2u * i)), b = texelFetch(node_texels, int(2u * i + 1u));
+        return BvhNode(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w);
+    }
+#endif
+    return bvh[i];
+}
+
 // One node: on to the next in depth-first order, or past its subtree. True once the search is over.
 bool step_seek(MeshRay m, Ray ray, uint from, uint body, inout SurfaceSearch s) {
     if (s.node < frame.surface_nodes) {
-        BvhNode node = bvh[frame.first_surface_node + s.node];
+        BvhNode node = surface_node(frame.first_surface_node + s.node);
         bool met = meets(m, node, 0.0, s.nearest);
         uint first = node.leaf >> 3u, last = first + (met ? node.leaf & 7u : 0u);
         for (uint k = first; k < last; ++k) // at most MESH_LEAF

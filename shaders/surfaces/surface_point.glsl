@@ -24,11 +24,33 @@ float meet_disk(Ray ray, vec3 center, vec3 normal, float radius) {
     return along != 0.0 && (radius == FAR || dot(aside, aside) <= radius * radius) ? t : FAR;
 }
 
-// How far along the ray, beyond 0, it meets primitive `i`; FAR if it does not. `from`: the primitive that it comes from, which if
+SurfacePrimitive primitive_at(uint i) {
+#ifdef SURFACES
+    if (TABLE_TEXELS != 0) {
+        uvec4 a = texelFetch(primitive_texels, int(3u * i)), b = texelFetch(primitive_texels, int(3u * i + 1u)),
+              c = texelFetch(primitive_texels, int(3u * i + 2u));
+        return SurfacePrimitive(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w);
+    }
+#endif
+    return primitives[i];
+}
+
+SurfaceRow surface_row(uint i) {
+#ifdef SURFACES
+    if (TABLE_TEXELS != 0) {
+        uvec4 a = texelFetch(surface_texels, int(4u * i)), b = texelFetch(surface_texels, int(4u * i + 1u)),
+              c = texelFetch(surface_texels, int(4u * i + 2u)), d = texelFetch(surface_texels, int(4u * i + 3u));
+        return SurfaceRow(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w,
+                          uintBitsToFloat(d.xyz), d.w);
+    }
+#endif
+    return surfaces[i];
+}
+
+// How far along the ray, beyond 0, it meets primitive `i`, which is `p`; FAR if it does not. `from`: the primitive that it comes from, which if
 // flat it does not meet again, or NO_SURFACE.
-float meet_primitive(MeshRay m, Ray ray, uint i, uint from) {
-    SurfacePrimitive p = primitives[i];
-    uint shape = surfaces[p.surface].shape;
+float meet_primitive(MeshRay m, Ray ray, SurfacePrimitive p, uint i, uint from) {
+    uint shape = p.shape;
     float t = FAR;
     if (shape == SURFACE_TRIANGLES) {
         Crossing crossing = cross_triangle(m.shear, p.a, p.b, p.c);
@@ -51,8 +73,8 @@ struct SurfacePoint {
 // Of what is flat an offset of 64 u R, with u = 2^-24 and R the greatest coordinate that there is in it, is beyond the error of 28
 // u R that a ray's crossing with a neighbour has: see mesh.glsl. Unlike a fixed length it serves scenes of any size.
 SurfacePoint surface_point(uint i, vec3 near) {
-    SurfacePrimitive p = primitives[i];
-    uint shape = surfaces[p.surface].shape;
+    SurfacePrimitive p = primitive_at(i);
+    uint shape = p.shape;
     SurfacePoint at;
     at.row = p.surface;
     at.normal = shape == SURFACE_TRIANGLES ? normalize(cross(p.b - p.a, p.c - p.a)) : p.b;

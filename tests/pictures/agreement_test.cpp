@@ -70,7 +70,11 @@ TEST_CASE("each estimator equals the reference's own", "[gpu][agreement]") {
             const int usual = named.name == "chromatic cloud" ? FREE_FLIGHT_SPECTRAL : FREE_FLIGHT_DELTA;
             const int others = (*c.free_flight != usual) + (*c.transmittance != TRANSMITTANCE_RATIO) +
                                (*c.nee != NEE_COLLISIONS) + (*c.emission != EMISSION_AT_COLLISIONS);
-            if (others != 1)
+            // Of what a density is made of only flights through it ask.
+            const bool about_flights = *c.free_flight != usual || *c.transmittance != TRANSMITTANCE_RATIO;
+            const bool about_density =
+                named.name == "noise in a mesh" || named.name == "transfer function" || named.name == "atmosphere";
+            if (others != 1 || (about_density && !about_flights))
                 continue;
             const Scene chosen = with(scene, combination);
             CHECK_AGREEMENT(
@@ -118,7 +122,10 @@ TEST_CASE("marches through the medium scatter once", "[gpu][agreement]") {
         scene.settings.march.unit = CoefficientUnit::world;
         scene.settings.march.step = 0.1;
         scene.settings.march.optical_step = 0.1;
+        const bool both = named.name == "thick cloud" || named.name == "fire";
         for (const int flight : {FREE_FLIGHT_MARCH, FREE_FLIGHT_ADAPTIVE}) {
+            if (flight == FREE_FLIGHT_MARCH && !both) // an adaptive one with another rule for its steps
+                continue;
             scene.settings.choices.free_flight = flight;
             const Film marched = render_here(scene, 2).film;
             const std::string name = named.name + (flight == FREE_FLIGHT_MARCH ? ", march" : ", adaptive march");
@@ -126,7 +133,7 @@ TEST_CASE("marches through the medium scatter once", "[gpu][agreement]") {
                 CHECK_AGREEMENT(agree(marched, render_reference(scene, 3), name));
             const RelativeBias bias = bias_of(marched, expected);
             CAPTURE(name, bias.value, bias.error);
-            CHECK(normal_p(bias.value / bias.error) > sidak(0.001, 2 * 10));
+            CHECK(normal_p(bias.value / bias.error) > sidak(0.001, 10 + 2));
         }
     }
 }

@@ -115,8 +115,9 @@ TEST_CASE("layers leave the picture its bits, and sum up to it", "[gpu][image][a
                                             "weightedTracking", "deltaTracking", "regularTracking", "rayMarching",
                                             "ratioTracking:emission=steps", "ratioTracking:mis=phase");
     for (const bool several : {false, true}) {
-        if (several && integrator == "regularTracking")
-            continue;
+        if (several && integrator != "ratioTracking" && integrator != "ratioNEE" && integrator != "rayMarching")
+            continue; // how light gets its label among several media goes by where flights meet it, of which these are
+                      // all
         Scene scene = several ? busy("", 32) : plain("", 32);
         const std::size_t colon = integrator.find(':');
         scene.settings.integrator = integrator.substr(0, colon);
