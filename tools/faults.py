@@ -52,7 +52,7 @@ def device_rows(lab, table, quick):
         return check_resume(run, place) if checkpoint else run
 
     for function in ("vkQueueSubmit", "vkWaitForFences"):
-        numbers = spread(calls[function], 4 if quick else 15)
+        numbers = spread(calls[function], 3 if quick else 15)
         for checkpoint in (False, True):
             name = f"device lost in {function}" + (", with checkpoints" if checkpoint else "")
             table.row(name, lambda n, f=function, c=checkpoint: lose_device(f, n, c), numbers)
@@ -82,10 +82,10 @@ def device_rows(lab, table, quick):
             ("vkCreateQueryPool", "VK_ERROR_OUT_OF_DEVICE_MEMORY", 1), ("vkCreateDevice", "VK_ERROR_INITIALIZATION_FAILED", 3),
             ("vkCreateInstance", "VK_ERROR_OUT_OF_HOST_MEMORY", 3),
             ("vkEnumeratePhysicalDevices", "VK_ERROR_INITIALIZATION_FAILED", 3)]
-    most = 3 if quick else 40
+    most = 2 if quick else 40
     for function, result, code in rows:
         many = function in ("vkBeginCommandBuffer", "vkEndCommandBuffer", "vkResetFences")
-        numbers = spread(calls[function], 4 if many else most)
+        numbers = spread(calls[function], min(4, most) if many else most)
         table.row(f"{function}: {result[len('VK_ERROR_'):].lower().replace('_', ' ')}",
                   lambda n, f=function, r=result, c=code: fail(f, n, r, c), numbers)
 
@@ -116,7 +116,7 @@ def signal_rows(lab, table, quick, seed):
         return run
 
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        runs = 6 if quick else 10 if number == signal.SIGHUP else 50
+        runs = 5 if quick else 10 if number == signal.SIGHUP else 50
         table.row(f"{number.name} at random moments", lambda i, n=number: interrupt(n, i), range(runs))
 
     def twice(i):
@@ -130,7 +130,7 @@ def signal_rows(lab, table, quick, seed):
             run.lose(f"it took {run.seconds - second:.1f} s to end")
         return judge_signalled(run, place, signal.SIGINT, True)
 
-    table.row("SIGINT twice: ends at once", twice, range(5 if quick else 25))
+    table.row("SIGINT twice: ends at once", twice, range(3 if quick else 25))
 
     kills = []
 
@@ -151,7 +151,7 @@ def signal_rows(lab, table, quick, seed):
         run.losses = losses + [l for l in run.losses if l not in losses]
         return run
 
-    if table.row("kill -9 at random moments, up to four times, and --resume", kill, range(5 if quick else 20)):
+    if table.row("kill -9 at random moments, up to four times, and --resume", kill, range(4 if quick else 20)):
         table.note(f"{len(kills)} kills; temporary files left behind: {sum(kills)}")
 
 
@@ -192,7 +192,7 @@ def file_rows(lab, table, quick, seed):
             data[bit // 8] ^= 1 << bit % 8
             return refuse(bytes(data))
 
-        bits = [*range(0, 24 * 8, 19), *(rng.randrange(8 * len(good)) for _ in range(5 if quick else 20))]
+        bits = [*range(0, 24 * 8, 38 if quick else 19), *(rng.randrange(8 * len(good)) for _ in range(3 if quick else 20))]
         table.row("checkpoint with a flipped bit", flipped, bits)
         others = [["--seed", "7"], ["--width", "319"], ["--spp", "1"], ["--sample-offset", "3"], ["--integrator", "deltaTracking"],
                   ["--crop", "0,9,0,9"], ["--grid", lab.grid.with_name("other.nvdb")]]

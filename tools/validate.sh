@@ -3,12 +3,13 @@
 #   hard        scenes/hard on the device and by the reference, against the means that their files derive (2 minutes)
 #   scenes      every file under scenes/ by its name alone, small (2 minutes): tools/all_scenes.sh
 #   large       a grid of 342 MiB, larger than a storage buffer of Mesa's software driver, against its Fp8 form (1 minute)
+#   tests       tests that otherwise take a share of what they could combine, with all of it (half an hour)
 #   estimators  the tables of all unbiased combinations of estimators, of the bias of marches, and of transmittances alone
 #   pictures    whole scenes with large grids, rendered by vkvol and by the scalar reference with different seeds, judged by
 #               `vkvol compare` (per-pixel z-test, Sidak-corrected, and a test of the means; a significance of 0.001 per
 #               scene, so that a table of this length raises a false alarm once in a hundred runs)
-# All takes about an hour on two cores. Each part ends with a table; fails if anything differs.
-#   tools/validate.sh [--driver NAME] [hard|scenes|large|estimators|pictures ...] [FILE.nvdb ...]
+# All takes about an hour and a half on two cores. Each part ends with a table; fails if anything differs.
+#   tools/validate.sh [--driver NAME] [hard|scenes|large|tests|estimators|pictures ...] [FILE.nvdb ...]
 #       a driver as in tools/test.sh; further grids for pictures: in the thesis' bunny scenes
 set -eu
 source "$(dirname "$0")/setup.sh"
@@ -22,12 +23,12 @@ if [ "${1:-}" = --driver ]; then
 fi
 for argument in "$@"; do
     case $argument in
-    hard | scenes | large | estimators | pictures) parts+=("$argument") ;;
+    hard | scenes | large | tests | estimators | pictures) parts+=("$argument") ;;
     *.nvdb) grids+=("$argument") ;;
-    *) die "'$argument' is neither a part (hard, scenes, large, estimators, pictures) nor a .nvdb file" ;;
+    *) die "'$argument' is neither a part (hard, scenes, large, tests, estimators, pictures) nor a .nvdb file" ;;
     esac
 done
-[ ${#parts[@]} -gt 0 ] || parts=(hard scenes large estimators pictures)
+[ ${#parts[@]} -gt 0 ] || parts=(hard scenes large tests estimators pictures)
 
 install_packages
 [ -z "$driver" ] || use_driver "$driver"
@@ -59,6 +60,11 @@ run_large() {
     grep -E '"specialization"|"deviceBytes"' "$work/float.json"
     "$vkvol_root/build/vkvol" "$scene" --seed 2 -o "$work/fp8.exr" -q --grid "$fields/ramp-440-fp8.nvdb" || die "large grid: vkvol failed"
     "$vkvol_root/build/vkvol" compare "$work/float.exr" "$work/fp8.exr" --significance 0.001 || failed=1
+}
+
+run_tests() {
+    say "Every combination of what tests combine"
+    (cd "$work" && VKVOL_THOROUGH=1 "$vkvol_root/build/vkvol_tests" "[thorough]") || failed=1
 }
 
 run_estimators() {

@@ -1,6 +1,7 @@
 #include "surface_lamps.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace vkvol {
 
@@ -8,49 +9,46 @@ namespace {
 
 constexpr std::size_t most_lamps = 256; // every camera ray asks all of them
 
-// From the front, or with -1 from the back.
+// The lamp that a surface's front is, or with -1 its back; none where it is met by chance.
 struct LampOf {
     const Surface& surface;
     int body;
     double side;
 
-    Light operator()(const BallSurface& ball) const {
+    std::optional<Light> operator()(const BallSurface& ball) const {
+        if (surface.shines_both_ways) // inwards too, which no lamp does
+            return {};
         return SphereLight{ball.center, ball.radius, surface.emission, "", body};
     }
-    Light operator()(const DiskSurface& disk) const {
+    std::optional<Light> operator()(const DiskSurface& disk) const {
         return DiskLight{disk.center, side * disk.normal, disk.radius, surface.emission, "", body};
     }
-    Light operator()(const RectangleSurface& r) const {
+    std::optional<Light> operator()(const RectangleSurface& r) const {
         return RectangleLight{r.center, side * r.edge_u, r.edge_v, surface.emission, "", body};
     }
-    template <class Shape> Light operator()(const Shape&) const { return DirectionalLight{}; } // not asked for
+    template <class Shape> std::optional<Light> operator()(const Shape&) const { return {}; }
 };
 
-bool is_flat(const Surface& surface) {
-    return std::holds_alternative<DiskSurface>(surface.shape) ||
-           std::holds_alternative<RectangleSurface>(surface.shape);
-}
-
-// A ball that shines inwards too is met by chance: a lamp does not.
-bool may_be_lamp(const Surface& surface) {
-    const bool is_ball = std::holds_alternative<BallSurface>(surface.shape) && !surface.shines_both_ways;
-    return surface.emission != Rgb(0.0) && (is_ball || is_flat(surface));
+std::vector<Light> lamps_of(const Surface& surface, std::size_t index) {
+    std::vector<Light> lamps;
+    for (const double side : {1.0, -1.0})
+        if (surface.emission != Rgb(0.0) && (side > 0.0 || surface.shines_both_ways))
+            if (const auto lamp = std::visit(LampOf{surface, static_cast<int>(index), side}, surface.shape))
+                lamps.push_back(*lamp);
+    return lamps;
 }
 
 } // namespace
 
 Scene with_lamps_of_surfaces(Scene scene) {
-    const auto count = std::count_if(scene.surfaces.begin(), scene.surfaces.end(), may_be_lamp);
-    if (std::size_t(count) > most_lamps)
+    const auto shines = [](const Surface& surface) { return !lamps_of(surface, 0).empty(); };
+    if (std::size_t(std::count_if(scene.surfaces.begin(), scene.surfaces.end(), shines)) > most_lamps)
         return scene;
     for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
-        Surface& surface = scene.surfaces[i];
-        if (!may_be_lamp(surface))
-            continue;
-        scene.lights.push_back(std::visit(LampOf{surface, static_cast<int>(i), 1.0}, surface.shape));
-        if (surface.shines_both_ways)
-            scene.lights.push_back(std::visit(LampOf{surface, static_cast<int>(i), -1.0}, surface.shape));
-        surface.emission = Rgb(0.0);
+        const std::vector<Light> lamps = lamps_of(scene.surfaces[i], i);
+        scene.lights.insert(scene.lights.end(), lamps.begin(), lamps.end());
+        if (!lamps.empty())
+            scene.surfaces[i].emission = Rgb(0.0);
     }
     return scene;
 }

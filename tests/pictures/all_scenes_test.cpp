@@ -8,6 +8,7 @@
 #include "scene_xml.h"
 #include "support/images.h"
 #include "support/shell.h"
+#include "support/thorough.h"
 #include "test_paths.h"
 
 using namespace vkvol;
@@ -64,8 +65,8 @@ TEST_CASE("every scene is complete without keys, and names fields that make_fiel
 }
 
 // Those of hard/ have tests of their own. Grids that take long to make, or much memory, are for tools/all_scenes.sh.
-TEST_CASE("scenes render by their name alone", "[gpu][image]") {
-    for (const std::filesystem::path& file : scene_files()) {
+TEST_CASE("scenes render by their name alone", "[gpu][image][thorough]") {
+    for (const std::filesystem::path& file : in_turn(scene_files(), 0)) {
         if (file.parent_path().filename() == "hard" || file.filename() == "large_grid.xml")
             continue;
         Scene scene = load_scene(file);

@@ -77,7 +77,7 @@ TEST_CASE("an albedo by a grid equals the reference", "[gpu][image][color_grids]
     scene.settings.integrator = "rayMarching";
     scene.settings.march.step = 0.1;
     scene.settings.choices.scattering = SCATTERING_SINGLE;
-    scene.settings.spp = 12; // of some 1e5 steps each, shadow rays' included, with little noise
+    scene.settings.spp = 4; // of some 1e5 steps each, shadow rays' included, with little noise
     check(scene, "marched through");
 }
 

@@ -9,6 +9,7 @@
 #include "support/images.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
+#include "support/thorough.h"
 #include "tests/reference/reference.h"
 
 using namespace vkvol;
@@ -93,20 +94,23 @@ Volume cloud(double g = 0.5) {
 
 } // namespace
 
-TEST_CASE("every light equals the reference's, in a cloud", "[gpu][lights]") {
-    for (const NamedLights& lit : all_lights()) {
+TEST_CASE("every light equals the reference's, in a cloud", "[gpu][lights][thorough]") {
+    for (const NamedLights& lit : in_turn(all_lights(), 0)) {
         const Scene scene = lit_by(cloud(), 11.0, lit.lights, 256);
         CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_reference(scene, 2), lit.name + ", cloud"));
     }
 }
 
-TEST_CASE("every light equals the reference's, in a ball and in a mesh", "[gpu][lights][mesh]") {
+TEST_CASE("every light equals the reference's, in a ball and in a mesh", "[gpu][lights][mesh][thorough]") {
     const Mesh bodies =
         join(make_box({-3.0, -1.0, -1.0}, {-0.5, 1.5, 1.0}, 1), make_box({0.5, -2.0, -2.0}, {3.0, 1.0, 1.0}, 1));
-    for (const NamedLights& lit : all_lights()) {
+    std::vector<NamedLights> lights = in_turn(all_lights(), 1);
+    if (!thorough())
+        lights.push_back(all_lights().back()); // everything
+    for (const NamedLights& lit : lights) {
         const Scene ball = lit_by(medium(Sphere{{0.1, -0.1, 0.0}, 2.0}, 1.5, 0.95, -0.4), 5.0, lit.lights, 256);
         CHECK_AGREEMENT(agree(render_here(ball, 3).film, render_reference(ball, 4), lit.name + ", ball"));
-        if (lit.name != "point" && lit.name != "everything")
+        if (lit.name != "everything" && !(thorough() && lit.name == "point"))
             continue; // what else there is to see in a mesh ends at no lamp
         const Scene mesh = lit_by(medium(write_mesh(bodies), 1.0, 0.8, 0.3), 8.0, lit.lights, 256);
         CHECK_AGREEMENT(agree(render_here(mesh, 5).film, render_reference(mesh, 6), lit.name + ", mesh"));
@@ -138,7 +142,7 @@ TEST_CASE("shadow rays end at a lamp within the medium", "[gpu][lights]") {
 }
 
 // From along flights, in all shapes and with all that a look takes; by free flights alone the same, with more noise.
-TEST_CASE("looks from along flights find what lights of a place give", "[gpu][lights]") {
+TEST_CASE("looks from along flights find what lights of a place give", "[gpu][lights][thorough]") {
     Volume chromatic = cloud();
     chromatic.sigma_s = {2.0, 1.0, 0.4};
     Volume noise = medium(Box{{0, 0, 0}, {6.0, 5.0, 6.0}}, 1.5, 0.9, 0.3);
@@ -160,16 +164,16 @@ TEST_CASE("looks from along flights find what lights of a place give", "[gpu][li
     Scene scene = lit_by(cloud(), 11.0, all_lights().back().lights, 128);
     const Film reference = render_reference(scene, 54);
     scene.settings.choices.distance = DISTANCE_MIXED;
-    for (const int flight :
-         {FREE_FLIGHT_REGULAR, FREE_FLIGHT_WEIGHTED, FREE_FLIGHT_DECOMPOSITION, FREE_FLIGHT_SPECTRAL})
-        for (const int nee : {NEE_COLLISIONS, NEE_TENTATIVE}) {
-            if (flight == FREE_FLIGHT_REGULAR && nee == NEE_TENTATIVE)
-                continue;
-            scene.settings.choices.free_flight = flight;
-            scene.settings.choices.nee = nee;
-            CHECK_AGREEMENT(agree(render_here(scene, 53).film, reference,
-                                  fmt::format("flight {}, nee {}, from along flights", flight, nee)));
-        }
+    std::vector<std::pair<int, int>> flights{{FREE_FLIGHT_REGULAR, NEE_COLLISIONS}};
+    for (const int flight : {FREE_FLIGHT_WEIGHTED, FREE_FLIGHT_DECOMPOSITION, FREE_FLIGHT_SPECTRAL})
+        for (const int nee : {NEE_COLLISIONS, NEE_TENTATIVE})
+            flights.push_back({flight, nee});
+    for (const auto& [flight, nee] : in_turn(flights, 0)) {
+        scene.settings.choices.free_flight = flight;
+        scene.settings.choices.nee = nee;
+        CHECK_AGREEMENT(agree(render_here(scene, 53).film, reference,
+                              fmt::format("flight {}, nee {}, from along flights", flight, nee)));
+    }
 }
 
 // Near enough to the light that free flights alone would need a thousand times as many samples.
@@ -212,12 +216,14 @@ TEST_CASE("a furnace of a map of ones, of every phase function", "[gpu][lights][
     }
 }
 
-TEST_CASE("looks and flights find the same light, by every phase function", "[gpu][lights][agreement][phase]") {
+TEST_CASE("looks and flights find the same light, by every phase function",
+          "[gpu][lights][agreement][phase][thorough]") {
     const SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {5.0, 4.0, 3.0}, 60.0};
     std::uint32_t seed = 70;
     for (const NamedPhase& phase : all_phases()) {
         // Of sharper ones looks alone seldom find the peak, and seem too dark with too little noise.
-        if (phase.name != "doubleHenyeyGreenstein" && phase.name != "draine" && phase.name != "droplets 1")
+        if (phase.name != "draine" &&
+            (!thorough() || (phase.name != "doubleHenyeyGreenstein" && phase.name != "droplets 1")))
             continue;
         std::vector<Estimate> estimates;
         for (const int mis : {MIS_BALANCE, MIS_LIGHT, MIS_PHASE}) {
@@ -306,9 +312,11 @@ TEST_CASE("no lamp of many is lost, however long a lane works", "[gpu][lights]")
     }
 }
 
-TEST_CASE("looks and flights find the same light", "[gpu][lights][agreement]") {
+TEST_CASE("looks and flights find the same light", "[gpu][lights][agreement][thorough]") {
     const SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {5.0, 4.0, 3.0}, 60.0, 0.8};
-    for (const double g : {0.0, 0.85}) {
+    for (const double g : {0.85, 0.0}) {
+        if (!thorough() && g == 0.0)
+            continue;
         std::vector<Estimate> estimates;
         std::uint32_t seed = 20;
         const int nee = g > 0.0 ? NEE_TENTATIVE : NEE_COLLISIONS;
