@@ -5,7 +5,7 @@
 
 #include "error.h"
 #include "mesh.h"
-#include "obj_file.h"
+#include "polygons.h"
 
 namespace vkvol {
 
@@ -16,7 +16,7 @@ TriangleSurface load(const MeshSurface& mesh, const glm::dmat4& transform, bool 
         Mesh loaded = load_mesh({{mesh.file}}, transform);
         return {std::move(loaded.vertices), std::move(loaded.triangles)};
     }
-    ObjFile obj = read_obj(mesh.file);
+    Polygons obj = read_polygons(mesh.file);
     for (glm::dvec3& vertex : obj.vertices)
         vertex = glm::dvec3(transform * glm::dvec4(vertex, 1.0));
     if (glm::determinant(glm::dmat3(transform)) < 0.0) // a mirror turns them inside out

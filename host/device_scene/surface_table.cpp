@@ -1,6 +1,9 @@
 #include "surface_table.h"
 
+#include <cmath>
+
 #include "bvh.h"
+#include "shared/constants.h"
 
 namespace vkvol {
 
@@ -18,25 +21,14 @@ public:
            std::vector<Bounded>& bounded)
         : row_(row), origin_(origin), planes_(planes), bounded_(bounded) {}
 
-    std::uint32_t operator()(const BallSurface& ball) const {
-        add(SURFACE_SPHERE, ball.center, glm::vec3(0.0f), ball.radius);
-        return SURFACE_SPHERE;
-    }
-    std::uint32_t operator()(const DiskSurface& disk) const {
-        add(SURFACE_DISK, disk.center, disk.normal, disk.radius);
-        return SURFACE_DISK;
-    }
-    std::uint32_t operator()(const PlaneSurface& plane) const {
+    void operator()(const BallSurface& ball) const { add(SURFACE_SPHERE, ball.center, glm::vec3(0.0f), ball.radius); }
+    void operator()(const DiskSurface& disk) const { add(SURFACE_DISK, disk.center, disk.normal, disk.radius); }
+    void operator()(const PlaneSurface& plane) const {
         planes_.push_back({plane.point - origin_, row_, plane.normal, SURFACE_PLANE, glm::vec3(0.0f), 0});
-        return SURFACE_PLANE;
     }
-    std::uint32_t operator()(const RectangleSurface& r) const {
-        return (*this)(TriangleSurface{{r.center - r.edge_u - r.edge_v, r.center + r.edge_u - r.edge_v,
-                                        r.center + r.edge_u + r.edge_v, r.center - r.edge_u + r.edge_v},
-                                       {{0, 1, 2}, {0, 2, 3}}});
-    }
-    std::uint32_t operator()(const MeshSurface&) const { return SURFACE_TRIANGLES; } // not loaded: none
-    std::uint32_t operator()(const TriangleSurface& mesh) const {
+    void operator()(const RectangleSurface& rectangle) const { (*this)(rectangle.triangles()); }
+    void operator()(const MeshSurface&) const {} // not loaded: none
+    void operator()(const TriangleSurface& mesh) const {
         for (const glm::uvec3& t : mesh.triangles) {
             Bounded piece{{mesh.vertices[t.x] - origin_, row_, mesh.vertices[t.y] - origin_, SURFACE_TRIANGLES,
                            mesh.vertices[t.z] - origin_, 0},
@@ -49,7 +41,6 @@ public:
                 piece.box.add(corner);
             bounded_.push_back(piece);
         }
-        return SURFACE_TRIANGLES;
     }
 
 private:
@@ -69,16 +60,49 @@ private:
     std::vector<Bounded>& bounded_;
 };
 
+std::uint32_t code_of(const Material& material) {
+    switch (material.kind) {
+    case MaterialKind::mirror:
+        return MATERIAL_MIRROR;
+    case MaterialKind::conductor:
+        return material.roughness > 0.0 ? MATERIAL_ROUGH_CONDUCTOR : MATERIAL_CONDUCTOR;
+    case MaterialKind::dielectric:
+        return material.roughness > 0.0 ? MATERIAL_ROUGH_DIELECTRIC : MATERIAL_DIELECTRIC;
+    case MaterialKind::coated:
+        return MATERIAL_COATED;
+    case MaterialKind::diffuse:
+        break;
+    }
+    return MATERIAL_DIFFUSE;
+}
+
+// What a boundary of this index throws back of even light from within, by Fresnel's equations: the mean over cosines.
+// (1 - F_in) / ior^2 = 1 - F_out, of a light that is even on both sides, and outside there is no angle from which all
+// is thrown back.
+double thrown_back(double ior) {
+    constexpr int n = 4096;
+    double passes = 0.0;
+    for (int i = 0; i < n; ++i) {
+        const double cosine = (i + 0.5) / n,
+                     beyond = std::sqrt(std::max(1.0 - (1.0 - cosine * cosine) / (ior * ior), 0.0));
+        const double parallel = (ior * cosine - beyond) / (ior * cosine + beyond);
+        const double across = (cosine - ior * beyond) / (cosine + ior * beyond);
+        passes += 2.0 * cosine * (1.0 - 0.5 * (parallel * parallel + across * across)) / n;
+    }
+    return 1.0 - passes / (ior * ior);
+}
+
 shared::SurfaceRow row_of(const Surface& surface) {
     const Material& material = surface.material;
-    const bool is_glass = material.kind == MaterialKind::dielectric;
+    const bool has_ior = material.kind == MaterialKind::dielectric || material.kind == MaterialKind::coated;
     shared::SurfaceRow row{};
-    row.material = static_cast<std::uint32_t>(material.kind);
+    row.material = code_of(material);
+    row.roughness = static_cast<float>(material.roughness);
     row.color = material.color;
     row.emission = surface.emission;
     row.sides = surface.shines_both_ways ? 2u : 1u;
-    row.eta = is_glass ? Rgb(material.ior) : material.eta;
-    row.k = material.k;
+    row.eta = has_ior ? Rgb(material.ior) : material.eta;
+    row.k = material.kind == MaterialKind::coated ? Rgb(thrown_back(material.ior), 0.0, 0.0) : material.k;
     return row;
 }
 
@@ -89,9 +113,8 @@ SurfaceTable make_surface_table(const std::vector<Surface>& surfaces, const glm:
     std::vector<Bounded> bounded;
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const Pieces pieces(static_cast<std::uint32_t>(i), origin, table.primitives, bounded);
-        shared::SurfaceRow row = row_of(surfaces[i]);
-        row.shape = std::visit(pieces, surfaces[i].shape);
-        table.rows.push_back(row);
+        std::visit(pieces, surfaces[i].shape);
+        table.rows.push_back(row_of(surfaces[i]));
     }
     table.planes = static_cast<std::uint32_t>(table.primitives.size());
     std::vector<BvhBox> boxes;
@@ -109,7 +132,7 @@ SurfaceTable make_surface_table(const std::vector<Surface>& surfaces, const glm:
 int material_bits(const std::vector<Surface>& surfaces) {
     int bits = 0;
     for (const Surface& surface : surfaces)
-        bits |= 1 << static_cast<int>(surface.material.kind);
+        bits |= 1 << code_of(surface.material);
     return bits;
 }
 

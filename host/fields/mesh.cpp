@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "error.h"
-#include "obj_file.h"
+#include "polygons.h"
 
 namespace vkvol {
 
@@ -15,7 +15,7 @@ namespace {
 // Vertices at the same position become one. Triangles that lose a corner by that go: of their edges one is left, which
 // they run through both ways, so that their neighbours on either side fit each other. Triangles whose three corners lie
 // on a line stay, since they fill a gap between unlike edges; no ray meets them.
-void weld(ObjFile& obj) {
+void weld(Polygons& obj) {
     std::vector<std::uint32_t> order(obj.vertices.size()), welded(obj.vertices.size());
     std::iota(order.begin(), order.end(), 0u);
     const auto key = [&](std::uint32_t i) {
@@ -60,7 +60,7 @@ template <class Use> void for_each_edge(const std::vector<Edge>& edges, Use&& us
 
 // Two triangles meet in an edge and run through it in opposite directions; where bodies touch it may be more, as many
 // one way as the other.
-void check_closed(const ObjFile& obj, const std::vector<Edge>& edges, const std::string& file) {
+void check_closed(const Polygons& obj, const std::vector<Edge>& edges, const std::string& file) {
     std::size_t open = 0, turned = 0;
     const Edge* example = nullptr;
     for_each_edge(edges, [&](auto first, auto last) {
@@ -108,7 +108,7 @@ std::vector<std::uint32_t> find_bodies(std::size_t triangles, const std::vector<
 
 // Makes every body's volume positive, by the divergence theorem the sum of tetrahedra from any point: here a vertex of
 // its own, so that nothing large cancels far from the origin.
-void turn_outward(ObjFile& obj, const std::vector<std::uint32_t>& bodies) {
+void turn_outward(Polygons& obj, const std::vector<std::uint32_t>& bodies) {
     std::vector<double> volumes(obj.triangles.size(), 0.0); // those at the bodies' own numbers count
     for (std::size_t i = 0; i < obj.triangles.size(); ++i) {
         const glm::dvec3 apex = obj.vertices[obj.triangles[bodies[i]].x];
@@ -122,7 +122,7 @@ void turn_outward(ObjFile& obj, const std::vector<std::uint32_t>& bodies) {
 }
 
 // Only the vertices that a triangle uses.
-void append(Mesh& mesh, const ObjFile& obj) {
+void append(Mesh& mesh, const Polygons& obj) {
     constexpr std::uint32_t unused = ~0u;
     std::vector<std::uint32_t> place(obj.vertices.size(), unused);
     for (const glm::uvec3& t : obj.triangles) {
@@ -143,11 +143,11 @@ void append(Mesh& mesh, const ObjFile& obj) {
 
 Mesh load_mesh(const MeshFiles& files, const glm::dmat4& transform) {
     if (files.paths.empty())
-        throw InputError("a mesh needs at least one .obj file; name it in the scene");
+        throw InputError("a mesh needs at least one .obj or .ply file; name it in the scene");
     Mesh mesh;
     bool first = true;
     for (const std::filesystem::path& path : files.paths) {
-        ObjFile obj = read_obj(path);
+        Polygons obj = read_polygons(path);
         if (transform != glm::dmat4(1.0))
             for (glm::dvec3& vertex : obj.vertices)
                 vertex = glm::dvec3(transform * glm::dvec4(vertex, 1.0));

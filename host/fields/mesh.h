@@ -1,4 +1,4 @@
-// Closed triangle meshes from Wavefront .obj files: the shape of a medium that fills them.
+// Closed triangle meshes from files: the shape of a medium that fills them.
 #pragma once
 
 #include <optional>

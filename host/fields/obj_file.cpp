@@ -4,13 +4,11 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <sstream>
 #include <tiny_obj_loader.h>
 
 #include "error.h"
-#include "input_file.h"
 #include "one_line.h"
 
 namespace vkvol {
@@ -18,15 +16,6 @@ namespace vkvol {
 namespace {
 
 constexpr double largest_coordinate = largest_length;
-
-std::string read_text(const std::filesystem::path& path) {
-    check_input_file(path, "check the path in the scene (it starts from the scene file's directory)");
-    std::ifstream stream(path, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (stream.bad())
-        throw InputError(fmt::format("{}: cannot be read; check the disk, or copy the file again", path.string()));
-    return text;
-}
 
 // Three numbers, as many digits as a double holds. tinyobjloader reads floats, and takes what is no number for 0.
 glm::dvec3 parse_vertex(std::string_view line, const std::filesystem::path& path, std::size_t number) {
@@ -62,7 +51,7 @@ std::vector<glm::dvec3> parse_vertices(std::string_view text, const std::filesys
 
 // What the parser's callbacks know of the file so far.
 struct Progress {
-    ObjFile* obj = nullptr;
+    Polygons* obj = nullptr;
     const std::filesystem::path* path = nullptr;
     std::int64_t vertices = 0; // seen, from which negative indices count back
     std::size_t faces = 0;
@@ -139,7 +128,7 @@ public:
                     std::map<std::string, int>* indices, std::string*, std::string*) override {
         const std::filesystem::path file = obj_.parent_path() / name;
         try {
-            std::istringstream stream(read_text(file));
+            std::istringstream stream(read_mesh_text(file));
             std::string warning, error;
             tinyobj::LoadMtl(indices, materials, &stream, &warning, &error);
             return true;
@@ -161,9 +150,9 @@ private:
 
 } // namespace
 
-ObjFile read_obj(const std::filesystem::path& path) {
-    const std::string text = read_text(path);
-    ObjFile obj;
+Polygons read_obj(const std::filesystem::path& path) {
+    const std::string text = read_mesh_text(path);
+    Polygons obj;
     obj.vertices = parse_vertices(text, path);
     Progress progress;
     progress.obj = &obj;

@@ -211,12 +211,14 @@ void add_surface(Writer& writer, const Surface& surface) {
     const Material& material = surface.material;
     writer.add("material", static_cast<int>(material.kind));
     writer.add("color", material.color);
-    if (material.kind == MaterialKind::dielectric)
+    if (material.kind == MaterialKind::dielectric || material.kind == MaterialKind::coated)
         writer.add("ior", material.ior);
     if (material.kind == MaterialKind::conductor) {
         writer.add("eta", material.eta);
         writer.add("k", material.k);
     }
+    if (material.roughness > 0.0)
+        writer.add("roughness", material.roughness);
     writer.add("shine", surface.emission);
     if (surface.shines_both_ways)
         writer.add("sides", 2);

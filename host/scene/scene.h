@@ -109,7 +109,7 @@ struct Everywhere {};
 // World units: so far single precision takes what is everywhere, a billion times as far as anything else may be.
 inline constexpr double everywhere_reach = 1e20;
 
-// Closed surfaces from .obj files, in world space; the medium fills what any of them encloses.
+// Closed surfaces from .obj and .ply files, in world space; the medium fills what any of them encloses.
 struct MeshFiles {
     std::vector<std::filesystem::path> paths;
 };

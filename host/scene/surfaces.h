@@ -22,9 +22,21 @@ struct DiskSurface {
     double radius = 1.0;              // > 0
 };
 
+// Counterclockwise as seen from without, or from in front.
+struct TriangleSurface {
+    std::vector<glm::dvec3> vertices;
+    std::vector<glm::uvec3> triangles;
+};
+
 struct RectangleSurface {
     glm::dvec3 center{0.0};
     glm::dvec3 edge_u{0.5, 0.0, 0.0}, edge_v{0.0, 0.0, -0.5}; // halves of its edges, across each other; front: u x v
+
+    TriangleSurface triangles() const {
+        return {
+            {center - edge_u - edge_v, center + edge_u - edge_v, center + edge_u + edge_v, center - edge_u + edge_v},
+            {{0, 1, 2}, {0, 2, 3}}};
+    }
 };
 
 // Without end.
@@ -33,27 +45,24 @@ struct PlaneSurface {
     glm::dvec3 normal{0.0, 1.0, 0.0}; // unit
 };
 
-// Counterclockwise as seen from without, or from in front.
-struct TriangleSurface {
-    std::vector<glm::dvec3> vertices;
-    std::vector<glm::uvec3> triangles;
-};
-
 struct MeshSurface {
-    std::filesystem::path file; // .obj
+    std::filesystem::path file; // .obj or .ply
 };
 
 using SurfaceShape =
     std::variant<BallSurface, DiskSurface, RectangleSurface, PlaneSurface, TriangleSurface, MeshSurface>;
 
-// As MATERIAL_... of shaders/shared/constants.h.
-enum class MaterialKind { diffuse, mirror, conductor, dielectric };
+enum class MaterialKind { diffuse, mirror, conductor, dielectric, coated };
+
+inline constexpr double least_roughness = 1e-3;
 
 struct Material {
     MaterialKind kind = MaterialKind::diffuse;
-    Rgb color{0.5};       // share of the light that goes on, in [0, 1]; of a conductor times Fresnel's
-    double ior = 1.5;     // of a dielectric: index of refraction of what it encloses over that around it, > 0
+    Rgb color{0.5};   // share of the light that goes on, in [0, 1]; of a conductor times Fresnel's; of what is
+                      // coated, below the coat
+    double ior = 1.5; // of a dielectric: index of refraction of what it encloses over that around it; of a coat; > 0
     Rgb eta{1.0}, k{0.0}; // of a conductor: its complex index, eta + i k
+    double roughness = 0; // of a conductor or dielectric: alpha of GGX, in [least_roughness, 1]; 0: smooth
 };
 
 struct Surface {

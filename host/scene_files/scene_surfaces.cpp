@@ -14,9 +14,11 @@ namespace {
 const std::vector<std::string> shapes = {"sphere", "disk", "rectangle", "box", "plane", "mesh"};
 constexpr Limits share{0.0, 1.0, true, true, "a number from 0 to 1"};
 constexpr Limits index_limits{0.05, 20.0, true, true, "an index of refraction from 0.05 to 20"};
+constexpr Limits rough{0.0, 1.0, true, true, "a number from 0 to 1"};
 constexpr Limits absorbing{0.0, 100.0, true, true, "a number from 0 to 100"};
 
-const std::vector<std::string> of_materials = {"material", "r", "g", "b", "multiplier", "ior", "metal", "eta", "k"};
+const std::vector<std::string> of_materials = {"material", "r",     "g",   "b", "multiplier",
+                                               "ior",      "metal", "eta", "k", "roughness"};
 
 std::vector<std::string> with_material(std::vector<std::string> attributes) {
     attributes.insert(attributes.end(), of_materials.begin(), of_materials.end());
@@ -98,8 +100,7 @@ SurfaceShape moved(const glm::dmat4& map, const Rectangle& r) {
     const double turn = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
     const glm::dvec3 center = moved(map, r.center), u = turn * (linear * r.edge_u), v = linear * r.edge_v;
     if (std::abs(glm::dot(u, v)) > 1e-9 * glm::length(u) * glm::length(v))
-        return TriangleSurface{{center - u - v, center + u - v, center + u + v, center - u + v},
-                               {{0, 1, 2}, {0, 2, 3}}};
+        return RectangleSurface{center, u, v}.triangles();
     return RectangleSurface{center, u, v};
 }
 
@@ -123,14 +124,15 @@ Material SceneReader::material(const XmlElement& element) const {
     constexpr Choice choices[] = {{"diffuse", MaterialKind::diffuse, 0.5},
                                   {"mirror", MaterialKind::mirror, 1.0},
                                   {"conductor", MaterialKind::conductor, 1.0},
-                                  {"dielectric", MaterialKind::dielectric, 1.0}};
+                                  {"dielectric", MaterialKind::dielectric, 1.0},
+                                  {"coated", MaterialKind::coated, 0.5}};
     const std::string name = element.attribute("material", "diffuse");
     const auto* choice =
         std::find_if(std::begin(choices), std::end(choices), [&](const Choice& each) { return name == each.name; });
     if (choice == std::end(choices))
-        element.fail_attribute("material",
-                               fmt::format("<{}> material: '{}' is unknown{}", element.name(), name,
-                                           name_hint(name, {"diffuse", "mirror", "conductor", "dielectric"})));
+        element.fail_attribute(
+            "material", fmt::format("<{}> material: '{}' is unknown{}", element.name(), name,
+                                    name_hint(name, {"diffuse", "mirror", "conductor", "dielectric", "coated"})));
     Material material;
     material.kind = choice->kind;
     const bool colored = element.has("r") || element.has("g") || element.has("b");
@@ -142,17 +144,30 @@ Material SceneReader::material(const XmlElement& element) const {
                 fmt::format("<{}> scatters {:g} of the light in one colour, more than it gets; lower r, g, b or "
                             "multiplier to 1 at most",
                             element.name(), material.color[i]));
-    const auto only = [&](const char* attribute, MaterialKind kind, const char* kind_name) {
-        if (element.has(attribute) && material.kind != kind)
+    const auto only = [&](const char* attribute, std::initializer_list<MaterialKind> kinds, const char* names) {
+        if (element.has(attribute) && std::find(kinds.begin(), kinds.end(), material.kind) == kinds.end())
             element.fail_attribute(attribute, fmt::format("<{}> {}: has a meaning with material=\"{}\" only",
-                                                          element.name(), attribute, kind_name));
+                                                          element.name(), attribute, names));
     };
-    only("ior", MaterialKind::dielectric, "dielectric");
+    only("ior", {MaterialKind::dielectric, MaterialKind::coated}, "dielectric\" or \"coated");
     for (const char* attribute : {"metal", "eta", "k"})
-        only(attribute, MaterialKind::conductor, "conductor");
+        only(attribute, {MaterialKind::conductor}, "conductor");
+    only("roughness", {MaterialKind::conductor, MaterialKind::dielectric}, "conductor\" or \"dielectric");
     material.ior = element.attribute_number("ior", material.ior, index_limits);
+    if (material.kind == MaterialKind::coated && material.ior < 1.0)
+        element.fail_attribute(
+            "ior", fmt::format("<{}> ior: a coat is denser than what is around it; 1 at least", element.name()));
     if (material.kind == MaterialKind::conductor)
         read_metal(element, material);
+    material.roughness = element.attribute_number("roughness", 0.0, rough);
+    if (material.roughness > 0.0 && material.roughness < least_roughness)
+        element.fail_attribute("roughness", fmt::format("<{}> roughness: {:g} is too little to tell from 0, which is "
+                                                        "smooth; {:g} at least",
+                                                        element.name(), material.roughness, least_roughness));
+    if (material.roughness > 0.0 && std::abs(material.ior - 1.0) < 0.01)
+        element.fail_attribute("ior", fmt::format("<{}> ior: glass of {:g} bends next to nothing, and its roughness "
+                                                  "shows nothing; leave roughness out, or the surface",
+                                                  element.name(), material.ior));
     return material;
 }
 

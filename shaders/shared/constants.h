@@ -214,6 +214,9 @@
 #define MATERIAL_MIRROR 1
 #define MATERIAL_CONDUCTOR 2
 #define MATERIAL_DIELECTRIC 3
+#define MATERIAL_COATED 4 // diffuse, below a smooth dielectric
+#define MATERIAL_ROUGH_CONDUCTOR 5
+#define MATERIAL_ROUGH_DIELECTRIC 6
 
 // In place of a primitive's number; and a bit that is set where there is one.
 #define NO_SURFACE 0xffffffffu

@@ -236,12 +236,12 @@ struct LightRow {
 // A surface; which fields mean something depends on its kinds.
 struct SurfaceRow {
     vec3 color;    // share of the light that it scatters, of a conductor times Fresnel's
-    uint shape;    // SURFACE_...
+    float roughness; // GGX's alpha
     vec3 emission; // radiance, from its front, or from both sides
     uint material; // MATERIAL_...
     vec3 eta;      // index of refraction, of a dielectric the same in all channels: of its inside to that of its outside
     uint sides;    // that shine: 1 or 2
-    vec3 k;        // of a conductor, the index's imaginary part
+    vec3 k;        // of a conductor, the index's imaginary part; of what is coated, x: what its coat throws back at it
     uint unused;   // so that it is four texels
 };
 

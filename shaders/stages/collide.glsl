@@ -20,7 +20,7 @@ void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spec
     if (LOOKS_ALONG)
         light *= weight_of_collision(v, row, position - t * lane.path.direction, lane.path.direction, t);
     if (LOOKS) {
-        lane.position = position;
+        lane.position = lit_position(s, position, drawn.direction);
         lane.lit = lit;
         lane.resume = next;
         lane.leg = LEG_LOOK;

@@ -44,10 +44,12 @@ void scatter(MediumParams v, vec4 u, inout Lane lane) {
 
 #ifdef SURFACES
 // Likewise at a surface.
-void scatter_at_surface(vec4 u, inout Lane lane) {
+void scatter_at_surface(uvec4 words, inout Lane lane, inout Rng rng) {
     vec3 wo = -lane.path.direction;
     SurfacePoint at = surface_point(surface_at(lane.path), lane.path.position);
-    Bsdf bsdf = bsdf_of(surface_row(at.row), at.normal, wo);
+    vec4 u = to_uniform(words);
+    uvec4 key = takes_walks() ? next_words(rng) : uvec4(0u);
+    Bsdf bsdf = bsdf_of(surface_row(at.row), at.normal, wo, key);
     BsdfSample drawn = bsdf_sample(bsdf, wo, u.yzx);
     bool crosses = dot(drawn.direction, bsdf.normal) < 0.0;
     lane.path.position = at.position + (crosses ? -at.apart : at.apart) * bsdf.normal;
@@ -111,7 +113,7 @@ void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     bool scatters = !looks && !at_camera && !has_looked;
 #ifdef SURFACES
     if (scatters && surface_at(lane.path) != NO_SURFACE)
-        scatter_at_surface(to_uniform(words), lane);
+        scatter_at_surface(words, lane, rng);
     scatters = scatters && surface_at(lane.path) == NO_SURFACE;
 #endif
     if (scatters)

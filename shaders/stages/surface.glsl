@@ -19,16 +19,17 @@ void arrive_at_surface(MediumParams v, inout Lane lane, inout Rng rng, inout Tal
     if (HAS_LAYERS)
         if (lane.path.depth == 0u)
             note_collision(lane.record, vec3(lane.beta), at.position, lane.path.direction, lane.reach, row.color);
-    Bsdf bsdf = bsdf_of(row, at.normal, -lane.path.direction);
+    uvec4 key = takes_walks() ? next_words(rng) : uvec4(0u);
+    Bsdf bsdf = bsdf_of(row, at.normal, -lane.path.direction, key);
     lane.path.position = at.position + at.apart * bsdf.normal;
     lane.path.medium = AT_SURFACE | lane.struck;
     bool capped = SCATTERING != SCATTERING_NONE && lane.path.depth >= frame.max_depth;
     tally.depth_caps += capped ? 1u : 0u;
     lane.path.depth += 1u;
-    bool ended = capped || SCATTERING == SCATTERING_NONE || largest(lane.beta) == 0.0 || largest(row.color) == 0.0;
+    bool ended = capped || SCATTERING == SCATTERING_NONE || largest(lane.beta) == 0.0 || is_black(bsdf);
     lane.todo = ended || SCATTERING == SCATTERING_SINGLE ? TODO_END : TODO_DEPART;
     if (NEE != NEE_NONE && !ended && is_rough(bsdf))
-        gather_some_light(v, surface_of(v, bsdf), lane.path.position, 0.0, lane.beta,
+        gather_some_light(v, surface_of(v, bsdf, at.apart), lane.path.position, 0.0, lane.beta,
                           kind_label(lane.path.depth) | lane.first_label, lane.todo, lane, rng);
     trace(TRACE_SURFACE, lane, lane.path.position, lane.path.direction);
 }

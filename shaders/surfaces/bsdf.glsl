@@ -3,62 +3,149 @@
 #ifndef BSDF_GLSL
 #define BSDF_GLSL
 #include "lib/buffers.glsl"
-#include "lib/directions.glsl"
-#include "surfaces/fresnel.glsl"
+#include "surfaces/microsurface.glsl"
 
 struct Bsdf {
     uint material;
     vec3 normal; // unit, on wo's side
     vec3 color;
     vec3 eta; // beyond the surface over before it
-    vec3 k;
+    vec3 k;   // of what is coated, x: share of diffuse light that the coat throws back at it
+    float alpha;
+    uvec4 key; // of the walks among facets of what is rough; no other random numbers come from it
 };
 
 struct BsdfSample {
     vec3 direction;
     vec3 weight; // value over density
-    float pdf;   // per steradian; 0: of one direction, or one of two
+    float pdf;   // bsdf_pdf; 0: of one direction, or one of two
 };
 
 bool has_material(uint material) {
     return (MATERIALS & 1 << material) != 0;
 }
 
-Bsdf bsdf_of(SurfaceRow row, vec3 normal, vec3 wo) {
+// Its facets' distribution is what it is, or chance alone: walks among facets take a draw of their own.
+bool takes_walks() {
+    return has_material(MATERIAL_ROUGH_CONDUCTOR) || has_material(MATERIAL_ROUGH_DIELECTRIC);
+}
+
+bool is_glass(uint material) {
+    return material == MATERIAL_DIELECTRIC || material == MATERIAL_ROUGH_DIELECTRIC;
+}
+
+Bsdf bsdf_of(SurfaceRow row, vec3 normal, vec3 wo, uvec4 key) {
     bool inside = dot(normal, wo) < 0.0;
-    bool turns = inside && row.material == MATERIAL_DIELECTRIC;
-    return Bsdf(row.material, inside ? -normal : normal, row.color, turns ? 1.0 / row.eta : row.eta, row.k);
+    bool turns = inside && is_glass(row.material);
+    return Bsdf(row.material, inside ? -normal : normal, row.color, turns ? 1.0 / row.eta : row.eta, row.k, row.roughness, key);
+}
+
+bool has_facets(Bsdf b) {
+    return takes_walks() && (b.material == MATERIAL_ROUGH_CONDUCTOR || b.material == MATERIAL_ROUGH_DIELECTRIC);
+}
+
+Facets facets_of(Bsdf b) {
+    return Facets(b.alpha, b.material == MATERIAL_ROUGH_CONDUCTOR, b.eta, b.k);
 }
 
 // Whether it scatters into all directions, so that looking for light makes sense.
 bool is_rough(Bsdf b) {
-    return b.material == MATERIAL_DIFFUSE;
+    return b.material == MATERIAL_DIFFUSE || b.material == MATERIAL_COATED || has_facets(b);
 }
 
-// Times the cosine of wi; 0 for what has but single directions.
+// Whether light ends there.
+bool is_black(Bsdf b) {
+    return largest(b.color) == 0.0 && b.material != MATERIAL_COATED;
+}
+
+vec3 to_frame(vec3 normal, vec3 w) {
+    vec3 tangent, bitangent;
+    build_frame(normal, tangent, bitangent);
+    return vec3(dot(tangent, w), dot(bitangent, w), dot(normal, w));
+}
+
+vec3 from_frame(vec3 normal, vec3 w) {
+    vec3 tangent, bitangent;
+    build_frame(normal, tangent, bitangent);
+    return normalize(tangent * w.x + bitangent * w.y + normal * w.z);
+}
+
+// What a smooth coat lets in and out again of what is diffuse below it, over what the latter alone would scatter. Between them light
+// goes to and fro: the sum of a geometric series.
+vec3 through_coat(Bsdf b, float in_cosine, float out_cosine) {
+    float passes = (1.0 - fresnel_dielectric(in_cosine, b.eta.x)) * (1.0 - fresnel_dielectric(out_cosine, b.eta.x));
+    return passes / (b.eta * b.eta * (1.0 - b.color * b.k.x));
+}
+
+// Times the cosine of wi; 0 for what has but single directions. An estimate, where there are facets.
 vec3 bsdf_value(Bsdf b, vec3 wo, vec3 wi) {
-    return is_rough(b) ? b.color * (max(dot(b.normal, wi), 0.0) / PI) : vec3(0.0);
+    float cosine = max(dot(b.normal, wi), 0.0);
+    vec3 value = is_rough(b) ? b.color * (cosine / PI) : vec3(0.0);
+    if (has_material(MATERIAL_COATED))
+        if (b.material == MATERIAL_COATED)
+            value *= through_coat(b, cosine, min(dot(b.normal, wo), 1.0));
+    if (has_facets(b))
+        value = b.color * facets_value(facets_of(b), to_frame(b.normal, wo), to_frame(b.normal, wi),
+                                       Rng(b.key.x, b.key.y, b.key.z, b.key.w));
+    return value;
 }
 
+// What decides between ways to find light, which may be any density; with this one bsdf_guess draws.
 float bsdf_pdf(Bsdf b, vec3 wo, vec3 wi) {
-    return is_rough(b) ? max(dot(b.normal, wi), 0.0) / PI : 0.0;
+    float pdf = is_rough(b) ? max(dot(b.normal, wi), 0.0) / PI : 0.0;
+    if (has_facets(b))
+        pdf = facets_guess_pdf(facets_of(b), to_frame(b.normal, wo), to_frame(b.normal, wi));
+    return pdf;
+}
+
+// By cosine: from_peak = 1 - sqrt(1 - u), with all digits where that is small.
+vec3 by_cosine(vec3 normal, vec2 u) {
+    return turned(normal, u.x / (1.0 + sqrt(1.0 - u.x)), u.y);
+}
+
+vec3 bsdf_guess(Bsdf b, vec3 wo, vec2 u) {
+    vec3 direction = by_cosine(b.normal, u);
+    if (has_facets(b)) {
+        vec2 choice = to_uniform(pcg4d(b.key.yzwx)).xy;
+        direction = from_frame(b.normal, facets_guess(facets_of(b), to_frame(b.normal, wo), u, choice));
+    }
+    return direction;
 }
 
 // Mirrored, or refracted with chance 1 - F. Radiance goes with the square of the index, hence eta^2 where it crosses.
 BsdfSample sample_dielectric(Bsdf b, vec3 wo, float u) {
     float cosine = min(dot(b.normal, wo), 1.0);
     float eta = b.eta.x;
-    float beyond = sqrt(max(1.0 - (1.0 - cosine * cosine) / (eta * eta), 0.0));
     bool reflects = u < fresnel_dielectric(cosine, eta);
-    vec3 direction = reflects ? 2.0 * cosine * b.normal - wo : (cosine / eta - beyond) * b.normal - wo / eta;
-    return BsdfSample(normalize(direction), reflects ? b.color : b.color / (eta * eta), 0.0);
+    vec3 direction = reflects ? normalize(2.0 * cosine * b.normal - wo) : refracted(wo, b.normal, cosine, eta);
+    return BsdfSample(direction, reflects ? b.color : b.color / (eta * eta), 0.0);
+}
+
+// The coat mirrors with chance F.
+BsdfSample sample_coated(Bsdf b, vec3 wo, vec3 u) {
+    float cosine = min(dot(b.normal, wo), 1.0);
+    float F = fresnel_dielectric(cosine, b.eta.x);
+    vec3 direction = by_cosine(b.normal, u.xy);
+    float out_cosine = max(dot(b.normal, direction), 0.0);
+    vec3 below = b.color * through_coat(b, out_cosine, cosine) / max(1.0 - F, 1.0e-7);
+    bool mirrors = u.z < F;
+    return BsdfSample(mirrors ? normalize(2.0 * cosine * b.normal - wo) : direction, mirrors ? vec3(1.0) : below,
+                      mirrors ? 0.0 : out_cosine / PI);
+}
+
+BsdfSample sample_facets(Bsdf b, vec3 wo) {
+    BsdfSample drawn;
+    vec3 wi = facets_sample(facets_of(b), to_frame(b.normal, wo), Rng(b.key.x, b.key.y, b.key.z, b.key.w), drawn.weight);
+    drawn.direction = from_frame(b.normal, wi);
+    drawn.weight *= b.color;
+    drawn.pdf = bsdf_pdf(b, wo, drawn.direction);
+    return drawn;
 }
 
 BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec3 u) {
     float cosine = min(dot(b.normal, wo), 1.0);
-    // By cosine: from_peak = 1 - sqrt(1 - u), with all digits where that is small.
     BsdfSample drawn;
-    drawn.direction = turned(b.normal, u.x / (1.0 + sqrt(1.0 - u.x)), u.y);
+    drawn.direction = by_cosine(b.normal, u.xy);
     drawn.weight = b.color;
     drawn.pdf = max(dot(b.normal, drawn.direction), 0.0) / PI;
     if (has_material(MATERIAL_MIRROR) || has_material(MATERIAL_CONDUCTOR))
@@ -72,6 +159,11 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec3 u) {
     if (has_material(MATERIAL_DIELECTRIC))
         if (b.material == MATERIAL_DIELECTRIC)
             drawn = sample_dielectric(b, wo, u.z);
+    if (has_material(MATERIAL_COATED))
+        if (b.material == MATERIAL_COATED)
+            drawn = sample_coated(b, wo, u);
+    if (has_facets(b))
+        drawn = sample_facets(b, wo);
     return drawn;
 }
 

@@ -9,6 +9,7 @@ struct Scatterer {
     MediumParams medium;
     bool is_surface;
     Bsdf bsdf;
+    float apart; // see SurfacePoint
 };
 
 Scatterer matter_of(MediumParams v) {
@@ -18,8 +19,14 @@ Scatterer matter_of(MediumParams v) {
     return s;
 }
 
-Scatterer surface_of(MediumParams v, Bsdf bsdf) {
-    return Scatterer(v, true, bsdf);
+Scatterer surface_of(MediumParams v, Bsdf bsdf, float apart) {
+    return Scatterer(v, true, bsdf, apart);
+}
+
+// From `position` before the surface to where light arrives along -to_light: behind it, where that is.
+vec3 lit_position(Scatterer s, vec3 position, vec3 to_light) {
+    bool behind = has_material(MATERIAL_ROUGH_DIELECTRIC) && s.is_surface && dot(s.bsdf.normal, to_light) < 0.0;
+    return behind ? position - 2.0 * s.apart * s.bsdf.normal : position;
 }
 
 // Of light, into `after`, per steradian.
@@ -27,7 +34,7 @@ vec3 scatter_value(Scatterer s, vec3 before, vec3 after) {
     return s.is_surface ? bsdf_value(s.bsdf, -before, after) : vec3(phase_eval(s.medium, before, after));
 }
 
-// With which scatter_direction draws.
+// With which scatter_direction draws, and which weighs ways to find light against each other.
 float scatter_pdf(Scatterer s, vec3 before, vec3 after) {
     return s.is_surface ? bsdf_pdf(s.bsdf, -before, after) : phase_eval(s.medium, before, after);
 }
@@ -35,7 +42,7 @@ float scatter_pdf(Scatterer s, vec3 before, vec3 after) {
 vec3 scatter_direction(Scatterer s, vec3 before, vec2 u) {
     vec3 after;
     if (s.is_surface)
-        after = bsdf_sample(s.bsdf, -before, vec3(u, 0.0)).direction;
+        after = bsdf_guess(s.bsdf, -before, u);
     else
         after = phase_sample(s.medium, before, u);
     return after;
@@ -45,7 +52,7 @@ vec3 scatter_direction(Scatterer s, vec3 before, vec2 u) {
 float scatter_peak(Scatterer s) {
     vec3 along = vec3(0.0, 1.0, 0.0);
     float peak = max(phase_eval(s.medium, along, along), phase_eval(s.medium, along, -along));
-    return s.is_surface ? 1.0 / PI : peak;
+    return !s.is_surface ? peak : has_facets(s.bsdf) ? 0.25 / (PI * s.bsdf.alpha * s.bsdf.alpha) : 1.0 / PI;
 }
 #else
 #define Scatterer MediumParams
@@ -53,6 +60,7 @@ float scatter_peak(Scatterer s) {
 #define scatter_value phase_eval
 #define scatter_pdf phase_eval
 #define scatter_direction phase_sample
+#define lit_position(s, position, to_light) (position)
 
 float scatter_peak(MediumParams v) {
     vec3 along = vec3(0.0, 1.0, 0.0);

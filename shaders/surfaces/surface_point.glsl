@@ -40,7 +40,7 @@ SurfaceRow surface_row(uint i) {
     if (TABLE_TEXELS != 0) {
         uvec4 a = texelFetch(surface_texels, int(4u * i)), b = texelFetch(surface_texels, int(4u * i + 1u)),
               c = texelFetch(surface_texels, int(4u * i + 2u)), d = texelFetch(surface_texels, int(4u * i + 3u));
-        return SurfaceRow(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w,
+        return SurfaceRow(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w,
                           uintBitsToFloat(d.xyz), d.w);
     }
 #endif

@@ -159,6 +159,16 @@ std::vector<std::string> make_objs() {
     return objs;
 }
 
+std::vector<std::string> make_plys() {
+    std::vector<std::string> plys;
+    for (const PlyFormat format : {PlyFormat::ascii, PlyFormat::little_endian, PlyFormat::big_endian})
+        plys.push_back(as_ply(make_icosphere(0), format));
+    plys.push_back("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                   "element face 2\nproperty list uchar int vertex_index\nproperty uchar red\nend_header\n"
+                   "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1 9\n4 0 1 3 2 9\n");
+    return plys;
+}
+
 void write_scene_files(const std::filesystem::path& directory) {
     const auto density = make_grid_bytes(recipe_of(0, Storage::fpn, "density"));
     const auto heat = make_grid_bytes(recipe_of(1, Storage::float32, "temperature"));

@@ -35,6 +35,8 @@ std::vector<std::string> make_vdbs(const std::filesystem::path& scratch);
 
 // .obj texts of closed surfaces, with the material library ball.mtl.
 std::vector<std::string> make_objs();
+// Such .ply files, of every format.
+std::vector<std::string> make_plys();
 extern const char* const ball_mtl;
 
 } // namespace vkvol::fuzz

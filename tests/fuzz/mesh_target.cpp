@@ -1,4 +1,4 @@
-// .obj files with the .mtl beside them.
+// .obj files with the .mtl beside them, and .ply files.
 #include <array>
 
 #include "corpus.h"
@@ -11,13 +11,72 @@ namespace vkvol::fuzz {
 
 namespace {
 
-constexpr const char* words[] = {
-    "v",         "f",       "vt",     "vn",         "vw",          "g",           "o",        "s",      "l",
-    "p",         "t",       "usemtl", "mtllib",     "newmtl",      "Kd",          "Ka",       "map_Kd", "d",
-    "Tr",        "Ns",      "-clamp", "-bm",        "1//1",        "1/1/1",       "-1//-1",   "-9",     "9",
-    "0",         "1/",      "//",     "2147483648", "-2147483648", "99999999999", "\\",       "#",      "ball.mtl",
-    "ball.obj",  ".",       "/",      "/dev/zero",  "none.mtl",    "\n",          "\r",       "\t",     "\x0c",
-    "f 1 2 3\n", "v 1 2\n", "f\n",    "f 1 2\n",    "usemtl\n",    "mtllib\n",    "newmtl\n", "Kd\n"};
+constexpr const char* words[] = {"v",
+                                 "f",
+                                 "vt",
+                                 "vn",
+                                 "vw",
+                                 "g",
+                                 "o",
+                                 "s",
+                                 "l",
+                                 "p",
+                                 "t",
+                                 "usemtl",
+                                 "mtllib",
+                                 "newmtl",
+                                 "Kd",
+                                 "Ka",
+                                 "map_Kd",
+                                 "d",
+                                 "Tr",
+                                 "Ns",
+                                 "-clamp",
+                                 "-bm",
+                                 "1//1",
+                                 "1/1/1",
+                                 "-1//-1",
+                                 "-9",
+                                 "9",
+                                 "0",
+                                 "1/",
+                                 "//",
+                                 "2147483648",
+                                 "-2147483648",
+                                 "99999999999",
+                                 "\\",
+                                 "#",
+                                 "ball.mtl",
+                                 "ball.obj",
+                                 ".",
+                                 "/",
+                                 "/dev/zero",
+                                 "none.mtl",
+                                 "\n",
+                                 "\r",
+                                 "\t",
+                                 "\x0c",
+                                 "f 1 2 3\n",
+                                 "v 1 2\n",
+                                 "f\n",
+                                 "f 1 2\n",
+                                 "usemtl\n",
+                                 "mtllib\n",
+                                 "newmtl\n",
+                                 "Kd\n",
+                                 "element",
+                                 "property",
+                                 "list",
+                                 "vertex",
+                                 "face",
+                                 "uchar",
+                                 "double",
+                                 "float",
+                                 "end_header\n",
+                                 "format ascii 1.0\n",
+                                 "format binary_big_endian 1.0\n",
+                                 "vertex_index",
+                                 "element face 4000000000\n"};
 
 // Separates the mesh from its materials in an input.
 const std::string separator = "\n%materials\n";
@@ -29,6 +88,8 @@ public:
     void prepare(const std::filesystem::path& directory) override {
         directory_ = directory;
         corpus_ = make_objs();
+        const std::vector<std::string> plys = make_plys();
+        corpus_.insert(corpus_.end(), plys.begin(), plys.end());
     }
 
     std::string make(Random& random) override {
@@ -41,11 +102,12 @@ public:
 
     void use(const std::string& input, Random& random) override {
         const std::size_t at = input.rfind(separator);
-        write_file(directory_ / "ball.obj", input.substr(0, at));
+        const std::filesystem::path file = directory_ / (input.starts_with("ply") ? "ball.ply" : "ball.obj");
+        write_file(file, input.substr(0, at));
         write_file(directory_ / "ball.mtl", input.substr(at + separator.size()));
         Scene scene;
         scene.volumes.emplace_back();
-        scene.volumes.front().shape = MeshFiles{{directory_ / "ball.obj"}};
+        scene.volumes.front().shape = MeshFiles{{file}};
         if (random.one_in(2))
             scene.settings.integrator = "densitySampling";
         use_scene(scene);

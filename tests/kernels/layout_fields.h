@@ -79,7 +79,7 @@ PUT(light_node.light)
 PUT(light_node.right)
 
 PUT(surface_row.color)
-PUT(surface_row.shape)
+PUT(surface_row.roughness)
 PUT(surface_row.emission)
 PUT(surface_row.material)
 PUT(surface_row.eta)

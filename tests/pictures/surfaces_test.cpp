@@ -10,6 +10,7 @@
 #include "support/images.h"
 #include "support/scene_text.h"
 #include "support/scenes.h"
+#include "support/thorough.h"
 
 using namespace vkvol;
 using Catch::Contains;
@@ -82,6 +83,15 @@ void check_everywhere(const Scene& scene, const Rgb& expected, double relative) 
             CHECK(mean[i] == Approx(expected[i]).epsilon(relative).margin(1e-7));
 }
 
+// Against the reference, and the other schedule's bits.
+void check_by_both_schedules(const Scene& scene, const std::string& name) {
+    const Film film = render_here(scene, 1).film;
+    CHECK_AGREEMENT(agree(film, render_reference(scene, 2), name));
+    RenderJob staged;
+    staged.plan.schedule = Schedule::staged;
+    CHECK(same_bits(film, render_here(scene, 1, staged).film));
+}
+
 Volume fog(double sigma_t, double albedo) {
     return medium(Box{{0.0, 0.0, 0.0}, {3.0, 3.0, 3.0}}, sigma_t, albedo, 0.4);
 }
@@ -116,21 +126,63 @@ Scene still_life() {
     return scene;
 }
 
+// The same with facets, and varnish.
+Scene rough_still_life() {
+    Scene scene = still_life();
+    scene.surfaces[0].material.kind = MaterialKind::coated;
+    scene.surfaces[1].material.roughness = 0.25;
+    scene.surfaces[2].material.roughness = 0.5;
+    scene.surfaces[3].material = scene.surfaces[2].material;
+    scene.surfaces[3].material.roughness = 0.1;
+    return scene;
+}
+
+// Facets of a metal that keeps no light.
+Material frosted(MaterialKind kind, double roughness) {
+    Material material = white(kind);
+    material.eta = Rgb(0.0);
+    material.k = Rgb(1.0);
+    material.roughness = roughness;
+    return material;
+}
+
 } // namespace
 
 TEST_CASE("whatever scatters all light vanishes in an even sky, in fog too", "[gpu][image][surfaces]") {
-    for (const MaterialKind kind : {MaterialKind::diffuse, MaterialKind::mirror, MaterialKind::dielectric})
+    for (const Material& material :
+         {white(MaterialKind::diffuse), white(MaterialKind::mirror), white(MaterialKind::dielectric),
+          frosted(MaterialKind::conductor, 1.0), frosted(MaterialKind::dielectric, 0.3)})
         for (const bool in_fog : {false, true}) {
-            CAPTURE(static_cast<int>(kind), in_fog);
+            CAPTURE(static_cast<int>(material.kind), material.roughness, in_fog);
             Scene scene = empty_scene();
             scene.background = {1.0, 2.0, 0.5};
             scene.settings.roulette_threshold = 0.0;
-            scene.surfaces = {ball(white(kind), {0.5, 0.3, 0.2}, 0.4), ball(white(kind))};
+            scene.surfaces = {ball(material, {0.5, 0.3, 0.2}, 0.4), ball(material)};
             scene.surfaces.back().shape = round_mesh(5, 0.25);
             if (in_fog)
                 scene.volumes = {fog(1.5, 1.0)};
             // Weights are 1 but for rounding, of which a path has some at each of some dozens of vertices.
             check_everywhere(scene, scene.background, 2e-5);
+        }
+}
+
+TEST_CASE("facets and coats lose no light, found by looks or by flights", "[gpu][image][surfaces][thorough]") {
+    Scene scene = empty_scene(8);
+    scene.lights = {write_sky(make_map(8, 4, [](int, int) { return Rgb(1.0); }))};
+    scene.settings.integrator = "ratioTracking";
+    scene.settings.spp = 2048;
+    const std::pair<Material, int> usual[] = {{frosted(MaterialKind::conductor, 0.3), MIS_LIGHT},
+                                              {frosted(MaterialKind::dielectric, 0.6), MIS_BALANCE},
+                                              {white(MaterialKind::coated), MIS_PHASE}};
+    for (const auto& [material, usual_mis] : usual)
+        for (const int mis : {MIS_BALANCE, MIS_LIGHT, MIS_PHASE}) {
+            if (mis != usual_mis && !thorough())
+                continue;
+            CAPTURE(static_cast<int>(material.kind), mis);
+            scene.surfaces = {ball(material)};
+            scene.settings.choices.mis = mis;
+            const Film film = render_here(scene, 1).film;
+            CHECK_AGREEMENT(agree_with_means(film, std::vector<Rgb>(film.mean.size(), Rgb(1.0)), "furnace"));
         }
 }
 
@@ -278,11 +330,8 @@ TEST_CASE("no ray leaves a closed mesh", "[gpu][image][surfaces]") {
 
 TEST_CASE("surfaces among media equal the reference, by both schedules", "[gpu][image][surfaces]") {
     const Scene scene = still_life();
-    const Film film = render_here(scene, 1).film;
-    CHECK_AGREEMENT(agree(film, render_reference(scene, 2), "still life"));
-    RenderJob staged;
-    staged.plan.schedule = Schedule::staged;
-    CHECK(same_bits(film, render_here(scene, 1, staged).film));
+    check_by_both_schedules(scene, "still life");
+    check_by_both_schedules(rough_still_life(), "rough still life");
     Scene several = scene;
     several.volumes.push_back(medium(Box{{0.6, -0.4, 0.4}, {1.6, 0.9, 1.6}}, 1.0, 0.7, -0.2));
     several.volumes.back().sigma_s = {0.5, 0.6, 0.7};
@@ -310,11 +359,7 @@ TEST_CASE("surfaces that shine are lamps with bodies", "[gpu][image][surfaces]")
     add(BallSurface{{1.9, 1.0, 0.5}, 0.3}, {0.5, 0.9, 0.4}, true);
     add(DiskSurface{{-1.7, 0.9, -0.4}, glm::normalize(glm::dvec3(1.0, -0.6, 0.5)), 0.5}, {1.5, 1.0, 0.5}, true);
     add(RectangleSurface{{0.0, 1.3, -1.0}, {0.6, 0.0, 0.0}, {0.0, 0.3, 0.2}}, {0.4, 0.5, 1.2}, false);
-    const Film film = render_here(scene, 1).film;
-    CHECK_AGREEMENT(agree(film, render_reference(scene, 2), "lamps with bodies"));
-    RenderJob staged;
-    staged.plan.schedule = Schedule::staged;
-    CHECK(same_bits(film, render_here(scene, 1, staged).film));
+    check_by_both_schedules(scene, "lamps with bodies");
     Scene chance = scene;
     chance.settings.choices.nee = NEE_NONE;
     chance.lights.clear();
@@ -323,19 +368,22 @@ TEST_CASE("surfaces that shine are lamps with bodies", "[gpu][image][surfaces]")
     CHECK_AGREEMENT(agree(looked, by_chance, "by chance"));
 }
 
-TEST_CASE("surfaces among media are the same for every estimator", "[gpu][image][surfaces]") {
+TEST_CASE("surfaces among media are the same for every estimator", "[gpu][image][surfaces][thorough]") {
     Scene scene = still_life();
     scene.settings.spp = 96;
     const Film expected = render_here(scene, 1).film;
+    std::vector<Combination> one_axis;
     for (const Combination& combination : unbiased_combinations(scene)) {
         const AxisChoices& choices = combination.choices;
         const int unusual = (choices.free_flight != FREE_FLIGHT_DELTA) +
                             (choices.transmittance != TRANSMITTANCE_RATIO) + (choices.nee != NEE_COLLISIONS) +
                             (choices.emission.value_or(EMISSION_AT_COLLISIONS) != EMISSION_AT_COLLISIONS);
-        if (unusual > 1)
-            continue;
+        if (unusual == 1)
+            one_axis.push_back(combination);
+    }
+    for (const Combination& combination : in_turn(one_axis, 0)) {
         Scene other = scene;
-        other.settings.choices = choices;
+        other.settings.choices = combination.choices;
         CHECK_AGREEMENT(agree(render_here(other, 2).film, expected, combination.name));
     }
 }
@@ -347,8 +395,10 @@ TEST_CASE("surfaces are read, moved and refused by name", "[xml][surfaces]") {
   <rectangle lookAt="0 1 0" width="2" height="4"><emission r="1" g="1" b="1" multiplier="3" sides="2"/></rectangle>
   <box width="2"><transform><scale value="2"/><translate y="5"/></transform></box>
   <disk lookAt="0 0 1" material="conductor" metal="gold"/>
+  <sphere material="coated" r=".1" g=".2" b="1"/>
+  <sphere material="conductor" roughness=".3"/>
 </surfaces>)");
-    REQUIRE(scene.surfaces.size() == 5);
+    REQUIRE(scene.surfaces.size() == 7);
     CHECK(scene.surfaces[0].material.ior == 1.33);
     CHECK(scene.surfaces[1].material.color == Rgb(0.1, 0.2, 0.3));
     CHECK(scene.surfaces[2].emission == Rgb(3.0));
@@ -357,6 +407,8 @@ TEST_CASE("surfaces are read, moved and refused by name", "[xml][surfaces]") {
     CHECK(box.vertices.front() == glm::dvec3(-2.0, 4.0, -1.0));
     CHECK(box.vertices.back() == glm::dvec3(2.0, 6.0, 1.0));
     CHECK(scene.surfaces[4].material.k.x == 3.983);
+    CHECK(scene.surfaces[5].material.kind == MaterialKind::coated);
+    CHECK(scene.surfaces[6].material.roughness == 0.3);
 
     const std::string glass = "<surfaces><box material=\"dielectric\"/></surfaces>";
     CHECK(warns(parse(glass + "<lights><point/><sphere/></lights>"), "no path finds what directional lights"));
@@ -364,7 +416,12 @@ TEST_CASE("surfaces are read, moved and refused by name", "[xml][surfaces]") {
 
     const auto refused = [](const std::string& surface) { return error_of("<surfaces>" + surface + "</surfaces>"); };
     CHECK_THAT(refused("<sphere material=\"gold\"/>"), Contains("2:19") && Contains("'gold' is unknown"));
-    CHECK_THAT(refused("<sphere ior=\"2\"/>"), Contains("has a meaning with material=\"dielectric\" only"));
+    CHECK_THAT(refused("<sphere ior=\"2\"/>"),
+               Contains("has a meaning with material=\"dielectric\" or \"coated\" only"));
+    CHECK_THAT(refused("<sphere roughness=\".2\"/>"), Contains("\"conductor\" or \"dielectric\" only"));
+    CHECK_THAT(refused("<sphere material=\"conductor\" roughness=\"1e-4\"/>"), Contains("0.001 at least"));
+    CHECK_THAT(refused("<sphere material=\"dielectric\" ior=\"1\" roughness=\".1\"/>"), Contains("shows nothing"));
+    CHECK_THAT(refused("<sphere material=\"coated\" ior=\".9\"/>"), Contains("denser than what is around"));
     CHECK_THAT(refused("<sphere r=\"2\"/>"), Contains("more than it gets"));
     CHECK_THAT(refused("<sphere><transform><scale x=\"2\"/></transform></sphere>"), Contains("use a mesh"));
     CHECK_THAT(refused("<mesh/>"), Contains("names no file"));
@@ -386,6 +443,7 @@ TEST_CASE("what a surface is and is made of is in the scene hash", "[method][sur
     CHECK(differs([](auto& s) { std::get<BallSurface>(s[1].shape).radius = 0.61; }));
     CHECK(differs([](auto& s) { s[1].material.ior = 1.4; }));
     CHECK(differs([](auto& s) { s[2].material.k.x = 4.0; }));
+    CHECK(differs([](auto& s) { s[2].material.roughness = 0.1; }));
     CHECK(differs([](auto& s) { std::get<TriangleSurface>(s[3].shape).vertices[0].x += 0.1; }));
     CHECK(differs([](auto& s) { s[4].emission.x = 1.6; }));
     CHECK(differs([](auto& s) { s[4].shines_both_ways = true; }));

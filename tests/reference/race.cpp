@@ -44,8 +44,8 @@ Rgb light_on(const World& world, const SurfaceHit& hit, const glm::dvec3& p, con
     for (const vkvol::Light& light : world.scene.lights) {
         const Draw draw = rng.next();
         if (const auto found = towards(light, p, draw.x(), draw.y()))
-            Ld +=
-                scatter_value(hit, travel, found->ray.direction) * transmittance(world, found->ray, rng) * found->light;
+            Ld += scatter_value(hit, travel, found->ray.direction, rng) * transmittance(world, found->ray, rng) *
+                  found->light;
     }
     return Ld;
 }
@@ -98,7 +98,7 @@ Rgb radiance_by_race(const World& world, Ray ray, Rng& rng) {
         if (collides) {
             ray.direction = phase_sample(*collision->medium, travel, draw.y(), draw.z());
         } else {
-            const Scattered next = scatter(*hit, travel, draw);
+            const Scattered next = scatter(*hit, travel, draw, rng);
             ray.direction = next.direction;
             beta *= next.weight;
             sees_all = next.specular;

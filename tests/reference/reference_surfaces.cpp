@@ -1,9 +1,10 @@
 #include "reference_surfaces.h"
 
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <stdexcept>
+
+#include "reference_facets.h"
 
 namespace reference {
 
@@ -61,13 +62,40 @@ void meet(const vkvol::Surface& surface, const Ray& ray, std::optional<SurfaceHi
     }
 }
 
-// By Fresnel's equations as they are in books, with the angle beyond by Snell's law, complex if need be.
-double reflected(double cosine, std::complex<double> index) {
-    const std::complex<double> sine = std::sqrt(1.0 - cosine * cosine) / index;
-    const std::complex<double> beyond = std::sqrt(1.0 - sine * sine);
-    const std::complex<double> across = (cosine - index * beyond) / (cosine + index * beyond);
-    const std::complex<double> parallel = (index * cosine - beyond) / (index * cosine + beyond);
-    return 0.5 * (std::norm(across) + std::norm(parallel));
+// Of even light from within a boundary of index `ior`, what it throws back: the mean over angles.
+double thrown_back(double ior) {
+    constexpr int n = 2000;
+    double sum = 0.0;
+    for (int i = 0; i < n; ++i) {
+        const double square = (i + 0.5) / n; // of the sine
+        sum += std::sqrt(square) * ior >= 1.0 ? 1.0 : reflected(std::sqrt(1.0 - square), 1.0 / ior);
+    }
+    return sum / n;
+}
+
+// Evenly over the hemisphere, or by cosine.
+glm::dvec3 about(const glm::dvec3& front, double mu, double u) {
+    const glm::dvec3 side =
+        glm::normalize(glm::cross(front, std::abs(front.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+    const double sine = std::sqrt(1.0 - mu * mu), phi = 2.0 * pi * u;
+    return mu * front + sine * (std::cos(phi) * side + std::sin(phi) * glm::cross(front, side));
+}
+
+// To and fro between the coat and what is diffuse below it.
+Scattered through_coat(const vkvol::Material& material, const glm::dvec3& front, const glm::dvec3& travel, double u,
+                       Rng& rng) {
+    if (u < reflected(std::min(-glm::dot(travel, front), 1.0), material.ior))
+        return {glm::reflect(travel, front), Rgb(1.0), true};
+    Rgb weight(1.0);
+    for (int i = 0; i < 1000; ++i) {
+        const Draw draw = rng.next();
+        weight *= material.color;
+        const glm::dvec3 inside = about(front, std::sqrt(1.0 - draw.x()), draw.y());
+        const glm::dvec3 beyond = glm::refract(inside, -front, material.ior);
+        if (beyond != glm::dvec3(0.0) && draw.z() >= reflected(glm::dot(inside, front), 1.0 / material.ior))
+            return {glm::normalize(beyond), weight, false};
+    }
+    return {front, Rgb(0.0), false};
 }
 
 Scattered through_glass(const vkvol::Material& material, glm::dvec3 normal, const glm::dvec3& travel, double u) {
@@ -91,24 +119,46 @@ std::optional<SurfaceHit> nearest_surface(const std::vector<vkvol::Surface>& sur
     return found && found->t < ray.reach ? found : std::nullopt;
 }
 
-Rgb scatter_value(const SurfaceHit& hit, const glm::dvec3& travel, const glm::dvec3& direction) {
+Rgb scatter_value(const SurfaceHit& hit, const glm::dvec3& travel, const glm::dvec3& direction, Rng& rng) {
+    const vkvol::Material& material = hit.surface->material;
     const double before = -glm::dot(hit.normal, travel), after = glm::dot(hit.normal, direction);
-    if (hit.surface->material.kind != vkvol::MaterialKind::diffuse || before * after <= 0.0)
+    if (material.roughness > 0.0) {
+        if (material.kind == vkvol::MaterialKind::conductor && before * after <= 0.0)
+            return Rgb(0.0);
+        const bool from_within = before < 0.0 && material.kind == vkvol::MaterialKind::dielectric;
+        return material.color * facets_value(material, from_within ? 1.0 / material.ior : material.ior,
+                                             before < 0.0 ? -hit.normal : hit.normal, -travel, direction, rng);
+    }
+    if (before * after <= 0.0)
         return Rgb(0.0);
-    return hit.surface->material.color * std::abs(after) / pi;
+    if (material.kind == vkvol::MaterialKind::diffuse)
+        return material.color * std::abs(after) / pi;
+    if (material.kind != vkvol::MaterialKind::coated)
+        return Rgb(0.0);
+    static thread_local double known_ior = 0.0, back = 0.0;
+    if (material.ior != known_ior)
+        back = thrown_back(known_ior = material.ior);
+    const double passes =
+        (1.0 - reflected(std::abs(before), material.ior)) * (1.0 - reflected(std::abs(after), material.ior));
+    return material.color * (std::abs(after) / pi * passes / (material.ior * material.ior)) /
+           (1.0 - back * material.color);
 }
 
-Scattered scatter(const SurfaceHit& hit, const glm::dvec3& travel, const Draw& draw) {
+Scattered scatter(const SurfaceHit& hit, const glm::dvec3& travel, const Draw& draw, Rng& rng) {
     const vkvol::Material& material = hit.surface->material;
-    const glm::dvec3 front = glm::dot(hit.normal, travel) > 0.0 ? -hit.normal : hit.normal;
+    const bool behind = glm::dot(hit.normal, travel) > 0.0;
+    const glm::dvec3 front = behind ? -hit.normal : hit.normal;
+    if (material.roughness > 0.0) {
+        const bool glass = material.kind == vkvol::MaterialKind::dielectric;
+        const double eta = glass && behind ? 1.0 / material.ior : material.ior;
+        const FacetSample sample = facets_scatter(material, eta, front, -travel, rng);
+        const bool crosses = glm::dot(sample.direction, front) < 0.0;
+        return {sample.direction, material.color * sample.weight / (crosses ? eta * eta : 1.0), false};
+    }
     switch (material.kind) {
-    case vkvol::MaterialKind::diffuse: { // evenly over the hemisphere
-        const glm::dvec3 side =
-            glm::normalize(glm::cross(front, std::abs(front.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
-        const double mu = draw.x(), sine = std::sqrt(1.0 - mu * mu), phi = 2.0 * pi * draw.y();
-        const glm::dvec3 direction =
-            mu * front + sine * (std::cos(phi) * side + std::sin(phi) * glm::cross(front, side));
-        return {direction, scatter_value(hit, travel, direction) * 2.0 * pi, false};
+    case vkvol::MaterialKind::diffuse: {
+        const glm::dvec3 direction = about(front, draw.x(), draw.y());
+        return {direction, material.color * 2.0 * draw.x(), false};
     }
     case vkvol::MaterialKind::mirror:
         return {glm::reflect(travel, front), material.color, true};
@@ -120,6 +170,8 @@ Scattered scatter(const SurfaceHit& hit, const glm::dvec3& travel, const Draw& d
     }
     case vkvol::MaterialKind::dielectric:
         return through_glass(material, hit.normal, travel, draw.x());
+    case vkvol::MaterialKind::coated:
+        return through_coat(material, front, travel, draw.x(), rng);
     }
     throw std::runtime_error("the reference knows no such material");
 }

@@ -26,9 +26,9 @@ struct Scattered {
     vkvol::Rgb weight;
     bool specular;
 };
-Scattered scatter(const SurfaceHit& hit, const glm::dvec3& travel, const Draw& draw);
+Scattered scatter(const SurfaceHit& hit, const glm::dvec3& travel, const Draw& draw, Rng& rng);
 
-// Of light from `direction`, per steradian, cosine included; 0 of what is specular.
-vkvol::Rgb scatter_value(const SurfaceHit& hit, const glm::dvec3& travel, const glm::dvec3& direction);
+// Of light from `direction`, per steradian, cosine included; 0 of what is specular. An estimate, of what is rough.
+vkvol::Rgb scatter_value(const SurfaceHit& hit, const glm::dvec3& travel, const glm::dvec3& direction, Rng& rng);
 
 } // namespace reference

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <fmt/format.h>
 #include <map>
 
 namespace vkvol {
@@ -110,6 +112,36 @@ std::string as_obj(const Mesh& mesh) {
         text += "v " + std::to_string(v.x) + ' ' + std::to_string(v.y) + ' ' + std::to_string(v.z) + '\n';
     for (const glm::uvec3 t : mesh.triangles)
         text += "f " + std::to_string(t.x + 1) + ' ' + std::to_string(t.y + 1) + ' ' + std::to_string(t.z + 1) + '\n';
+    return text;
+}
+
+std::string as_ply(const Mesh& mesh, PlyFormat format) {
+    std::string text = fmt::format("ply\nformat {} 1.0\nelement vertex {}\nproperty double x\nproperty double y\n"
+                                   "property double z\nelement face {}\nproperty list uchar int vertex_indices\n"
+                                   "end_header\n",
+                                   format == PlyFormat::ascii           ? "ascii"
+                                   : format == PlyFormat::little_endian ? "binary_little_endian"
+                                                                        : "binary_big_endian",
+                                   mesh.vertices.size(), mesh.triangles.size());
+    const auto add = [&](auto number) {
+        if (format == PlyFormat::ascii) {
+            text += fmt::format("{} ", static_cast<double>(number));
+            return;
+        }
+        char bytes[sizeof number]; // this machine's are little-endian
+        std::memcpy(bytes, &number, sizeof number);
+        if (format == PlyFormat::big_endian)
+            std::reverse(bytes, bytes + sizeof number);
+        text.append(bytes, sizeof number);
+    };
+    for (const glm::dvec3& vertex : mesh.vertices)
+        for (int axis = 0; axis < 3; ++axis)
+            add(vertex[axis]);
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        add(std::uint8_t{3});
+        for (int corner = 0; corner < 3; ++corner)
+            add(static_cast<std::int32_t>(triangle[corner]));
+    }
     return text;
 }
 

@@ -24,4 +24,8 @@ Mesh join(Mesh a, const Mesh& b);
 // The text of its .obj file.
 std::string as_obj(const Mesh& mesh);
 
+// The bytes of its .ply file; coordinates as double.
+enum class PlyFormat { ascii, little_endian, big_endian };
+std::string as_ply(const Mesh& mesh, PlyFormat format);
+
 } // namespace vkvol

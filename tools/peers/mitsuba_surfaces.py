@@ -7,7 +7,10 @@ def bsdf(surface):
     if kind == "dielectric":
         return {"type": "dielectric", "int_ior": surface.ior, "ext_ior": 1.0, "specular_reflectance": rgb(surface.color),
                 "specular_transmittance": rgb(surface.color)}
-    if kind == "diffuse":
+    if kind == "coated":
+        one_sided = {"type": "plastic", "diffuse_reflectance": rgb(surface.color), "int_ior": surface.ior, "ext_ior": 1.0,
+                     "nonlinear": True}
+    elif kind == "diffuse":
         one_sided = {"type": "diffuse", "reflectance": rgb(surface.color)}
     elif kind == "mirror":
         one_sided = {"type": "conductor", "material": "none", "specular_reflectance": rgb(surface.color)}

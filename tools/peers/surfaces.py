@@ -72,6 +72,8 @@ class Surfaces:
         material = self.reader.filled(element.get("material", "diffuse"))
         if material == "conductor" and element.get("eta") is None:
             self.reader.fail("<surfaces> metal: names are not translated; give eta and k")
+        if self.number(element, "roughness", 0.0) != 0:
+            self.reader.fail("<surfaces> roughness: facets lose light elsewhere, and are not translated")
         glow = element.find("emission")
         if glow is not None and self.number(glow, "sides", 1.0) != 1:
             self.reader.fail('<emission> sides="2" is not translated; take two surfaces')
@@ -83,7 +85,7 @@ class Surfaces:
         multiplier = self.number(element, "multiplier", 1.0)
         if any(element.get(name) is not None for name in "rgb"):
             return self.reader.vector(element, "rgb") * multiplier
-        return np.full(3, multiplier * (0.5 if material == "diffuse" else 1.0))
+        return np.full(3, multiplier * (0.5 if material in ("diffuse", "coated") else 1.0))
 
     def spectrum(self, element, name):
         values = [self.reader.to_number(word) for word in self.reader.filled(element.get(name, "0")).split()]

@@ -1,0 +1,28 @@
+#include "polygons.h"
+
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+
+#include "error.h"
+#include "file_ending.h"
+#include "input_file.h"
+#include "obj_file.h"
+#include "ply_file.h"
+
+namespace vkvol {
+
+std::string read_mesh_text(const std::filesystem::path& path) {
+    check_input_file(path, "check the path in the scene (it starts from the scene file's directory)");
+    std::ifstream stream(path, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    if (stream.bad())
+        throw InputError(fmt::format("{}: cannot be read; check the disk, or copy the file again", path.string()));
+    return text;
+}
+
+Polygons read_polygons(const std::filesystem::path& path) {
+    return file_ending(path) == ".ply" ? read_ply(path) : read_obj(path);
+}
+
+} // namespace vkvol

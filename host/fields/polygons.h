@@ -1,0 +1,28 @@
+// A mesh as its file says it, before anything is asked of its shape.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene.h"
+
+namespace vkvol {
+
+struct Polygons {
+    std::vector<glm::dvec3> vertices;
+    std::vector<glm::uvec3> triangles; // of every polygon, in the order of the file
+    std::optional<Rgb> diffuse;        // Kd of the first face's material
+    bool several_diffuse = false;      // faces of another Kd follow
+    std::vector<std::string> warnings; // material libraries that cannot be read
+};
+
+// From a .ply file, or whatever it is called a Wavefront .obj. InputError for a file that cannot be read, has no faces,
+// a number that is none, or a vertex that does not exist.
+Polygons read_polygons(const std::filesystem::path& path);
+
+// The whole file; InputError if that cannot be.
+std::string read_mesh_text(const std::filesystem::path& path);
+
+} // namespace vkvol
