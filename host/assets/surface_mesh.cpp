@@ -14,15 +14,66 @@ namespace {
 TriangleSurface load(const MeshSurface& mesh, const glm::dmat4& transform, bool closed) {
     if (closed) {
         Mesh loaded = load_mesh({{mesh.file}}, transform);
-        return {std::move(loaded.vertices), std::move(loaded.triangles)};
+        return {std::move(loaded.vertices), std::move(loaded.triangles), std::move(loaded.normals)};
     }
-    Polygons obj = read_polygons(mesh.file);
-    for (glm::dvec3& vertex : obj.vertices)
+    Polygons read = read_polygons(mesh.file);
+    for (glm::dvec3& vertex : read.vertices)
         vertex = glm::dvec3(transform * glm::dvec4(vertex, 1.0));
     if (glm::determinant(glm::dmat3(transform)) < 0.0) // a mirror turns them inside out
-        for (glm::uvec3& triangle : obj.triangles)
-            std::swap(triangle.y, triangle.z);
-    return {std::move(obj.vertices), std::move(obj.triangles)};
+        for (std::size_t i = 0; i < read.triangles.size(); ++i) {
+            std::swap(read.triangles[i].y, read.triangles[i].z);
+            if (!read.normals.empty())
+                std::swap(read.normals[i][1], read.normals[i][2]);
+        }
+    return {std::move(read.vertices), std::move(read.triangles), std::move(read.normals)};
+}
+
+// Of its length twice the area; counterclockwise as seen from where it points to.
+glm::dvec3 across(const TriangleSurface& mesh, std::size_t i) {
+    const glm::uvec3 t = mesh.triangles[i];
+    return glm::cross(mesh.vertices[t.y] - mesh.vertices[t.x], mesh.vertices[t.z] - mesh.vertices[t.x]);
+}
+
+// At each vertex the mean of the faces about it, by their areas.
+std::vector<glm::mat3> means_of_faces(const TriangleSurface& mesh) {
+    std::vector<glm::dvec3> sums(mesh.vertices.size(), glm::dvec3(0.0));
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        for (int corner = 0; corner < 3; ++corner)
+            sums[mesh.triangles[i][corner]] += across(mesh, i);
+    for (glm::dvec3& sum : sums)
+        sum = glm::dot(sum, sum) > 0.0 ? glm::normalize(sum) : sum;
+    std::vector<glm::mat3> normals;
+    for (const glm::uvec3& t : mesh.triangles)
+        normals.emplace_back(sums[t.x], sums[t.y], sums[t.z]);
+    return normals;
+}
+
+// Unit, and on the side of the face: which way files count differs. Where there is none, the face's own.
+void complete(TriangleSurface& mesh) {
+    for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
+        const glm::dvec3 face = across(mesh, i);
+        const bool is_flat = glm::dot(face, face) == 0.0; // no ray meets it
+        for (int corner = 0; corner < 3; ++corner) {
+            glm::dvec3 normal = mesh.normals[i][corner];
+            const double length = glm::length(normal);
+            normal = length > 0.0 && length < std::numeric_limits<double>::infinity() ? normal / length : face;
+            normal *= glm::dot(normal, face) < 0.0 ? -1.0 : 1.0;
+            mesh.normals[i][corner] = is_flat ? glm::dvec3(0.0, 1.0, 0.0) : glm::normalize(normal);
+        }
+    }
+}
+
+void set_normals(TriangleSurface& mesh, MeshNormals which, const glm::dmat4& transform) {
+    if (which == MeshNormals::flat)
+        mesh.normals.clear();
+    if (which == MeshNormals::smooth)
+        mesh.normals = means_of_faces(mesh);
+    if (which == MeshNormals::of_file) {
+        const glm::dmat3 turned = glm::transpose(glm::inverse(glm::dmat3(transform)));
+        for (glm::mat3& normals : mesh.normals)
+            normals = turned * glm::dmat3(normals);
+    }
+    complete(mesh);
 }
 
 } // namespace
@@ -31,7 +82,10 @@ Scene with_surface_meshes(Scene scene) {
     for (Surface& surface : scene.surfaces)
         if (const auto* mesh = std::get_if<MeshSurface>(&surface.shape)) {
             try {
-                surface.shape = load(*mesh, surface.transform, surface.material.kind == MaterialKind::dielectric);
+                TriangleSurface loaded =
+                    load(*mesh, surface.transform, surface.material.kind == MaterialKind::dielectric);
+                set_normals(loaded, mesh->normals, surface.transform);
+                surface.shape = std::move(loaded);
             } catch (const InputError& error) { // of the file; the scene says who asked for it
                 throw InputError(surface.place.empty() ? error.what()
                                                        : fmt::format("{}: {}", surface.place, error.what()));

@@ -12,6 +12,7 @@ namespace {
 struct Bounded {
     shared::SurfacePrimitive primitive;
     BvhBox box;
+    const glm::mat3* normals = nullptr; // of its corners, as columns
 };
 
 // Pieces of one surface.
@@ -29,10 +30,12 @@ public:
     void operator()(const RectangleSurface& rectangle) const { (*this)(rectangle.triangles()); }
     void operator()(const MeshSurface&) const {} // not loaded: none
     void operator()(const TriangleSurface& mesh) const {
-        for (const glm::uvec3& t : mesh.triangles) {
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+            const glm::uvec3 t = mesh.triangles[i];
             Bounded piece{{mesh.vertices[t.x] - origin_, row_, mesh.vertices[t.y] - origin_, SURFACE_TRIANGLES,
                            mesh.vertices[t.z] - origin_, 0},
-                          {}};
+                          {},
+                          mesh.normals.empty() ? nullptr : &mesh.normals[i]};
             // One of no area has no normal, and no ray meets it.
             if (glm::length(glm::cross(piece.primitive.b - piece.primitive.a, piece.primitive.c - piece.primitive.a)) ==
                 0.0f)
@@ -123,6 +126,12 @@ SurfaceTable make_surface_table(const std::vector<Surface>& surfaces, const glm:
     BoxTree tree = build_box_tree(boxes);
     for (const std::uint32_t i : tree.order)
         table.primitives.push_back(bounded[i].primitive);
+    const std::size_t first = table.primitives.size() - tree.order.size();
+    for (std::size_t at = 0; at < tree.order.size(); ++at) // behind all that rays meet
+        if (const glm::mat3* normals = bounded[tree.order[at]].normals) {
+            table.primitives[first + at].normals = static_cast<std::uint32_t>(table.primitives.size());
+            table.primitives.push_back({(*normals)[0], 0, (*normals)[1], 0, (*normals)[2], 0});
+        }
     for (shared::BvhNode& node : tree.nodes)
         node.leaf += node.leaf != 0 ? 8 * table.planes : 0;
     table.nodes = std::move(tree.nodes);
@@ -133,6 +142,9 @@ int material_bits(const std::vector<Surface>& surfaces) {
     int bits = 0;
     for (const Surface& surface : surfaces)
         bits |= 1 << code_of(surface.material);
+    for (const Surface& surface : surfaces)
+        if (const auto* mesh = std::get_if<TriangleSurface>(&surface.shape))
+            bits |= mesh->normals.empty() ? 0 : 1 << SMOOTH_FACES;
     return bits;
 }
 

@@ -25,9 +25,18 @@ void weld(Polygons& obj) {
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
     for (std::size_t i = 0; i < order.size(); ++i)
         welded[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? welded[order[i - 1]] : order[i];
-    for (glm::uvec3& t : obj.triangles)
-        t = {welded[t.x], welded[t.y], welded[t.z]};
-    std::erase_if(obj.triangles, [](glm::uvec3 t) { return t.x == t.y || t.y == t.z || t.z == t.x; });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < obj.triangles.size(); ++i) {
+        const glm::uvec3 old = obj.triangles[i], t = {welded[old.x], welded[old.y], welded[old.z]};
+        if (t.x == t.y || t.y == t.z || t.z == t.x)
+            continue;
+        obj.triangles[kept] = t;
+        if (!obj.normals.empty())
+            obj.normals[kept] = obj.normals[i];
+        ++kept;
+    }
+    obj.triangles.resize(kept);
+    obj.normals.resize(obj.normals.empty() ? 0 : kept);
 }
 
 struct Edge {
@@ -117,12 +126,17 @@ void turn_outward(Polygons& obj, const std::vector<std::uint32_t>& bodies) {
         volumes[bodies[i]] += glm::dot(a, glm::cross(b, c));
     }
     for (std::size_t i = 0; i < obj.triangles.size(); ++i)
-        if (volumes[bodies[i]] < 0.0)
+        if (volumes[bodies[i]] < 0.0) {
             std::swap(obj.triangles[i].y, obj.triangles[i].z);
+            if (!obj.normals.empty())
+                std::swap(obj.normals[i][1], obj.normals[i][2]);
+        }
 }
 
 // Only the vertices that a triangle uses.
 void append(Mesh& mesh, const Polygons& obj) {
+    if (mesh.normals.size() == mesh.triangles.size())
+        mesh.normals.insert(mesh.normals.end(), obj.normals.begin(), obj.normals.end());
     constexpr std::uint32_t unused = ~0u;
     std::vector<std::uint32_t> place(obj.vertices.size(), unused);
     for (const glm::uvec3& t : obj.triangles) {
@@ -170,6 +184,8 @@ Mesh load_mesh(const MeshFiles& files, const glm::dmat4& transform) {
                                                 file));
         first = false;
     }
+    if (mesh.normals.size() != mesh.triangles.size())
+        mesh.normals.clear();
     return mesh;
 }
 

@@ -54,6 +54,8 @@ struct Progress {
     Polygons* obj = nullptr;
     const std::filesystem::path* path = nullptr;
     std::int64_t vertices = 0; // seen, from which negative indices count back
+    std::vector<glm::vec3> normals;
+    std::vector<glm::ivec3> of_triangles; // which of these their corners have, from 0; -1: none
     std::size_t faces = 0;
     std::vector<std::optional<Rgb>> materials;
     std::optional<Rgb> diffuse; // of the faces that follow
@@ -78,9 +80,15 @@ void add_face(Progress& progress, const tinyobj::index_t* corners, int count) {
                         "Clean Up > Delete Loose) and export the mesh again",
                         progress.path->string(), progress.faces));
     const std::uint32_t first = resolve(progress, corners[0].vertex_index);
-    for (int i = 2; i < count; ++i)
+    const auto normal = [&](int i) {
+        const int index = corners[i].normal_index;
+        return index < 0 ? static_cast<int>(progress.normals.size()) + index : index - 1;
+    };
+    for (int i = 2; i < count; ++i) {
         progress.obj->triangles.emplace_back(first, resolve(progress, corners[i - 1].vertex_index),
                                              resolve(progress, corners[i].vertex_index));
+        progress.of_triangles.emplace_back(normal(0), normal(i - 1), normal(i));
+    }
     if (progress.faces == 1)
         progress.obj->diffuse = progress.diffuse;
     progress.obj->several_diffuse = progress.obj->several_diffuse || progress.diffuse != progress.obj->diffuse;
@@ -100,6 +108,9 @@ tinyobj::callback_t make_callbacks() {
     tinyobj::callback_t callbacks;
     callbacks.vertex_cb = [](void* user, tinyobj::real_t, tinyobj::real_t, tinyobj::real_t, tinyobj::real_t) {
         ++static_cast<Progress*>(user)->vertices;
+    };
+    callbacks.normal_cb = [](void* user, tinyobj::real_t x, tinyobj::real_t y, tinyobj::real_t z) {
+        static_cast<Progress*>(user)->normals.emplace_back(x, y, z);
     };
     callbacks.index_cb = [](void* user, tinyobj::index_t* corners, int count) {
         add_face(*static_cast<Progress*>(user), corners, count);
@@ -148,6 +159,20 @@ private:
     std::vector<std::string>& warnings_;
 };
 
+// A normal that is not there is none, and so is one of no length.
+std::vector<glm::mat3> normals_of(const Progress& progress) {
+    std::vector<glm::mat3> normals;
+    if (progress.normals.empty())
+        return normals;
+    for (const glm::ivec3& corners : progress.of_triangles) {
+        glm::mat3& found = normals.emplace_back(0.0f);
+        for (int i = 0; i < 3; ++i)
+            if (corners[i] >= 0 && static_cast<std::size_t>(corners[i]) < progress.normals.size())
+                found[i] = progress.normals[static_cast<std::size_t>(corners[i])];
+    }
+    return normals;
+}
+
 } // namespace
 
 Polygons read_obj(const std::filesystem::path& path) {
@@ -166,6 +191,7 @@ Polygons read_obj(const std::filesystem::path& path) {
     if (obj.triangles.empty())
         throw InputError(fmt::format("{}: has no faces; it must be a Wavefront .obj file that holds a closed surface",
                                      path.string()));
+    obj.normals = normals_of(progress);
     return obj;
 }
 

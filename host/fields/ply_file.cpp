@@ -58,6 +58,9 @@ public:
                     throw InputError(
                         fmt::format("{}: a face names vertex {}, but there are {}, from 0; export the mesh again",
                                     path_.string(), triangle[corner], mesh_.vertices.size()));
+        for (const glm::uvec3& t : mesh_.triangles)
+            if (!normals_.empty())
+                mesh_.normals.emplace_back(normals_[t.x], normals_[t.y], normals_[t.z]);
         if (mesh_.triangles.empty())
             throw InputError(fmt::format("{}: has no faces; export the mesh with them", path_.string()));
         return std::move(mesh_);
@@ -171,6 +174,8 @@ private:
         if (element.properties.empty())
             fail("its element has no properties");
         glm::dvec3 vertex(0.0);
+        glm::vec3 normal(0.0f);
+        bool has_normal = false;
         for (const Property& property : element.properties) {
             if (property.count) {
                 const double length = number(*property.count);
@@ -182,6 +187,10 @@ private:
             const double value = number(*property.type);
             if (property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z')
                 vertex[property.name[0] - 'x'] = value;
+            if (property.name == "nx" || property.name == "ny" || property.name == "nz") {
+                normal[property.name[1] - 'x'] = static_cast<float>(value);
+                has_normal = true;
+            }
         }
         if (element.name != "vertex")
             return;
@@ -189,6 +198,8 @@ private:
             if (!(std::abs(vertex[axis]) <= largest_length))
                 fail(fmt::format("its coordinates are to be finite, and {:g} at most", largest_length));
         mesh_.vertices.push_back(vertex);
+        if (has_normal) // as all others
+            normals_.push_back(normal);
     }
 
     // A polygon becomes a fan, as that of an .obj file.
@@ -218,6 +229,7 @@ private:
     Format format_ = Format::ascii;
     std::vector<Element> elements_;
     Polygons mesh_;
+    std::vector<glm::vec3> normals_; // of vertices, or none
 };
 
 } // namespace

@@ -5,8 +5,8 @@
 
 namespace vkvol {
 
-// Elements and properties other than a vertex' x, y, z and a face's list of vertices are passed over. InputError as
-// read_polygons.
+// Elements and properties other than a vertex' x, y, z, nx, ny, nz and a face's list of vertices are passed over.
+// InputError as read_polygons.
 Polygons read_ply(const std::filesystem::path& path);
 
 } // namespace vkvol

@@ -197,10 +197,15 @@ void add_shape(Writer& writer, const TriangleSurface& mesh) {
     for (const glm::uvec3& triangle : mesh.triangles)
         for (int corner = 0; corner < 3; ++corner)
             writer.add("corner", mesh.vertices[triangle[corner]]);
+    for (const glm::mat3& normals : mesh.normals)
+        for (int corner = 0; corner < 3; ++corner)
+            writer.add("normal", glm::dvec3(normals[corner]));
 }
 
 void add_shape(Writer& writer, const MeshSurface& mesh) {
     add_file(writer, mesh.file);
+    if (mesh.normals != MeshNormals::of_file)
+        writer.add("normals", static_cast<int>(mesh.normals));
 }
 
 void add_surface(Writer& writer, const Surface& surface) {

@@ -26,6 +26,8 @@ struct DiskSurface {
 struct TriangleSurface {
     std::vector<glm::dvec3> vertices;
     std::vector<glm::uvec3> triangles;
+    std::vector<glm::mat3> normals =
+        {}; // at each triangle's corners, unit, as columns, of what it stands for; or empty
 };
 
 struct RectangleSurface {
@@ -45,8 +47,13 @@ struct PlaneSurface {
     glm::dvec3 normal{0.0, 1.0, 0.0}; // unit
 };
 
+// What a mesh takes for its normals: those of its file, where it has some; of its faces; or at corners the means of
+// faces about them.
+enum class MeshNormals { of_file, flat, smooth };
+
 struct MeshSurface {
     std::filesystem::path file; // .obj or .ply
+    MeshNormals normals = MeshNormals::of_file;
 };
 
 using SurfaceShape =

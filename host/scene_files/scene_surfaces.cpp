@@ -67,6 +67,18 @@ void read_metal(const XmlElement& element, Material& material) {
     material.k = metal->k;
 }
 
+MeshNormals mesh_normals(const XmlElement& element) {
+    const std::string name = element.attribute("normals", "file");
+    if (name == "file")
+        return MeshNormals::of_file;
+    if (name == "flat")
+        return MeshNormals::flat;
+    if (name != "smooth")
+        element.fail_attribute("normals", fmt::format("<mesh> normals: '{}' is unknown{}", name,
+                                                      name_hint(name, {"file", "flat", "smooth"})));
+    return MeshNormals::smooth;
+}
+
 glm::dvec3 moved(const glm::dmat4& map, const glm::dvec3& point) {
     return glm::dvec3(map * glm::dvec4(point, 1.0));
 }
@@ -204,10 +216,10 @@ Surface SceneReader::surface(const XmlElement& element) const {
         const auto edge = [&](const char* name) { return element.attribute_number(name, 1.0, length); };
         surface.shape = moved(map, box_of({xyz(element, coordinate), {edge("width"), edge("height"), edge("depth")}}));
     } else {
-        allow({"file", "baseDir"});
+        allow({"file", "baseDir", "normals"});
         if (element.attribute("file").empty())
             element.fail("<mesh> names no file; write one, e.g. file=\"bunny.obj\"");
-        surface.shape = MeshSurface{file_path(element, element.attribute("file"))};
+        surface.shape = MeshSurface{file_path(element, element.attribute("file")), mesh_normals(element)};
         surface.transform = map;
     }
     surface.material = material(element);

@@ -71,6 +71,7 @@ const int LAYERS = 0;
 layout(constant_id = SPEC_MIS) const int MIS = MIS_BALANCE;
 #ifdef SURFACES
 layout(constant_id = SPEC_MATERIALS) const int MATERIALS = 1 << MATERIAL_DIFFUSE;
+const bool HAS_SMOOTH_FACES = (MATERIALS & 1 << SMOOTH_FACES) != 0;
 const bool HAS_SURFACES = true;
 #else
 const bool HAS_SURFACES = false;

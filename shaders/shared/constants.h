@@ -91,7 +91,7 @@
 #define SPEC_MEMBER_FIELD 25 // FIELD_...
 #define SPEC_MEMBER_GRID 26  // 0: all that are grids have the same one
 #define SPEC_CELL_BITS 27    // of several media: log2 of the cells along the edge of a coarse one; 0: there are no coarse ones
-#define SPEC_MATERIALS 28    // bits, 1 << MATERIAL_..., of those that the surfaces have
+#define SPEC_MATERIALS 28    // bits, 1 << MATERIAL_..., of those that the surfaces have; SMOOTH_FACES
 #define SPEC_MAP 29          // MAP_...
 #define SPEC_MAP_HALVINGS 30 // log2 of the knots in a map's table
 #define SPEC_UNBOUNDED 31    // 1: some medium is everywhere
@@ -217,6 +217,7 @@
 #define MATERIAL_COATED 4 // diffuse, below a smooth dielectric
 #define MATERIAL_ROUGH_CONDUCTOR 5
 #define MATERIAL_ROUGH_DIELECTRIC 6
+#define SMOOTH_FACES 7 // no material: a bit of SPEC_MATERIALS, that some triangles have normals of their own
 
 // In place of a primitive's number; and a bit that is set where there is one.
 #define NO_SURFACE 0xffffffffu

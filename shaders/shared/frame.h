@@ -252,7 +252,7 @@ struct SurfacePrimitive {
     vec3 b; // a unit normal
     uint shape; // SURFACE_..., that row's
     vec3 c; // and the radius, in x
-    uint unused; // so that it is three texels
+    uint normals; // of a triangle whose corners have normals of their own, the piece whose a, b, c these are; else 0
 };
 
 // Of a binary tree over lights, in depth-first order; a branch's left one follows it.

@@ -43,20 +43,32 @@ void scatter(MediumParams v, vec4 u, inout Lane lane) {
 }
 
 #ifdef SURFACES
+// Within glass whose faces stand for something round light may go about for ever, and loses nothing: roulette that does not ask
+// for throughput, after so many vertices that it is seldom asked.
+bool goes_on_within(bool stays_within, uint depth, inout Spectrum beta, inout float u) {
+    const float chance = 0.9;
+    bool asked = stays_within && depth >= 32u && frame.roulette_threshold > 0.0;
+    bool goes_on = !asked || u < chance;
+    beta *= !asked ? 1.0 : goes_on ? 1.0 / chance : 0.0;
+    u = asked ? u / chance : u;
+    return goes_on;
+}
+
 // Likewise at a surface.
 void scatter_at_surface(uvec4 words, inout Lane lane, inout Rng rng) {
     vec3 wo = -lane.path.direction;
     SurfacePoint at = surface_point(surface_at(lane.path), lane.path.position);
     vec4 u = to_uniform(words);
     uvec4 key = takes_walks() ? next_words(rng) : uvec4(0u);
-    Bsdf bsdf = bsdf_of(surface_row(at.row), at.normal, wo, key);
+    Bsdf bsdf = bsdf_of(surface_row(at.row), at, wo, key);
     BsdfSample drawn = bsdf_sample(bsdf, wo, u.yzx);
-    bool crosses = dot(drawn.direction, bsdf.normal) < 0.0;
-    lane.path.position = at.position + (crosses ? -at.apart : at.apart) * bsdf.normal;
+    bool crosses = dot(drawn.direction, bsdf.face) < 0.0;
+    lane.path.position = at.position + (crosses ? -at.apart : at.apart) * bsdf.face;
     lane.path.direction = drawn.direction;
     lane.phase_pdf = drawn.pdf;
     lane.beta *= drawn.weight;
-    lane.todo = survives(lane.beta, u.w) ? TODO_FLY : TODO_END;
+    bool goes_on = goes_on_within(is_glass(bsdf.material) && dot(at.normal, wo) < 0.0 && !crosses, lane.path.depth, lane.beta, u.w);
+    lane.todo = goes_on && survives(lane.beta, u.w) ? TODO_FLY : TODO_END;
 }
 
 // What mirrors and glass show of lamps is seen as the camera sees them.

@@ -20,8 +20,8 @@ void arrive_at_surface(MediumParams v, inout Lane lane, inout Rng rng, inout Tal
         if (lane.path.depth == 0u)
             note_collision(lane.record, vec3(lane.beta), at.position, lane.path.direction, lane.reach, row.color);
     uvec4 key = takes_walks() ? next_words(rng) : uvec4(0u);
-    Bsdf bsdf = bsdf_of(row, at.normal, -lane.path.direction, key);
-    lane.path.position = at.position + at.apart * bsdf.normal;
+    Bsdf bsdf = bsdf_of(row, at, -lane.path.direction, key);
+    lane.path.position = at.position + at.apart * bsdf.face;
     lane.path.medium = AT_SURFACE | lane.struck;
     bool capped = SCATTERING != SCATTERING_NONE && lane.path.depth >= frame.max_depth;
     tally.depth_caps += capped ? 1u : 0u;

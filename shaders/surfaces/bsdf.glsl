@@ -4,10 +4,12 @@
 #define BSDF_GLSL
 #include "lib/buffers.glsl"
 #include "surfaces/microsurface.glsl"
+#include "surfaces/surface_point.glsl"
 
 struct Bsdf {
     uint material;
     vec3 normal; // unit, on wo's side
+    vec3 face;   // likewise, of the face itself, where it stands for something smooth
     vec3 color;
     vec3 eta; // beyond the surface over before it
     vec3 k;   // of what is coated, x: share of diffuse light that the coat throws back at it
@@ -34,10 +36,21 @@ bool is_glass(uint material) {
     return material == MATERIAL_DIELECTRIC || material == MATERIAL_ROUGH_DIELECTRIC;
 }
 
-Bsdf bsdf_of(SurfaceRow row, vec3 normal, vec3 wo, uvec4 key) {
-    bool inside = dot(normal, wo) < 0.0;
+// Where the smooth surface would be seen from behind, as at edges, the face is what it is.
+Bsdf bsdf_of(SurfaceRow row, SurfacePoint at, vec3 wo, uvec4 key) {
+    bool inside = dot(at.normal, wo) < 0.0;
     bool turns = inside && is_glass(row.material);
-    return Bsdf(row.material, inside ? -normal : normal, row.color, turns ? 1.0 / row.eta : row.eta, row.k, row.roughness, key);
+    float side = inside ? -1.0 : 1.0;
+    vec3 face = side * at.normal, normal = face;
+    if (HAS_SMOOTH_FACES)
+        normal = mix(face, side * at.smooth_normal, step(0.0, side * dot(at.smooth_normal, wo)));
+    return Bsdf(row.material, normal, face, row.color, turns ? 1.0 / row.eta : row.eta, row.k, row.roughness, key);
+}
+
+// Whether wi is before the face and behind what it stands for, or the other way: none of the light goes there, else it would go
+// through.
+bool is_between(Bsdf b, vec3 wi) {
+    return HAS_SMOOTH_FACES && (dot(b.normal, wi) > 0.0) != (dot(b.face, wi) > 0.0);
 }
 
 bool has_facets(Bsdf b) {
@@ -87,7 +100,7 @@ vec3 bsdf_value(Bsdf b, vec3 wo, vec3 wi) {
     if (has_facets(b))
         value = b.color * facets_value(facets_of(b), to_frame(b.normal, wo), to_frame(b.normal, wi),
                                        Rng(b.key.x, b.key.y, b.key.z, b.key.w));
-    return value;
+    return is_between(b, wi) ? vec3(0.0) : value;
 }
 
 // What decides between ways to find light, which may be any density; with this one bsdf_guess draws.
@@ -164,6 +177,7 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec3 u) {
             drawn = sample_coated(b, wo, u);
     if (has_facets(b))
         drawn = sample_facets(b, wo);
+    drawn.weight *= is_between(b, drawn.direction) ? 0.0 : 1.0;
     return drawn;
 }
 

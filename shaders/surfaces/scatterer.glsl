@@ -25,8 +25,8 @@ Scatterer surface_of(MediumParams v, Bsdf bsdf, float apart) {
 
 // From `position` before the surface to where light arrives along -to_light: behind it, where that is.
 vec3 lit_position(Scatterer s, vec3 position, vec3 to_light) {
-    bool behind = has_material(MATERIAL_ROUGH_DIELECTRIC) && s.is_surface && dot(s.bsdf.normal, to_light) < 0.0;
-    return behind ? position - 2.0 * s.apart * s.bsdf.normal : position;
+    bool behind = has_material(MATERIAL_ROUGH_DIELECTRIC) && s.is_surface && dot(s.bsdf.face, to_light) < 0.0;
+    return behind ? position - 2.0 * s.apart * s.bsdf.face : position;
 }
 
 // Of light, into `after`, per steradian.

@@ -66,9 +66,20 @@ float meet_primitive(MeshRay m, Ray ray, SurfacePrimitive p, uint i, uint from) 
 struct SurfacePoint {
     vec3 position; // on the surface, as exactly as can be
     vec3 normal;   // unit, outward
+    vec3 smooth_normal; // of the surface that its faces stand for
     float apart;   // from the surface, where no ray meets it again by rounding
     uint row;
 };
+
+// By the areas of the parts into which the point divides the triangle.
+vec3 smooth_normal(SurfacePrimitive p, vec3 at, vec3 flat_normal) {
+    vec3 across = cross(p.b - p.a, p.c - p.a);
+    float u = dot(cross(p.c - p.b, at - p.b), across), v = dot(cross(p.a - p.c, at - p.c), across);
+    float w = dot(across, across) - u - v;
+    SurfacePrimitive n = primitive_at(p.normals);
+    vec3 mixed = u * n.a + v * n.b + w * n.c;
+    return p.normals != 0u && dot(mixed, flat_normal) > 0.0 ? normalize(mixed) : flat_normal;
+}
 
 // Of what is flat an offset of 64 u R, with u = 2^-24 and R the greatest coordinate that there is in it, is beyond the error of 28
 // u R that a ray's crossing with a neighbour has: see mesh.glsl. Unlike a fixed length it serves scenes of any size.
@@ -87,6 +98,12 @@ SurfacePoint surface_point(uint i, vec3 near) {
         at.position = p.a + p.c.x * at.normal;
         reach += p.c.x;
     }
+    at.smooth_normal = at.normal;
+#ifdef SURFACES
+    if (HAS_SMOOTH_FACES)
+        if (shape == SURFACE_TRIANGLES)
+            at.smooth_normal = smooth_normal(p, at.position, at.normal);
+#endif
     at.apart = 3.8147e-6 * max(reach.x, max(reach.y, reach.z));
     return at;
 }

@@ -1,29 +1,17 @@
 // Meshes that are none, and materials that are not there: found by tests/fuzz, kept here.
 #include <catch2/catch.hpp>
-#include <filesystem>
-#include <fstream>
-#include <unistd.h>
 
 #include "bvh.h"
 #include "error.h"
 #include "mesh.h"
+#include "support/test_directory.h"
 
 using namespace vkvol;
 using Catch::Contains;
 
 namespace {
 
-struct Directory {
-    std::filesystem::path path =
-        std::filesystem::temp_directory_path() / ("vkvol_malformed_mesh_" + std::to_string(::getpid()));
-
-    Directory() { std::filesystem::create_directories(path); }
-    ~Directory() { std::filesystem::remove_all(path); }
-    std::filesystem::path write(const std::string& name, const std::string& text) const {
-        std::ofstream(path / name, std::ios::binary) << text;
-        return path / name;
-    }
-};
+using Directory = TestDirectory;
 
 const std::string tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl red\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 

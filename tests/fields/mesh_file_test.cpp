@@ -1,13 +1,11 @@
 // Meshes as files, as closed surfaces, and as hierarchies.
 #include <catch2/catch.hpp>
-#include <filesystem>
-#include <fstream>
 #include <functional>
-#include <unistd.h>
 
 #include "bvh.h"
 #include "error.h"
 #include "mesh.h"
+#include "support/test_directory.h"
 #include "support/test_meshes.h"
 
 using namespace vkvol;
@@ -15,17 +13,7 @@ using Catch::Contains;
 
 namespace {
 
-// A directory of its own for each test.
-struct Directory {
-    std::filesystem::path path =
-        std::filesystem::temp_directory_path() / ("vkvol_mesh_test_" + std::to_string(::getpid()));
-
-    Directory() { std::filesystem::create_directories(path); }
-    ~Directory() { std::filesystem::remove_all(path); }
-    std::filesystem::path write(const std::string& name, const std::string& text) const {
-        std::ofstream(path / name, std::ios::binary) << text;
-        return path / name;
-    }
+struct Directory : TestDirectory {
     Mesh load(const std::string& text) const { return load_mesh({{write("mesh.obj", text)}}); }
     std::string error(const std::string& text) const {
         try {

@@ -1,13 +1,11 @@
 // .ply files: what they say is what the same mesh says as .obj; and files that are none.
 #include <catch2/catch.hpp>
-#include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
-#include <unistd.h>
 
 #include "error.h"
 #include "mesh.h"
 #include "polygons.h"
+#include "support/test_directory.h"
 #include "support/test_meshes.h"
 
 using namespace vkvol;
@@ -15,15 +13,7 @@ using Catch::Contains;
 
 namespace {
 
-struct Directory {
-    std::filesystem::path path = std::filesystem::temp_directory_path() / ("vkvol_ply_" + std::to_string(::getpid()));
-
-    Directory() { std::filesystem::create_directories(path); }
-    ~Directory() { std::filesystem::remove_all(path); }
-    std::filesystem::path write(const std::string& name, const std::string& text) const {
-        std::ofstream(path / name, std::ios::binary) << text;
-        return path / name;
-    }
+struct Directory : TestDirectory {
     std::string error_of(const std::string& text) const {
         try {
             read_polygons(write("mesh.ply", text));

@@ -78,6 +78,8 @@ std::string attribute_value(std::string_view name, Source& random) {
         return one_of("|2000|6500", random);
     if (name == "material")
         return one_of("diffuse|mirror|conductor|dielectric|coated", random);
+    if (name == "normals")
+        return one_of("file|flat|smooth", random);
     if (name == "metal")
         return one_of("gold|copper|silver|aluminium|tin", random);
     if (name == "sides")

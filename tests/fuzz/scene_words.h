@@ -137,7 +137,7 @@ inline constexpr Words surface_grammar[] = {
     {"plane", "", {"x", "y", "z", "lookAt", "material", "eta", "k"}},
     {"rectangle", "", {"x", "lookAt", "up", "width", "height", "r", "g", "b", "multiplier"}},
     {"box", "", {"x", "y", "z", "width", "height", "depth", "material"}},
-    {"mesh", "", {"file", "baseDir", "material", "multiplier"}}};
+    {"mesh", "", {"file", "baseDir", "normals", "material", "multiplier"}}};
 inline constexpr Words shine_grammar[] = {{"emission", "", {"r", "g", "b", "multiplier", "sides"}},
                                           {"emission", "", {"kelvin", "multiplier"}}};
 

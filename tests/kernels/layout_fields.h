@@ -92,7 +92,7 @@ PUT(piece.surface)
 PUT(piece.b)
 PUT(piece.shape)
 PUT(piece.c)
-PUT(piece.unused)
+PUT(piece.normals)
 
 PUT(bvh_node.low)
 PUT(bvh_node.skip)

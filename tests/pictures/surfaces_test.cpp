@@ -186,6 +186,30 @@ TEST_CASE("facets and coats lose no light, found by looks or by flights", "[gpu]
         }
 }
 
+// A mesh whose corners have the ball's normals, of each material.
+TEST_CASE("faces that stand for something round equal the reference", "[gpu][image][surfaces]") {
+    Scene scene = still_life();
+    scene.volumes.clear();
+    TriangleSurface mesh = round_mesh(4, 0.55);
+    for (const glm::uvec3& t : mesh.triangles) {
+        const auto normal = [&](unsigned i) { return glm::vec3(glm::normalize(mesh.vertices[i])); };
+        mesh.normals.emplace_back(normal(t.x), normal(t.y), normal(t.z));
+    }
+    const Scene rough = rough_still_life();
+    scene.surfaces.erase(scene.surfaces.begin() + 1, scene.surfaces.end() - 1);
+    const std::pair<glm::dvec3, Material> balls[] = {{{-1.2, -0.3, 0.6}, grey(0.7)},
+                                                     {{0.2, -0.3, 0.9}, white(MaterialKind::dielectric)},
+                                                     {{1.4, -0.2, 0.2}, rough.surfaces[2].material},
+                                                     {{0.4, 0.9, -0.4}, rough.surfaces[1].material}};
+    for (const auto& [place, material] : balls) {
+        Surface& surface = scene.surfaces.emplace_back(ball(material));
+        surface.shape = mesh;
+        for (glm::dvec3& vertex : std::get<TriangleSurface>(surface.shape).vertices)
+            vertex += place;
+    }
+    check_by_both_schedules(scene, "smooth faces");
+}
+
 TEST_CASE("looks and flights share a map of the sky on surfaces as in matter", "[gpu][image][surfaces]") {
     Scene scene = empty_scene();
     scene.lights = {write_sky(make_map(8, 4, [](int, int) { return Rgb(1.0); }))};

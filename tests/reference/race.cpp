@@ -101,6 +101,13 @@ Rgb radiance_by_race(const World& world, Ray ray, Rng& rng) {
             const Scattered next = scatter(*hit, travel, draw, rng);
             ray.direction = next.direction;
             beta *= next.weight;
+            const bool stays_within =
+                glm::dot(hit->normal, travel) > 0.0 && glm::dot(hit->normal, next.direction) < 0.0;
+            if (stays_within && depth > 20 && settings.roulette_threshold > 0.0) { // glass may keep it for ever
+                if (rng.next().x() < 0.2)
+                    return L;
+                beta /= 0.8;
+            }
             sees_all = next.specular;
         }
         if (!survives(settings, draw.w(), beta))

@@ -17,18 +17,19 @@ constexpr double least = 1e-9; // from where a ray begins, in units of the scene
 
 void keep_nearer(std::optional<SurfaceHit>& found, double t, const glm::dvec3& normal, const vkvol::Surface& surface) {
     if (t > least && (!found || t < found->t))
-        found = {t, normal, &surface};
+        found = {t, normal, normal, &surface};
 }
 
 // Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
-std::optional<double> meet_triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const Ray& ray) {
+// Distance, and the shares that b and c have of the point.
+std::optional<glm::dvec3> meet_triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const Ray& ray) {
     const glm::dvec3 u = b - a, v = c - a, p = glm::cross(ray.direction, v);
     const double det = glm::dot(u, p);
     if (det == 0.0)
         return std::nullopt;
     const glm::dvec3 s = ray.origin - a, q = glm::cross(s, u);
     const double x = glm::dot(s, p) / det, y = glm::dot(ray.direction, q) / det;
-    return x >= 0.0 && y >= 0.0 && x + y <= 1.0 ? std::optional(glm::dot(v, q) / det) : std::nullopt;
+    return x >= 0.0 && y >= 0.0 && x + y <= 1.0 ? std::optional(glm::dvec3(glm::dot(v, q) / det, x, y)) : std::nullopt;
 }
 
 void meet(const vkvol::Surface& surface, const Ray& ray, std::optional<SurfaceHit>& found) {
@@ -38,10 +39,18 @@ void meet(const vkvol::Surface& surface, const Ray& ray, std::optional<SurfaceHi
             for (const double t : {inside.t0, inside.t1})
                 keep_nearer(found, t, glm::normalize(ray.at(t) - ball->center), surface);
     } else if (const auto* mesh = std::get_if<vkvol::TriangleSurface>(&surface.shape)) {
-        for (const glm::uvec3& k : mesh->triangles) {
+        for (std::size_t i = 0; i < mesh->triangles.size(); ++i) {
+            const glm::uvec3 k = mesh->triangles[i];
             const glm::dvec3 a = mesh->vertices[k.x], b = mesh->vertices[k.y], c = mesh->vertices[k.z];
-            if (const auto t = meet_triangle(a, b, c, ray))
-                keep_nearer(found, *t, glm::normalize(glm::cross(b - a, c - a)), surface);
+            const auto at = meet_triangle(a, b, c, ray);
+            const double before = found ? found->t : -1.0;
+            if (at)
+                keep_nearer(found, at->x, glm::normalize(glm::cross(b - a, c - a)), surface);
+            if (at && !mesh->normals.empty() && found && found->t != before) {
+                const glm::dmat3 n(mesh->normals[i]);
+                const glm::dvec3 mixed = n[0] + at->y * (n[1] - n[0]) + at->z * (n[2] - n[0]);
+                found->smooth = glm::dot(mixed, found->normal) > 0.0 ? glm::normalize(mixed) : found->normal;
+            }
         }
     } else if (const auto* disk = std::get_if<vkvol::DiskSurface>(&surface.shape)) {
         const double t = glm::dot(disk->center - ray.origin, disk->normal) / glm::dot(ray.direction, disk->normal);
@@ -98,16 +107,82 @@ Scattered through_coat(const vkvol::Material& material, const glm::dvec3& front,
     return {front, Rgb(0.0), false};
 }
 
-Scattered through_glass(const vkvol::Material& material, glm::dvec3 normal, const glm::dvec3& travel, double u) {
-    const bool inside = glm::dot(normal, travel) > 0.0;
+Scattered through_glass(const vkvol::Material& material, bool inside, const glm::dvec3& normal,
+                        const glm::dvec3& travel, double u) {
     const double eta = inside ? 1.0 / material.ior : material.ior;
-    normal = inside ? -normal : normal;
     const glm::dvec3 beyond = glm::refract(travel, normal, 1.0 / eta);
     const double F = beyond == glm::dvec3(0.0) ? 1.0 : reflected(std::min(-glm::dot(travel, normal), 1.0), eta);
     const double chance = F == 1.0 ? 1.0 : 0.25 + 0.5 * F; // of reflection
     if (u < chance)
         return {glm::reflect(travel, normal), material.color * (F / chance), true};
     return {beyond, material.color * ((1.0 - F) / (1.0 - chance) / (eta * eta)), true};
+}
+
+// On the side where light travels to: the face, and what it stands for, unless that would be seen from behind.
+struct Sides {
+    bool behind;
+    glm::dvec3 face, front;
+
+    Sides(const SurfaceHit& hit, const glm::dvec3& travel) : behind(glm::dot(hit.normal, travel) > 0.0) {
+        face = behind ? -hit.normal : hit.normal;
+        front = behind ? -hit.smooth : hit.smooth;
+        if (glm::dot(front, travel) >= 0.0)
+            front = face;
+    }
+    // Before one and behind the other.
+    bool disagree(const glm::dvec3& w) const { return (glm::dot(face, w) > 0.0) != (glm::dot(front, w) > 0.0); }
+};
+
+Rgb value(const vkvol::Material& material, const Sides& sides, const glm::dvec3& travel, const glm::dvec3& direction,
+          Rng& rng) {
+    const double before = -glm::dot(sides.front, travel), after = glm::dot(sides.front, direction);
+    if (material.roughness > 0.0) {
+        const bool glass = material.kind == vkvol::MaterialKind::dielectric;
+        if (!glass && after <= 0.0)
+            return Rgb(0.0);
+        return material.color * facets_value(material, sides.behind && glass ? 1.0 / material.ior : material.ior,
+                                             sides.front, -travel, direction, rng);
+    }
+    if (after <= 0.0)
+        return Rgb(0.0);
+    if (material.kind == vkvol::MaterialKind::diffuse)
+        return material.color * after / pi;
+    if (material.kind != vkvol::MaterialKind::coated)
+        return Rgb(0.0);
+    static thread_local double known_ior = 0.0, back = 0.0;
+    if (material.ior != known_ior)
+        back = thrown_back(known_ior = material.ior);
+    const double passes = (1.0 - reflected(before, material.ior)) * (1.0 - reflected(after, material.ior));
+    return material.color * (after / pi * passes / (material.ior * material.ior)) / (1.0 - back * material.color);
+}
+
+Scattered drawn(const vkvol::Material& material, const Sides& sides, const glm::dvec3& travel, const Draw& draw,
+                Rng& rng) {
+    const glm::dvec3& front = sides.front;
+    if (material.roughness > 0.0) {
+        const bool glass = material.kind == vkvol::MaterialKind::dielectric;
+        const double eta = glass && sides.behind ? 1.0 / material.ior : material.ior;
+        const FacetSample sample = facets_scatter(material, eta, front, -travel, rng);
+        const bool crosses = glm::dot(sample.direction, front) < 0.0;
+        return {sample.direction, material.color * sample.weight / (crosses ? eta * eta : 1.0), false};
+    }
+    switch (material.kind) {
+    case vkvol::MaterialKind::diffuse:
+        return {about(front, draw.x(), draw.y()), material.color * 2.0 * draw.x(), false};
+    case vkvol::MaterialKind::mirror:
+        return {glm::reflect(travel, front), material.color, true};
+    case vkvol::MaterialKind::conductor: {
+        Rgb F;
+        for (int i = 0; i < 3; ++i)
+            F[i] = reflected(-glm::dot(travel, front), {material.eta[i], material.k[i]});
+        return {glm::reflect(travel, front), material.color * F, true};
+    }
+    case vkvol::MaterialKind::dielectric:
+        return through_glass(material, sides.behind, front, travel, draw.x());
+    case vkvol::MaterialKind::coated:
+        return through_coat(material, front, travel, draw.x(), rng);
+    }
+    throw std::runtime_error("the reference knows no such material");
 }
 
 } // namespace
@@ -120,60 +195,16 @@ std::optional<SurfaceHit> nearest_surface(const std::vector<vkvol::Surface>& sur
 }
 
 Rgb scatter_value(const SurfaceHit& hit, const glm::dvec3& travel, const glm::dvec3& direction, Rng& rng) {
-    const vkvol::Material& material = hit.surface->material;
-    const double before = -glm::dot(hit.normal, travel), after = glm::dot(hit.normal, direction);
-    if (material.roughness > 0.0) {
-        if (material.kind == vkvol::MaterialKind::conductor && before * after <= 0.0)
-            return Rgb(0.0);
-        const bool from_within = before < 0.0 && material.kind == vkvol::MaterialKind::dielectric;
-        return material.color * facets_value(material, from_within ? 1.0 / material.ior : material.ior,
-                                             before < 0.0 ? -hit.normal : hit.normal, -travel, direction, rng);
-    }
-    if (before * after <= 0.0)
-        return Rgb(0.0);
-    if (material.kind == vkvol::MaterialKind::diffuse)
-        return material.color * std::abs(after) / pi;
-    if (material.kind != vkvol::MaterialKind::coated)
-        return Rgb(0.0);
-    static thread_local double known_ior = 0.0, back = 0.0;
-    if (material.ior != known_ior)
-        back = thrown_back(known_ior = material.ior);
-    const double passes =
-        (1.0 - reflected(std::abs(before), material.ior)) * (1.0 - reflected(std::abs(after), material.ior));
-    return material.color * (std::abs(after) / pi * passes / (material.ior * material.ior)) /
-           (1.0 - back * material.color);
+    const Sides sides(hit, travel);
+    return sides.disagree(direction) ? Rgb(0.0) : value(hit.surface->material, sides, travel, direction, rng);
 }
 
 Scattered scatter(const SurfaceHit& hit, const glm::dvec3& travel, const Draw& draw, Rng& rng) {
-    const vkvol::Material& material = hit.surface->material;
-    const bool behind = glm::dot(hit.normal, travel) > 0.0;
-    const glm::dvec3 front = behind ? -hit.normal : hit.normal;
-    if (material.roughness > 0.0) {
-        const bool glass = material.kind == vkvol::MaterialKind::dielectric;
-        const double eta = glass && behind ? 1.0 / material.ior : material.ior;
-        const FacetSample sample = facets_scatter(material, eta, front, -travel, rng);
-        const bool crosses = glm::dot(sample.direction, front) < 0.0;
-        return {sample.direction, material.color * sample.weight / (crosses ? eta * eta : 1.0), false};
-    }
-    switch (material.kind) {
-    case vkvol::MaterialKind::diffuse: {
-        const glm::dvec3 direction = about(front, draw.x(), draw.y());
-        return {direction, material.color * 2.0 * draw.x(), false};
-    }
-    case vkvol::MaterialKind::mirror:
-        return {glm::reflect(travel, front), material.color, true};
-    case vkvol::MaterialKind::conductor: {
-        Rgb F;
-        for (int i = 0; i < 3; ++i)
-            F[i] = reflected(-glm::dot(travel, front), {material.eta[i], material.k[i]});
-        return {glm::reflect(travel, front), material.color * F, true};
-    }
-    case vkvol::MaterialKind::dielectric:
-        return through_glass(material, hit.normal, travel, draw.x());
-    case vkvol::MaterialKind::coated:
-        return through_coat(material, front, travel, draw.x(), rng);
-    }
-    throw std::runtime_error("the reference knows no such material");
+    const Sides sides(hit, travel);
+    Scattered next = drawn(hit.surface->material, sides, travel, draw, rng);
+    if (sides.disagree(next.direction))
+        next.weight = Rgb(0.0);
+    return next;
 }
 
 } // namespace reference

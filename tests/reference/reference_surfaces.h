@@ -13,6 +13,7 @@ namespace reference {
 struct SurfaceHit {
     double t;
     glm::dvec3 normal; // unit, outward
+    glm::dvec3 smooth; // likewise, of what a face stands for
     const vkvol::Surface* surface;
 };
 

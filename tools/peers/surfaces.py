@@ -126,7 +126,12 @@ class Surfaces:
 
     def mesh(self, element):
         name, folder = (self.reader.filled(element.get(key, "")).replace("\\", "/") for key in ("file", "baseDir"))
-        return "mesh", np.eye(4), self.reader.path.parent / folder / name
+        path = self.reader.path.parent / folder / name
+        normals = self.reader.filled(element.get("normals", "file"))
+        with open(path, encoding="utf-8", errors="replace") as file:
+            if normals == "smooth" or normals == "file" and any(line.startswith("vn ") for line in file):
+                self.reader.fail('<mesh> normals: smooth faces are not translated; write normals="flat"')
+        return "mesh", np.eye(4), path
 
     def transform(self, element):
         matrix, group = np.eye(4), element.find("transform")
