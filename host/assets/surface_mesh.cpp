@@ -40,11 +40,13 @@ std::vector<glm::mat3> means_of_faces(const TriangleSurface& mesh) {
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         for (int corner = 0; corner < 3; ++corner)
             sums[mesh.triangles[i][corner]] += across(mesh, i);
-    for (glm::dvec3& sum : sums)
-        sum = glm::dot(sum, sum) > 0.0 ? glm::normalize(sum) : sum;
+    const auto mean = [&](std::uint32_t vertex) {
+        const double length = glm::length(sums[vertex]);
+        return length > 0.0 ? sums[vertex] / length : glm::dvec3(0.0);
+    };
     std::vector<glm::mat3> normals;
     for (const glm::uvec3& t : mesh.triangles)
-        normals.emplace_back(sums[t.x], sums[t.y], sums[t.z]);
+        normals.emplace_back(mean(t.x), mean(t.y), mean(t.z));
     return normals;
 }
 

@@ -58,7 +58,7 @@ void add_picture_options(CLI::App& app, RenderOptions& render, RenderTexts& text
         ->group(group);
     app.add_option("--aov", render.aov,
                    "Layers of the EXR besides radiance: background, emission, direct, indirect, groups, media, depth, "
-                   "position, albedo, transmittance, alpha")
+                   "position, albedo, transmittance, alpha, normal")
         ->option_text("NAME,NAME...")
         ->group(group);
     app.add_flag("--alpha", render.alpha,

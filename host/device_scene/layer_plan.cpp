@@ -118,6 +118,7 @@ LayerPlan plan_layers(const Scene& scene) {
     place(layer_depth | layer_position, LAYERS_COLLISION, params.collision, 2);
     place(layer_albedo, LAYERS_ALBEDO, params.albedo, 1);
     place(layer_transmittance | layer_alpha, LAYERS_THROUGH, params.through, 2);
+    place(layer_normal, LAYERS_NORMAL, params.normal, 1);
     if (params.count > most_layers)
         throw InputError(fmt::format("the picture would have {} layers, of which {} are of groups of lights and {} of "
                                      "media, but {} is the most; give several one name, or leave a layer out",
@@ -155,6 +156,8 @@ std::vector<FilmLayer> develop_layers(const LayerPlan& plan, std::span<const glm
         layers.push_back(developer.means("transmittance", params.through));
     if (plan.wanted & layer_alpha)
         layers.push_back(developer.alpha(params.through + 1));
+    if (plan.wanted & layer_normal)
+        layers.push_back(developer.means("normal", params.normal));
     return layers;
 }
 

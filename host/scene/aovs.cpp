@@ -8,7 +8,7 @@ namespace vkvol {
 const std::vector<std::string>& layer_names() {
     static const std::vector<std::string> names = {"background", "emission",      "direct", "indirect",
                                                    "groups",     "media",         "depth",  "position",
-                                                   "albedo",     "transmittance", "alpha"};
+                                                   "albedo",     "transmittance", "alpha",  "normal"};
     return names;
 }
 

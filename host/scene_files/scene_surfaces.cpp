@@ -243,7 +243,8 @@ void SceneReader::read_surfaces(Scene& scene) {
         const XmlElement element(document_, node);
         scene.surfaces.push_back(surface(element));
         scopes_ = {root};
-        if (has_points && !warned && scene.surfaces.back().material.kind == MaterialKind::dielectric) {
+        const Material& material = scene.surfaces.back().material;
+        if (has_points && !warned && material.kind == MaterialKind::dielectric && material.roughness == 0.0) {
             element.warn(fmt::format("<{}> is of glass: no path finds what directional lights, points and spots send "
                                      "through it, and they cast its shadow; a sun, sphere, disk or rectangle shines "
                                      "through",

@@ -66,6 +66,12 @@ void note_collision(uint record, vec3 weight, vec3 position, vec3 direction, flo
         note_in(record, frame.layers.albedo, weight * albedo);
 }
 
+// On the side from which it is seen.
+void note_normal(uint record, vec3 weight, vec3 normal) {
+    if ((LAYERS & LAYERS_NORMAL) != 0)
+        note_in(record, frame.layers.normal, (weight.x + weight.y + weight.z) / 3.0 * normal);
+}
+
 // Of a homogeneous stretch that is gone through at once, the part behind which a collision would be, on average: of an exponential
 // that is cut at tau, 1 / tau - 1 / (exp(tau) - 1), which is its series where digits would cancel.
 float mean_part(float tau) {

@@ -141,6 +141,7 @@
 #define LAYERS_COLLISION 8 // depth and coverage of the first, and its position
 #define LAYERS_ALBEDO 16   // there
 #define LAYERS_THROUGH 32  // transmittance of the sensor's rays, and its mean over colours
+#define LAYERS_NORMAL 128  // of the first surface
 #define LAYERS_HOLDOUT 64  // light that was not scattered, and no medium's, stays out of the picture
 
 // Layers by how often light was scattered on its way; of these LIGHT_KINDS.

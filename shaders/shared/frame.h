@@ -34,6 +34,7 @@ struct AovParams {
     uint collision; // two: (w d, w, w d + w) of the distance d and the weight w; w times the position
     uint albedo;    // times w
     uint through;   // two: transmittance, and its mean over the channels
+    uint normal;     // of the surface that is met first
 };
 
 // A grid within the buffers that hold all grids. Positions are in its index space, voxel centres at integers, counted

@@ -16,11 +16,13 @@ void arrive_at_surface(MediumParams v, inout Lane lane, inout Rng rng, inout Tal
     SurfaceRow row = surface_row(at.row);
     add_light(lane, lane.beta * surface_emission(row, at.normal, lane.path.direction),
               kind_label(lane.path.depth) | lane.first_label);
-    if (HAS_LAYERS)
-        if (lane.path.depth == 0u)
-            note_collision(lane.record, vec3(lane.beta), at.position, lane.path.direction, lane.reach, row.color);
     uvec4 key = takes_walks() ? next_words(rng) : uvec4(0u);
     Bsdf bsdf = bsdf_of(row, at, -lane.path.direction, key);
+    if (HAS_LAYERS)
+        if (lane.path.depth == 0u) {
+            note_collision(lane.record, vec3(lane.beta), at.position, lane.path.direction, lane.reach, row.color);
+            note_normal(lane.record, vec3(lane.beta), bsdf.normal);
+        }
     lane.path.position = at.position + at.apart * bsdf.face;
     lane.path.medium = AT_SURFACE | lane.struck;
     bool capped = SCATTERING != SCATTERING_NONE && lane.path.depth >= frame.max_depth;

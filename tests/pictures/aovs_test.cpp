@@ -27,7 +27,7 @@ using Catch::Contains;
 namespace {
 
 constexpr unsigned of_light = layer_background | layer_emission | layer_direct | layer_indirect;
-constexpr unsigned everything = 2 * layer_alpha - 1;
+constexpr unsigned everything = 2 * layer_normal - 1;
 
 // Two media, one of which glows, under a sun in a group, a lamp in another, and a sky in none.
 Scene busy(const std::string& integrator, std::uint32_t spp) {
@@ -56,8 +56,8 @@ Scene plain(const std::string& integrator, std::uint32_t spp) {
     return scene;
 }
 
-const FilmLayer& layer_of(const Film& film, const std::string& name) {
-    const FilmLayer* layer = film.layer(name);
+const FilmLayer& layer_of(const Film& film, std::string_view name) {
+    const FilmLayer* layer = film.layer(std::string(name));
     INFO(name);
     REQUIRE(layer);
     return *layer;
@@ -282,6 +282,23 @@ TEST_CASE("the first collision in a slab is where its density has it", "[gpu][im
         CHECK(position.mean[i].z == Approx(distance - depth.mean[i].x).margin(2e-7 * distance + 1e-6));
         CHECK(albedo.mean[i].x == Approx(0.7 * coverage.mean[i].x).epsilon(1e-5));
     }
+}
+
+TEST_CASE("a surface's normal is seen through what is before it", "[gpu][image][aovs]") {
+    const double tau = 0.7;
+    Scene scene = beam(slab(tau, 0.7), 3.0, 1024);
+    scene.surfaces.emplace_back().shape = BallSurface{{-0.6, 0.0, -3.0}, 1.0};
+    scene.layers = layer_normal;
+    const Film film = render_here(scene, 4).film;
+    CHECK_AGREEMENT(
+        agree_with_means(as_film(film, "normal"), everywhere(film, std::exp(-tau) * Rgb(0.6, 0.0, 0.8)), "normal"));
+    // From within.
+    scene.volumes.clear();
+    scene.camera.position = {0.0, 0.0, -3.0};
+    std::get<BallSurface>(scene.surfaces.front().shape).center = {0.6, 0.0, -3.0};
+    const Film within = render_here(scene, 5).film;
+    for (const glm::vec3& normal : layer_of(within, "normal").mean)
+        CHECK(glm::distance(glm::dvec3(normal), glm::dvec3(0.6, 0.0, 0.8)) < 1e-3);
 }
 
 TEST_CASE("what is behind the media is held out for compositing", "[gpu][image][aovs]") {

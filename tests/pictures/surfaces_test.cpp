@@ -151,7 +151,9 @@ Material frosted(MaterialKind kind, double roughness) {
 TEST_CASE("whatever scatters all light vanishes in an even sky, in fog too", "[gpu][image][surfaces]") {
     for (const Material& material :
          {white(MaterialKind::diffuse), white(MaterialKind::mirror), white(MaterialKind::dielectric),
-          frosted(MaterialKind::conductor, 1.0), frosted(MaterialKind::dielectric, 0.3)})
+          frosted(MaterialKind::conductor, 1.0), frosted(MaterialKind::conductor, least_roughness),
+          frosted(MaterialKind::dielectric, 0.3), frosted(MaterialKind::dielectric, 1.0),
+          frosted(MaterialKind::dielectric, least_roughness)})
         for (const bool in_fog : {false, true}) {
             CAPTURE(static_cast<int>(material.kind), material.roughness, in_fog);
             Scene scene = empty_scene();
@@ -437,6 +439,8 @@ TEST_CASE("surfaces are read, moved and refused by name", "[xml][surfaces]") {
     const std::string glass = "<surfaces><box material=\"dielectric\"/></surfaces>";
     CHECK(warns(parse(glass + "<lights><point/><sphere/></lights>"), "no path finds what directional lights"));
     CHECK_FALSE(warns(parse(glass + "<lights><sun y=\"1\"/><sphere/></lights>"), "no path finds"));
+    const std::string frosted_glass = "<surfaces><box material=\"dielectric\" roughness=\".1\"/></surfaces>";
+    CHECK_FALSE(warns(parse(frosted_glass + "<lights><point/></lights>"), "no path finds"));
 
     const auto refused = [](const std::string& surface) { return error_of("<surfaces>" + surface + "</surfaces>"); };
     CHECK_THAT(refused("<sphere material=\"gold\"/>"), Contains("2:19") && Contains("'gold' is unknown"));
