@@ -290,8 +290,13 @@ TEST_CASE("a surface's normal is seen through what is before it", "[gpu][image][
     scene.surfaces.emplace_back().shape = BallSurface{{-0.6, 0.0, -3.0}, 1.0};
     scene.layers = layer_normal;
     const Film film = render_here(scene, 4).film;
-    CHECK_AGREEMENT(
-        agree_with_means(as_film(film, "normal"), everywhere(film, std::exp(-tau) * Rgb(0.6, 0.0, 0.8)), "normal"));
+    Film normals = as_film(film, "normal");
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) { // y is next to nothing, and has as little variance
+        CHECK(std::abs(normals.mean[i].y) < 1e-5);
+        normals.mean[i].y = normals.mean[i].x;
+        normals.variance[i].y = normals.variance[i].x;
+    }
+    CHECK_AGREEMENT(agree_with_means(normals, everywhere(film, std::exp(-tau) * Rgb(0.6, 0.6, 0.8)), "normal"));
     // From within.
     scene.volumes.clear();
     scene.camera.position = {0.0, 0.0, -3.0};
