@@ -13,9 +13,9 @@
 namespace vkvol {
 
 struct LayerPlan {
-    int kinds = 0;                // LAYERS_..., for kernels
+    int kinds = 0;              // LAYERS_..., for kernels
     shared::AovParams params{}; // `records` is not for it to say
-    unsigned wanted = 0;          // Aovs
+    unsigned wanted = 0;        // Aovs
     std::vector<std::string> groups, media;
 };
 

@@ -5,7 +5,10 @@
 namespace vkvol {
 
 const char* FilmLayer::channels() const {
-    return name == "depth" ? "Z" : name == "alpha" || name == "coverage" ? "A" : name == "position" || name == "normal" ? "XYZ" : "RGB";
+    return name == "depth"                          ? "Z"
+           : name == "alpha" || name == "coverage"  ? "A"
+           : name == "position" || name == "normal" ? "XYZ"
+                                                    : "RGB";
 }
 
 const FilmLayer* Film::layer(const std::string& name) const {

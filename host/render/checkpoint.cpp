@@ -120,8 +120,7 @@ Checkpoint parse(std::string_view bytes) {
 RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization, const Assets& assets,
                         const LightTable& lights, std::span<const shared::MediumParams> media,
                         const SurfaceTable& surfaces, std::span<const glm::vec3> points, std::uint32_t sample_offset,
-                        const std::string& device,
-                        std::vector<std::uint32_t> band_rows) {
+                        const std::string& device, std::vector<std::uint32_t> band_rows) {
     Digest digest;
     digest.add(std::as_bytes(std::span(&sample_offset, 1)));
     digest.add(std::as_bytes(std::span(&frame, 1)));

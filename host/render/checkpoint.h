@@ -9,11 +9,11 @@
 
 #include "compute_pass.h"
 #include "light_table.h"
-#include "surface_table.h"
 #include "loaded_medium.h"
 #include "plan.h"
 #include "render_counts.h"
 #include "shared/items.h"
+#include "surface_table.h"
 
 namespace vkvol {
 
@@ -47,8 +47,7 @@ struct Checkpoint {
 RenderIdentity identify(const shared::FrameParams& frame, const Specialization& specialization, const Assets& assets,
                         const LightTable& lights, std::span<const shared::MediumParams> media,
                         const SurfaceTable& surfaces, std::span<const glm::vec3> points, std::uint32_t sample_offset,
-                        const std::string& device,
-                        std::vector<std::uint32_t> band_rows);
+                        const std::string& device, std::vector<std::uint32_t> band_rows);
 
 // Atomically: the file is the last checkpoint or this one. Throws RenderError.
 void save_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);
