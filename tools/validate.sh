@@ -3,12 +3,12 @@
 #   hard        scenes/hard on the device and by the reference, against the means that their files derive (2 minutes)
 #   scenes      every file under scenes/ by its name alone, small (2 minutes): tools/all_scenes.sh
 #   large       a grid of 342 MiB, larger than a storage buffer of Mesa's software driver, against its Fp8 form (1 minute)
-#   tests       tests that otherwise take a share of what they could combine, with all of it (half an hour)
+#   tests       tests that otherwise take a share of what they could combine, with all of it
 #   estimators  the tables of all unbiased combinations of estimators, of the bias of marches, and of transmittances alone
 #   pictures    whole scenes with large grids, rendered by vkvol and by the scalar reference with different seeds, judged by
 #               `vkvol compare` (per-pixel z-test, Sidak-corrected, and a test of the means; a significance of 0.001 per
 #               scene, so that a table of this length raises a false alarm once in a hundred runs)
-# All takes about an hour and a half on two cores. Each part ends with a table; fails if anything differs.
+# All but `tests` takes about an hour on two cores. Each part ends with a table; fails if anything differs.
 #   tools/validate.sh [--driver NAME] [hard|scenes|large|tests|estimators|pictures ...] [FILE.nvdb ...]
 #       a driver as in tools/test.sh; further grids for pictures: in the thesis' bunny scenes
 set -eu

@@ -79,9 +79,8 @@ std::uint32_t code_of(const Material& material) {
     return MATERIAL_DIFFUSE;
 }
 
-// What a boundary of this index throws back of even light from within, by Fresnel's equations: the mean over cosines.
-// (1 - F_in) / ior^2 = 1 - F_out, of a light that is even on both sides, and outside there is no angle from which all
-// is thrown back.
+// Of even light from within a boundary of this index, what it throws back. What passes of such light from outside, T,
+// is found by Fresnel's equations, since from there no angle throws all back; from within T / ior^2 passes.
 double thrown_back(double ior) {
     constexpr int n = 4096;
     double passes = 0.0;

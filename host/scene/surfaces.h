@@ -26,8 +26,8 @@ struct DiskSurface {
 struct TriangleSurface {
     std::vector<glm::dvec3> vertices;
     std::vector<glm::uvec3> triangles;
-    std::vector<glm::mat3> normals =
-        {}; // at each triangle's corners, unit, as columns, of what it stands for; or empty
+    // At each triangle's corners, unit, as columns, of what it stands for; or empty.
+    std::vector<glm::mat3> normals = {};
 };
 
 struct RectangleSurface {

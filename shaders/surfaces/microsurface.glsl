@@ -6,7 +6,7 @@
 // Directions are in a frame whose z is the normal on the side where light is on its way. As it crosses a facet all is turned
 // about, x to -x, and what was lower is higher: c to 1 - c.
 //
-// Bias: after MOST_FACETS facets light leaves by cosine, as it would almost do. Of alpha 1 one walk in some 10^4 is that long.
+// Bias: after MOST_FACETS facets light leaves by cosine. Fewer than one walk in 10^6 is that long (tools/results/README.md).
 #ifndef MICROSURFACE_GLSL
 #define MICROSURFACE_GLSL
 #include "lib/directions.glsl"
@@ -133,7 +133,8 @@ vec3 facets_sample(Facets f, vec3 wo, Rng rng, out vec3 weight) {
     return walk.side * walk.w;
 }
 
-// An unbiased estimate of the value towards wi, times its cosine: what leaves that way from every facet of a walk.
+// An estimate of the value towards wi, times its cosine, which is right in the mean but for that: what leaves that way from every
+// facet of a walk.
 vec3 facets_value(Facets f, vec3 wo, vec3 wi, Rng rng) {
     FacetWalk walk = begin_facet_walk(f, wo);
     vec3 value = vec3(0.0);
