@@ -14,9 +14,8 @@ namespace vkvol {
 struct Mesh {
     std::vector<glm::dvec3> vertices;  // world space
     std::vector<glm::uvec3> triangles; // counterclockwise seen from without
-    std::vector<glm::mat3>
-        normals;                // of triangles' corners, as columns, as their files have them; empty if one has none
-    std::optional<Rgb> diffuse; // Kd of the first face's material
+    std::vector<glm::mat3> normals;    // of triangles' corners, as columns, as files have them; empty if one has none
+    std::optional<Rgb> diffuse;        // Kd of the first face's material
     std::vector<std::string> warnings; // what was understood but is not honoured
 };
 

@@ -27,6 +27,11 @@ vec3 turned(vec3 peak, float from_peak, float u) {
     return normalize(peak * (1.0 - from_peak) + (tangent * around.x + bitangent * around.y) * sine);
 }
 
+// Drawn by cosine: from_peak = 1 - sqrt(1 - u), with all digits where that is small.
+vec3 by_cosine(vec3 normal, vec2 u) {
+    return turned(normal, u.x / (1.0 + sqrt(1.0 - u.x)), u.y);
+}
+
 // About y, from -z towards +x, in radians. Straight up and down, of which atan says nothing, it is 0.
 float longitude_of(vec3 direction) {
     bool has_one = direction.x != 0.0 || direction.z != 0.0;

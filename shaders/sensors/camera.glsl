@@ -94,7 +94,7 @@ CameraRay camera_ray(uint place, uint sample_index) {
         Rng from_rng = pixel_rng(place, sample_index, LENS_DRAW);
         vec2 u = to_uniform(next_words(from_rng)).xy;
         if (SENSOR == SENSOR_IRRADIANCE) // the sine's square is even, and 1 - cos without cancellation
-            ray = CameraRay(camera.position + aside, turned(camera.corner, u.x / (1.0 + sqrt(1.0 - u.x)), u.y));
+            ray = CameraRay(camera.position + aside, by_cosine(camera.corner, u));
         if (SENSOR == SENSOR_FLUENCE)
             ray = CameraRay(sensor_points[(place >> 16u) * camera.row + (place & 0xffffu)],
                             turned(vec3(0.0, 1.0, 0.0), 2.0 * u.x, u.y));

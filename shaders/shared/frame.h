@@ -251,7 +251,7 @@ struct SurfacePrimitive {
     vec3 a; // a triangle's corners, counterclockwise as seen from without; or a middle,
     uint surface; // its row
     vec3 b; // a unit normal
-    uint shape; // SURFACE_..., that row's
+    uint shape; // SURFACE_...
     vec3 c; // and the radius, in x
     uint normals; // of a triangle whose corners have normals of their own, the piece whose a, b, c these are; else 0
 };

@@ -27,7 +27,7 @@ bool has_material(uint material) {
     return (MATERIALS & 1 << material) != 0;
 }
 
-// Its facets' distribution is what it is, or chance alone: walks among facets take a draw of their own.
+// Whether any surface has facets: then each vertex on a surface takes a draw for the key of its walks.
 bool takes_walks() {
     return has_material(MATERIAL_ROUGH_CONDUCTOR) || has_material(MATERIAL_ROUGH_DIELECTRIC);
 }
@@ -109,11 +109,6 @@ float bsdf_pdf(Bsdf b, vec3 wo, vec3 wi) {
     if (has_facets(b))
         pdf = facets_guess_pdf(facets_of(b), to_frame(b.normal, wo), to_frame(b.normal, wi));
     return pdf;
-}
-
-// By cosine: from_peak = 1 - sqrt(1 - u), with all digits where that is small.
-vec3 by_cosine(vec3 normal, vec2 u) {
-    return turned(normal, u.x / (1.0 + sqrt(1.0 - u.x)), u.y);
 }
 
 vec3 bsdf_guess(Bsdf b, vec3 wo, vec2 u) {

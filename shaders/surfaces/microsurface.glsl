@@ -128,7 +128,7 @@ vec3 facets_sample(Facets f, vec3 wo, Rng rng, out vec3 weight) {
     }
     u = to_uniform(next_words(rng));
     if (!walk.left && u.x >= leaving_chance(walk.w, walk.c, f.alpha))
-        walk.w = turned(vec3(0.0, 0.0, 1.0), u.y / (1.0 + sqrt(1.0 - u.y)), u.z);
+        walk.w = by_cosine(vec3(0.0, 0.0, 1.0), u.yz);
     weight = walk.side < 0.0 ? walk.weight / (f.eta.x * f.eta.x) : walk.weight;
     return walk.side * walk.w;
 }
@@ -167,19 +167,19 @@ vec3 facets_guess(Facets f, vec3 wo, vec2 u, vec2 choice) {
     vec3 by_facet = normalize(2.0 * cosine * m - wo);
     if (!f.conducts && choice.x >= fresnel_dielectric(cosine, f.eta.x))
         by_facet = refracted(wo, m, cosine, f.eta.x);
-    vec3 by_cosine = turned(vec3(0.0, 0.0, 1.0), u.x / (1.0 + sqrt(1.0 - u.x)), u.y);
+    vec3 otherwise = by_cosine(vec3(0.0, 0.0, 1.0), u);
     if (!f.conducts && choice.x < 0.5)
-        by_cosine.z = -by_cosine.z;
-    return choice.y < BY_FACET ? by_facet : by_cosine;
+        otherwise.z = -otherwise.z;
+    return choice.y < BY_FACET ? by_facet : otherwise;
 }
 
 float facets_guess_pdf(Facets f, vec3 wo, vec3 wi) {
     Facets clear = f; // of a metal that mirrors all
     clear.eta = f.conducts ? vec3(0.0) : f.eta;
     clear.k = f.conducts ? vec3(1.0) : f.k;
-    float by_cosine = (f.conducts ? max(wi.z, 0.0) : 0.5 * abs(wi.z)) / PI;
+    float otherwise = (f.conducts ? max(wi.z, 0.0) : 0.5 * abs(wi.z)) / PI;
     float by_facet = facets_mirror(clear, f.eta.x, wo, wi).x + (f.conducts ? 0.0 : facets_pass(f.alpha, f.eta.x, wo, wi));
-    return mix(by_cosine, by_facet, BY_FACET);
+    return mix(otherwise, by_facet, BY_FACET);
 }
 
 #endif
