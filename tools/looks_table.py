@@ -9,7 +9,6 @@ Errors are relMSE against a render of many samples by every collision's shadow r
 
 import pathlib
 import re
-import statistics
 import sys
 import tempfile
 
@@ -76,20 +75,10 @@ def main():
                       f"{options.runs} errors, medians of as many seconds, in alternation")
                 print(f"{'':36} {'phase':>28} {'cached':>28}   over every collision's shadow ray")
                 print(f"{'':36} {'error':>10} {'time':>6} {'efficiency':>10} {'error':>10} {'time':>6} {'efficiency':>10}")
-            found = {way: [] for way in WAYS if way != "phase" or by_chance}
-            for run in range(options.runs):
-                for way in found:
-                    report = table_runs.render(vkvol, scene, WAYS[way], run + 1, options.spp, picture, *SIZE)
-                    found[way].append((error(picture, reference), report["seconds"]["render"]))
-            means = {way: (statistics.mean(e for e, _ in rows), statistics.median(s for _, s in rows)) for way, rows in found.items()}
-            line = f"{case:36}"
-            for way in ("phase", "cached"):
-                if way in means:
-                    more, longer = (a / b for a, b in zip(means[way], means["collisions"]))
-                    line += f" {more:10.2f} {longer:6.2f} {1 / (more * longer):10.2f}"
-                else:
-                    line += " " * 29
-            print(line, flush=True)
+            ways = {way: name for way, name in WAYS.items() if way != "phase" or by_chance}
+            means = table_runs.in_alternation(options, scene, ways, picture, lambda made: error(made, reference), *SIZE)
+            columns = table_runs.against(means, "collisions")
+            print(f"{case:36}{columns('phase')}{columns('cached')}", flush=True)
 
 
 if __name__ == "__main__":

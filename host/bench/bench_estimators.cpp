@@ -64,8 +64,8 @@ bool same_kernel(const Estimator& x, const Estimator& y) {
     const bool same_filter = density_kind(x.scene) != FIELD_GRID || a.filter == b.filter;
     const bool same_steps = !marches(a) || a.jitter == b.jitter;
     return a.scattering == b.scattering && a.free_flight == b.free_flight && a.nee == b.nee && same_shadows &&
-           a.emission_at == b.emission_at && a.mis == b.mis && a.distance == b.distance && same_filter && same_steps &&
-           a.material_colour == b.material_colour;
+           a.emission_at == b.emission_at && a.mis == b.mis && a.distance == b.distance && a.paths == b.paths &&
+           same_filter && same_steps && a.material_colour == b.material_colour;
 }
 
 Estimator* find_same(std::vector<Estimator>& list, const Estimator& estimator) {

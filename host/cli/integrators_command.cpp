@@ -17,6 +17,7 @@ std::string choice_name(const Integrator& integrator, const std::string& axis) {
                    : axis == "flight"        ? integrator.free_flight
                    : axis == "transmittance" ? integrator.transmittance
                    : axis == "nee"           ? integrator.nee
+                   : axis == "paths"         ? integrator.paths
                                              : 0;
     return find_axis(axis).names.at(static_cast<std::size_t>(id));
 }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
+#include "emitter_table.h"
 #include "kernel_text.h"
 #include "light_table.h"
 #include "overlap_words.h"
@@ -18,7 +20,7 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
     : device_(device), commands_(commands), specialization_(specialize(scene, assets.media, method, whole_of(assets))),
       frame_(make_frame(scene, assets.media, method, crop, seed, whole_of(assets))),
       buffers_(device, commands, assets.media, whole_of(assets), most_grid_bytes, most_texel_bytes),
-      layers_(plan_layers(scene)), form_(is_chromatic(scene) ? form_chromatic : 0),
+      layers_(plan_layers(scene)), form_(is_chromatic(scene) || method.paths != PATHS_CAMERA ? form_chromatic : 0),
       text_(kernel_text(specialization_, assets, is_chromatic(scene))),
       origin_(render_origin(scene, assets.media, whole_of(assets))), cache_directions_(cache_layout(scene).directions) {
     if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN)
@@ -32,10 +34,13 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
         specialization_[SPEC_ALBEDO] != ALBEDO_CONSTANT || specialization_[SPEC_MAP] != MAP_NONE ||
         specialization_[SPEC_UNBOUNDED] != 0 || specialization_[SPEC_FIELD] == FIELD_LAYERS ||
         specialization_[SPEC_TEMPERATURE_TYPE] == GRID_COLOR || specialization_[SPEC_SENSOR] != SENSOR_PINHOLE ||
-        specialization_[SPEC_PIXEL_FILTER] != 0 || specialization_[SPEC_LAYERS] != 0)
+        specialization_[SPEC_PIXEL_FILTER] != 0 || specialization_[SPEC_LAYERS] != 0 ||
+        specialization_[SPEC_PATHS] != PATHS_CAMERA)
         form_ |= form_full;
     if (!scene.surfaces.empty())
         make_surfaces(scene, assets);
+    if (method.paths != PATHS_CAMERA)
+        make_emitters(scene, method, assets);
     specialization_[SPEC_TABLE_TEXELS] = buffers_.find_table_texels(most_texel_bytes) ? 1 : 0;
     for (const glm::dvec3& point : scene.camera.points)
         points_.emplace_back(point - origin_);
@@ -87,6 +92,22 @@ void DeviceScene::make_surfaces(const Scene& scene, const Assets& assets) {
     buffers_.upload_surfaces(device_, commands_, surfaces_, before);
 }
 
+// World units from the origin; infinite where a medium is everywhere, or a plane.
+double DeviceScene::reach_of_all(const Scene& scene, const Assets& assets) const {
+    const bool has_end = !any_medium(scene, is_everywhere);
+    return has_end ? std::max(lit_radius(scene, assets, frame_.media[0]), reach_of_surfaces(scene.surfaces, origin_))
+                   : std::numeric_limits<double>::infinity();
+}
+
+void DeviceScene::make_emitters(const Scene& scene, const Method& method, const Assets& assets) {
+    const EmitterTable table =
+        make_emitter_table(scene, method, lights_, surfaces_, frame_.media[0], media_,
+                           assets.sky ? assets.sky->fluence : Rgb(0.0), reach_of_all(scene, assets));
+    frame_.particles = table.params;
+    text_ += method.paths == PATHS_LIGHT ? ", by particles" : ", and by particles";
+    buffers_.upload_emitters(device_, commands_, table);
+}
+
 void DeviceScene::set_queues(std::uint32_t slots, std::uint32_t queue_capacity) {
     frame_.slots = slots;
     frame_.queue_capacity = queue_capacity;
@@ -110,8 +131,9 @@ void DeviceScene::fill_light_cache() {
         light_cache_->fill(commands_);
 }
 
-void DeviceScene::set_first_row(std::uint32_t row) {
-    frame_.crop_y = row;
+void DeviceScene::set_rows(std::uint32_t first, std::uint32_t count) {
+    frame_.crop_y = first;
+    frame_.crop_height = count;
     buffers_.set_frame(commands_, frame_);
 }
 

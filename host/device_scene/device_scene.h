@@ -29,8 +29,8 @@ public:
     void set_queues(std::uint32_t slots, std::uint32_t queue_capacity);
     // Paths that have a record of layers at a time.
     void set_records(std::uint32_t records) { frame_.layers.records = records; }
-    // The first row of the part of the picture that is rendered next.
-    void set_first_row(std::uint32_t row);
+    // The part of the picture that is rendered next.
+    void set_rows(std::uint32_t first, std::uint32_t count);
 
     const shared::FrameParams& frame() const { return frame_; }
     const Specialization& specialization() const { return specialization_; }
@@ -50,6 +50,8 @@ private:
     void make_lights(const Scene& scene, const Assets& assets);
     void upload_media(const Scene& scene, const Method& method, const Assets& assets, std::uint64_t most_texel_bytes);
     void make_surfaces(const Scene& scene, const Assets& assets);
+    void make_emitters(const Scene& scene, const Method& method, const Assets& assets);
+    double reach_of_all(const Scene& scene, const Assets& assets) const;
 
     const Device& device_;
     Commands& commands_;

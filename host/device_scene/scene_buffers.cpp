@@ -139,6 +139,11 @@ void SceneBuffers::upload_lights(const Device& device, Commands& commands, const
     make_buffer(device, commands, sky_alias_, "choice of the sky's texels", bytes_of(sky->alias));
 }
 
+void SceneBuffers::upload_emitters(const Device& device, Commands& commands, const EmitterTable& table) {
+    check_size(device, "the sources of particles", bytes_of(table.rows).size(), "let fewer triangles shine");
+    make_buffer(device, commands, emitters_, "sources of particles", bytes_of(table.rows));
+}
+
 void SceneBuffers::upload_surfaces(const Device& device, Commands& commands, const SurfaceTable& table,
                                    const std::vector<shared::BvhNode>& before) {
     const std::uint64_t bytes = bytes_of(table.primitives).size(), most = device.limits().maxStorageBufferRange;
@@ -221,6 +226,7 @@ BoundBuffers SceneBuffers::bound() const {
     buffers[BINDING_SURFACES] = place(surfaces_);
     buffers[BINDING_PRIMITIVES] = place(primitives_);
     buffers[BINDING_POINTS] = place(points_);
+    buffers[BINDING_EMITTERS] = place(emitters_);
     buffers[BINDING_LIGHTS] = place(lights_);
     buffers[BINDING_LIGHT_TREE] = place(light_tree_);
     buffers[BINDING_SKY] = place(sky_);
@@ -232,7 +238,7 @@ std::uint64_t SceneBuffers::bytes() const {
     std::uint64_t total = frame_.bytes();
     for (const auto* buffer :
          {&grids_, &leaf_table_, &majorants_, &controls_, &blackbody_, &triangles_, &bvh_, &lights_, &light_tree_,
-          &sky_, &sky_alias_, &phase_, &media_, &overlaps_, &maps_, &surfaces_, &primitives_, &points_})
+          &sky_, &sky_alias_, &phase_, &media_, &overlaps_, &maps_, &surfaces_, &primitives_, &points_, &emitters_})
         total += *buffer ? (*buffer)->bytes() : 0;
     for (const Buffer& window : windows_)
         total += window.bytes();

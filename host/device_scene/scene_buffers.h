@@ -6,6 +6,7 @@
 
 #include "bindings.h"
 #include "commands.h"
+#include "emitter_table.h"
 #include "light_table.h"
 #include "loaded_medium.h"
 #include "shared/frame.h"
@@ -32,6 +33,9 @@ public:
 
     // `sky`: null without a map. Throws InputError if that is too large for the device.
     void upload_lights(const Device& device, Commands& commands, const LightTable& table, const SkyMap* sky);
+
+    // What particles come from. Throws InputError if it is too much for the device.
+    void upload_emitters(const Device& device, Commands& commands, const EmitterTable& table);
 
     // `before`: the hierarchy that the surfaces' follows in the same buffer.
     void upload_surfaces(const Device& device, Commands& commands, const SurfaceTable& table,
@@ -62,7 +66,7 @@ private:
     Buffer frame_;
     std::optional<Buffer> grids_, leaf_table_, majorants_, controls_, blackbody_, triangles_, bvh_;
     std::optional<Buffer> lights_, light_tree_, sky_, sky_alias_, phase_, media_, overlaps_, maps_;
-    std::optional<Buffer> surfaces_, primitives_, points_;
+    std::optional<Buffer> surfaces_, primitives_, points_, emitters_;
     std::vector<Buffer> windows_;
     bool texels_ = false, table_texels_ = false;
     std::optional<std::uint32_t> window_bits_;

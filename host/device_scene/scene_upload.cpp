@@ -427,6 +427,9 @@ Specialization specialize(const Scene& scene, Media media, const Method& method,
     const int lights = lights_kind(scene);
     const int seen = method.nee == NEE_NONE ? lights & ~LIGHTS_LAMPS : lights;
     constants[SPEC_LIGHTS] = seen == LIGHTS_TABLE && method.nee == NEE_NONE ? LIGHTS_SUN : seen;
+    constants[SPEC_PATHS] = method.paths;
+    if (method.paths != PATHS_CAMERA) // whose looks go toward the sensor
+        constants[SPEC_LIGHTS] |= LIGHTS_TABLE;
     if (!scene.surfaces.empty()) { // segments then have an end
         constants[SPEC_LIGHTS] |= LIGHTS_TABLE;
         constants[SPEC_MATERIALS] = material_bits(scene.surfaces);
@@ -552,6 +555,7 @@ shared::FrameParams make_frame(const Scene& scene, Media media, const Method& me
     frame.crop_x = static_cast<std::uint32_t>(crop.x0);
     frame.crop_y = static_cast<std::uint32_t>(crop.y0);
     frame.crop_width = static_cast<std::uint32_t>(crop.x1 - crop.x0);
+    frame.crop_height = static_cast<std::uint32_t>(crop.y1 - crop.y0);
     return frame;
 }
 

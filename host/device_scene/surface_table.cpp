@@ -126,6 +126,7 @@ SurfaceTable make_surface_table(const std::vector<Surface>& surfaces, const glm:
     for (const std::uint32_t i : tree.order)
         table.primitives.push_back(bounded[i].primitive);
     const std::size_t first = table.primitives.size() - tree.order.size();
+    table.met = static_cast<std::uint32_t>(table.primitives.size());
     for (std::size_t at = 0; at < tree.order.size(); ++at) // behind all that rays meet
         if (const glm::mat3* normals = bounded[tree.order[at]].normals) {
             table.primitives[first + at].normals = static_cast<std::uint32_t>(table.primitives.size());

@@ -13,6 +13,7 @@ struct SurfaceTable {
     std::vector<shared::SurfacePrimitive> primitives; // planes first, then as leaves of the hierarchy name them
     std::vector<shared::BvhNode> nodes;
     std::uint32_t planes = 0;
+    std::uint32_t met = 0; // the first of the primitives, which rays meet; behind them are normals
 };
 
 // `origin`: of render space. Throws InputError if there are too many.

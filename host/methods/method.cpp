@@ -48,6 +48,13 @@ public:
     Method resolve();
 
 private:
+    template <class Is> bool any_surface(Is is) const {
+        return std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(), is);
+    }
+    bool loses_thrown_light() const;
+    void find_chances();
+    void choose_paths();
+    void check_particles() const;
     void choose_scattering();
     void choose_flight();
     const char* without_voxels() const;
@@ -76,6 +83,7 @@ private:
 Method Resolution::resolve() {
     method_.integrator = integrator_text({preset_.name, choices_});
     method_.jitter = scene_.settings.march.jitter && !(preset_.adjustments & adjust_no_jitter);
+    choose_paths();
     choose_scattering();
     choose_flight();
     choose_nee();
@@ -86,12 +94,56 @@ Method Resolution::resolve() {
     choose_filter();
     check_channels();
     find_biases();
+    find_chances();
     method_.material_colour = (preset_.adjustments & adjust_material_colour) && method_.scattering == SCATTERING_NONE;
     return method_;
 }
 
+void Resolution::choose_paths() {
+    method_.paths = choices_.paths.value_or(preset_.paths);
+    if (method_.paths == PATHS_BOTH && scene_.lights.empty()) {
+        warn("paths are from the camera: without lights there are no particles");
+        method_.paths = PATHS_CAMERA;
+    }
+    if (method_.paths != PATHS_CAMERA)
+        check_particles();
+}
+
+// What particles cannot do, and what does it instead.
+void Resolution::check_particles() const {
+    const auto refuse = [&](const char* why) {
+        throw InputError(fmt::format("{}: {}; integrator ratioTracking renders it", method_.integrator, why));
+    };
+    const auto shines_plane = [](const Surface& surface) {
+        return std::holds_alternative<PlaneSurface>(surface.shape) && surface.emission != Rgb(0.0);
+    };
+    const auto is_plane = [](const Surface& surface) { return std::holds_alternative<PlaneSurface>(surface.shape); };
+    const auto is_model = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
+    const auto is_far = [](const Light& light) { return !has_place(light); };
+    const bool from_afar =
+        scene_.background != Rgb(0.0) || std::any_of(scene_.lights.begin(), scene_.lights.end(), is_far);
+    if (reads_flux(scene_.camera))
+        refuse("particles are seen by cameras, and this sensor reads flux");
+    if (scene_.layers != 0)
+        refuse("layers are filled by paths from the camera alone");
+    if (method_.paths == PATHS_BOTH) // paths from the camera find what particles do not
+        return;
+    if ((has_no_end() || any_surface(is_plane)) && from_afar)
+        refuse("light from infinitely far has no end where a medium is everywhere, or a plane, and particles can come "
+               "from "
+               "some of it only");
+    if (any_surface(shines_plane))
+        refuse("a plane that shines has no end, and particles can come from some of it only");
+    if (emits_ && (has_no_end() || any_medium(scene_, is_model)))
+        refuse("particles of a medium's own light need a box or a grid that it is in");
+}
+
 void Resolution::choose_scattering() {
     method_.scattering = choices_.scattering.value_or(preset_.scattering);
+    if (method_.paths != PATHS_CAMERA && method_.scattering != SCATTERING_MULTIPLE) {
+        warn("scattering is multiple, as particles have it");
+        method_.scattering = SCATTERING_MULTIPLE;
+    }
     // Single scattering is one event, of which maxDepth allows none.
     if (method_.scattering == SCATTERING_SINGLE && scene_.settings.max_depth == 0u)
         method_.scattering = SCATTERING_NONE;
@@ -144,6 +196,12 @@ bool Resolution::bends_voxels() const {
 void Resolution::choose_nee() {
     int& nee = method_.nee;
     nee = choices_.nee.value_or(preset_.nee);
+    if (method_.paths != PATHS_CAMERA) {
+        if (choices_.nee.value_or(NEE_COLLISIONS) != NEE_COLLISIONS)
+            warn("nee is at collisions: there particles look toward the camera");
+        nee = NEE_COLLISIONS;
+        return;
+    }
     const bool scatters =
         method_.scattering != SCATTERING_NONE && (!scene_.surfaces.empty() || any_medium(scene_, can_scatter));
     // The camera sees lamps by shadow rays, and a sensor of flux all lights, whether or not anything scatters.
@@ -179,7 +237,8 @@ void Resolution::choose_mis() {
     const std::vector<Light>& lights = scene_.lights;
     const bool looks_too = method_.scattering == SCATTERING_MULTIPLE || reads_flux(scene_.camera);
     const bool met = looks_too && std::any_of(lights.begin(), lights.end(), is_met_by_chance);
-    const bool shared = method_.nee != NEE_NONE && (met || std::any_of(lights.begin(), lights.end(), is_lamp));
+    const bool shared = method_.paths != PATHS_LIGHT && method_.nee != NEE_NONE &&
+                        (met || std::any_of(lights.begin(), lights.end(), is_lamp));
     if (choices_.mis && !shared)
         warn("mis is without effect: no light is found in two ways");
     method_.mis = shared ? choices_.mis.value_or(MIS_BALANCE) : MIS_BALANCE;
@@ -188,9 +247,9 @@ void Resolution::choose_mis() {
 // Looks from along a flight need to know where it is within the medium, of which a mesh has many parts.
 void Resolution::choose_distance() {
     const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
-    const bool could = method_.nee != NEE_NONE && method_.scattering != SCATTERING_NONE &&
-                       !any_medium(scene_, is_mesh) && scene_.surfaces.empty() &&
-                       std::any_of(scene_.lights.begin(), scene_.lights.end(), has_place);
+    const bool could = method_.paths == PATHS_CAMERA && method_.nee != NEE_NONE &&
+                       method_.scattering != SCATTERING_NONE && !any_medium(scene_, is_mesh) &&
+                       scene_.surfaces.empty() && std::any_of(scene_.lights.begin(), scene_.lights.end(), has_place);
     if (choices_.distance && !could)
         warn("distance is without effect: it is for point, spot, sphere, disk and rectangle lights, and not in models "
              "or beside surfaces");
@@ -290,8 +349,32 @@ void Resolution::check_channels() const {
                                      method_.integrator));
 }
 
+bool is_smooth(const Surface& surface) {
+    return surface.material.kind != MaterialKind::diffuse && surface.material.roughness == 0.0;
+}
+
+// Caustics, but for those of lights that a path may meet.
+bool Resolution::loses_thrown_light() const {
+    const auto has_no_extent = [](const Light& light) { return !is_lamp(light) && !is_met_by_chance(light); };
+    return method_.paths == PATHS_CAMERA && method_.scattering == SCATTERING_MULTIPLE && method_.nee != NEE_NONE &&
+           any_surface(is_smooth) && std::any_of(scene_.lights.begin(), scene_.lights.end(), has_no_extent);
+}
+
+void Resolution::find_chances() {
+    const bool has_extent = std::any_of(scene_.lights.begin(), scene_.lights.end(),
+                                        [](const Light& light) { return is_lamp(light) || is_met_by_chance(light); });
+    const auto shines = [](const Surface& surface) { return surface.emission != Rgb(0.0); };
+    std::vector<const char*> found;
+    if (method_.paths == PATHS_CAMERA && any_surface(is_smooth) && has_extent)
+        found.push_back(
+            "what smooth mirrors, coats and glass throw of lights, which integrator bidirectional looks for");
+    if (method_.paths != PATHS_LIGHT && any_surface(shines))
+        found.push_back("light of meshes, boxes and planes, which integrator lightTracing begins at");
+    method_.by_chance = fmt::format("{}", fmt::join(found, "; "));
+}
+
 void Resolution::find_biases() {
-    std::vector<std::string> reasons;
+    std::vector<const char*> reasons;
     const auto add = [&](Bias bias, const char* reason) {
         method_.biases |= bias;
         reasons.push_back(reason);
@@ -308,6 +391,11 @@ void Resolution::find_biases() {
     const bool needs_majorant = method_.flights_have(TRAIT_BOUND) || method_.shadow_rays_have(TRAIT_BOUND);
     if (needs_majorant && scene_.settings.majorant_scale < 1.0)
         add(bias_majorant, "the majorant is scaled below the density");
+    if (any_surface(is_smooth) && method_.paths == PATHS_LIGHT)
+        add(bias_shown, "what smooth mirrors, coats and glass show is missing, which no particle finds");
+    if (loses_thrown_light())
+        add(bias_thrown, "what smooth mirrors, coats and glass throw of points, spots and directional lights is "
+                         "missing, which no path from the camera finds; integrator bidirectional does");
     method_.biased = fmt::format("{}", fmt::join(reasons, "; "));
 }
 

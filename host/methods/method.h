@@ -13,10 +13,13 @@ enum Bias : unsigned {
     bias_none = 0,
     bias_flight_steps = 1, // depends on March::step or ::optical_step, and jitter
     bias_shadow_steps = 2, // depends on March::shadow_step and jitter
-    bias_majorant = 4      // depends on RenderSettings::majorant_scale
+    bias_majorant = 4,     // depends on RenderSettings::majorant_scale
+    bias_shown = 8,        // what smooth mirrors, coats and glass show is missing
+    bias_thrown = 16       // what they throw of lights without extent is
 };
 
 struct Method {
+    int paths = 0;               // PATHS_...
     int scattering = 0;          // SCATTERING_...
     int free_flight = 0;         // FREE_FLIGHT_...
     int transmittance = 0;       // TRANSMITTANCE_...; unused if nee is NEE_NONE
@@ -31,6 +34,7 @@ struct Method {
     std::vector<std::string> warnings; // what was chosen explicitly and gave way
     unsigned biases = bias_none;       // sum of Bias
     std::string biased;                // why, in words; empty if unbiased
+    std::string by_chance;             // which light nothing but chance finds; empty: none
 
     // Any of `traits`, TRAIT_... of shaders/shared/estimators.h. Where no shadow rays are sent they have none.
     bool flights_have(int traits) const;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "shared/constants.h"
+#include "shared/items.h"
 
 namespace vkvol {
 
@@ -69,6 +70,15 @@ Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish) {
     const std::uint64_t texels = device.is_cpu() ? 4ull * device.limits().maxTexelBufferElements : 1u;
     plan.most_texel_bytes = pick(wish.most_texel_bytes, texels);
     return plan;
+}
+
+void fit_splats(const Device& device, std::uint64_t pixels, std::uint32_t batch, Plan& plan) {
+    constexpr std::uint64_t each = SPLAT_WORDS * sizeof(std::uint32_t), usual = 1u << 26; // bytes
+    const std::uint64_t most = std::min<std::uint64_t>(usual, device.limits().maxStorageBufferRange);
+    plan.most_film_bytes = std::min<std::uint64_t>(plan.most_film_bytes, most / each * sizeof(shared::FilmPixel));
+    pixels = std::min<std::uint64_t>(pixels, plan.most_film_bytes / sizeof(shared::FilmPixel));
+    plan.most_batch = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most / (each * pixels), 1, plan.most_batch));
+    plan.splats = std::max(plan.most_batch, batch);
 }
 
 std::uint32_t queue_capacity(const Plan& plan) {

@@ -24,6 +24,7 @@ struct Plan {
     std::uint32_t steps = 0;            // of tracking between two looks at what they led to
     std::uint32_t step_limit = 0;       // steps after which a flight is cut, and counted
     std::uint32_t most_batch = 0;       // samples per pixel
+    std::uint32_t splats = 0;           // particles: samples of a batch for whose splats there is room
     double submit_seconds = 0.08;       // aimed at; no submit should hold a device much longer
     std::uint64_t most_film_bytes = 0;  // in one buffer; a larger film lies in several
     std::uint64_t most_grid_bytes = 0;  // likewise, of all grids together
@@ -49,6 +50,10 @@ struct LoopSizes {
 
 // Completes `wish`, of which what is chosen wins.
 Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish = {});
+
+// Where there are particles: as many samples in a batch as have room for their splats, and of as few pixels at a time
+// as one of them takes. `pixels`: of the picture. `batch`: for which there has to be room.
+void fit_splats(const Device& device, std::uint64_t pixels, std::uint32_t batch, Plan& plan);
 
 // Places in each queue.
 std::uint32_t queue_capacity(const Plan& plan);

@@ -152,7 +152,7 @@ bool Session::out_of_patience() {
 }
 
 void Session::begin_band(const Band& band) {
-    device_scene_->set_first_row(static_cast<std::uint32_t>(job_.crop.y0) + band.first_row);
+    device_scene_->set_rows(static_cast<std::uint32_t>(job_.crop.y0) + band.first_row, band.rows);
     wavefront_->bind_film(band);
     const std::uint32_t begin = job_.sample_offset + done_;
     if (pixels_)
@@ -169,6 +169,8 @@ void Session::run_band(const Band& band) {
     if (checkpoint_due())
         save_checkpoint();
     begin_band(band);
+    if (method_.paths != PATHS_CAMERA)
+        return run_particles(band);
     for (bool resting = false; !resting;) {
         resting = wavefront_->advance();
         gather();
@@ -184,6 +186,23 @@ void Session::run_band(const Band& band) {
     pixels_ = wavefront_->pixels_left();
     if (pixels_->empty() && !gave_up_) {
         pixels_.reset();
+        ++band_;
+    }
+}
+
+// Likewise where every pixel waits for all particles: a batch is done, or it was not.
+void Session::run_particles(const Band& band) {
+    bool over = false;
+    while (!over && !gave_up_) {
+        over = wavefront_->advance();
+        gather();
+        if (job_.progress)
+            job_.progress(progress_of(band), std::nullopt);
+        if (!over && stopping())
+            gave_up_ = out_of_patience();
+    }
+    if (over) {
+        wavefront_->collect(band.rows * width());
         ++band_;
     }
 }

@@ -56,6 +56,7 @@ struct RenderResult {
     std::string integrator;
     bool glows = false;         // the medium does, by <medium> or <emission>
     std::string biased;         // why its mean is not exact; empty: it is
+    std::string by_chance;      // which light nothing but chance finds; empty: none
     std::string specialization; // in words: what the kernels were compiled for
     Plan plan;
     std::vector<PassFigures> passes;
@@ -106,6 +107,7 @@ private:
     bool out_of_patience();
     void begin_band(const Band& band);
     void run_band(const Band& band);
+    void run_particles(const Band& band);
     double progress_of(const Band& band) const;
     void gather();
     void develop_film();

@@ -79,6 +79,7 @@ void Session::load(const Device& device, const std::vector<std::string>& authore
     result_.glows = device_scene_->emits() && !has_colour;
     result_.integrator = method_.integrator;
     result_.biased = method_.biased;
+    result_.by_chance = method_.by_chance;
     result_.specialization = device_scene_->text();
     result_.trace_origin = device_scene_->origin();
     keep(assets);
@@ -120,7 +121,11 @@ void Session::find_wish(const Assets& assets, const Specialization& specializati
 Plan Session::plan_by(const Device& device, Schedule schedule) const {
     Plan wish = wish_;
     wish.schedule = schedule;
-    return make_plan(device, loops_, wish);
+    Plan plan = make_plan(device, loops_, wish);
+    if (method_.paths != PATHS_CAMERA)
+        fit_splats(device, std::uint64_t{width()} * std::uint64_t(job_.crop.y1 - job_.crop.y0),
+                   job_.resume ? job_.resume->batch : 0, plan);
+    return plan;
 }
 
 // What the picture is explained by, and, where there are further frames, what they need.
@@ -207,7 +212,7 @@ double Session::paths_per_second(Wavefront& wavefront, const Plan& plan) {
     const std::uint32_t pixels = band.rows * width();
     const auto samples = static_cast<std::uint32_t>(std::clamp<std::uint64_t>((1u << 22) / pixels, 1, plan.most_batch));
     device_scene_->set_queues(plan.slots, queue_capacity(plan));
-    device_scene_->set_first_row(static_cast<std::uint32_t>(job_.crop.y0) + band.first_row);
+    device_scene_->set_rows(static_cast<std::uint32_t>(job_.crop.y0) + band.first_row, band.rows);
     wavefront.bind_film(band);
     wavefront.begin_batch(0, samples, pixels);
     Stopwatch watch;

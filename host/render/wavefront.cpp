@@ -8,6 +8,7 @@
 
 #include "accumulate_forms.h"
 #include "begin.spv.h"
+#include "collect.spv.h"
 #include "fused_forms.h"
 #include "generate_forms.h"
 #include "hand_out.spv.h"
@@ -78,6 +79,9 @@ Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, st
         add_buffer(BINDING_SAMPLES, "waiting samples", waiting * sizeof(glm::vec3));
         add_buffer(BINDING_PLACES, "places of samples", waiting * sizeof(shared::SamplePlace));
     }
+    if (plan.splats > 0)
+        add_buffer(BINDING_SPLATS, "splats",
+                   std::uint64_t{most_pixels} * plan.splats * SPLAT_WORDS * sizeof(std::uint32_t));
     bindings_.emplace(device, bound(scene_buffers));
     make_passes(specialization, form, cache, meanwhile);
     push_.budget = std::min(plan.budget, first_budget);
@@ -129,6 +133,8 @@ void Wavefront::make_passes(const Specialization& specialization, unsigned form,
     begin_ = make(begin_spv);
     sky_ = make(sky_forms[form]);
     prepare_ = make(prepare_spv);
+    if (plan_.splats > 0)
+        collect_ = make(collect_spv);
     meanwhile();
     figures_.push_back({"sky"});
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -208,13 +214,24 @@ void Wavefront::free_slots(std::uint32_t begin, std::uint32_t end) {
     push_.places = plan_.waiting / samples();
     finished_ = sorted_ = 0;
     rounds_ = 1; // many came to little at the end of the last batch
+    if (collect_)
+        commands_.fill(buffer(BINDING_SPLATS), 0);
     commands_.run([&](VkCommandBuffer commands) {
         begin_->record(commands, push_, std::max(plan_.slots, plan_.waiting));
         record_barrier(commands);
     });
 }
 
+void Wavefront::collect(std::uint32_t pixels) {
+    over_pixels(*collect_, pixels);
+}
+
 void Wavefront::sort_pixels(std::uint32_t pixels) {
+    over_pixels(*sky_, pixels);
+}
+
+// Each lane loops over the batch's samples.
+void Wavefront::over_pixels(ComputePass& pass, std::uint32_t pixels) {
     const std::uint32_t samples = push_.sample_end - push_.sample_begin;
     const std::uint64_t most = std::uint64_t{device_.limits().maxComputeWorkGroupCount[0]} * WORKGROUP_SIZE;
     const auto chunk = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
@@ -223,7 +240,7 @@ void Wavefront::sort_pixels(std::uint32_t pixels) {
         push_.pixel_begin = first;
         push_.pixel_end = std::min(pixels, first + chunk);
         commands_.run([&](VkCommandBuffer commands) {
-            sky_->record(commands, push_, push_.pixel_end - push_.pixel_begin);
+            pass.record(commands, push_, push_.pixel_end - push_.pixel_begin);
             record_barrier(commands);
         });
     }

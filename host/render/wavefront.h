@@ -41,6 +41,9 @@ public:
     void begin_batch(std::uint32_t begin, std::uint32_t end, std::uint32_t pixels);
     // The same for these pixels alone.
     void begin_batch(std::uint32_t begin, std::uint32_t end, std::span<const std::uint32_t> pixels);
+    // Particles: once advance() has returned true, what they brought becomes the batch's samples. A batch that is not
+    // collected has left no trace in the film.
+    void collect(std::uint32_t pixels);
     // Hands out no further pixels; those begun are finished.
     void stop_handing_out();
     // Pixels of the batch that were not handed out.
@@ -79,6 +82,7 @@ private:
     void record_round(VkCommandBuffer commands, std::uint32_t round);
     void free_slots(std::uint32_t begin, std::uint32_t end);
     void sort_pixels(std::uint32_t pixels);
+    void over_pixels(ComputePass& pass, std::uint32_t pixels);
     void record_step(VkCommandBuffer commands, const Step& step);
     void record_prepare(VkCommandBuffer commands, std::uint32_t queue, std::uint32_t before, std::uint32_t lanes);
     void record_timestamp(VkCommandBuffer commands, std::uint32_t round, std::size_t mark);
@@ -92,7 +96,7 @@ private:
     std::array<std::optional<Buffer>, BINDING_BUFFERS> buffers_; // its own
     Buffer readback_;
     std::optional<Bindings> bindings_;
-    std::unique_ptr<ComputePass> begin_, sky_, prepare_;
+    std::unique_ptr<ComputePass> begin_, sky_, prepare_, collect_;
     std::vector<Step> round_;
     VkQueryPool timestamps_ = VK_NULL_HANDLE;
     shared::PassPush push_{};

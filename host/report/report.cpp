@@ -222,6 +222,7 @@ std::string make_report(const RenderRequest& request, const Scene& scene, const 
     report["sceneHash"] = scene_hash(scene);
     report["integrator"] = result.integrator;
     report["biased"] = bias_of(result);
+    report["foundByChance"] = result.by_chance;
     report["specialization"] = result.specialization;
     report["device"] = device_json(device.info());
     report["picture"] = {

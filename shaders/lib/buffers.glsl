@@ -54,6 +54,7 @@ const bool HAS_COLORS = true; // in grids
 layout(constant_id = SPEC_SENSOR) const int SENSOR = SENSOR_PINHOLE;
 layout(constant_id = SPEC_PIXEL_FILTER) const int PIXEL_FILTER = 0;
 layout(constant_id = SPEC_LAYERS) const int LAYERS = 0;
+layout(constant_id = SPEC_PATHS) const int PATHS = PATHS_CAMERA;
 #else
 const int PHASE = PHASE_HENYEY_GREENSTEIN;
 const int LIGHTS = LIGHTS_SUN;
@@ -67,6 +68,7 @@ const bool HAS_COLORS = false;
 const int SENSOR = SENSOR_PINHOLE;
 const int PIXEL_FILTER = 0;
 const int LAYERS = 0;
+const int PATHS = PATHS_CAMERA;
 #endif
 layout(constant_id = SPEC_MIS) const int MIS = MIS_BALANCE;
 #ifdef SURFACES
@@ -99,6 +101,7 @@ const bool EQUAL_AREA = (LIGHTS & LIGHTS_EQUAL_AREA) != 0;
 const bool SEES_LAMPS = (LIGHTS & LIGHTS_LAMPS) != 0;
 const bool HAS_TREE = (LIGHTS & LIGHTS_TREE) != 0;
 const bool HAS_LAYERS = LAYERS != 0;
+const bool HAS_PARTICLES = PATHS != PATHS_CAMERA;
 const bool READS_FLUX = SENSOR >= SENSOR_IRRADIANCE; // and no radiance: see flux.glsl
 // (In bits, for the sake of glslang 12: see LOOKS.)
 const bool LOOKS_FROM_SENSOR = (int(READS_FLUX) & int(NEE != NEE_NONE) & int(LIGHTS != LIGHTS_SUN)) != 0;
@@ -159,6 +162,8 @@ layout(binding = BINDING_MEMBER_TEXELS) uniform utextureBuffer member_texels;
 #endif
 layout(scalar, binding = BINDING_POINTS) readonly buffer PointBlock { vec3 sensor_points[]; };
 layout(scalar, binding = BINDING_LAYERS) buffer LayerBlock { vec3 layers[]; };
+layout(scalar, binding = BINDING_SPLATS) buffer SplatBlock { uint splats[]; };
+layout(scalar, binding = BINDING_EMITTERS) readonly buffer EmitterBlock { EmitterRow emitters[]; };
 layout(scalar, binding = BINDING_TRACE) buffer TraceBlock {
     uint trace_count;
     TraceRecord trace_records[];

@@ -23,6 +23,9 @@
 //   light before a sensor  of flux: a choice of a light, behind the camera's draw; then as after a lamp before the camera
 //   lamp before the camera w of the camera's draw: which of those that the ray meets. After its shadow ray the first
 //                          flight takes a draw of its own, e_z as from the camera's
+//   particle's beginning   x, y: what it comes from; z, w: where; then x, y: direction; z: of three where, or which side. Of a map of the sky
+//                          and of what glows one more draw. A draw of the first flight as the camera's
+//   particle's look        toward the sensor: x, y: where on the lens; z, w: which of the pixels to which it counts
 //   walk among facets      after a surface is met, and again after the draw with which the path departs: the key of the walk's own
 //                          numbers, which are hashes of (words_x, words_y, words_z + n, words_w)
 //   scattering             e_x: next free flight; y, z: phase function; w: roulette; select

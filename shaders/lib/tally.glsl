@@ -22,17 +22,21 @@ struct Tally {
 
 const Tally NOTHING_SEEN = Tally(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
 
+// `place`, `sample_index`: of the first.
+void count_dropped(uint samples, uint place, uint sample_index) {
+    atomicAdd(counters.non_finite, samples);
+    uint record = atomicAdd(counters.non_finite_records, 1u);
+    if (record < NON_FINITE_RECORDS) {
+        counters.non_finite_place[record] = place;
+        counters.non_finite_sample[record] = sample_index;
+    }
+}
+
 // What film_add has seen.
 void add_film_tally(Tally tally) {
     atomicAdd(counters.paths, tally.paths);
-    if (tally.non_finite != 0u) {
-        atomicAdd(counters.non_finite, tally.non_finite);
-        uint record = atomicAdd(counters.non_finite_records, 1u);
-        if (record < NON_FINITE_RECORDS) {
-            counters.non_finite_place[record] = tally.dropped_place;
-            counters.non_finite_sample[record] = tally.dropped_sample;
-        }
-    }
+    if (tally.non_finite != 0u)
+        count_dropped(tally.non_finite, tally.dropped_place, tally.dropped_sample);
 }
 
 void add_tally(Tally tally) {

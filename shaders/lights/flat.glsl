@@ -26,13 +26,16 @@ float flat_distance(LightRow light, vec3 from, vec3 direction) {
 }
 
 // Evenly over its area. A disk's points by radius and angle, not by both sines, of which Vulkan asks little: see turned().
-vec3 flat_direction(LightRow light, vec3 from, vec2 u) {
+vec3 flat_point(LightRow light, vec2 u) {
     vec2 at = 2.0 * u - 1.0;
     if (light.kind == LIGHT_DISK) {
         float phi = 6.283185307179586 * (u.y - 0.5);
         at = sqrt(u.x) * normalize(vec2(cos(phi), sin(phi)));
     }
-    return normalize(light.position + at.x * light.edge_u + at.y * light.edge_v - from);
+    return light.position + at.x * light.edge_u + at.y * light.edge_v;
+}
+vec3 flat_direction(LightRow light, vec3 from, vec2 u) {
+    return normalize(flat_point(light, u) - from);
 }
 
 // Per steradian, of a direction that meets it at a distance t.

@@ -11,12 +11,16 @@ LightSample sample_point(LightRow light, vec3 from) {
     return LightSample(direction, distance, square > 0.0 ? light.radiance / square : vec3(0.0), 0.0);
 }
 
+// `x`: 1 - cos of the angle to its axis.
+float spot_falloff(LightRow light, float x) {
+    float t = clamp((light.none_beyond - x) / max(light.none_beyond - light.full_within, 1.0e-12), 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
 LightSample sample_spot(LightRow light, vec3 from) {
     LightSample drawn = sample_point(light, from);
     vec3 apart = drawn.direction + light.direction;
-    float x = 0.5 * dot(apart, apart); // 1 - cos of the angle to its axis, with all digits where that is small
-    float t = clamp((light.none_beyond - x) / max(light.none_beyond - light.full_within, 1.0e-12), 0.0, 1.0);
-    drawn.light *= t * t * (3.0 - 2.0 * t);
+    drawn.light *= spot_falloff(light, 0.5 * dot(apart, apart)); // with all digits where the angle is small
     return drawn;
 }
 

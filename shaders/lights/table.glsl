@@ -78,6 +78,16 @@ LightSample look_for_light(Scatterer s, vec3 from, vec3 travel, inout Rng rng, o
     return over_density(sample_light(s, light, from, travel, words, rng), chance);
 }
 
+// Per steradian, with which such a light's direction is drawn.
+float pdf_from_beyond(LightRow light, vec3 direction) {
+    float pdf;
+    if (light.kind == LIGHT_MAP)
+        pdf = sky_pdf(sky_place(direction), direction);
+    else
+        pdf = disc_pdf(light);
+    return pdf;
+}
+
 // Radiance that a flight meets of one light when it leaves along `direction`, which the phase function drew with density
 // `phase_pdf`; 0 of a camera ray, which sees all there is.
 vec3 light_from_one(LightRow light, vec3 direction, float phase_pdf) {

@@ -5,6 +5,7 @@
 #include "lib/pass.glsl"
 
 #include "film/aovs.glsl"
+#include "film/splats.glsl"
 #include "sensors/camera.glsl"
 
 // Those of the pixel at a place that follow on what has been added.
@@ -19,7 +20,7 @@ void add_samples(uint place, uint index, SamplePlace at) {
         vec3 radiance = uintBitsToFloat(waiting_samples[first + at.added]);
         waiting_samples[first + at.added].x = NO_SAMPLE;
         uint before = sums.count;
-        film_add(sums, radiance, where, push.sample_begin + at.added, tally);
+        film_or_splats(sums, radiance, pixel, where, push.sample_begin + at.added, tally);
         if (HAS_LAYERS)
             if (sums.count != before)
                 add_layers(first + at.added, pixel);

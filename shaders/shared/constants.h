@@ -35,6 +35,9 @@
 #define BINDING_MAPS 29       // MapKnot, a table for each medium that has a map; see value_map.glsl
 #define BINDING_POINTS 30     // vec3 per point of a sensor that reads flux at points, render space
 #define BINDING_LAYERS 31     // vec3 per layer of each path, then four of each pixel: see aovs.glsl
+// A scene has these or those: particles fill no layers, and where they fly no transmittances are cached.
+#define BINDING_SPLATS BINDING_LAYERS    // words, six per sample of each pixel: see splats.glsl
+#define BINDING_EMITTERS BINDING_LATTICE // EmitterRow
 // Test kernels only. They use none of the two, and drivers may allow no more buffers than there are.
 #define BINDING_TEST_INPUT BINDING_POINTS
 #define BINDING_TEST_OUTPUT BINDING_LAYERS
@@ -97,7 +100,8 @@
 #define SPEC_UNBOUNDED 31    // 1: some medium is everywhere
 #define SPEC_LAYERS 32       // LAYERS_..., a sum
 #define SPEC_TABLE_TEXELS 33 // 1: lights, surfaces, their pieces and the hierarchy of those are read as texels
-#define SPEC_COUNT 34
+#define SPEC_PATHS 34        // PATHS_...
+#define SPEC_COUNT 35
 
 // Of several media that differ in it: each one's own, which is in its row.
 #define EACH -1
@@ -233,6 +237,16 @@
 // How the distances are found from which light is scattered that comes from near.
 #define DISTANCE_FLIGHTS 0 // by free flights alone
 #define DISTANCE_MIXED 1   // and by looks from along them; see equiangular.glsl
+
+// Where paths begin.
+#define PATHS_CAMERA 0
+#define PATHS_LIGHT 1 // particles, at lights: each of their vertices looks toward the sensor
+#define PATHS_BOTH 2  // one of each kind for a sample
+#define SPLAT_WORDS 6 // of a sample of a pixel
+
+// What particles come from: EmitterRow::source is one of these, or a light's row, or AT_SURFACE + a primitive's number.
+#define SOURCE_BACKGROUND 0x7fffffffu
+#define SOURCE_GLOW 0x7ffffffeu
 
 #define EMISSION_NONE 0
 #define EMISSION_CONSTANT 1

@@ -265,6 +265,24 @@ struct LightNode {
     uint right;
 };
 
+// What sends out particles: see emit.glsl.
+struct EmitterRow {
+    AliasEntry alias;
+    float chance; // with which it is chosen
+    uint source;  // SOURCE_..., or a light's row, or AT_SURFACE + a primitive's number
+};
+
+struct ParticleParams {
+    vec3 center;       // of a ball that holds all that is to be lit from afar, render space
+    float radius;      // 0: nothing comes from afar
+    uint emitters;     // rows to choose among
+    float power;       // of all of them together, roughly: a particle's throughput is in units of it
+    float glow_volume; // of the box about the media [world units^3],
+    vec3 glow_corner;  // and where that is
+    vec3 glow_edges[3];
+    float unit;        // in which splats count
+};
+
 // A map of the sky, see sky.glsl.
 struct SkyParams {
     uint width; // texels
@@ -300,10 +318,12 @@ struct FrameParams {
     float roulette_threshold;
     uint max_depth;
     AovParams layers;
+    ParticleParams particles;
     uint seed;
     uint crop_x; // the crop's first pixel within the picture
     uint crop_y;
     uint crop_width;
+    uint crop_height;
     uint slots;                       // fused: pixels in work; staged: paths
     uint queue_capacity;              // a power of two, at least 2 * slots; see queue.glsl
     uvec2 grid_windows[GRID_WINDOWS]; // device addresses, low and high word; see grid.glsl

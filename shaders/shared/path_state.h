@@ -56,6 +56,9 @@
     ROW(float, chance, looking && has_cache)   /* with which it was sent */                                           \
     ROW(uint, label, looking && has_layers)    /* of what it brings: see aovs.glsl */                                 \
     ROW(uint, first_label, has_layers)         /* part of it that is the same for all that comes later */             \
+    ROW(uint, is_particle, has_particles)      /* 1: it comes from a light, and looks toward the sensor */            \
+    ROW(uint, target, looking && has_particles) /* the film entry that what it lights is seen in */                   \
+    ROW(vec2, shares, weighs_families)         /* what its first segment has to say in its weights: see families.glsl */ \
     ROW(PartSearch, search, under_way && SHAPE == SHAPE_MESH)                                                         \
     ROW(SurfaceSearch, seek, seeking)                                                                                 \
     ROW(float, reach, under_way && HAS_SURFACES) /* of the flight, to the surface that ends it, or FAR [world units] */ \

@@ -2,13 +2,14 @@
 #ifndef STAGE_ACCUMULATE_GLSL
 #define STAGE_ACCUMULATE_GLSL
 #include "film/aovs.glsl"
+#include "film/splats.glsl"
 #include "lib/trace.glsl"
 #include "sensors/camera.glsl"
 
 void accumulate(inout FilmPixel sums, inout Lane lane, inout Tally tally) {
     trace(TRACE_END, lane, lane.path.position, lane.path.direction);
     uint before = sums.count;
-    film_add(sums, measured(lane.path.radiance), lane.path.place, lane.path.sample_index, tally);
+    film_or_splats(sums, measured(lane.path.radiance), paths[lane.record].pixel, lane.path.place, lane.path.sample_index, tally);
     if (HAS_LAYERS)
         if (sums.count != before)
             add_layers(lane.record, paths[lane.record].pixel);

@@ -7,6 +7,15 @@
 #include "lights/light_cache.glsl"
 #include "lights/table.glsl"
 #include "lib/trace.glsl"
+#include "stages/show.glsl"
+
+// Of a particle: what it scatters toward the sensor.
+void show_to_sensor(MediumParams v, Scatterer s, vec3 position, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
+    SensorLook look = toward_sensor(position, rng);
+    vec3 value = vec3(scatter_value(s, lane.path.direction, look.direction)) *
+                 adjoint(s, lane.path.direction, look.direction);
+    show(v, look, lit_position(s, position, look.direction), value, lit, next, lane);
+}
 
 // Likewise from one of many lights, which is drawn here.
 void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spectrum lit, uint label, uint next,
@@ -17,6 +26,8 @@ void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spec
     label |= group_label(row.group);
     vec3 light = drawn.light * scatter_value(s, lane.path.direction, drawn.direction) *
                  (drawn.pdf > 0.0 ? weight_of_look(drawn.pdf, pdf) : 1.0);
+    if (WEIGHS)
+        light *= weight_of_found(lane, shares_of_found(row, position, drawn.direction, drawn.distance, 0.0), true);
     if (LOOKS_ALONG)
         light *= weight_of_collision(v, row, position - t * lane.path.direction, lane.path.direction, t);
     if (LOOKS) {
@@ -52,7 +63,9 @@ void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spec
 void gather_light(MediumParams v, MediumParams met, vec3 position, float t, Spectrum lit, uint label, uint next, inout Lane lane,
                   inout Rng rng) {
     uint sun_label = label | group_label(frame.lights[LIGHT_SUN].group);
-    if (LIGHTS != LIGHTS_SUN) {
+    if (is_particle(lane)) {
+        show_to_sensor(v, matter_of(met), position, lit, next, lane, rng);
+    } else if (LIGHTS != LIGHTS_SUN) {
         gather_some_light(v, matter_of(met), position, t, lit, label, next, lane, rng);
     } else if (LOOKS) {
         lane.label = sun_label;
@@ -80,9 +93,11 @@ void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, i
     lane.path.medium = lane.walk.met;
     MediumParams met = medium_of(v, lane.walk.met);
     lane.first_label = label_at(lane, met);
-    if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_COLLISIONS)
+    if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_COLLISIONS && !is_particle(lane))
         add_light(lane, lane.beta * emitted_radiance(met, lane.path.position), glow_label(lane.path.depth) | lane.first_label);
     vec3 albedo = albedo_at(met, lane.path.position);
+    if (WEIGHS)
+        note_shares(lane.path.position, lane.walk.start + lane.walk.t, lane);
     if (HAS_LAYERS)
         if (lane.path.depth == 0u)
             note_collision(lane.record, vec3(lane.beta), lane.path.position, lane.path.direction, lane.walk.start + lane.walk.t,

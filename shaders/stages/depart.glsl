@@ -6,6 +6,7 @@
 #include "sensors/flux.glsl"
 #include "stages/look_along.glsl"
 #include "stages/look_straight.glsl"
+#include "stages/show.glsl"
 #include "surfaces/nearest.glsl"
 
 // Russian roulette on the throughput: unbiased, survivors are raised to the threshold.
@@ -66,20 +67,26 @@ void scatter_at_surface(uvec4 words, inout Lane lane, inout Rng rng) {
     lane.path.position = at.position + (crosses ? -at.apart : at.apart) * bsdf.face;
     lane.path.direction = drawn.direction;
     lane.phase_pdf = drawn.pdf;
+    if (WEIGHS && drawn.pdf == 0.0)
+        note_specular(lane);
     lane.beta *= drawn.weight;
+    if (is_particle(lane))
+        lane.beta *= bsdf_adjoint(bsdf, wo, drawn.direction);
     bool goes_on = goes_on_within(is_glass(bsdf.material) && dot(at.normal, wo) < 0.0 && !crosses, lane.path.depth, lane.beta, u.w);
     lane.todo = goes_on && survives(lane.beta, u.w) ? TODO_FLY : TODO_END;
 }
 
 // What mirrors and glass show of lamps is seen as the camera sees them.
 bool look_at_shown_lamps(inout Lane lane, inout Rng rng) {
-    bool is_shown = lane.todo == TODO_FLY && surface_at(lane.path) != NO_SURFACE && lane.phase_pdf == 0.0;
+    bool is_shown = !is_particle(lane) && lane.todo == TODO_FLY && surface_at(lane.path) != NO_SURFACE && lane.phase_pdf == 0.0;
     uint row;
     LightSample seen = seen_lamp(lane.path.position, lane.path.direction, to_uniform(next_words(rng)).w, row);
     bool sees = is_shown && seen.distance < FAR;
     uint label = kind_label(lane.path.depth) | group_label(light_at(row).group) | lane.first_label;
+    if (sees && WEIGHS)
+        seen.light *= weight_of_found(lane, shares_of_found(light_at(row), lane.path.position, seen.direction, seen.distance, 0.0), false);
     if (sees)
-        look_straight(seen, row, lane.beta, label, TODO_SET_OUT, lane);
+        look_straight(seen, light_at(row).body, lane.beta, label, TODO_SET_OUT, lane);
     return sees;
 }
 #endif
@@ -137,7 +144,7 @@ void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
             goes_to_look = look_at_shown_lamps(lane, rng);
 #endif
     if (LOOKS_ALONG) // in an `if` of its own, which the compiler leaves out with all it leads to
-        if (lane.todo == TODO_FLY && !has_looked)
+        if (lane.todo == TODO_FLY && !has_looked && !is_particle(lane))
             goes_to_look = look_along(v, lane, rng, tally);
     if (!goes_to_look)
         begin_going(v, words, looks, at_camera, lane, tally);

@@ -3,6 +3,7 @@
 #define STAGE_ESCAPE_GLSL
 #include "lights/table.glsl"
 #include "lib/trace.glsl"
+#include "stages/show.glsl"
 
 // Each light in its group's layer, and what of a sensor's ray has come through.
 void note_escape(Spectrum beta, uint label, Lane lane) {
@@ -16,7 +17,22 @@ void note_escape(Spectrum beta, uint label, Lane lane) {
         note_transmittance(lane.record, vec3(beta));
 }
 
+// Of all that a flight meets when it leaves.
+vec3 light_left_to_path(Lane lane) {
+    vec3 direction = lane.path.direction, radiance = vec3(0.0);
+    for (uint i = 0u; i < frame.sky_count; ++i) {
+        LightRow light = light_at(i);
+        vec2 shares = shares_of_found(light, lane.path.position, direction, FAR, pdf_from_beyond(light, direction));
+        radiance += weight_of_found(lane, shares, lane.phase_pdf > 0.0) * light_from_one(light, direction, lane.phase_pdf);
+    }
+    return radiance;
+}
+
 void escape(MediumParams v, inout Lane lane) {
+    if (is_particle(lane)) {
+        lane.todo = TODO_END;
+        return;
+    }
     Spectrum beta = lane.beta;
     if (!NULL_FLIGHT && !goes_through())
         beta *= depth_weight(v, beta, lane.walk.depth, false);
@@ -24,7 +40,9 @@ void escape(MediumParams v, inout Lane lane) {
     if (HAS_LAYERS)
         note_escape(beta, label, lane);
     lane.path.radiance += held_out(beta * frame.lights[LIGHT_BACKGROUND].radiance, label);
-    if (SEES_SKY)
+    if (SEES_SKY && WEIGHS)
+        lane.path.radiance += beta * light_left_to_path(lane);
+    else if (SEES_SKY)
         lane.path.radiance += held_out(beta * light_from_beyond(lane.path.direction, lane.phase_pdf), label);
     trace(TRACE_ESCAPE, lane, lane.path.position, lane.path.direction);
     lane.todo = TODO_END;

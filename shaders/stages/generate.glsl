@@ -9,7 +9,7 @@
 void look_first(MediumParams v, LightSample seen, uint row, inout Lane lane) {
     uint label = kind_label(0u) | group_label(light_at(row).group);
     if (LOOKS) {
-        look_straight(seen, row, to_spectrum(vec3(1.0)), label, TODO_DEPART, lane);
+        look_straight(seen, light_at(row).body, to_spectrum(vec3(1.0)), label, TODO_DEPART, lane);
     } else {
         add_light(lane, analytic_shadow(v, lane.path.position, seen.direction, seen.distance) * seen.light, label);
     }
@@ -34,6 +34,20 @@ void look_at_lights(MediumParams v, inout Lane lane, inout Rng rng) {
         look_first(v, seen, row, lane);
 }
 
+// Where particles are all there is, along the ray for what is beyond: nothing that they come from there would meet a camera.
+void look_beyond(MediumParams v, inout Lane lane, inout Rng rng) {
+    rng.draw = 1u; // behind the camera's
+    vec3 light = frame.lights[LIGHT_BACKGROUND].radiance;
+    if (SEES_SKY)
+        light += light_from_beyond(lane.path.direction, 0.0);
+    LightSample seen = LightSample(lane.path.direction, FAR, light, 0.0);
+    lane.todo = TODO_END;
+    if (largest(light) > 0.0 && LOOKS)
+        look_straight(seen, NO_SURFACE, to_spectrum(vec3(1.0)), 0u, TODO_END, lane);
+    else if (largest(light) > 0.0)
+        add_light(lane, analytic_shadow(v, lane.path.position, seen.direction, FAR) * light, 0u);
+}
+
 void generate(MediumParams v, inout Lane lane, out Rng rng) {
     CameraRay ray = camera_ray(lane.path.place, lane.path.sample_index);
     lane.path.position = ray.origin;
@@ -46,14 +60,17 @@ void generate(MediumParams v, inout Lane lane, out Rng rng) {
     lane.beta = to_spectrum(vec3(1.0));
     lane.todo = TODO_DEPART;
     lane.first_label = 0u;
+    lane.is_particle = 0u;
     if (HAS_LAYERS)
         begin_record(lane.record);
     rng = pixel_rng(lane.path.place, lane.path.sample_index, 0u);
-    if (SEES_LAMPS && !READS_FLUX)
+    if (SEES_LAMPS && !READS_FLUX && PATHS != PATHS_LIGHT)
         look_at_lamps(v, lane, rng);
     if (READS_FLUX) // in an `if` of its own, which kernels without such sensors are compiled without
         if (LOOKS_FROM_SENSOR)
             look_at_lights(v, lane, rng);
+    if (PATHS == PATHS_LIGHT)
+        look_beyond(v, lane, rng);
 }
 
 #endif

@@ -65,7 +65,7 @@ bool is_under_way(uint todo) {
 }
 
 // What the shadow ray lights, and from where. At collisions that is the path's own vertex, and need not be kept.
-const bool KEEPS_PLACE = NEE == NEE_TENTATIVE || LOOKS_ALONG || HAS_SURFACES;
+const bool KEEPS_PLACE = NEE == NEE_TENTATIVE || LOOKS_ALONG || HAS_SURFACES || HAS_PARTICLES;
 Spectrum lit_beta(Lane lane) {
     return KEEPS_PLACE ? lane.lit : lane.beta;
 }
@@ -137,6 +137,8 @@ uint label_at(Lane lane, MediumParams met) {
     bool chooses_light = LIGHTS != LIGHTS_SUN;                                                                        \
     bool has_cache = LOOKS && NEE == NEE_CACHED;                                                                      \
     bool has_layers = HAS_LAYERS;                                                                                     \
+    bool has_particles = HAS_PARTICLES;                                                                               \
+    bool weighs_families = PATHS == PATHS_BOTH;                                                                       \
     bool under_way = (amid && next == TODO_FLY) || seeing || (looking && flight_rests);
 
 // Of `pixel` see PathState. `amid`, a constant: it may be amid a segment; else that is not compiled.
@@ -147,7 +149,7 @@ void lay_aside(uint slot, uint pixel, Rng rng, Lane lane, const bool amid) {
     paths[slot] = lane.path;
     betas[slot] = lane.beta;
     STATE_CONDITIONS(lane.todo, amid)
-    if (!under_way && !looking && !seeking && !sets_out && !has_cache && !has_layers)
+    if (!under_way && !looking && !seeking && !sets_out && !has_cache && !has_layers && !has_particles)
         return;
 #define LAY_ASIDE(type, name, when)                                                                                   \
     if (when)                                                                                                         \
@@ -167,7 +169,7 @@ void take_up(uint slot, inout Lane lane, out Rng rng, const bool amid) {
     lane.todo = lane.path.todo;
     rng = pixel_rng(lane.path.place, lane.path.sample_index, lane.path.draw);
     STATE_CONDITIONS(lane.todo, amid)
-    if (!under_way && !looking && !seeking && !sets_out && !has_cache && !has_layers)
+    if (!under_way && !looking && !seeking && !sets_out && !has_cache && !has_layers && !has_particles)
         return;
 #define TAKE_UP(type, name, when)                                                                                     \
     if (when)                                                                                                         \

@@ -4,8 +4,8 @@
 #include "lights/sample.glsl"
 #include "stages/lane.glsl"
 
-// Its light, of this label and from that row, counts as often as `lit` says; then the path does as `next` says.
-void look_straight(LightSample seen, uint row, Spectrum lit, uint label, uint next, inout Lane lane) {
+// Its light, of this label and of a lamp that has that body, counts as often as `lit` says; then the path does as `next` says.
+void look_straight(LightSample seen, uint body, Spectrum lit, uint label, uint next, inout Lane lane) {
     lane.label = label;
     lane.position = lane.path.position;
     lane.lit = lit;
@@ -16,7 +16,7 @@ void look_straight(LightSample seen, uint row, Spectrum lit, uint label, uint ne
     lane.light = seen.light;
     if (HAS_SURFACES) {
         lane.lit_surface = surface_at(lane.path);
-        lane.lamp_body = light_at(row).body;
+        lane.lamp_body = body;
     }
     look_in_full(lane);
     lane.todo = TODO_LOOK;

@@ -3,6 +3,7 @@
 #define STAGE_SHADOW_GLSL
 #include "lights/light.glsl"
 #include "lib/trace.glsl"
+#include "stages/show.glsl"
 
 // At the end of the first leg of a look from along a flight, where the second begins.
 void turn_to_light(Spectrum T, inout Lane lane) {
@@ -16,7 +17,10 @@ void end_look(MediumParams v, Spectrum T, inout Lane lane) {
     vec3 light = LIGHTS == LIGHTS_SUN ? sun_contribution(medium_of(v, lit_medium(lane)), frame.lights[LIGHT_SUN],
                                                          lane.path.direction, lit_beta(lane) * more)
                                       : lit_beta(lane) * more * lane.light;
-    add_light(lane, light, lane.label);
+    if (is_particle(lane))
+        splat_of_particle(lane, lane.target, light);
+    else
+        add_light(lane, light, lane.label);
     lane.T = T;
     trace(TRACE_LIGHT, lane, looking_from(lane), looking_along(lane));
     lane.todo = after_looking(lane);

@@ -14,8 +14,9 @@ void arrive_at_surface(MediumParams v, inout Lane lane, inout Rng rng, inout Tal
         lane.beta *= depth_weight(v, lane.beta, lane.walk.depth, false);
     SurfacePoint at = surface_point(lane.struck, lane.path.position + lane.reach * lane.path.direction);
     SurfaceRow row = surface_row(at.row);
-    add_light(lane, lane.beta * surface_emission(row, at.normal, lane.path.direction),
-              kind_label(lane.path.depth) | lane.first_label);
+    if (!is_particle(lane))
+        add_light(lane, lane.beta * surface_emission(row, at.normal, lane.path.direction),
+                  kind_label(lane.path.depth) | lane.first_label);
     uvec4 key = takes_walks() ? next_words(rng) : uvec4(0u);
     Bsdf bsdf = bsdf_of(row, at, -lane.path.direction, key);
     if (HAS_LAYERS)
@@ -24,13 +25,17 @@ void arrive_at_surface(MediumParams v, inout Lane lane, inout Rng rng, inout Tal
             note_normal(lane.record, vec3(lane.beta), bsdf.normal);
         }
     lane.path.position = at.position + at.apart * bsdf.face;
+    if (WEIGHS)
+        note_shares(lane.path.position, lane.reach, lane);
     lane.path.medium = AT_SURFACE | lane.struck;
     bool capped = SCATTERING != SCATTERING_NONE && lane.path.depth >= frame.max_depth;
     tally.depth_caps += capped ? 1u : 0u;
     lane.path.depth += 1u;
     bool ended = capped || SCATTERING == SCATTERING_NONE || largest(lane.beta) == 0.0 || is_black(bsdf);
     lane.todo = ended || SCATTERING == SCATTERING_SINGLE ? TODO_END : TODO_DEPART;
-    if (NEE != NEE_NONE && !ended && is_rough(bsdf))
+    if (NEE != NEE_NONE && !ended && is_rough(bsdf) && is_particle(lane))
+        show_to_sensor(v, surface_of(v, bsdf, at.apart), lane.path.position, lane.beta, lane.todo, lane, rng);
+    else if (NEE != NEE_NONE && !ended && is_rough(bsdf))
         gather_some_light(v, surface_of(v, bsdf, at.apart), lane.path.position, 0.0, lane.beta,
                           kind_label(lane.path.depth) | lane.first_label, lane.todo, lane, rng);
     trace(TRACE_SURFACE, lane, lane.path.position, lane.path.direction);

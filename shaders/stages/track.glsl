@@ -4,6 +4,7 @@
 #include "estimators/ahead.glsl"
 #include "field/emission.glsl"
 #include "stages/lane.glsl"
+#include "stages/show.glsl"
 
 // Emission along what was just flown, by one sample: a track-length estimate.
 vec3 emission_along(MediumParams v, Spectrum beta, float from, Walk w, PathState path, out uint medium, inout Rng rng,
@@ -34,7 +35,7 @@ uint step_segment(MediumParams v, inout Lane lane, inout Rng rng, out Spectrum d
         Spectrum before = lane.beta;
         event = fly(v, c, event, lane.walk, rng, lane.beta, deposit, tally);
         bool matter = !NULL_FLIGHT || c.sigma_maj > 0.0; // else the cell is empty
-        if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS && !goes_through() && matter) {
+        if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS && !goes_through() && matter && !is_particle(lane)) {
             uint medium;
             vec3 light = emission_along(v, before, from, lane.walk, lane.path, medium, rng, tally);
             add_light(lane, light, glow_label(lane.path.depth) | label_at(lane, medium_of(v, medium)));

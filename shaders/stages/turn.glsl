@@ -3,6 +3,7 @@
 #define STAGE_TURN_GLSL
 #include "stages/collide.glsl"
 #include "stages/depart.glsl"
+#include "stages/emit.glsl"
 #include "stages/escape.glsl"
 #include "stages/seek.glsl"
 #include "stages/shadow.glsl"
@@ -40,6 +41,9 @@ void turn(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     if (is_under_way(lane.todo))
         event = track(v, lane, rng, deposit, tally);
     arrive(v, event, deposit, lane, rng, tally);
+    if (HAS_PARTICLES)
+        if (lane.todo == TODO_END && lane.is_particle == 0u)
+            emit(v, lane, rng);
 }
 
 #endif

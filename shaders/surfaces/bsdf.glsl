@@ -120,6 +120,17 @@ vec3 bsdf_guess(Bsdf b, vec3 wo, vec2 u) {
     return direction;
 }
 
+// By what the value differs where light comes from wo and goes to wi. Radiance goes with the square of the index, and particles do not; and
+// where the normal is not the face's, one cosine is the light's and the other the face's (Veach, "Robust Monte Carlo Methods for
+// Light Transport Simulation", 1997, equations 5.12 and 5.19).
+float bsdf_adjoint(Bsdf b, vec3 wo, vec3 wi) {
+    bool crosses = is_glass(b.material) && dot(b.face, wi) < 0.0;
+    float factor = crosses ? b.eta.x * b.eta.x : 1.0;
+    if (HAS_SMOOTH_FACES)
+        factor *= abs(dot(wo, b.normal) * dot(wi, b.face)) / max(abs(dot(wo, b.face) * dot(wi, b.normal)), 1.0e-6);
+    return factor;
+}
+
 // Mirrored, or refracted with chance 1 - F. Radiance goes with the square of the index, hence eta^2 where it crosses.
 BsdfSample sample_dielectric(Bsdf b, vec3 wo, float u) {
     float cosine = min(dot(b.normal, wo), 1.0);

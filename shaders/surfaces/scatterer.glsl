@@ -48,6 +48,11 @@ vec3 scatter_direction(Scatterer s, vec3 before, vec2 u) {
     return after;
 }
 
+// What scatter_value and weights take as a factor where light goes the other way, from `before` to `after`, as with particles.
+float adjoint(Scatterer s, vec3 before, vec3 after) {
+    return s.is_surface ? bsdf_adjoint(s.bsdf, -before, after) : 1.0;
+}
+
 // The most that scatter_pdf may be, roughly.
 float scatter_peak(Scatterer s) {
     vec3 along = vec3(0.0, 1.0, 0.0);
@@ -61,6 +66,7 @@ float scatter_peak(Scatterer s) {
 #define scatter_pdf phase_eval
 #define scatter_direction phase_sample
 #define lit_position(s, position, to_light) (position)
+#define adjoint(s, before, after) 1.0
 
 float scatter_peak(MediumParams v) {
     vec3 along = vec3(0.0, 1.0, 0.0);

@@ -106,8 +106,8 @@ inline constexpr Words grammar[] = {
      "deltaTracking|ratioTracking|cachedRatioTracking|ratioNEE|deltaTrackingNEE|residualRatioTracking|weightedTracking|"
      "decompositionTracking|spectralTracking|unbiasedRayMarching|regularTracking|rayMarching|adaptiveRayMarching|"
      "densitySampling|homogeneousRayMarcherNEE|homogeneousRayMarcherImproved|heterogeneousPerlinNoise|nanoVDBSimple|"
-     "nanoVDBEmission",
-     {"scattering", "flight", "transmittance", "nee", "emission", "mis", "distance"}},
+     "nanoVDBEmission|lightTracing|bidirectional",
+     {"scattering", "flight", "transmittance", "nee", "emission", "mis", "distance", "paths"}},
     {"march", "", {"step", "shadowStep", "opticalStep", "jitter", "unit"}},
     {"filter", "nearest|trilinear|stochastic", {}},
     {"russianRoulette", "", {"threshold"}},

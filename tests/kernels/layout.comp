@@ -55,6 +55,7 @@ void put(uvec4 v) {
 #define phase_node phase_nodes[1]
 #define map_knot map_knots[1]
 #define light_node light_nodes[1]
+#define emitter_row emitters[1]
 #define bvh_node bvh[1]
 #define surface_row surfaces[1]
 #define piece primitives[1]

@@ -107,7 +107,7 @@ TEST_CASE("every integrator renders some medium", "[cpu][method]") {
         CHECK(method.biased.empty() == std::string(integrator.biased).empty());
         CHECK(method.biased.empty() == (method.biases == bias_none));
     }
-    CHECK(names.size() == 19);
+    CHECK(names.size() == 21);
 }
 
 TEST_CASE("the best unbiased choice is taken where none is named", "[cpu][method]") {

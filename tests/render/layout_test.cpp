@@ -20,6 +20,7 @@ struct Structs {
     shared::MapKnot map_knot;
     shared::LightRow light_row;
     shared::LightNode light_node;
+    shared::EmitterRow emitter_row;
     shared::SurfaceRow surface_row;
     shared::SurfacePrimitive piece;
     shared::BvhNode bvh_node;
@@ -48,8 +49,8 @@ std::vector<std::uint32_t> list_words(const Structs& all) {
         words.resize(first + sizeof field / 4);
         std::memcpy(&words[first], &field, sizeof field);
     };
-    const auto& [path, laid_aside, waiting, control_cell, phase_node, map_knot, light_row, light_node, surface_row,
-                 piece, bvh_node, header, entry, counters, frame, push] = all;
+    const auto& [path, laid_aside, waiting, control_cell, phase_node, map_knot, light_row, light_node, emitter_row,
+                 surface_row, piece, bvh_node, header, entry, counters, frame, push] = all;
 #define PUT(field) put(field);
 #define PUT_EACH(field, count)                                                                                         \
     for (int k = 0; k < count; ++k)                                                                                    \
@@ -85,6 +86,7 @@ TEST_CASE("shared structs have one layout on host and device", "[gpu][layout]") 
     const Buffer map_knots = second_of_two(commands, all.map_knot, storage);
     const Buffer lights = second_of_two(commands, all.light_row, storage);
     const Buffer light_nodes = second_of_two(commands, all.light_node, storage);
+    const Buffer emitters = second_of_two(commands, all.emitter_row, storage);
     const Buffer surfaces = second_of_two(commands, all.surface_row, storage);
     const Buffer primitives = second_of_two(commands, all.piece, storage);
     const Buffer nodes = second_of_two(commands, all.bvh_node, storage);
@@ -106,6 +108,7 @@ TEST_CASE("shared structs have one layout on host and device", "[gpu][layout]") 
     bound[BINDING_MAPS] = &map_knots;
     bound[BINDING_LIGHTS] = &lights;
     bound[BINDING_LIGHT_TREE] = &light_nodes;
+    bound[BINDING_EMITTERS] = &emitters;
     bound[BINDING_SURFACES] = &surfaces;
     bound[BINDING_PRIMITIVES] = &primitives;
     bound[BINDING_BVH] = &nodes;

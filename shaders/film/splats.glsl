@@ -1,0 +1,62 @@
+// Light that particles bring to whatever pixel sees them. Splats are summed as whole numbers of 64 bits, in two words, so that it does
+// not matter for the bits who comes first; what a number cannot hold is rounded at random, so that on average nothing is lost. There is
+// a picture of splats for each sample of a batch, and when the batch is over they are the pixels' samples: see collect.comp.
+#ifndef SPLATS_GLSL
+#define SPLATS_GLSL
+#include "film/film.glsl"
+#include "lib/rng.glsl"
+
+const float WORD = 4294967296.0;
+const float MOST_SPLAT = 1.0e18; // thousands of which are below 2^63
+
+// SPLAT_WORDS: red's low and high one, and so on.
+uint splat_place(uint pixel, uint sample_index) {
+    return uint(SPLAT_WORDS) * ((sample_index - push.sample_begin) * (frame.crop_width * frame.crop_height) + pixel);
+}
+
+void add_whole(uint at, float x) {
+    float size = abs(x);
+    uint high = uint(size / WORD);
+    uint low = uint(size - WORD * float(high));
+    if (x < 0.0) { // of two's complement
+        low = ~low + 1u;
+        high = ~high + (low == 0u ? 1u : 0u);
+    }
+    uint before = atomicAdd(splats[at], low);
+    high += before + low < before ? 1u : 0u;
+    if (high != 0u)
+        atomicAdd(splats[at + 1u], high);
+}
+
+// What is not finite is dropped, and counted.
+void splat(uint pixel, uint place, uint sample_index, vec3 light) {
+    vec3 x = light / frame.particles.unit;
+    if (any(isnan(x)) || any(greaterThan(abs(x), vec3(MOST_SPLAT)))) {
+        count_dropped(1u, place, sample_index);
+        return;
+    }
+    vec3 u = to_uniform(pcg4d(uvec4(floatBitsToUint(x), place ^ sample_index))).xyz;
+    x = mix(x, floor(x + u), lessThan(abs(x), vec3(8388608.0)));
+    uint at = splat_place(pixel, sample_index);
+    add_whole(at, x.x);
+    add_whole(at + 2u, x.y);
+    add_whole(at + 4u, x.z);
+}
+
+vec3 splatted(uint at) {
+    vec3 low = vec3(splats[at], splats[at + 2u], splats[at + 4u]);
+    vec3 high = vec3(int(splats[at + 1u]), int(splats[at + 3u]), int(splats[at + 5u]));
+    return frame.particles.unit * (WORD * high + low);
+}
+
+// A path is over.
+void film_or_splats(inout FilmPixel sums, vec3 radiance, uint pixel, uint place, uint sample_index, inout Tally tally) {
+    if (HAS_PARTICLES) {
+        splat(pixel, place, sample_index, radiance);
+        tally.paths += 1u;
+    } else {
+        film_add(sums, radiance, place, sample_index, tally);
+    }
+}
+
+#endif

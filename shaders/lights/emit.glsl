@@ -1,0 +1,147 @@
+// Where particles come from: a source is chosen by its power, then a place and a direction as it shines. So their light is nearly the
+// same for all of one source, and of all sources where the host knows their power.
+#ifndef EMIT_GLSL
+#define EMIT_GLSL
+#include "field/emission.glsl"
+#include "field/superposition.glsl"
+#include "lights/families.glsl"
+#include "lights/lamp.glsl"
+#include "lights/table.glsl"
+#include "surfaces/surface_point.glsl"
+
+// How light leaves its source, about where a particle begins.
+const uint SHINES_UNSEEN = 0u; // from a point, or from infinitely far: no particle is seen before it is scattered
+const uint SHINES_FLAT = 1u;   // evenly from a surface
+const uint SHINES_ALIKE = 2u;  // into all directions
+
+struct Particle {
+    vec3 position; // render space
+    vec3 direction;
+    vec3 light; // over the density of all that was drawn
+    vec3 normal;
+    uint shines; // SHINES_...
+    uint medium; // as in PathState
+    vec2 shares; // see families.glsl
+};
+
+Particle particle(vec3 position, vec3 direction, vec3 light, uint shines) {
+    return Particle(position, direction, light, vec3(0.0), shines, 0u, vec2(0.0));
+}
+
+// Per steradian, of the light of a particle.
+float shine_toward(Particle p, vec3 direction) {
+    return p.shines == SHINES_ALIKE ? INV_4PI : p.shines == SHINES_FLAT ? max(dot(p.normal, direction), 0.0) / PI : 0.0;
+}
+
+// Across the ball that is lit from afar. `light`: irradiance.
+Particle from_afar(vec3 toward, vec3 light, vec2 u) {
+    ParticleParams all = frame.particles;
+    vec3 tangent, bitangent;
+    build_frame(toward, tangent, bitangent);
+    float turn = 2.0 * PI * (u.y - 0.5);
+    vec2 at = all.radius * sqrt(u.x) * normalize(vec2(cos(turn), sin(turn)));
+    return particle(all.center + all.radius * toward + at.x * tangent + at.y * bitangent, -toward,
+                    PI * all.radius * all.radius * light, SHINES_UNSEEN);
+}
+
+// Off the surface that it may be: see SurfacePoint.
+Particle from_surface(vec3 position, vec3 normal, vec3 light, vec2 u) {
+    vec3 reach = abs(position);
+    float apart = HAS_SURFACES ? 3.8147e-6 * max(reach.x, max(reach.y, reach.z)) : 0.0;
+    Particle p = particle(position + apart * normal, by_cosine(normal, u), light, SHINES_FLAT);
+    p.normal = normal;
+    return p;
+}
+
+Particle from_spot(LightRow light, vec2 u) {
+    float x = light.none_beyond * u.x;
+    vec3 direction = turned(light.direction, x, u.y);
+    return particle(light.position, direction,
+                    2.0 * PI * light.none_beyond * spot_falloff(light, x) * light.radiance, SHINES_UNSEEN);
+}
+
+Particle from_light(LightRow light, vec2 where, vec2 u, inout Rng rng) {
+    const vec3 pole = vec3(0.0, 1.0, 0.0);
+    float pdf = 0.0;
+    Particle p;
+    if (SEES_LAMPS && light.kind == LIGHT_SPHERE) {
+        vec3 normal = turned(pole, 2.0 * where.x, where.y);
+        p = from_surface(light.position + light.extent * normal, normal, 4.0 * PI * light.area * light.radiance, u);
+    } else if (SEES_LAMPS && light.kind > LIGHT_SPHERE) {
+        p = from_surface(flat_point(light, where), light.direction, PI * light.area * light.radiance, u);
+    } else if (light.kind == LIGHT_POINT) {
+        p = particle(light.position, turned(pole, 2.0 * u.x, u.y), 4.0 * PI * light.radiance, SHINES_UNSEEN);
+    } else if (light.kind == LIGHT_SPOT) {
+        p = from_spot(light, u);
+    } else {
+        LightSample drawn = sample_shapeless(light, vec3(0.0), u, rng);
+        p = from_afar(drawn.direction, drawn.light / (drawn.pdf > 0.0 ? drawn.pdf : 1.0), where);
+        pdf = drawn.pdf;
+    }
+    if (WEIGHS)
+        p.shares = light_shares(light, max(dot(p.normal, p.direction), 0.0), pdf);
+    return p;
+}
+
+// Anywhere in the box about all media. What there is of light depends on where that is.
+Particle from_glow(MediumParams v, vec2 where, vec2 u, uvec4 words, inout Rng rng) {
+    ParticleParams all = frame.particles;
+    vec3 position = all.glow_corner + where.x * all.glow_edges[0] + where.y * all.glow_edges[1] +
+                    to_uniform(words).z * all.glow_edges[2];
+    vec3 at = to_medium(v, position, vec3(0.0)).origin;
+    uvec4 more = next_words(rng);
+    Matter met = matter_at(v, at, to_tap(more), to_choice(more));
+    bool inside = SHAPE != SHAPE_SPHERE || dot(at, at) < 1.0;
+    vec3 light = inside ? vec3((v.sigma_t * met.density) * (met.ratio * met.share)) * emitted_radiance(medium_of(v, met.medium), position)
+                        : vec3(0.0);
+    return particle(position, turned(vec3(0.0, 1.0, 0.0), 2.0 * u.x, u.y), 4.0 * PI * all.glow_volume * light, SHINES_ALIKE);
+}
+
+#ifdef SURFACES
+Particle from_primitive(uint i, vec2 where, vec2 u, float side) {
+    SurfacePrimitive piece = primitive_at(i);
+    SurfaceRow row = surface_row(piece.surface);
+    float root = sqrt(where.x);
+    vec3 near = mix(piece.a, mix(piece.b, piece.c, where.y), root);
+    float area = 0.5 * length(cross(piece.b - piece.a, piece.c - piece.a));
+    if (piece.shape == SURFACE_SPHERE) {
+        near = piece.a + piece.c.x * turned(vec3(0.0, 1.0, 0.0), 2.0 * where.x, where.y);
+        area = 4.0 * PI * piece.c.x * piece.c.x;
+    } else if (piece.shape == SURFACE_DISK) {
+        vec3 tangent, bitangent;
+        build_frame(piece.b, tangent, bitangent);
+        float turn = 2.0 * PI * (where.y - 0.5);
+        vec2 at = piece.c.x * root * normalize(vec2(cos(turn), sin(turn)));
+        near = piece.a + at.x * tangent + at.y * bitangent;
+        area = PI * piece.c.x * piece.c.x;
+    }
+    SurfacePoint at = surface_point(i, near);
+    vec3 normal = row.sides == 2u && side < 0.5 ? -at.normal : at.normal;
+    Particle p = particle(at.position + at.apart * normal, by_cosine(normal, u), PI * float(row.sides) * area * row.emission, SHINES_FLAT);
+    p.normal = normal;
+    p.medium = AT_SURFACE | i;
+    return p;
+}
+#endif
+
+Particle emit_particle(MediumParams v, inout Rng rng) {
+    uvec4 words = next_words(rng), more = next_words(rng);
+    uint i = below(frame.particles.emitters, words.x);
+    EmitterRow source = emitters[choose(emitters[i].alias, i, words.y)];
+    vec2 where = to_uniform(words).zw, u = to_uniform(more).xy;
+    Particle p;
+    if (EMISSION != EMISSION_NONE && source.source == SOURCE_GLOW)
+        p = from_glow(v, where, u, more, rng);
+    else if (source.source == SOURCE_BACKGROUND)
+        p = from_afar(turned(vec3(0.0, 1.0, 0.0), 2.0 * u.x, u.y), 4.0 * PI * frame.lights[LIGHT_BACKGROUND].radiance, where);
+#ifdef SURFACES
+    else if ((source.source & AT_SURFACE) != 0u)
+        p = from_primitive(source.source & ~AT_SURFACE, where, u, to_uniform(more).z);
+#endif
+    else
+        p = from_light(light_at(source.source), where, u, rng);
+    p.light /= source.chance * frame.particles.power;
+    return p;
+}
+
+#endif

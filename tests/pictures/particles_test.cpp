@@ -1,0 +1,328 @@
+// Particles from the lights against paths from the camera: the same pictures by estimators that share neither draws nor
+// directions, and by both at once.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "method.h"
+#include "scene_hash.h"
+#include "shared/constants.h"
+#include "support/images.h"
+#include "support/scene_text.h"
+#include "support/scenes.h"
+#include "support/test_device.h"
+#include "support/thorough.h"
+
+using namespace vkvol;
+using Catch::Contains;
+
+namespace {
+
+Scene by(Scene scene, const char* integrator) {
+    scene.settings.integrator = integrator;
+    return scene;
+}
+
+// Small, so that each pixel has its share of particles in every sample.
+Scene seen(const Volume& volume, double width, std::vector<Light> lights) {
+    Scene scene = scene_of(volume, width, 8, 12.0, glm::dvec3(0.0), {10.0, 25.0, -5.0});
+    scene.lights = std::move(lights);
+    scene.background = {0.1, 0.15, 0.2};
+    scene.settings.spp = 4096;
+    return scene;
+}
+
+Volume smoke() {
+    Volume volume = medium(Sphere{{0.1, -0.1, 0.0}, 1.5}, 3.0, 0.9, 0.4);
+    volume.noise = Noise{0.9, 3, 0.5, 2.0};
+    return volume;
+}
+
+Volume colourful(Volume volume) {
+    const Rgb sigma_t = {1.0, 2.0, 3.0};
+    volume.sigma_s = Rgb{0.9, 0.8, 0.95} * sigma_t;
+    volume.sigma_a = sigma_t - volume.sigma_s;
+    return volume;
+}
+
+Surface with_material(SurfaceShape shape, MaterialKind kind, double roughness = 0.0) {
+    Surface surface;
+    surface.shape = std::move(shape);
+    surface.material.kind = kind;
+    surface.material.color = {0.8, 0.7, 0.6};
+    surface.material.roughness = roughness;
+    if (kind == MaterialKind::conductor) {
+        surface.material.eta = {0.143, 0.375, 1.442};
+        surface.material.k = {3.983, 2.386, 1.603};
+    }
+    return surface;
+}
+
+const RectangleSurface floor_piece{{0.0, -1.3, 0.0}, {2.5, 0.0, 0.0}, {0.0, 0.0, -2.5}};
+const BallSurface left{{-0.9, -0.6, 0.9}, 0.6}, right{{0.9, -0.6, 0.9}, 0.6};
+
+// A tetrahedron whose corners have the normals of the ball about it.
+TriangleSurface smooth_stone() {
+    TriangleSurface mesh;
+    mesh.vertices = {{0.5, 0.5, 0.5}, {-0.5, -0.5, 0.5}, {-0.5, 0.5, -0.5}, {0.5, -0.5, -0.5}};
+    mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    for (const glm::uvec3& t : mesh.triangles)
+        mesh.normals.push_back(glm::mat3(glm::normalize(mesh.vertices[t.x]), glm::normalize(mesh.vertices[t.y]),
+                                         glm::normalize(mesh.vertices[t.z])));
+    for (glm::dvec3& vertex : mesh.vertices)
+        vertex += glm::dvec3(0.0, -0.4, 0.9);
+    return mesh;
+}
+
+// On a floor, before a ball of smoke.
+Scene still(std::vector<Surface> surfaces, std::vector<Light> lights) {
+    Scene scene = seen(smoke(), 5.0, std::move(lights));
+    scene.surfaces = std::move(surfaces);
+    scene.surfaces.push_back(with_material(floor_piece, MaterialKind::diffuse));
+    return scene;
+}
+
+struct Case {
+    const char* name;
+    Scene scene;
+};
+
+// Every kind of light, medium, surface and camera that particles know, and nothing that only paths from the camera
+// find.
+std::vector<Case> cases() {
+    const PointLight point{{1.2, 1.9, 1.5}, {12.0, 9.0, 6.0}};
+    const SpotLight spot{{-1.5, 2.5, 1.0}, glm::normalize(glm::dvec3(1.5, -2.5, -1.0)), {30.0, 35.0, 40.0}, 50.0, 0.5};
+    const SphereLight ball{{1.6, 1.6, 1.2}, 0.4, {9.0, 7.0, 5.0}};
+    const DiskLight disk{{-1.8, 1.5, 1.0}, glm::normalize(glm::dvec3(1.8, -1.5, -1.0)), 0.5, {5.0, 6.0, 7.0}};
+    const RectangleLight rectangle{{0.0, 2.4, 0.3}, {0.0, 0.0, 0.5}, {0.6, 0.0, 0.0}, {6.0, 4.0, 8.0}};
+    const SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {2.0, 1.5, 1.0}, 20.0, 0.6};
+    const DirectionalLight beam{glm::normalize(glm::dvec3(-2.0, 1.0, -0.5)), {0.5, 1.0, 2.0}};
+    RadianceMap map{8, 4, {}, 0};
+    for (int i = 0; i < 32; ++i)
+        map.texels.emplace_back(0.1 + 0.3 * (i % 5), 0.4, i == 11 ? 9.0 : 0.2);
+
+    std::vector<Case> all;
+    all.push_back({"a ball of fog, point and spot",
+                   seen(medium(Sphere{{0.0, 0.0, 0.0}, 1.5}, 1.5, 0.95, -0.4), 4.0, {point, spot})});
+    all.push_back({"smoke, far lights", seen(smoke(), 4.0, {sun, beam, write_sky(map)})});
+    all.push_back({"smoke, lamps", seen(smoke(), 5.5, {ball, disk, rectangle})});
+    // Without holes: a pixel that a particle in a thousand comes to is far from the normal limit.
+    GridRecipe recipe = cloud_grid();
+    recipe.value = [](glm::ivec3 voxel) { return 0.3f + 0.7f * cloud_noise(voxel); };
+    const Volume cloud = colourful(medium(write_grid(recipe), 1.0, 0.9, 0.6));
+    all.push_back({"a chromatic cloud", seen(cloud, 6.0, {beam})});
+    Volume ember = smoke();
+    ember.Le = {1.0, 0.5, 0.2};
+    all.push_back({"what glows", seen(ember, 4.0, {})});
+    Scene several = seen(smoke(), 5.0, {point});
+    several.volumes.push_back(medium(Box{{-0.9, -0.5, -0.5}, {1.4, 0.6, 0.7}}, 2.0, 0.9));
+    several.volumes.back().sigma_s = {1.9, 1.5, 1.8}; // of an extinction that is grey, as the reference wants it
+    several.volumes.back().sigma_a = Rgb(2.0) - several.volumes.back().sigma_s;
+    several.volumes.back().Le = {0.3, 0.2, 0.6};
+    all.push_back({"several media, one of which glows", several});
+    all.push_back({"rough surfaces", still({with_material(left, MaterialKind::dielectric, 0.3),
+                                            with_material(right, MaterialKind::conductor, 0.4)},
+                                           {ball, point})});
+    all.push_back({"faces that stand for something round",
+                   still({with_material(smooth_stone(), MaterialKind::diffuse)}, {rectangle})});
+    Surface shining = with_material(smooth_stone(), MaterialKind::diffuse);
+    std::get<TriangleSurface>(shining.shape).normals.clear();
+    shining.emission = {2.0, 3.0, 1.0};
+    Surface hollow = with_material(BallSurface{{-1.2, 0.8, 0.8}, 0.4}, MaterialKind::diffuse);
+    hollow.emission = {1.0, 0.8, 2.0};
+    hollow.shines_both_ways = true;
+    all.push_back({"surfaces that shine", still({shining, hollow}, {})});
+    Scene bare = still({with_material(left, MaterialKind::diffuse)}, {point});
+    bare.volumes.clear();
+    all.push_back({"no medium", bare});
+    return all;
+}
+
+void check_all(const Case& c) {
+    INFO(c.name);
+    const Film reference = render_reference(c.scene, 2);
+    CHECK_AGREEMENT(
+        agree(render_here(by(c.scene, "lightTracing"), 1).film, reference, std::string(c.name) + ", particles"));
+    const RenderResult both = render_here(by(c.scene, "bidirectional"), 3);
+    CHECK_AGREEMENT(agree(both.film, reference, std::string(c.name) + ", both"));
+    CHECK(both.counts.non_finite == 0);
+}
+
+} // namespace
+
+TEST_CASE("particles, paths and both show the same", "[gpu][particles][thorough]") {
+    for (const Case& c : in_turn(cases(), 0))
+        check_all(c);
+}
+
+// Glass throws light where looks do not find it: particles find it, and a path from the camera only what the camera
+// sees by way of glass.
+TEST_CASE("particles and paths share what mirrors and glass show and throw", "[gpu][particles]") {
+    const SphereLight ball{{0.8, 1.9, 1.6}, 0.3, {20.0, 16.0, 12.0}};
+    const SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {1.0, 0.8, 0.6}, 10.0};
+    Scene scene =
+        still({with_material(left, MaterialKind::dielectric), with_material(right, MaterialKind::mirror)}, {ball, sun});
+    scene.surfaces.back().material.kind = MaterialKind::coated;
+    scene.settings.spp = 4096;
+    const Film reference = render_reference(scene, 2);
+    CHECK_AGREEMENT(agree(render_here(by(scene, "bidirectional"), 1).film, reference, "glass, both"));
+    const Method particles = choose_method(with_preset(by(scene, "lightTracing")));
+    CHECK_THAT(particles.biased, Contains("glass"));
+    CHECK(choose_method(with_preset(by(scene, "bidirectional"))).biased.empty());
+    CHECK(scene_hash(by(scene, "bidirectional")) == scene_hash(by(scene, "ratioTracking")));
+    CHECK(scene_hash(by(scene, "lightTracing")) != scene_hash(by(scene, "ratioTracking")));
+    CHECK_THAT(choose_method(with_preset(scene)).by_chance, Contains("glass"));
+    // Of lights without extent no path from the camera finds that.
+    scene.lights.push_back(PointLight{{1.2, 1.9, 1.5}, {12.0, 9.0, 6.0}});
+    CHECK_THAT(choose_method(with_preset(scene)).biased, Contains("bidirectional"));
+    CHECK(choose_method(with_preset(by(scene, "bidirectional"))).biased.empty());
+    CHECK(scene_hash(by(scene, "bidirectional")) != scene_hash(by(scene, "ratioTracking")));
+}
+
+TEST_CASE("particles are seen by every camera through every filter", "[gpu][particles][thorough]") {
+    const PointLight point{{1.2, 1.9, 1.5}, {12.0, 9.0, 6.0}};
+    const Scene usual = still({with_material(left, MaterialKind::diffuse)}, {point});
+    std::vector<Case> all;
+    Scene scene = usual;
+    scene.camera.lens.radius = 0.6;
+    scene.camera.lens.focus = 11.0;
+    scene.camera.lens.blades = 5;
+    all.push_back({"lens", scene});
+    scene = usual;
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.view_height = 4.0;
+    all.push_back({"orthographic", scene});
+    scene = usual;
+    scene.camera.projection = Projection::equirectangular;
+    scene.camera.position = {0.4, 0.3, 2.4};
+    all.push_back({"panorama", scene});
+    // From so far away that rays begin before the eye.
+    scene = usual;
+    scene.camera.position *= 200.0;
+    scene.camera.fov /= 200.0;
+    all.push_back({"far eye", scene});
+    scene = usual;
+    scene.settings.pixel_filter = PixelFilter::box;
+    scene.settings.pixel_filter_radius = 0.8;
+    all.push_back({"wide box", scene});
+    scene.settings.pixel_filter = PixelFilter::blackman_harris;
+    scene.settings.pixel_filter_radius = 1.7;
+    all.push_back({"Blackman-Harris", scene});
+    for (const Case& c : in_turn(all, 2)) {
+        INFO(c.name);
+        CHECK_AGREEMENT(agree(render_here(by(c.scene, "lightTracing"), 5).film, render_reference(c.scene, 6), c.name));
+    }
+}
+
+// By closed form: whatever loses no light vanishes in an even sky.
+TEST_CASE("particles from an even sky leave it even", "[gpu][particles]") {
+    Scene scene = seen(medium(Sphere{{0.0, 0.0, 0.0}, 1.5}, 2.0, 1.0, 0.5), 2.5, {});
+    scene.background = {1.0, 2.0, 0.5};
+    scene.surfaces = {with_material(BallSurface{{0.0, 0.0, 0.0}, 0.7}, MaterialKind::conductor, 0.5)};
+    scene.surfaces.front().material.color = Rgb(1.0);
+    scene.surfaces.front().material.eta = Rgb(0.0);
+    scene.surfaces.front().material.k = Rgb(1.0);
+    scene.settings.spp = 4096;
+    scene = by(scene, "lightTracing");
+    const Film film = render_here(scene, 1).film;
+    CHECK_AGREEMENT(agree_with_means(film, std::vector<Rgb>(film.mean.size(), scene.background), "even sky"));
+}
+
+TEST_CASE("negative estimates are splats too", "[gpu][particles]") {
+    Scene scene = seen(smoke(), 4.0, {PointLight{{1.2, 1.9, 1.5}, {12.0, 9.0, 6.0}}});
+    scene.settings.march.shadow_step = 0.7;
+    const Film reference = render_reference(scene, 2);
+    scene = by(scene, "lightTracing");
+    scene.settings.choices.transmittance = TRANSMITTANCE_TELESCOPING;
+    CHECK_AGREEMENT(agree(render_here(scene, 1).film, reference, "telescoping"));
+}
+
+TEST_CASE("particles give the same bits however they are worked on", "[gpu][particles]") {
+    Scene scene = seen(smoke(), 5.5, {SphereLight{{1.6, 1.6, 1.2}, 0.4, {9.0, 7.0, 5.0}}});
+    scene.settings.spp = 40;
+    const char* const integrator = GENERATE("lightTracing", "bidirectional");
+    scene = by(scene, integrator);
+    const Film whole = render_here(scene, 1).film;
+    SECTION("with few at a time, in batches of a few samples") {
+        RenderJob job;
+        job.plan.schedule = GENERATE(Schedule::fused, Schedule::staged);
+        job.plan.slots = 64;
+        job.plan.lanes = 64;
+        job.plan.budget = 17;
+        job.plan.most_batch = 7;
+        CHECK(same_bits(render_here(scene, 1, job).film, whole));
+    }
+    SECTION("resumed, when a batch has been cut short") {
+        RenderJob job;
+        job.crop = {0, 8, 0, 8};
+        job.seed = 1;
+        job.plan.most_batch = 7;
+        job.plan.submit_seconds = 1e-4;
+        int asked = 0;
+        std::optional<Checkpoint> last;
+        job.interrupted = [&] { return ++asked > 12; };
+        job.checkpoint_seconds = 1e9;
+        job.checkpoint = [&](const Checkpoint& checkpoint) { last = checkpoint; };
+        const RenderResult begun = render(test_device(), scene, job);
+        REQUIRE(begun.interrupted);
+        REQUIRE(last);
+        CHECK(begun.samples < 40);
+        for (const std::uint32_t count : begun.film.samples)
+            CHECK(count == begun.samples); // all or nothing of a batch
+        RenderJob rest;
+        rest.crop = job.crop;
+        rest.seed = 1;
+        rest.resume = &*last;
+        CHECK(same_bits(render(test_device(), scene, rest).film, whole));
+    }
+}
+
+TEST_CASE("what particles cannot do is refused, with what can", "[particles]") {
+    Scene scene = seen(smoke(), 4.0, {PointLight{{1.2, 1.9, 1.5}, {12.0, 9.0, 6.0}}});
+    const auto refusal = [](const Scene& scene) -> std::string {
+        try {
+            choose_method(with_preset(scene));
+        } catch (const std::exception& error) {
+            return error.what();
+        }
+        return "";
+    };
+    Scene particles = by(scene, "lightTracing"), both = by(scene, "bidirectional");
+    CHECK(refusal(particles).empty());
+    CHECK(refusal(both).empty());
+    SECTION("sensors of flux") {
+        particles.camera.projection = both.camera.projection = Projection::irradiance;
+        CHECK_THAT(refusal(particles), Contains("flux") && Contains("ratioTracking"));
+        CHECK_THAT(refusal(both), Contains("flux"));
+    }
+    SECTION("layers") {
+        particles.layers = both.layers = 1;
+        CHECK_THAT(refusal(particles), Contains("layers"));
+        CHECK_THAT(refusal(both), Contains("layers"));
+    }
+    SECTION("what has no end") {
+        Surface ground = with_material(PlaneSurface{{0.0, -2.0, 0.0}, {0.0, 1.0, 0.0}}, MaterialKind::diffuse);
+        particles.surfaces = both.surfaces = {ground};
+        CHECK_THAT(refusal(particles), Contains("no end"));
+        CHECK(refusal(both).empty()); // its paths find that
+        particles.background = Rgb(0.0);
+        CHECK(refusal(particles).empty());
+        particles.surfaces.front().emission = Rgb(1.0);
+        CHECK_THAT(refusal(particles), Contains("plane"));
+    }
+    SECTION("no lights to begin at") {
+        both.lights.clear();
+        const Method method = choose_method(with_preset(both));
+        CHECK(method.paths == PATHS_CAMERA);
+        REQUIRE(method.warnings.size() == 1);
+        CHECK_THAT(method.warnings.front(), Contains("without lights"));
+    }
+    SECTION("other scattering, and looks from elsewhere") {
+        particles.settings.choices.scattering = SCATTERING_SINGLE;
+        particles.settings.choices.nee = NEE_TENTATIVE;
+        const Method method = choose_method(with_preset(particles));
+        CHECK(method.scattering == SCATTERING_MULTIPLE);
+        CHECK(method.nee == NEE_COLLISIONS);
+        CHECK(method.warnings.size() == 2);
+    }
+}
