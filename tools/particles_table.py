@@ -3,10 +3,12 @@
 
     tools/particles_table.py [--build build] [--spp 64] [--runs 3] [--reference 1024] > tools/results/particles.txt
 
+All render for as long: at equal samples paths from the camera would miss what they seldom find, and be off by no more than that.
 Errors are relMSE, of a picture's mean squared where that is dark, against a render of many samples by both together, less that
-render's own. The scenes are those of scenes/gallery, 80 pixels wide. Needs NumPy.
+render's own. The scenes are those of scenes/gallery, 64 pixels wide. Needs NumPy.
 """
 
+import argparse
 import pathlib
 import sys
 import tempfile
@@ -19,8 +21,8 @@ ROOT = table_runs.ROOT
 sys.path.insert(0, str(ROOT / "tools/peers"))
 import exr  # noqa: E402
 
-SIZE = ("--width", "80")
-SCENES = ("lantern", "room", "materials", "nebula", "lamps_in_fog", "god_rays")
+SIZE = ("--width", "64")
+SCENES = ("lantern", "room", "materials", "nebula", "lamps_in_fog")
 CAMERA, LIGHT, BOTH = "ratioTracking", "lightTracing", "bidirectional"
 SMOOTH = ("room", "materials")  # of which particles alone miss what mirrors and glass show
 
@@ -39,12 +41,15 @@ def main():
             path = ROOT / f"scenes/gallery/{scene}.xml"
             report = table_runs.render(options.vkvol, path, BOTH, 1000, options.reference, reference, *SIZE)
             if number == 0:
-                print(f"{report['device']['name']}, {report['device']['driver']}; {options.spp} samples; means of "
-                      f"{options.runs} errors, medians of as many seconds, in alternation")
+                print(f"{report['device']['name']}, {report['device']['driver']}; as long as {options.spp} samples of {BOTH} take; means "
+                      f"of {options.runs} errors, medians of as many seconds, in alternation")
                 print(f"{'':16} {LIGHT:>28} {BOTH:>28}   over {CAMERA}")
                 print(f"{'':16} {'error':>10} {'time':>6} {'efficiency':>10} {'error':>10} {'time':>6} {'efficiency':>10}")
             ways = {way: way for way in (CAMERA, LIGHT, BOTH) if way != LIGHT or scene not in SMOOTH}
-            means = table_runs.in_alternation(options, path, ways, picture, lambda made: error(made, reference), *SIZE)
+            usual = table_runs.render(options.vkvol, path, BOTH, 999, options.spp, picture, *SIZE)["seconds"]["render"]
+            timed = argparse.Namespace(**{**vars(options), "spp": 1_000_000})
+            means = table_runs.in_alternation(timed, path, ways, picture, lambda made: error(made, reference), *SIZE,
+                                              "--time", f"{usual}s")
             columns = table_runs.against(means, CAMERA)
             print(f"{scene:16}{columns(LIGHT)}{columns(BOTH)}", flush=True)
 
