@@ -120,7 +120,7 @@ std::vector<Case> cases() {
     several.volumes.back().sigma_a = Rgb(2.0) - several.volumes.back().sigma_s;
     several.volumes.back().Le = {0.3, 0.2, 0.6};
     all.push_back({"several media, one of which glows", several});
-    // Something within the glass: what passes right through it comes out of the index as it went in.
+    // Something within the glass. (What its index does to particles cancels on the way out again.)
     all.push_back({"rough surfaces", still({with_material(left, MaterialKind::dielectric, 0.3),
                                             with_material(BallSurface{left.center, 0.35}, MaterialKind::diffuse),
                                             with_material(right, MaterialKind::conductor, 0.4)},
