@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene.h"
+#include "shared/constants.h"
 
 namespace vkvol {
 
@@ -42,12 +43,12 @@ struct Integrator {
     int transmittance; // TRANSMITTANCE_...
     int nee;           // NEE_...
     unsigned adjustments;
-    int paths;                                                     // PATHS_...
     enum class Origin { own, thesis_models, thesis_grids } origin; // of the name: new here, or the original's, for what
     const char* biased;     // why its mean differs from the exact one of its kind of scattering; empty: it does not
     const char* parameters; // scene elements that steer it, beyond medium, light and picture
     const char* summary;
     const char* source;
+    int paths = PATHS_CAMERA; // PATHS_...
 };
 
 const std::vector<Integrator>& integrators();

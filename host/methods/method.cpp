@@ -130,8 +130,7 @@ void Resolution::check_particles() const {
         return;
     if ((has_no_end() || any_surface(is_plane)) && from_afar)
         refuse("light from infinitely far has no end where a medium is everywhere, or a plane, and particles can come "
-               "from "
-               "some of it only");
+               "from some of it only");
     if (any_surface(shines_plane))
         refuse("a plane that shines has no end, and particles can come from some of it only");
     if (emits_ && (has_no_end() || any_medium(scene_, is_model)))

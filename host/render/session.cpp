@@ -145,10 +145,7 @@ bool Session::stopping() {
 bool Session::out_of_patience() {
     const double now = watch_.seconds();
     stopped_at_ = stopped_at_.value_or(now);
-    if (now - *stopped_at_ < patience)
-        return false;
-    result_.counts.abandoned += wavefront_->in_flight();
-    return true;
+    return now - *stopped_at_ >= patience;
 }
 
 void Session::begin_band(const Band& band) {
@@ -179,6 +176,7 @@ void Session::run_band(const Band& band) {
         if (!resting && stopping()) {
             wavefront_->stop_handing_out();
             gave_up_ = resting = out_of_patience();
+            result_.counts.abandoned += gave_up_ ? wavefront_->in_flight() : 0;
         } else if (!resting && checkpoint_due()) {
             wavefront_->stop_handing_out();
         }
@@ -193,13 +191,11 @@ void Session::run_band(const Band& band) {
 // Likewise where every pixel waits for all particles: a batch is done, or it was not.
 void Session::run_particles(const Band& band) {
     bool over = false;
-    while (!over && !gave_up_) {
+    while (!over && !(stopping() && out_of_patience())) {
         over = wavefront_->advance();
         gather();
         if (job_.progress)
             job_.progress(progress_of(band), std::nullopt);
-        if (!over && stopping())
-            gave_up_ = out_of_patience();
     }
     if (over) {
         wavefront_->collect(band.rows * width());
