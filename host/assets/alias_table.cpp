@@ -39,4 +39,13 @@ std::vector<shared::AliasEntry> make_alias_table(std::span<const double> weights
     return table; // what is left over is 1 but for rounding
 }
 
+std::vector<double> defensive_chances(std::span<const double> weights) {
+    constexpr double least_share = 0.1;
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0), even = 1.0 / double(weights.size());
+    std::vector<double> chances;
+    for (const double weight : weights)
+        chances.push_back(sum > 0.0 ? (1.0 - least_share) * weight / sum + least_share * even : even);
+    return chances;
+}
+
 } // namespace vkvol

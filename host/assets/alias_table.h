@@ -12,4 +12,7 @@ namespace vkvol {
 // for Generating Random Numbers with a Given Distribution", 1991).
 std::vector<shared::AliasEntry> make_alias_table(std::span<const double> weights);
 
+// Chances in proportion to weights >= 0, which are known but roughly: none is less than a tenth of an even chance.
+std::vector<double> defensive_chances(std::span<const double> weights);
+
 } // namespace vkvol

@@ -101,8 +101,7 @@ double DeviceScene::reach_of_all(const Scene& scene, const Assets& assets) const
 
 void DeviceScene::make_emitters(const Scene& scene, const Method& method, const Assets& assets) {
     const EmitterTable table =
-        make_emitter_table(scene, method, lights_, surfaces_, frame_.media[0], media_,
-                           assets.sky ? assets.sky->fluence : Rgb(0.0), reach_of_all(scene, assets));
+        make_emitter_table(scene, method, lights_, surfaces_, frame_.media[0], media_, reach_of_all(scene, assets));
     frame_.particles = table.params;
     text_ += method.paths == PATHS_LIGHT ? ", by particles" : ", and by particles";
     buffers_.upload_emitters(device_, commands_, table);

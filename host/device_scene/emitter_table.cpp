@@ -11,7 +11,6 @@ namespace vkvol {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double least_share = 0.1; // of an even choice
 
 double mean(const glm::dvec3& color) {
     return (color.x + color.y + color.z) / 3.0;
@@ -42,27 +41,6 @@ public:
         sum_ += power;
     }
 
-    void add_light(const shared::LightRow& light, std::uint32_t row, const Rgb& sky_fluence) {
-        const double radiance = mean(light.radiance);
-        switch (light.kind) {
-        case LIGHT_POINT:
-            return add(row, 4.0 * pi * radiance);
-        case LIGHT_SPOT:
-            return add(row, pi * (light.none_beyond + light.full_within) * radiance);
-        case LIGHT_SPHERE:
-            return add(row, 4.0 * pi * light.area * radiance);
-        case LIGHT_DISK:
-        case LIGHT_RECTANGLE:
-            return add(row, pi * light.area * radiance);
-        case LIGHT_DISC:
-            return add(row, 2.0 * pi * light.extent * radiance * (1.0 - light.darkening / 3.0) * across_);
-        case LIGHT_MAP:
-            return add(row, mean(sky_fluence) * across_);
-        default:
-            return add(row, radiance * across_);
-        }
-    }
-
     void add_primitive(const shared::SurfacePrimitive& piece, const shared::SurfaceRow& surface, std::uint32_t i) {
         const double radius = piece.c.x;
         const double area = piece.shape == SURFACE_TRIANGLES
@@ -79,9 +57,7 @@ public:
             table_.rows.push_back({{}, 0.0f, SOURCE_BACKGROUND});
             powers_.push_back(sum_ = 1.0);
         }
-        std::vector<double> chances;
-        for (const double power : powers_)
-            chances.push_back((1.0 - least_share) * power / sum_ + least_share / double(powers_.size()));
+        const std::vector<double> chances = defensive_chances(powers_);
         const std::vector<shared::AliasEntry> alias = make_alias_table(chances);
         for (std::size_t i = 0; i < chances.size(); ++i) {
             table_.rows[i].chance = static_cast<float>(chances[i]);
@@ -114,13 +90,14 @@ void place_glow(const shared::MediumParams& medium, shared::ParticleParams& para
 
 EmitterTable make_emitter_table(const Scene& scene, const Method& method, const LightTable& lights,
                                 const SurfaceTable& surfaces, const shared::MediumParams& medium,
-                                std::span<const shared::MediumParams> media, const Rgb& sky_fluence, double radius) {
+                                std::span<const shared::MediumParams> media, double radius) {
     EmitterTable table;
     const bool bounded = std::isfinite(radius);
     table.params.radius = bounded ? static_cast<float>(radius * 1.0001) : 0.0f;
     Emitters emitters(table, bounded ? radius : 0.0);
     for (std::size_t i = 0; i < lights.rows.size(); ++i)
-        emitters.add_light(lights.rows[i], static_cast<std::uint32_t>(i), sky_fluence);
+        emitters.add(static_cast<std::uint32_t>(i),
+                     lights.powers[i] * (i < lights.lamp_first ? emitters.across() : 1.0));
     if (method.paths == PATHS_LIGHT) { // else paths from the camera find these
         emitters.add(SOURCE_BACKGROUND, 4.0 * pi * mean(scene.background) * emitters.across());
         for (std::size_t i = 0; i < surfaces.primitives.size(); ++i)

@@ -19,6 +19,6 @@ struct EmitterTable {
 // about the origin that holds all there is; not finite where nothing does.
 EmitterTable make_emitter_table(const Scene& scene, const Method& method, const LightTable& lights,
                                 const SurfaceTable& surfaces, const shared::MediumParams& medium,
-                                std::span<const shared::MediumParams> media, const Rgb& sky_fluence, double radius);
+                                std::span<const shared::MediumParams> media, double radius);
 
 } // namespace vkvol

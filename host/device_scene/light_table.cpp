@@ -15,7 +15,6 @@ namespace vkvol {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double least_share = 0.1; // of an even choice
 
 double mean(const Rgb& color) {
     return (color.x + color.y + color.z) / 3.0;
@@ -36,6 +35,7 @@ struct Entry {
     // In this order rows are laid out.
     enum class Place { sky, far, lamp, point } place = Place::far; // sky: met by flights that leave
     float reach = 0.0f;                                            // from its middle
+    double power = 0.0;                                            // see LightTable
 };
 
 bool is_somewhere(const Entry& entry) {
@@ -149,15 +149,21 @@ private:
     double radius_;
 };
 
+// What it sends out; of what is far, through a unit of area.
+double power_of(const Light& light, const Entry& entry) {
+    return std::visit(
+        [&](const auto& kind) {
+            if constexpr (requires { power_per_unit(kind); })
+                return mean(entry.row.radiance) * power_per_unit(kind);
+            else
+                return entry.fluence;
+        },
+        light);
+}
+
 // Of the first rows, by their fluence.
 void set_chances(std::vector<shared::LightRow>& rows, const std::vector<double>& fluences) {
-    double sum = 0.0;
-    for (const double fluence : fluences)
-        sum += fluence;
-    const double count = double(fluences.size());
-    std::vector<double> chances;
-    for (const double fluence : fluences)
-        chances.push_back(sum > 0.0 ? (1.0 - least_share) * fluence / sum + least_share / count : 1.0 / count);
+    const std::vector<double> chances = defensive_chances(fluences);
     const std::vector<shared::AliasEntry> alias = make_alias_table(chances);
     for (std::size_t i = 0; i < chances.size(); ++i) {
         rows[i].chance = static_cast<float>(chances[i]);
@@ -235,6 +241,7 @@ LightTable make_light_table(const Scene& scene, const Assets& assets, const glm:
     const std::vector<std::string> groups = plan_layers(scene).groups;
     for (const Light& light : scene.lights) {
         entries.push_back(std::visit(Rows(assets, origin, radius), light));
+        entries.back().power = power_of(light, entries.back());
         entries.back().row.group = group_layer(groups, group_of(light));
         entries.back().row.body = body_of(light) == no_body ? NO_SURFACE : static_cast<std::uint32_t>(body_of(light));
     }
@@ -246,6 +253,7 @@ LightTable make_light_table(const Scene& scene, const Assets& assets, const glm:
     for (const Entry& entry : entries) {
         const auto row = static_cast<std::uint32_t>(table.rows.size());
         table.rows.push_back(entry.row);
+        table.powers.push_back(entry.power);
         table.sky_count += entry.place == Entry::Place::sky ? 1 : 0;
         table.lamp_first += entry.place < Entry::Place::lamp ? 1 : 0;
         table.lamp_count += entry.place == Entry::Place::lamp ? 1 : 0;

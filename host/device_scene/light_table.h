@@ -13,6 +13,7 @@ struct LightTable {
     std::vector<shared::LightRow> rows;
     std::vector<shared::LightNode> tree; // over those that are somewhere, if there are several
     std::vector<glm::vec3> suns;         // CACHE_SUNS at most: towards those far lights that are no small part of all
+    std::vector<double> powers;          // of each row; of what is far, of the first lamp_first, through a unit of area
     float fluence = 0.0f;                // of all, amid the media, roughly; > 0
     std::uint32_t choices = 0, sky_count = 0, lamp_first = 0, lamp_count = 0; // see FrameParams
 };

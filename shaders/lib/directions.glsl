@@ -27,6 +27,17 @@ vec3 turned(vec3 peak, float from_peak, float u) {
     return normalize(peak * (1.0 - from_peak) + (tangent * around.x + bitangent * around.y) * sine);
 }
 
+// Any direction alike.
+vec3 in_any_direction(vec2 u) {
+    return turned(vec3(0.0, 1.0, 0.0), 2.0 * u.x, u.y);
+}
+
+// Evenly over the unit disk. By radius and angle, not by both sines, of which Vulkan asks little: see turned().
+vec2 in_disk(vec2 u) {
+    float phi = 6.283185307179586 * (u.y - 0.5);
+    return sqrt(u.x) * normalize(vec2(cos(phi), sin(phi)));
+}
+
 // Drawn by cosine: from_peak = 1 - sqrt(1 - u), with all digits where that is small.
 vec3 by_cosine(vec3 normal, vec2 u) {
     return turned(normal, u.x / (1.0 + sqrt(1.0 - u.x)), u.y);

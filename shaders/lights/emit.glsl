@@ -38,8 +38,7 @@ Particle from_afar(vec3 toward, vec3 light, vec2 u) {
     ParticleParams all = frame.particles;
     vec3 tangent, bitangent;
     build_frame(toward, tangent, bitangent);
-    float turn = 2.0 * PI * (u.y - 0.5);
-    vec2 at = all.radius * sqrt(u.x) * normalize(vec2(cos(turn), sin(turn)));
+    vec2 at = all.radius * in_disk(u);
     return particle(all.center + all.radius * toward + at.x * tangent + at.y * bitangent, -toward,
                     PI * all.radius * all.radius * light, SHINES_UNSEEN);
 }
@@ -61,16 +60,15 @@ Particle from_spot(LightRow light, vec2 u) {
 }
 
 Particle from_light(LightRow light, vec2 where, vec2 u, inout Rng rng) {
-    const vec3 pole = vec3(0.0, 1.0, 0.0);
     float pdf = 0.0;
     Particle p;
     if (SEES_LAMPS && light.kind == LIGHT_SPHERE) {
-        vec3 normal = turned(pole, 2.0 * where.x, where.y);
+        vec3 normal = in_any_direction(where);
         p = from_surface(light.position + light.extent * normal, normal, 4.0 * PI * light.area * light.radiance, u);
     } else if (SEES_LAMPS && light.kind > LIGHT_SPHERE) {
         p = from_surface(flat_point(light, where), light.direction, PI * light.area * light.radiance, u);
     } else if (light.kind == LIGHT_POINT) {
-        p = particle(light.position, turned(pole, 2.0 * u.x, u.y), 4.0 * PI * light.radiance, SHINES_UNSEEN);
+        p = particle(light.position, in_any_direction(u), 4.0 * PI * light.radiance, SHINES_UNSEEN);
     } else if (light.kind == LIGHT_SPOT) {
         p = from_spot(light, u);
     } else {
@@ -94,24 +92,22 @@ Particle from_glow(MediumParams v, vec2 where, vec2 u, uvec4 words, inout Rng rn
     bool inside = SHAPE != SHAPE_SPHERE || dot(at, at) < 1.0;
     vec3 light = inside ? vec3((v.sigma_t * met.density) * (met.ratio * met.share)) * emitted_radiance(medium_of(v, met.medium), position)
                         : vec3(0.0);
-    return particle(position, turned(vec3(0.0, 1.0, 0.0), 2.0 * u.x, u.y), 4.0 * PI * all.glow_volume * light, SHINES_ALIKE);
+    return particle(position, in_any_direction(u), 4.0 * PI * all.glow_volume * light, SHINES_ALIKE);
 }
 
 #ifdef SURFACES
 Particle from_primitive(uint i, vec2 where, vec2 u, float side) {
     SurfacePrimitive piece = primitive_at(i);
     SurfaceRow row = surface_row(piece.surface);
-    float root = sqrt(where.x);
-    vec3 near = mix(piece.a, mix(piece.b, piece.c, where.y), root);
+    vec3 near = mix(piece.a, mix(piece.b, piece.c, where.y), sqrt(where.x));
     float area = 0.5 * length(cross(piece.b - piece.a, piece.c - piece.a));
     if (piece.shape == SURFACE_SPHERE) {
-        near = piece.a + piece.c.x * turned(vec3(0.0, 1.0, 0.0), 2.0 * where.x, where.y);
+        near = piece.a + piece.c.x * in_any_direction(where);
         area = 4.0 * PI * piece.c.x * piece.c.x;
     } else if (piece.shape == SURFACE_DISK) {
         vec3 tangent, bitangent;
         build_frame(piece.b, tangent, bitangent);
-        float turn = 2.0 * PI * (where.y - 0.5);
-        vec2 at = piece.c.x * root * normalize(vec2(cos(turn), sin(turn)));
+        vec2 at = piece.c.x * in_disk(where);
         near = piece.a + at.x * tangent + at.y * bitangent;
         area = PI * piece.c.x * piece.c.x;
     }
@@ -133,7 +129,7 @@ Particle emit_particle(MediumParams v, inout Rng rng) {
     if (EMISSION != EMISSION_NONE && source.source == SOURCE_GLOW)
         p = from_glow(v, where, u, more, rng);
     else if (source.source == SOURCE_BACKGROUND)
-        p = from_afar(turned(vec3(0.0, 1.0, 0.0), 2.0 * u.x, u.y), 4.0 * PI * frame.lights[LIGHT_BACKGROUND].radiance, where);
+        p = from_afar(in_any_direction(u), 4.0 * PI * frame.lights[LIGHT_BACKGROUND].radiance, where);
 #ifdef SURFACES
     else if ((source.source & AT_SURFACE) != 0u)
         p = from_primitive(source.source & ~AT_SURFACE, where, u, to_uniform(more).z);

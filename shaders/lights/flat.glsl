@@ -25,13 +25,9 @@ float flat_distance(LightRow light, vec3 from, vec3 direction) {
     return t > 0.0 ? t : FAR;
 }
 
-// Evenly over its area. A disk's points by radius and angle, not by both sines, of which Vulkan asks little: see turned().
+// Evenly over its area.
 vec3 flat_point(LightRow light, vec2 u) {
-    vec2 at = 2.0 * u - 1.0;
-    if (light.kind == LIGHT_DISK) {
-        float phi = 6.283185307179586 * (u.y - 0.5);
-        at = sqrt(u.x) * normalize(vec2(cos(phi), sin(phi)));
-    }
+    vec2 at = light.kind == LIGHT_DISK ? in_disk(u) : 2.0 * u - 1.0;
     return light.position + at.x * light.edge_u + at.y * light.edge_v;
 }
 vec3 flat_direction(LightRow light, vec3 from, vec2 u) {

@@ -97,7 +97,7 @@ CameraRay camera_ray(uint place, uint sample_index) {
             ray = CameraRay(camera.position + aside, by_cosine(camera.corner, u));
         if (SENSOR == SENSOR_FLUENCE)
             ray = CameraRay(sensor_points[(place >> 16u) * camera.row + (place & 0xffffu)],
-                            turned(vec3(0.0, 1.0, 0.0), 2.0 * u.x, u.y));
+                            in_any_direction(u));
     }
     return ray;
 }

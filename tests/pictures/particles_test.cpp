@@ -120,11 +120,11 @@ std::vector<Case> cases() {
     several.volumes.back().sigma_a = Rgb(2.0) - several.volumes.back().sigma_s;
     several.volumes.back().Le = {0.3, 0.2, 0.6};
     all.push_back({"several media, one of which glows", several});
-    // Something within the glass. (What its index does to particles cancels on the way out again.)
+    // With a lamp within the glass: of particles from outside, what its index does to them cancels on the way out
+    // again.
     all.push_back({"rough surfaces", still({with_material(left, MaterialKind::dielectric, 0.3),
-                                            with_material(BallSurface{left.center, 0.35}, MaterialKind::diffuse),
                                             with_material(right, MaterialKind::conductor, 0.4)},
-                                           {ball, point})});
+                                           {ball, point, SphereLight{left.center, 0.2, {20.0, 15.0, 10.0}}})});
     all.push_back({"faces that stand for something round",
                    still({with_material(smooth_stone(), MaterialKind::diffuse)}, {rectangle})});
     Surface shining = with_material(smooth_stone(), MaterialKind::diffuse);
