@@ -4,6 +4,7 @@
 # in the sources, or if the tests fail without any error.
 #
 #   tools/mutation_check.sh [WORD]     WORD: only the errors whose name contains it
+#   tools/mutation_check.sh --dry-run  only whether every text to be replaced is there
 #   MUTATION_DIR=DIR                   where the copy, its build and the rows done are kept
 #
 # Ended at any time and started again, it goes on after the last row that was done, as long as the sources are the same;
@@ -11,6 +12,8 @@
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
+dry_run=
+[ "${1:-}" != --dry-run ] || { dry_run=yes; shift; }
 only=${1:-}
 work=${MUTATION_DIR:-${TMPDIR:-/tmp}/vkvol-mutation}
 copy=$work/source
@@ -182,6 +185,28 @@ temperatures stay where the file has them ~ host/fields/density_field.h ~ index_
 lamps before a mesh seen through it ~ shaders/shapes/segment.glsl ~ t.x = min(t.x, t.y); // the first ~ // the first ~ [lights]
 END
 }
+
+check_texts() {
+    python3 -c '
+import sys
+missing = 0
+for line in sys.stdin:
+    name, path, texts = line.split(" ~ ")[:3]
+    try:
+        content = open(path).read()
+    except OSError:
+        content = ""
+    for text in texts.split(" ^ "):
+        if text not in content:
+            missing += 1
+            print(f"{name}: {path} does not contain \"{text}\"; bring the table in tools/mutation_check.sh up to date")
+sys.exit(missing > 0)'
+}
+if [ -n "$dry_run" ]; then
+    cd "$root"
+    mutations | check_texts
+    exit
+fi
 
 # Changed files only, with a new time, so that what was built of an earlier error is built again.
 refresh_copy() {

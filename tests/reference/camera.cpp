@@ -72,33 +72,26 @@ Ray rectangle_point(const vkvol::Camera& camera, const vkvol::Picture& picture, 
 }
 
 glm::dvec2 in_pixel(const vkvol::RenderSettings& settings, double u, double v) {
-    // Inverts the distribution by bisection, of densities written down once more.
-    const auto weight = [&](double x) {
+    // Inverts the distribution by bisection of its integral.
+    const auto integral = [&](double x) { // from 0
         const double pi = std::numbers::pi;
         switch (settings.pixel_filter) {
         case vkvol::PixelFilter::tent:
-            return 1.0 - std::abs(x);
-        case vkvol::PixelFilter::gaussian:
-            return std::exp(-4.5 * x * x);
+            return x - 0.5 * x * std::abs(x);
+        case vkvol::PixelFilter::gaussian: // exp(-4.5 x^2)
+            return std::sqrt(pi / 18.0) * std::erf(std::sqrt(4.5) * x);
         case vkvol::PixelFilter::blackman_harris:
-            return 0.35875 + 0.48829 * std::cos(pi * x) + 0.14128 * std::cos(2 * pi * x) +
-                   0.01168 * std::cos(3 * pi * x);
+            return 0.35875 * x + (0.48829 * std::sin(pi * x) + 0.14128 / 2.0 * std::sin(2.0 * pi * x) +
+                                  0.01168 / 3.0 * std::sin(3.0 * pi * x)) /
+                                     pi;
         default:
-            return 1.0;
+            return x;
         }
     };
-    const auto integral = [&](double x) { // from -1, by Simpson's rule
-        const int n = 16;
-        double sum = 0.0;
-        for (int i = 0; i < n; ++i) {
-            const double a = -1.0 + (x + 1.0) * i / n, b = -1.0 + (x + 1.0) * (i + 1) / n;
-            sum += (b - a) / 6.0 * (weight(a) + 4.0 * weight(0.5 * (a + b)) + weight(b));
-        }
-        return sum;
-    };
+    const double whole = integral(1.0) - integral(-1.0);
     const auto place = [&](double share) {
         double low = -1.0, high = 1.0;
-        const double target = share * integral(1.0);
+        const double target = integral(-1.0) + share * whole;
         for (int i = 0; i < 22; ++i)
             (integral(0.5 * (low + high)) < target ? low : high) = 0.5 * (low + high);
         return settings.pixel_filter_radius * low;
