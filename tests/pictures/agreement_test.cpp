@@ -58,7 +58,7 @@ RelativeBias bias_of(const Film& film, const Film& exact) {
 
 } // namespace
 
-TEST_CASE("each estimator equals the reference's own", "[gpu][agreement][thorough]") {
+TEST_CASE("each estimator equals the reference's own", "[gpu][agreement]") {
     // One axis at a time, from delta flights with ratio-tracked shadow rays at collisions: the rest is for the table.
     std::size_t turn = 0;
     for (const NamedScene& named : agreement_scenes()) {
@@ -110,7 +110,7 @@ TEST_CASE("marches equal the reference's of the same steps", "[gpu][agreement]")
     check(FREE_FLIGHT_SPECTRAL, TRANSMITTANCE_JACKKNIFE, "jackknifed shadow rays");
 }
 
-TEST_CASE("marches through the medium scatter once", "[gpu][agreement][thorough]") {
+TEST_CASE("marches through the medium scatter once", "[gpu][agreement]") {
     // Per pixel against the reference's marches; in the mean against paths that scatter once, which are exact, with
     // steps so small that the bias is below the noise. (Not per pixel: where a path of a hundred collides, the normal
     // limit is far off.)
@@ -219,7 +219,7 @@ TEST_CASE("the bias of marches shrinks with the step", "[.bias_table]") {
     }
 }
 
-TEST_CASE("where a path is laid aside changes nothing", "[gpu][determinism][thorough]") {
+TEST_CASE("where a path is laid aside changes nothing", "[gpu][determinism]") {
     // With a budget of three iterations nearly every segment is suspended, several times, in the midst of flights and
     // shadow rays; whatever an estimator's walk needs must survive that bit for bit.
     const auto check = [](Scene scene, const std::string& name) {

@@ -111,7 +111,7 @@ std::vector<Rgb> everywhere(const Film& film, const Rgb& value) {
 
 } // namespace
 
-TEST_CASE("layers leave the picture its bits, and sum up to it", "[gpu][image][aovs][thorough]") {
+TEST_CASE("layers leave the picture its bits, and sum up to it", "[gpu][image][aovs]") {
     const std::vector<std::string> integrators = {"cachedRatioTracking",
                                                   "ratioTracking",
                                                   "weightedTracking",

@@ -119,7 +119,7 @@ TEST_CASE("light without extent is read straight from its source", "[gpu][image]
 }
 
 // A disc above the horizon gives its irradiance times the cosine to its middle, a ball pi L (R / d)^2 times that.
-TEST_CASE("light with an extent is read however it is found", "[gpu][image][flux][thorough]") {
+TEST_CASE("light with an extent is read however it is found", "[gpu][image][flux]") {
     const int mis = GENERATE(MIS_BALANCE, MIS_POWER, MIS_LIGHT, MIS_PHASE);
     const bool absorbs = GENERATE(false, true); // ... a ball about the sensor, of depth 1
     if (absorbs && mis != MIS_BALANCE)
@@ -291,7 +291,7 @@ TEST_CASE("a panorama's mean over directions is fluence / 4 pi", "[gpu][image][f
     }
 }
 
-TEST_CASE("flux equals the reference's", "[gpu][image][flux][thorough]") {
+TEST_CASE("flux equals the reference's", "[gpu][image][flux]") {
     const std::vector<Light> far = {sunlight({3.0, 2.5, 1.5})};
     const std::vector<Light> all = {
         sunlight(),

@@ -94,14 +94,14 @@ Volume cloud(double g = 0.5) {
 
 } // namespace
 
-TEST_CASE("every light equals the reference's, in a cloud", "[gpu][lights][thorough]") {
+TEST_CASE("every light equals the reference's, in a cloud", "[gpu][lights]") {
     for (const NamedLights& lit : in_turn(all_lights(), 0)) {
         const Scene scene = lit_by(cloud(), 11.0, lit.lights, 256);
         CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_reference(scene, 2), lit.name + ", cloud"));
     }
 }
 
-TEST_CASE("every light equals the reference's, in a ball and in a mesh", "[gpu][lights][mesh][thorough]") {
+TEST_CASE("every light equals the reference's, in a ball and in a mesh", "[gpu][lights][mesh]") {
     const Mesh bodies =
         join(make_box({-3.0, -1.0, -1.0}, {-0.5, 1.5, 1.0}, 1), make_box({0.5, -2.0, -2.0}, {3.0, 1.0, 1.0}, 1));
     std::vector<NamedLights> lights = in_turn(all_lights(), 1);
@@ -142,7 +142,7 @@ TEST_CASE("shadow rays end at a lamp within the medium", "[gpu][lights]") {
 }
 
 // From along flights, in all shapes and with all that a look takes; by free flights alone the same, with more noise.
-TEST_CASE("looks from along flights find what lights of a place give", "[gpu][lights][thorough]") {
+TEST_CASE("looks from along flights find what lights of a place give", "[gpu][lights]") {
     Volume chromatic = cloud();
     chromatic.sigma_s = {2.0, 1.0, 0.4};
     Volume noise = medium(Box{{0, 0, 0}, {6.0, 5.0, 6.0}}, 1.5, 0.9, 0.3);
@@ -218,8 +218,7 @@ TEST_CASE("a furnace of a map of ones, of every phase function", "[gpu][lights][
     }
 }
 
-TEST_CASE("looks and flights find the same light, by every phase function",
-          "[gpu][lights][agreement][phase][thorough]") {
+TEST_CASE("looks and flights find the same light, by every phase function", "[gpu][lights][agreement][phase]") {
     const SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {5.0, 4.0, 3.0}, 60.0};
     std::uint32_t seed = 70;
     for (const NamedPhase& phase : all_phases()) {
@@ -274,7 +273,7 @@ TEST_CASE("a sky is seen where no medium is", "[gpu][lights]") {
 }
 
 // Before, within and behind the medium, one before another, through it and past it.
-TEST_CASE("lamps are seen", "[gpu][lights][thorough]") {
+TEST_CASE("lamps are seen", "[gpu][lights]") {
     const std::vector<Light> lamps = {
         SphereLight{{0.5, 0.5, 8.0}, 0.6, {3.0, 1.0, 1.0}}, SphereLight{{-1.0, 0.5, 0.0}, 1.0, {1.0, 4.0, 1.0}},
         RectangleLight{{1.0, -1.0, -7.0}, {3.0, 0.0, 0.0}, {0.0, 4.0, 0.0}, {2.0, 2.0, 9.0}},
@@ -316,7 +315,7 @@ TEST_CASE("no lamp of many is lost, however long a lane works", "[gpu][lights]")
     }
 }
 
-TEST_CASE("looks and flights find the same light", "[gpu][lights][agreement][thorough]") {
+TEST_CASE("looks and flights find the same light", "[gpu][lights][agreement]") {
     const SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {5.0, 4.0, 3.0}, 60.0, 0.8};
     for (const double g : {0.85, 0.0}) {
         if (!thorough() && g == 0.0)

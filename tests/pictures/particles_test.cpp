@@ -153,7 +153,7 @@ void check(const Case& c, int turn) {
 
 } // namespace
 
-TEST_CASE("particles, paths and both show the same", "[gpu][particles][thorough]") {
+TEST_CASE("particles, paths and both show the same", "[gpu][particles]") {
     int turn = 0;
     for (const Case& c : in_turn(cases(), 0))
         check(c, turn++);
@@ -183,7 +183,7 @@ TEST_CASE("particles and paths share what mirrors and glass show and throw", "[g
     CHECK(scene_hash(by(scene, "bidirectional")) != scene_hash(by(scene, "ratioTracking")));
 }
 
-TEST_CASE("particles are seen by every camera through every filter", "[gpu][particles][thorough]") {
+TEST_CASE("particles are seen by every camera through every filter", "[gpu][particles]") {
     const PointLight point{{1.2, 1.9, 1.5}, {12.0, 9.0, 6.0}};
     const Scene usual = still({with_material(left, MaterialKind::diffuse)}, {point});
     std::vector<Case> all;
@@ -279,6 +279,29 @@ TEST_CASE("particles give the same bits however they are worked on", "[gpu][part
         rest.resume = &*last;
         CHECK(same_bits(render(test_device(), scene, rest).film, whole));
     }
+}
+
+// Within a ball that loses no light none ever ends.
+TEST_CASE("a batch of particles that would not end is given up whole", "[gpu][particles]") {
+    Scene scene = still({with_material(BallSurface{{0.0, 0.0, 0.0}, 20.0}, MaterialKind::diffuse)},
+                        {PointLight{{0.0, 3.0, 0.0}, Rgb(1.0)}});
+    scene.volumes.clear();
+    scene.surfaces.front().material.color = Rgb(1.0);
+    scene.settings.spp = 4;
+    RenderJob job;
+    job.crop = {0, 8, 0, 8};
+    job.plan.schedule = GENERATE(Schedule::fused, Schedule::staged);
+    int asked = 0;
+    std::optional<Checkpoint> last;
+    job.interrupted = [&] { return ++asked > 3; };
+    job.checkpoint_seconds = 1e9;
+    job.checkpoint = [&](const Checkpoint& checkpoint) { last = checkpoint; };
+    const RenderResult result = render(test_device(), by(scene, "lightTracing"), job);
+    CHECK(result.interrupted);
+    CHECK(result.counts.abandoned == 0);
+    CHECK(last);
+    for (const std::uint32_t count : result.film.samples)
+        CHECK(count == 0);
 }
 
 TEST_CASE("what particles cannot do is refused, with what can", "[particles]") {

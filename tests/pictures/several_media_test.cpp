@@ -93,7 +93,7 @@ void check_against_reference(const Scene& scene, const std::string& name) {
 } // namespace
 
 TEST_CASE("halves of a medium on top of each other are the whole, in every way to render them",
-          "[gpu][image][several][thorough]") {
+          "[gpu][image][several]") {
     std::size_t turn = 0;
     const auto check = [&](const std::string& name, const Scene& whole) {
         const Film expected = render_here(whole, 1).film;
@@ -140,7 +140,7 @@ TEST_CASE("volumes that are moved equal the reference", "[gpu][image][several]")
     check_against_reference(lit_scene(grid, 9.0), "cloud");
 }
 
-TEST_CASE("media in one another equal the reference's race", "[gpu][image][several][thorough]") {
+TEST_CASE("media in one another equal the reference's race", "[gpu][image][several]") {
     Scene scene = mixture();
     if (thorough()) {
         check_against_reference(scene, "sun");

@@ -168,7 +168,7 @@ TEST_CASE("whatever scatters all light vanishes in an even sky, in fog too", "[g
         }
 }
 
-TEST_CASE("facets and coats lose no light, found by looks or by flights", "[gpu][image][surfaces][thorough]") {
+TEST_CASE("facets and coats lose no light, found by looks or by flights", "[gpu][image][surfaces]") {
     Scene scene = empty_scene(8);
     scene.lights = {write_sky(make_map(8, 4, [](int, int) { return Rgb(1.0); }))};
     scene.settings.integrator = "ratioTracking";
@@ -394,7 +394,7 @@ TEST_CASE("surfaces that shine are lamps with bodies", "[gpu][image][surfaces]")
     CHECK_AGREEMENT(agree(looked, by_chance, "by chance"));
 }
 
-TEST_CASE("surfaces among media are the same for every estimator", "[gpu][image][surfaces][thorough]") {
+TEST_CASE("surfaces among media are the same for every estimator", "[gpu][image][surfaces]") {
     Scene scene = still_life();
     scene.settings.spp = 96;
     const Film expected = render_here(scene, 1).film;

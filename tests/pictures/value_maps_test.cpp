@@ -75,7 +75,7 @@ TEST_CASE("mapped values equal the reference", "[gpu][image][value_map]") {
     check_against_reference(scene, "marched through");
 }
 
-TEST_CASE("a map of each voxel equals a grid that holds what it makes of them", "[gpu][image][value_map][thorough]") {
+TEST_CASE("a map of each voxel equals a grid that holds what it makes of them", "[gpu][image][value_map]") {
     GridRecipe baked = cloud_grid();
     baked.value = [](glm::ivec3 i) { return float(reference::mapped(bumpy_map(), cloud_noise(i)).density); };
     Scene map = lit(mapped_cloud(bumpy_map(), 1.5));
