@@ -1,11 +1,14 @@
 #include "surface_mesh.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <limits>
+#include <map>
 
 #include "error.h"
 #include "mesh.h"
 #include "polygons.h"
+#include "radiance_map.h"
 
 namespace vkvol {
 
@@ -14,7 +17,7 @@ namespace {
 TriangleSurface load(const MeshSurface& mesh, const glm::dmat4& transform, bool closed) {
     if (closed) {
         Mesh loaded = load_mesh({{mesh.file}}, transform);
-        return {std::move(loaded.vertices), std::move(loaded.triangles), std::move(loaded.normals)};
+        return {std::move(loaded.vertices), std::move(loaded.triangles), std::move(loaded.normals), {}};
     }
     Polygons read = read_polygons(mesh.file);
     for (glm::dvec3& vertex : read.vertices)
@@ -24,8 +27,10 @@ TriangleSurface load(const MeshSurface& mesh, const glm::dmat4& transform, bool 
             std::swap(read.triangles[i].y, read.triangles[i].z);
             if (!read.normals.empty())
                 std::swap(read.normals[i][1], read.normals[i][2]);
+            if (!read.places.empty())
+                std::swap(read.places[i][1], read.places[i][2]);
         }
-    return {std::move(read.vertices), std::move(read.triangles), std::move(read.normals)};
+    return {std::move(read.vertices), std::move(read.triangles), std::move(read.normals), std::move(read.places)};
 }
 
 // Of its length twice the area; counterclockwise as seen from where it points to.
@@ -78,21 +83,45 @@ void set_normals(TriangleSurface& mesh, MeshNormals which, const glm::dmat4& tra
     complete(mesh);
 }
 
+void load(const MeshSurface& mesh, Surface& surface) {
+    TriangleSurface loaded = load(mesh, surface.transform, surface.material.kind == MaterialKind::dielectric);
+    set_normals(loaded, mesh.normals, surface.transform);
+    if (!surface.material.texture.empty() && loaded.places.empty())
+        throw InputError(fmt::format("{}: does not say where on a texture its corners are; export it with texture "
+                                     "coordinates (UVs)",
+                                     mesh.file.string()));
+    surface.shape = std::move(loaded);
+}
+
+std::shared_ptr<const Texture> load_texture(const std::filesystem::path& file) {
+    RadianceMap map = read_radiance_map(file);
+    for (std::size_t i = 0; i < map.texels.size(); ++i) {
+        const glm::vec3 color = map.texels[i];
+        if (const float most = std::max({color.x, color.y, color.z}); most > 1.0f)
+            throw InputError(fmt::format("{}: scatters {:g} of the light in one colour at column {}, row {}, more than "
+                                         "it gets; scale the texture to 1 at most",
+                                         file.string(), most, i % std::size_t(map.width), i / std::size_t(map.width)));
+    }
+    return std::make_shared<const Texture>(Texture{map.width, map.height, std::move(map.texels)});
+}
+
 } // namespace
 
-Scene with_surface_meshes(Scene scene) {
-    for (Surface& surface : scene.surfaces)
-        if (const auto* mesh = std::get_if<MeshSurface>(&surface.shape)) {
-            try {
-                TriangleSurface loaded =
-                    load(*mesh, surface.transform, surface.material.kind == MaterialKind::dielectric);
-                set_normals(loaded, mesh->normals, surface.transform);
-                surface.shape = std::move(loaded);
-            } catch (const InputError& error) { // of the file; the scene says who asked for it
-                throw InputError(surface.place.empty() ? error.what()
-                                                       : fmt::format("{}: {}", surface.place, error.what()));
-            }
+Scene with_surface_files(Scene scene) {
+    std::map<std::filesystem::path, std::shared_ptr<const Texture>> textures;
+    for (Surface& surface : scene.surfaces) {
+        Material& material = surface.material;
+        try {
+            if (const auto* found = std::get_if<MeshSurface>(&surface.shape))
+                load(MeshSurface(*found), surface);
+            if (!material.texture.empty() && !textures[material.texture])
+                textures[material.texture] = load_texture(material.texture);
+            if (!material.texture.empty())
+                material.image = textures[material.texture];
+        } catch (const InputError& error) { // of the file; the scene says who asked for it
+            throw InputError(surface.place.empty() ? error.what() : fmt::format("{}: {}", surface.place, error.what()));
         }
+    }
     return scene;
 }
 

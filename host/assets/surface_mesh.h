@@ -1,4 +1,4 @@
-// Surfaces that are triangles, as they are in files.
+// Surfaces as they are in files.
 #pragma once
 
 #include "scene.h"
@@ -6,8 +6,9 @@
 namespace vkvol {
 
 // With triangles in place of files; of a dielectric, which has to know what it encloses, closed and turned
-// outward. Throws InputError for a file that cannot be read, or that is not closed where it has to be.
-Scene with_surface_meshes(Scene scene);
+// outward. With textures' images. Throws InputError for a file that cannot be read, or that is not closed or has no
+// places on a texture where it has to.
+Scene with_surface_files(Scene scene);
 
 // Where all finite surfaces are, world space; none without any. Of meshes only once they are loaded.
 struct SurfaceBounds {

@@ -81,7 +81,8 @@ void DeviceScene::upload_media(const Scene& scene, const Method& method, const A
 
 void DeviceScene::make_surfaces(const Scene& scene, const Assets& assets) {
     form_ |= form_full | form_surfaces;
-    surfaces_ = make_surface_table(scene.surfaces, origin_);
+    surfaces_ = make_surface_table(scene.surfaces, origin_,
+                                   assets.sky ? static_cast<std::uint32_t>(assets.sky->texels.size()) : 0);
     const bool has_mesh = !assets.superposition && !assets.media.empty() && assets.media.front().bvh;
     const std::vector<shared::BvhNode> none;
     const std::vector<shared::BvhNode>& before = has_mesh ? assets.media.front().bvh->nodes : none;
@@ -90,6 +91,8 @@ void DeviceScene::make_surfaces(const Scene& scene, const Assets& assets) {
     frame_.planes = surfaces_.planes;
     text_ += fmt::format(", {} surfaces of {} pieces", surfaces_.rows.size(), surfaces_.primitives.size());
     buffers_.upload_surfaces(device_, commands_, surfaces_, before);
+    if (!surfaces_.texels.empty())
+        buffers_.upload_textures(device_, commands_, surfaces_.texels, assets.sky ? &*assets.sky : nullptr);
 }
 
 // World units from the origin; infinite where a medium is everywhere, or a plane.

@@ -158,6 +158,14 @@ void SceneBuffers::upload_surfaces(const Device& device, Commands& commands, con
     make_parts(device, commands, bvh_, "bounding volume hierarchies", Parts{bytes_of(before), bytes_of(table.nodes)});
 }
 
+void SceneBuffers::upload_textures(const Device& device, Commands& commands, const std::vector<glm::vec4>& texels,
+                                   const SkyMap* sky) {
+    const Parts parts{sky ? bytes_of(sky->texels) : Parts::value_type(), bytes_of(texels)};
+    check_size(device, "the texels of textures, and of the <sky>,", total(parts), "make the images smaller");
+    sky_.reset();
+    make_parts(device, commands, sky_, "sky and textures", parts);
+}
+
 void SceneBuffers::make_grids(const Device& device, Commands& commands, const Parts& grids, std::uint64_t most_bytes) {
     const std::uint64_t bytes = total(grids);
     if (bytes > most_bytes)

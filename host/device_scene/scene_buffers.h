@@ -37,6 +37,10 @@ public:
     // What particles come from. Throws InputError if it is too much for the device.
     void upload_emitters(const Device& device, Commands& commands, const EmitterTable& table);
 
+    // In the buffer of the sky's texels, behind these.
+    void upload_textures(const Device& device, Commands& commands, const std::vector<glm::vec4>& texels,
+                         const SkyMap* sky);
+
     // `before`: the hierarchy that the surfaces' follows in the same buffer.
     void upload_surfaces(const Device& device, Commands& commands, const SurfaceTable& table,
                          const std::vector<shared::BvhNode>& before);

@@ -1,6 +1,9 @@
 #include "surface_table.h"
 
 #include <cmath>
+#include <map>
+#include <optional>
+#include <tuple>
 
 #include "bvh.h"
 #include "shared/constants.h"
@@ -9,33 +12,52 @@ namespace vkvol {
 
 namespace {
 
-struct Bounded {
+struct Piece {
     shared::SurfacePrimitive primitive;
     BvhBox box;
-    const glm::mat3* normals = nullptr; // of its corners, as columns
+    const glm::mat3* normals = nullptr;                // of its corners, as columns
+    const glm::mat3x2* places = nullptr;               // of these on a texture
+    std::optional<shared::SurfacePrimitive> axes = {}; // by which a texture lies on it
 };
 
 // Pieces of one surface.
 class Pieces {
 public:
-    Pieces(std::uint32_t row, const glm::dvec3& origin, std::vector<shared::SurfacePrimitive>& planes,
-           std::vector<Bounded>& bounded)
-        : row_(row), origin_(origin), planes_(planes), bounded_(bounded) {}
+    Pieces(std::uint32_t row, const Surface& surface, const glm::dvec3& origin, std::vector<Piece>& planes,
+           std::vector<Piece>& bounded)
+        : row_(row), surface_(surface), origin_(origin), planes_(planes), bounded_(bounded) {}
 
-    void operator()(const BallSurface& ball) const { add(SURFACE_SPHERE, ball.center, glm::vec3(0.0f), ball.radius); }
-    void operator()(const DiskSurface& disk) const { add(SURFACE_DISK, disk.center, disk.normal, disk.radius); }
-    void operator()(const PlaneSurface& plane) const {
-        planes_.push_back({plane.point - origin_, row_, plane.normal, SURFACE_PLANE, glm::vec3(0.0f), 0});
+    void operator()(const BallSurface& ball) const {
+        add(SURFACE_SPHERE, ball.center, glm::vec3(0.0f), ball.radius, axes(1.0, 0.0));
     }
-    void operator()(const RectangleSurface& rectangle) const { (*this)(rectangle.triangles()); }
+    void operator()(const DiskSurface& disk) const {
+        add(SURFACE_DISK, disk.center, disk.normal, disk.radius, axes(0.5 / disk.radius, 0.5));
+    }
+    void operator()(const PlaneSurface& plane) const {
+        planes_.push_back({{plane.point - origin_, row_, plane.normal, SURFACE_PLANE, glm::vec3(0.0f), 0},
+                           {},
+                           nullptr,
+                           nullptr,
+                           axes(1.0, 0.0)});
+    }
+    void operator()(const RectangleSurface& rectangle) const {
+        static const TriangleSurface flat = RectangleSurface().triangles(); // whose places stay
+        TriangleSurface triangles = rectangle.triangles();
+        const std::size_t first = bounded_.size();
+        (*this)(triangles);
+        for (std::size_t i = first; i < bounded_.size(); ++i)
+            bounded_[i].places = bounded_[i].places ? &flat.places[i - first] : nullptr;
+    }
     void operator()(const MeshSurface&) const {} // not loaded: none
     void operator()(const TriangleSurface& mesh) const {
         for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
             const glm::uvec3 t = mesh.triangles[i];
-            Bounded piece{{mesh.vertices[t.x] - origin_, row_, mesh.vertices[t.y] - origin_, SURFACE_TRIANGLES,
-                           mesh.vertices[t.z] - origin_, 0},
-                          {},
-                          mesh.normals.empty() ? nullptr : &mesh.normals[i]};
+            const bool has_places = surface_.material.image && !mesh.places.empty();
+            Piece piece{{mesh.vertices[t.x] - origin_, row_, mesh.vertices[t.y] - origin_, SURFACE_TRIANGLES,
+                         mesh.vertices[t.z] - origin_, 0},
+                        {},
+                        mesh.normals.empty() ? nullptr : &mesh.normals[i],
+                        has_places ? &mesh.places[i] : nullptr};
             // One of no area has no normal, and no ray meets it.
             if (glm::length(glm::cross(piece.primitive.b - piece.primitive.a, piece.primitive.c - piece.primitive.a)) ==
                 0.0f)
@@ -48,19 +70,69 @@ public:
 
 private:
     // The box errs by the rounding of its middle and radius.
-    void add(std::uint32_t shape, const glm::dvec3& center, const glm::dvec3& normal, double radius) const {
+    void add(std::uint32_t shape, const glm::dvec3& center, const glm::dvec3& normal, double radius,
+             std::optional<shared::SurfacePrimitive> axes) const {
         const glm::vec3 middle = center - origin_;
         const float r = static_cast<float>(radius);
-        Bounded piece{{middle, row_, normal, shape, {r, 0.0f, 0.0f}, 0}, {}};
+        Piece piece{{middle, row_, normal, shape, {r, 0.0f, 0.0f}, 0}, {}, nullptr, nullptr, axes};
         piece.box.add(middle - r * 1.000001f);
         piece.box.add(middle + r * 1.000001f);
         bounded_.push_back(piece);
     }
 
+    // Of what is flat x and y alone: a place on the texture is how far along them it is, scaled, and from where.
+    std::optional<shared::SurfacePrimitive> axes(double scale, double from) const {
+        if (!surface_.material.image)
+            return std::nullopt;
+        const bool is_ball = std::holds_alternative<BallSurface>(surface_.shape);
+        const glm::dmat3 scaled = surface_.axes * scale;
+        return shared::SurfacePrimitive{scaled[0], 0, scaled[1], DETAIL_AXES, is_ball ? scaled[2] : glm::dvec3(from),
+                                        0};
+    }
+
     std::uint32_t row_;
+    const Surface& surface_;
     const glm::dvec3& origin_;
-    std::vector<shared::SurfacePrimitive>& planes_;
-    std::vector<Bounded>& bounded_;
+    std::vector<Piece>& planes_;
+    std::vector<Piece>& bounded_;
+};
+
+// Behind all that rays meet. Normals say where places are.
+void add_details(const Piece& piece, std::size_t i, std::vector<shared::SurfacePrimitive>& primitives) {
+    const auto here = static_cast<std::uint32_t>(primitives.size());
+    if (piece.normals || piece.places || piece.axes)
+        primitives[i].details = here;
+    if (const glm::mat3* n = piece.normals)
+        primitives.push_back({(*n)[0], piece.places ? here + 1 : 0, (*n)[1], DETAIL_NORMALS, (*n)[2], 0});
+    if (const glm::mat3x2* p = piece.places)
+        primitives.push_back({{(*p)[0], 0.0f}, 0, {(*p)[1], 0.0f}, DETAIL_PLACES, {(*p)[2], 0.0f}, 0});
+    if (piece.axes)
+        primitives.push_back(*piece.axes);
+}
+
+// Each after what it is; those of the same image and repeats once.
+class Textures {
+public:
+    Textures(std::uint32_t first, std::vector<glm::vec4>& texels) : first_(first), texels_(texels) {}
+
+    std::uint32_t row_of(const Material& material) {
+        if (!material.image)
+            return 0;
+        const auto [found, is_new] =
+            rows_.try_emplace(std::tuple(material.image.get(), material.repeat.x, material.repeat.y),
+                              first_ + static_cast<std::uint32_t>(texels_.size()) + 1);
+        if (is_new) {
+            texels_.emplace_back(material.image->width, material.image->height, material.repeat.x, material.repeat.y);
+            for (const glm::vec3& color : material.image->colors)
+                texels_.emplace_back(color, 0.0f);
+        }
+        return found->second;
+    }
+
+private:
+    std::uint32_t first_;
+    std::vector<glm::vec4>& texels_;
+    std::map<std::tuple<const Texture*, double, double>, std::uint32_t> rows_;
 };
 
 std::uint32_t code_of(const Material& material) {
@@ -110,28 +182,29 @@ shared::SurfaceRow row_of(const Surface& surface) {
 
 } // namespace
 
-SurfaceTable make_surface_table(const std::vector<Surface>& surfaces, const glm::dvec3& origin) {
+SurfaceTable make_surface_table(const std::vector<Surface>& surfaces, const glm::dvec3& origin,
+                                std::uint32_t first_texel) {
     SurfaceTable table;
-    std::vector<Bounded> bounded;
+    Textures textures(first_texel, table.texels);
+    std::vector<Piece> met, bounded; // planes first
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        const Pieces pieces(static_cast<std::uint32_t>(i), origin, table.primitives, bounded);
+        const Pieces pieces(static_cast<std::uint32_t>(i), surfaces[i], origin, met, bounded);
         std::visit(pieces, surfaces[i].shape);
         table.rows.push_back(row_of(surfaces[i]));
+        table.rows.back().texture = textures.row_of(surfaces[i].material);
     }
-    table.planes = static_cast<std::uint32_t>(table.primitives.size());
+    table.planes = static_cast<std::uint32_t>(met.size());
     std::vector<BvhBox> boxes;
-    for (const Bounded& piece : bounded)
+    for (const Piece& piece : bounded)
         boxes.push_back(piece.box);
     BoxTree tree = build_box_tree(boxes);
     for (const std::uint32_t i : tree.order)
-        table.primitives.push_back(bounded[i].primitive);
-    const std::size_t first = table.primitives.size() - tree.order.size();
-    table.met = static_cast<std::uint32_t>(table.primitives.size());
-    for (std::size_t at = 0; at < tree.order.size(); ++at) // behind all that rays meet
-        if (const glm::mat3* normals = bounded[tree.order[at]].normals) {
-            table.primitives[first + at].normals = static_cast<std::uint32_t>(table.primitives.size());
-            table.primitives.push_back({(*normals)[0], 0, (*normals)[1], 0, (*normals)[2], 0});
-        }
+        met.push_back(bounded[i]);
+    for (const Piece& piece : met)
+        table.primitives.push_back(piece.primitive);
+    table.met = static_cast<std::uint32_t>(met.size());
+    for (std::size_t i = 0; i < met.size(); ++i)
+        add_details(met[i], i, table.primitives);
     for (shared::BvhNode& node : tree.nodes)
         node.leaf += node.leaf != 0 ? 8 * table.planes : 0;
     table.nodes = std::move(tree.nodes);
@@ -145,6 +218,8 @@ int material_bits(const std::vector<Surface>& surfaces) {
     for (const Surface& surface : surfaces)
         if (const auto* mesh = std::get_if<TriangleSurface>(&surface.shape))
             bits |= mesh->normals.empty() ? 0 : 1 << SMOOTH_FACES;
+    for (const Surface& surface : surfaces)
+        bits |= surface.material.image ? 1 << TEXTURED : 0;
     return bits;
 }
 

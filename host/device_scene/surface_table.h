@@ -13,11 +13,13 @@ struct SurfaceTable {
     std::vector<shared::SurfacePrimitive> primitives; // planes first, then as leaves of the hierarchy name them
     std::vector<shared::BvhNode> nodes;
     std::uint32_t planes = 0;
-    std::uint32_t met = 0; // the first of the primitives, which rays meet; behind them are normals
+    std::uint32_t met = 0;         // the first of the primitives, which rays meet; behind them are their details
+    std::vector<glm::vec4> texels; // of textures, each after a vec4 of its width, height and repeats
 };
 
-// `origin`: of render space. Throws InputError if there are too many.
-SurfaceTable make_surface_table(const std::vector<Surface>& surfaces, const glm::dvec3& origin);
+// `origin`: of render space. `first_texel`: where those of textures will be.
+SurfaceTable make_surface_table(const std::vector<Surface>& surfaces, const glm::dvec3& origin,
+                                std::uint32_t first_texel = 0);
 
 // Bits of SPEC_MATERIALS.
 int material_bits(const std::vector<Surface>& surfaces);

@@ -55,7 +55,8 @@ struct Progress {
     const std::filesystem::path* path = nullptr;
     std::int64_t vertices = 0; // seen, from which negative indices count back
     std::vector<glm::vec3> normals;
-    std::vector<glm::ivec3> of_triangles; // which of these their corners have, from 0; -1: none
+    std::vector<glm::vec2> places;                             // on a texture
+    std::vector<glm::ivec3> of_triangles, places_of_triangles; // which of these their corners have, from 0; -1: none
     std::size_t faces = 0;
     std::vector<std::optional<Rgb>> materials;
     std::optional<Rgb> diffuse; // of the faces that follow
@@ -80,14 +81,16 @@ void add_face(Progress& progress, const tinyobj::index_t* corners, int count) {
                         "Clean Up > Delete Loose) and export the mesh again",
                         progress.path->string(), progress.faces));
     const std::uint32_t first = resolve(progress, corners[0].vertex_index);
-    const auto normal = [&](int i) {
-        const int index = corners[i].normal_index;
-        return index < 0 ? static_cast<int>(progress.normals.size()) + index : index - 1;
+    const auto from_zero = [](int index, std::size_t count) {
+        return index < 0 ? static_cast<int>(count) + index : index - 1;
     };
+    const auto normal = [&](int i) { return from_zero(corners[i].normal_index, progress.normals.size()); };
+    const auto place = [&](int i) { return from_zero(corners[i].texcoord_index, progress.places.size()); };
     for (int i = 2; i < count; ++i) {
         progress.obj->triangles.emplace_back(first, resolve(progress, corners[i - 1].vertex_index),
                                              resolve(progress, corners[i].vertex_index));
         progress.of_triangles.emplace_back(normal(0), normal(i - 1), normal(i));
+        progress.places_of_triangles.emplace_back(place(0), place(i - 1), place(i));
     }
     if (progress.faces == 1)
         progress.obj->diffuse = progress.diffuse;
@@ -111,6 +114,9 @@ tinyobj::callback_t make_callbacks() {
     };
     callbacks.normal_cb = [](void* user, tinyobj::real_t x, tinyobj::real_t y, tinyobj::real_t z) {
         static_cast<Progress*>(user)->normals.emplace_back(x, y, z);
+    };
+    callbacks.texcoord_cb = [](void* user, tinyobj::real_t x, tinyobj::real_t y, tinyobj::real_t) {
+        static_cast<Progress*>(user)->places.emplace_back(x, y);
     };
     callbacks.index_cb = [](void* user, tinyobj::index_t* corners, int count) {
         add_face(*static_cast<Progress*>(user), corners, count);
@@ -159,18 +165,19 @@ private:
     std::vector<std::string>& warnings_;
 };
 
-// A normal that is not there is none, and so is one of no length.
-std::vector<glm::mat3> normals_of(const Progress& progress) {
-    std::vector<glm::mat3> normals;
-    if (progress.normals.empty())
-        return normals;
-    for (const glm::ivec3& corners : progress.of_triangles) {
-        glm::mat3& found = normals.emplace_back(0.0f);
+// A normal or place that is not there is 0.
+template <class Corners, class Value>
+std::vector<Corners> of_corners(const std::vector<Value>& values, const std::vector<glm::ivec3>& of_triangles) {
+    std::vector<Corners> found;
+    for (const glm::ivec3& corners : of_triangles) {
+        if (values.empty())
+            break;
+        found.emplace_back(0.0f);
         for (int i = 0; i < 3; ++i)
-            if (corners[i] >= 0 && static_cast<std::size_t>(corners[i]) < progress.normals.size())
-                found[i] = progress.normals[static_cast<std::size_t>(corners[i])];
+            if (corners[i] >= 0 && static_cast<std::size_t>(corners[i]) < values.size())
+                found.back()[i] = values[static_cast<std::size_t>(corners[i])];
     }
-    return normals;
+    return found;
 }
 
 } // namespace
@@ -191,7 +198,8 @@ Polygons read_obj(const std::filesystem::path& path) {
     if (obj.triangles.empty())
         throw InputError(fmt::format("{}: has no faces; it must be a Wavefront .obj file that holds a closed surface",
                                      path.string()));
-    obj.normals = normals_of(progress);
+    obj.normals = of_corners<glm::mat3>(progress.normals, progress.of_triangles);
+    obj.places = of_corners<glm::mat3x2>(progress.places, progress.places_of_triangles);
     return obj;
 }
 

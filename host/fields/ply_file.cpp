@@ -38,6 +38,10 @@ struct Element {
     std::vector<Property> properties;
 };
 
+// Of places on a texture, across and upwards: programs differ.
+const std::vector<std::string> names_of_places[] = {{"u", "s", "texture_u", "texture_s"},
+                                                    {"v", "t", "texture_v", "texture_t"}};
+
 enum class Format { ascii, little_endian, big_endian };
 
 class PlyReader {
@@ -61,6 +65,9 @@ public:
         for (const glm::uvec3& t : mesh_.triangles)
             if (!normals_.empty())
                 mesh_.normals.emplace_back(normals_[t.x], normals_[t.y], normals_[t.z]);
+        for (const glm::uvec3& t : mesh_.triangles)
+            if (!places_.empty())
+                mesh_.places.emplace_back(places_[t.x], places_[t.y], places_[t.z]);
         if (mesh_.triangles.empty())
             throw InputError(fmt::format("{}: has no faces; export the mesh with them", path_.string()));
         return std::move(mesh_);
@@ -175,7 +182,8 @@ private:
             fail("its element has no properties");
         glm::dvec3 vertex(0.0);
         glm::vec3 normal(0.0f);
-        bool has_normal = false;
+        glm::vec2 place(0.0f);
+        bool has_normal = false, has_place = false;
         for (const Property& property : element.properties) {
             if (property.count) {
                 const double length = number(*property.count);
@@ -191,6 +199,12 @@ private:
                 normal[property.name[1] - 'x'] = static_cast<float>(value);
                 has_normal = true;
             }
+            for (int axis = 0; axis < 2; ++axis)
+                if (std::find(names_of_places[axis].begin(), names_of_places[axis].end(), property.name) !=
+                    names_of_places[axis].end()) {
+                    place[axis] = static_cast<float>(value);
+                    has_place = true;
+                }
         }
         if (element.name != "vertex")
             return;
@@ -200,6 +214,8 @@ private:
         mesh_.vertices.push_back(vertex);
         if (has_normal) // as all others
             normals_.push_back(normal);
+        if (has_place)
+            places_.push_back(place);
     }
 
     // A polygon becomes a fan, as that of an .obj file.
@@ -230,6 +246,7 @@ private:
     std::vector<Element> elements_;
     Polygons mesh_;
     std::vector<glm::vec3> normals_; // of vertices, or none
+    std::vector<glm::vec2> places_;  // likewise, on a texture
 };
 
 } // namespace

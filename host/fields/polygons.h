@@ -14,6 +14,7 @@ struct Polygons {
     std::vector<glm::dvec3> vertices;
     std::vector<glm::uvec3> triangles; // of every polygon, in the order of the file
     std::vector<glm::mat3> normals;    // of the triangles' corners, as columns, as written; or empty
+    std::vector<glm::mat3x2> places;   // likewise, on a texture
     std::optional<Rgb> diffuse;        // Kd of the first face's material
     bool several_diffuse = false;      // faces of another Kd follow
     std::vector<std::string> warnings; // material libraries that cannot be read

@@ -224,6 +224,12 @@ void add_surface(Writer& writer, const Surface& surface) {
     }
     if (material.roughness > 0.0)
         writer.add("roughness", material.roughness);
+    if (!material.texture.empty()) {
+        add_file(writer, material.texture);
+        writer.add("repeat", glm::dvec3(material.repeat, 0.0));
+        for (int column = 0; column < 3; ++column)
+            writer.add("axis", surface.axes[column]);
+    }
     writer.add("shine", surface.emission);
     if (surface.shines_both_ways)
         writer.add("sides", 2);

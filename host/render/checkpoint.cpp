@@ -129,6 +129,7 @@ RenderIdentity identify(const shared::FrameParams& frame, const Specialization& 
     digest.add_all(media);
     digest.add_all(surfaces.rows);
     digest.add_all(surfaces.primitives);
+    digest.add_all(surfaces.texels);
     digest.add_all(points);
     if (assets.sky)
         digest.add_all(assets.sky->texels);

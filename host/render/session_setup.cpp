@@ -48,7 +48,7 @@ MediaFigures figures_of(const Assets& assets) {
 } // namespace
 
 Session::Session(const Device& device, const Scene& scene, const RenderJob& job)
-    : scene_(with_surface_meshes(with_preset(scene))), job_(job), method_(choose_method(scene_)), commands_(device) {
+    : scene_(with_surface_files(with_preset(scene))), job_(job), method_(choose_method(scene_)), commands_(device) {
     load(device, scene.warnings);
     compile(device);
     watch_.lap();

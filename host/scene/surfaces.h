@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -28,6 +29,9 @@ struct TriangleSurface {
     std::vector<glm::uvec3> triangles;
     // At each triangle's corners, unit, as columns, of what it stands for; or empty.
     std::vector<glm::mat3> normals = {};
+    // Where they are on a texture, as columns: across and upwards, (0, 0) its lower left and (1, 1) its upper right; or
+    // empty.
+    std::vector<glm::mat3x2> places = {};
 };
 
 struct RectangleSurface {
@@ -37,7 +41,9 @@ struct RectangleSurface {
     TriangleSurface triangles() const {
         return {
             {center - edge_u - edge_v, center + edge_u - edge_v, center + edge_u + edge_v, center - edge_u + edge_v},
-            {{0, 1, 2}, {0, 2, 3}}};
+            {{0, 1, 2}, {0, 2, 3}},
+            {},
+            {{{0, 0}, {1, 0}, {1, 1}}, {{0, 0}, {1, 1}, {0, 1}}}};
     }
 };
 
@@ -63,6 +69,12 @@ enum class MaterialKind { diffuse, mirror, conductor, dielectric, coated };
 
 inline constexpr double least_roughness = 1e-3;
 
+// An image of colours, between the middles of whose texels they are interpolated linearly; it repeats without end.
+struct Texture {
+    int width = 0, height = 0;
+    std::vector<glm::vec3> colors; // linear Rec.709, in [0, 1], rows top to bottom
+};
+
 struct Material {
     MaterialKind kind = MaterialKind::diffuse;
     Rgb color{0.5};   // share of the light that goes on, in [0, 1]; of a conductor times Fresnel's; of what is
@@ -70,6 +82,9 @@ struct Material {
     double ior = 1.5; // of a dielectric: index of refraction of what it encloses over that around it; of a coat; > 0
     Rgb eta{1.0}, k{0.0}; // of a conductor: its complex index, eta + i k
     double roughness = 0; // of a conductor or dielectric: alpha of GGX, in [least_roughness, 1]; 0: smooth
+    std::filesystem::path texture = {}; // an image that multiplies the colour, of all but dielectrics; or empty
+    glm::dvec2 repeat{1.0}; // how many times it lies side by side across the shape, of a plane across a unit; > 0
+    std::shared_ptr<const Texture> image = {}; // once it is loaded
 };
 
 struct Surface {
@@ -78,7 +93,10 @@ struct Surface {
     Rgb emission{0.0};             // radiance from its front, which is where its normal points to
     bool shines_both_ways = false; // from its back too
     glm::dmat4 transform{1.0};     // of a mesh's file; the others are where they say
-    std::string place;             // "file:line:column", for messages; or empty
+    // Unit, x, y and z, of a ball, disk or plane, by which a texture lies on it: as on a globe whose poles are at y and
+    // whose middle column at z; or with its columns along y, z being the normal.
+    glm::dmat3 axes{1.0};
+    std::string place; // "file:line:column", for messages; or empty
 };
 
 } // namespace vkvol

@@ -65,9 +65,12 @@ void FileUses::reads_files_of(const Scene& scene) {
                     reads("the materials of a model", library);
             }
     }
-    for (const Surface& surface : scene.surfaces)
+    for (const Surface& surface : scene.surfaces) {
         if (const auto* mesh = std::get_if<MeshSurface>(&surface.shape))
             reads("a mesh of the scene", mesh->file);
+        if (!surface.material.texture.empty())
+            reads("a texture of the scene", surface.material.texture);
+    }
     for (const Light& light : scene.lights)
         if (const auto* sky = std::get_if<SkyLight>(&light); sky && !sky->daylight)
             reads("the scene's map of the sky", sky->file);

@@ -27,24 +27,28 @@ glm::dvec3 looking_at(const XmlElement& element, const glm::dvec3& position) {
     return unit(target - position);
 }
 
-Rectangle rectangle(const XmlElement& element) {
-    Rectangle shape;
-    shape.center = xyz(element, coordinate);
-    const glm::dvec3 normal = looking_at(element, shape.center);
+glm::dmat3 axes_facing(const XmlElement& element, const glm::dvec3& normal) {
     glm::dvec3 up = std::abs(normal.y) < 0.999 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
     if (element.has("up")) {
         const std::vector<double> numbers = element.attribute_numbers("up", any_number);
         if (numbers.size() != 3 || glm::dvec3(numbers[0], numbers[1], numbers[2]) == glm::dvec3(0.0))
-            element.fail_attribute("up", "<rectangle> up: expected a direction x y z, e.g. up=\"0 1 0\"");
+            element.fail_attribute(
+                "up", fmt::format("<{}> up: expected a direction x y z, e.g. up=\"0 1 0\"", element.name()));
         up = unit({numbers[0], numbers[1], numbers[2]});
     }
     const glm::dvec3 across = glm::cross(normal, up);
     if (glm::length(across) < 1e-6)
         element.fail_attribute(element.has("up") ? "up" : "lookAt",
-                               "<rectangle> up: is the direction that it faces; name another");
-    shape.edge_u = 0.5 * element.attribute_number("width", 1.0, length) * -glm::normalize(across);
-    shape.edge_v = 0.5 * element.attribute_number("height", 1.0, length) *
-                   glm::normalize(glm::cross(glm::normalize(across), normal));
+                               fmt::format("<{}> up: is the direction that it faces; name another", element.name()));
+    return {-glm::normalize(across), glm::normalize(glm::cross(glm::normalize(across), normal)), normal};
+}
+
+Rectangle rectangle(const XmlElement& element) {
+    Rectangle shape;
+    shape.center = xyz(element, coordinate);
+    const glm::dmat3 axes = axes_facing(element, looking_at(element, shape.center));
+    shape.edge_u = 0.5 * element.attribute_number("width", 1.0, length) * axes[0];
+    shape.edge_v = 0.5 * element.attribute_number("height", 1.0, length) * axes[1];
     return shape;
 }
 

@@ -20,6 +20,10 @@ struct Rectangle {
 };
 
 // By x, y, z, lookAt, up, width and height, as a camera of this `lookAt` and `up` would have it.
+// x, y and z, as columns, of what is flat and faces along z: `up`, or else what is upright, is upwards as seen from
+// there.
+glm::dmat3 axes_facing(const XmlElement& element, const glm::dvec3& normal);
+
 Rectangle rectangle(const XmlElement& element);
 
 } // namespace vkvol

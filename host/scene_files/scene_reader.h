@@ -67,6 +67,7 @@ private:
     void read_surfaces(Scene& scene);
     Surface surface(const XmlElement& element) const;
     Material material(const XmlElement& element) const;
+    void read_texture(const XmlElement& element, Material& material) const;
     glm::dmat4 transform() const;
     std::optional<Shape> shape(const std::string& integrator, std::string& place) const;
     XmlElement shape_element(const std::string& integrator) const;

@@ -15,10 +15,11 @@ const std::vector<std::string> shapes = {"sphere", "disk", "rectangle", "box", "
 constexpr Limits share{0.0, 1.0, true, true, "a number from 0 to 1"};
 constexpr Limits index_limits{0.05, 20.0, true, true, "an index of refraction from 0.05 to 20"};
 constexpr Limits rough{0.0, 1.0, true, true, "a number from 0 to 1"};
+constexpr Limits repeats{0.0, 1e6, false, true, "a number above 0, of at most a million"};
 constexpr Limits absorbing{0.0, 100.0, true, true, "a number from 0 to 100"};
 
-const std::vector<std::string> of_materials = {"material", "r",     "g",   "b", "multiplier",
-                                               "ior",      "metal", "eta", "k", "roughness"};
+const std::vector<std::string> of_materials = {"material", "r",   "g", "b",         "multiplier", "ior",
+                                               "metal",    "eta", "k", "roughness", "texture",    "repeat"};
 
 std::vector<std::string> with_material(std::vector<std::string> attributes) {
     attributes.insert(attributes.end(), of_materials.begin(), of_materials.end());
@@ -101,8 +102,10 @@ TriangleSurface moved(const glm::dmat4& map, TriangleSurface shape) {
     for (glm::dvec3& vertex : shape.vertices)
         vertex = moved(map, vertex);
     if (glm::determinant(glm::dmat3(map)) < 0.0) // a mirror turns them inside out
-        for (glm::uvec3& triangle : shape.triangles)
-            std::swap(triangle.y, triangle.z);
+        for (std::size_t i = 0; i < shape.triangles.size(); ++i) {
+            std::swap(shape.triangles[i].y, shape.triangles[i].z);
+            std::swap(shape.places[i][1], shape.places[i][2]);
+        }
     return shape;
 }
 
@@ -122,6 +125,12 @@ TriangleSurface box_of(const Box& box) {
         shape.vertices.push_back(box.center + box.size * (glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2) - 0.5));
     shape.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                        {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    // Each face shows the whole texture, upright, or above and below with its top at the back and at the front.
+    constexpr int first_place[] = {1, 0, 0, 3, 0, 1}; // of a face's first corner, among a square's counterclockwise
+    const glm::vec2 square[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    for (const int first : first_place)
+        for (const int second : {1, 2})
+            shape.places.emplace_back(square[first], square[(first + second) % 4], square[(first + second + 1) % 4]);
     return shape;
 }
 
@@ -148,8 +157,8 @@ Material SceneReader::material(const XmlElement& element) const {
     Material material;
     material.kind = choice->kind;
     const bool colored = element.has("r") || element.has("g") || element.has("b");
-    material.color =
-        colored ? color(element) : Rgb(choice->color * element.attribute_number("multiplier", 1.0, not_negative));
+    const double usual = element.has("texture") ? 1.0 : choice->color;
+    material.color = colored ? color(element) : Rgb(usual * element.attribute_number("multiplier", 1.0, not_negative));
     for (int i = 0; i < 3; ++i)
         if (material.color[i] > share.high)
             element.fail(
@@ -165,6 +174,9 @@ Material SceneReader::material(const XmlElement& element) const {
     for (const char* attribute : {"metal", "eta", "k"})
         only(attribute, {MaterialKind::conductor}, "conductor");
     only("roughness", {MaterialKind::conductor, MaterialKind::dielectric}, "conductor\" or \"dielectric");
+    only("texture", {MaterialKind::diffuse, MaterialKind::mirror, MaterialKind::conductor, MaterialKind::coated},
+         "diffuse\", \"mirror\", \"conductor\" or \"coated");
+    read_texture(element, material);
     material.ior = element.attribute_number("ior", material.ior, index_limits);
     if (material.kind == MaterialKind::coated && material.ior < 1.0)
         element.fail_attribute(
@@ -183,6 +195,26 @@ Material SceneReader::material(const XmlElement& element) const {
     return material;
 }
 
+void SceneReader::read_texture(const XmlElement& element, Material& material) const {
+    if (element.has("repeat") && !element.has("texture"))
+        element.fail_attribute(
+            "repeat", fmt::format("<{}> repeat: has a meaning with texture=\"image.png\" only", element.name()));
+    if (!element.has("texture"))
+        return;
+    if (element.attribute("texture").empty())
+        element.fail_attribute(
+            "texture",
+            fmt::format("<{}> texture: names no file; write one, e.g. texture=\"wood.png\"", element.name()));
+    material.texture = file_path(element, element.attribute("texture"));
+    const std::vector<double> times = element.attribute_numbers("repeat", repeats);
+    if (times.size() > 2)
+        element.fail_attribute("repeat", fmt::format("<{}> repeat: {} numbers; expected one, or two for across and "
+                                                     "upwards",
+                                                     element.name(), times.size()));
+    if (!times.empty())
+        material.repeat = {times.front(), times.back()};
+}
+
 // Within its own scope.
 Surface SceneReader::surface(const XmlElement& element) const {
     Surface surface;
@@ -197,17 +229,19 @@ Surface SceneReader::surface(const XmlElement& element) const {
         allow({"x", "y", "z", "radius"});
         surface.shape = BallSurface{moved(map, xyz(element, coordinate)),
                                     element.attribute_number("radius", 1.0, length) * scale_of(element, map)};
+        surface.axes = glm::dmat3(map) / scale_of(element, map);
     } else if (kind == "disk") {
-        allow({"x", "y", "z", "lookAt", "radius"});
+        allow({"x", "y", "z", "lookAt", "up", "radius"});
         const glm::dvec3 center = xyz(element, coordinate), normal = looking_at(element, center);
         surface.shape = DiskSurface{moved(map, center), vkvol::unit(glm::dmat3(map) * normal),
                                     element.attribute_number("radius", 1.0, length) * scale_of(element, map)};
+        surface.axes = glm::dmat3(map) * axes_facing(element, normal) / scale_of(element, map);
     } else if (kind == "plane") {
-        allow({"x", "y", "z", "lookAt"});
+        allow({"x", "y", "z", "lookAt", "up"});
         const glm::dvec3 point = xyz(element, coordinate);
         const glm::dvec3 normal = element.has("lookAt") ? looking_at(element, point) : glm::dvec3(0.0, 1.0, 0.0);
-        scale_of(element, map);
         surface.shape = PlaneSurface{moved(map, point), vkvol::unit(glm::dmat3(map) * normal)};
+        surface.axes = glm::dmat3(map) * axes_facing(element, normal) / scale_of(element, map);
     } else if (kind == "rectangle") {
         allow({"x", "y", "z", "lookAt", "up", "width", "height"});
         surface.shape = moved(map, rectangle(element));

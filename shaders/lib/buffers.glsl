@@ -73,6 +73,7 @@ const int PATHS = PATHS_CAMERA;
 layout(constant_id = SPEC_MIS) const int MIS = MIS_BALANCE;
 #ifdef SURFACES
 layout(constant_id = SPEC_MATERIALS) const int MATERIALS = 1 << MATERIAL_DIFFUSE;
+const bool HAS_TEXTURES = (MATERIALS & 1 << TEXTURED) != 0;
 const bool HAS_SMOOTH_FACES = (MATERIALS & 1 << SMOOTH_FACES) != 0;
 const bool HAS_SURFACES = true;
 #else

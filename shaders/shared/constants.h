@@ -24,7 +24,7 @@
 #define BINDING_SAMPLES 18    // staged: vec3 radiance per sample that waits to be added to the film
 #define BINDING_PLACES 19     // staged: SamplePlace
 #define BINDING_LIGHTS 20     // LightRow, those that are chosen among
-#define BINDING_SKY 21        // vec4 per texel of a map of the sky, see sky.glsl
+#define BINDING_SKY 21        // vec4 per texel of a map of the sky, see sky.glsl, and then of textures, see texture.glsl
 #define BINDING_SKY_ALIAS 22  // AliasEntry per row of that map, then per texel
 #define BINDING_LIGHT_TREE 23 // LightNode, depth first
 #define BINDING_PHASE 24      // PhaseNode, of phase functions that are tables
@@ -94,7 +94,7 @@
 #define SPEC_MEMBER_FIELD 25 // FIELD_...
 #define SPEC_MEMBER_GRID 26  // 0: all that are grids have the same one
 #define SPEC_CELL_BITS 27    // of several media: log2 of the cells along the edge of a coarse one; 0: there are no coarse ones
-#define SPEC_MATERIALS 28    // bits, 1 << MATERIAL_..., of those that the surfaces have; SMOOTH_FACES
+#define SPEC_MATERIALS 28    // bits, 1 << MATERIAL_..., of those that the surfaces have; SMOOTH_FACES, TEXTURED
 #define SPEC_MAP 29          // MAP_...
 #define SPEC_MAP_HALVINGS 30 // log2 of the knots in a map's table
 #define SPEC_UNBOUNDED 31    // 1: some medium is everywhere
@@ -222,7 +222,14 @@
 #define MATERIAL_COATED 4 // diffuse, below a smooth dielectric
 #define MATERIAL_ROUGH_CONDUCTOR 5
 #define MATERIAL_ROUGH_DIELECTRIC 6
-#define SMOOTH_FACES 7 // no material: a bit of SPEC_MATERIALS, that some triangles have normals of their own
+// No materials, but further bits of SPEC_MATERIALS.
+#define SMOOTH_FACES 7 // some triangles have normals of their own
+#define TEXTURED 8     // some surfaces have a texture
+
+// What a piece of surfaces is that rays do not meet.
+#define DETAIL_NORMALS 1 // a, b, c: of a triangle's corners; surface: the piece that is their places, or 0
+#define DETAIL_PLACES 2  // a.xy, b.xy, c.xy: of its corners on a texture
+#define DETAIL_AXES 3    // by which a texture lies on what is no triangle: of a ball x, y, z; else x, y, and from where
 
 // In place of a primitive's number; and a bit that is set where there is one.
 #define NO_SURFACE 0xffffffffu

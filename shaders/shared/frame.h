@@ -243,7 +243,7 @@ struct SurfaceRow {
     vec3 eta;      // index of refraction, of a dielectric the same in all channels: of its inside to that of its outside
     uint sides;    // that shine: 1 or 2
     vec3 k;        // of a conductor, the index's imaginary part; of what is coated, x: what its coat throws back at it
-    uint unused;   // so that it is four texels
+    uint texture;  // that multiplies the colour: 1 and where it is in BINDING_SKY; or 0
 };
 
 // A piece of a surface that a ray meets at once. Render space.
@@ -253,7 +253,7 @@ struct SurfacePrimitive {
     vec3 b; // a unit normal
     uint shape; // SURFACE_...
     vec3 c; // and the radius, in x
-    uint normals; // of a triangle whose corners have normals of their own, the piece whose a, b, c these are; else 0
+    uint details; // a piece that rays do not meet, DETAIL_..., or 0
 };
 
 // Of a binary tree over lights, in depth-first order; a branch's left one follows it.

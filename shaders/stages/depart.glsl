@@ -61,7 +61,7 @@ void scatter_at_surface(uvec4 words, inout Lane lane, inout Rng rng) {
     SurfacePoint at = surface_point(surface_at(lane.path), lane.path.position);
     vec4 u = to_uniform(words);
     uvec4 key = takes_walks() ? next_words(rng) : uvec4(0u);
-    Bsdf bsdf = bsdf_of(surface_row(at.row), at, wo, key);
+    Bsdf bsdf = bsdf_of(row_at(at), at, wo, key);
     BsdfSample drawn = bsdf_sample(bsdf, wo, u.yzx);
     bool crosses = dot(drawn.direction, bsdf.face) < 0.0;
     lane.path.position = at.position + (crosses ? -at.apart : at.apart) * bsdf.face;

@@ -13,7 +13,7 @@ void arrive_at_surface(MediumParams v, inout Lane lane, inout Rng rng, inout Tal
     if (!NULL_FLIGHT && !goes_through())
         lane.beta *= depth_weight(v, lane.beta, lane.walk.depth, false);
     SurfacePoint at = surface_point(lane.struck, lane.path.position + lane.reach * lane.path.direction);
-    SurfaceRow row = surface_row(at.row);
+    SurfaceRow row = row_at(at);
     if (!is_particle(lane))
         add_light(lane, lane.beta * surface_emission(row, at.normal, lane.path.direction),
                   kind_label(lane.path.depth) | lane.first_label);

@@ -4,7 +4,7 @@
 #define BSDF_GLSL
 #include "lib/buffers.glsl"
 #include "surfaces/microsurface.glsl"
-#include "surfaces/surface_point.glsl"
+#include "surfaces/texture.glsl"
 
 struct Bsdf {
     uint material;

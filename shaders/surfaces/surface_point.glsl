@@ -1,6 +1,7 @@
 // Where a ray meets a piece of a surface, and what is there. All in render space.
 #ifndef SURFACE_POINT_GLSL
 #define SURFACE_POINT_GLSL
+#include "lib/directions.glsl"
 #include "shapes/mesh.glsl"
 
 // `itself`: the ray comes from this ball. Then it leaves, or meets the far side at the end of a chord, and rounding has no say
@@ -67,18 +68,44 @@ struct SurfacePoint {
     vec3 position; // on the surface, as exactly as can be
     vec3 normal;   // unit, outward
     vec3 smooth_normal; // of the surface that its faces stand for
+    vec2 place;    // on a texture
     float apart;   // from the surface, where no ray meets it again by rounding
     uint row;
 };
 
-// By the areas of the parts into which the point divides the triangle.
-vec3 smooth_normal(SurfacePrimitive p, vec3 at, vec3 flat_normal) {
+// The areas, but for a factor, of the parts into which the point divides the triangle: those across from a, b and c.
+vec3 parts_of(SurfacePrimitive p, vec3 at) {
     vec3 across = cross(p.b - p.a, p.c - p.a);
     float u = dot(cross(p.c - p.b, at - p.b), across), v = dot(cross(p.a - p.c, at - p.c), across);
-    float w = dot(across, across) - u - v;
-    SurfacePrimitive n = primitive_at(p.normals);
-    vec3 mixed = u * n.a + v * n.b + w * n.c;
-    return p.normals != 0u && dot(mixed, flat_normal) > 0.0 ? normalize(mixed) : flat_normal;
+    return vec3(u, v, dot(across, across) - u - v);
+}
+
+vec3 smooth_normal(SurfacePrimitive p, vec3 at, vec3 flat_normal) {
+    vec3 parts = parts_of(p, at);
+    SurfacePrimitive n = primitive_at(p.details);
+    vec3 mixed = parts.x * n.a + parts.y * n.b + parts.z * n.c;
+    bool has_normals = p.details != 0u && n.shape == DETAIL_NORMALS;
+    return has_normals && dot(mixed, flat_normal) > 0.0 ? normalize(mixed) : flat_normal;
+}
+
+// As on a globe, in the middle of whose map is z.
+vec2 place_on_ball(SurfacePrimitive axes, vec3 normal) {
+    vec3 d = vec3(dot(axes.a, normal), dot(axes.b, normal), dot(axes.c, normal));
+    return vec2(longitude_of(vec3(d.x, d.y, -d.z)) * (0.5 / PI) + 0.5, 1.0 - atan(length(d.xz), d.y) / PI);
+}
+
+vec2 texture_place(SurfacePrimitive p, vec3 at, vec3 normal) {
+    SurfacePrimitive details = primitive_at(p.details);
+    if (p.shape == SURFACE_TRIANGLES && details.shape == DETAIL_NORMALS)
+        details = primitive_at(details.surface);
+    vec2 place = vec2(dot(details.a, at - p.a), dot(details.b, at - p.a)) + details.c.xy;
+    if (p.shape == SURFACE_SPHERE)
+        place = place_on_ball(details, normal);
+    if (p.shape == SURFACE_TRIANGLES) {
+        vec3 parts = parts_of(p, at);
+        place = (parts.x * details.a.xy + parts.y * details.b.xy + parts.z * details.c.xy) / (parts.x + parts.y + parts.z);
+    }
+    return place;
 }
 
 // Of what is flat an offset of 64 u R, with u = 2^-24 and R the greatest coordinate that there is in it, is beyond the error of 28
@@ -99,10 +126,13 @@ SurfacePoint surface_point(uint i, vec3 near) {
         reach += p.c.x;
     }
     at.smooth_normal = at.normal;
+    at.place = vec2(0.0);
 #ifdef SURFACES
     if (HAS_SMOOTH_FACES)
         if (shape == SURFACE_TRIANGLES)
             at.smooth_normal = smooth_normal(p, at.position, at.normal);
+    if (HAS_TEXTURES)
+        at.place = texture_place(p, at.position, at.normal);
 #endif
     at.apart = 3.8147e-6 * max(reach.x, max(reach.y, reach.z));
     return at;

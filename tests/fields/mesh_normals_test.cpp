@@ -19,7 +19,7 @@ TriangleSurface loaded(const std::filesystem::path& file, MeshNormals normals = 
     surface.shape = MeshSurface{file, normals};
     surface.transform = transform;
     surface.material.kind = kind;
-    return std::get<TriangleSurface>(with_surface_meshes(scene).surfaces.front().shape);
+    return std::get<TriangleSurface>(with_surface_files(scene).surfaces.front().shape);
 }
 
 void check_near(const glm::vec3& a, const glm::dvec3& b) {

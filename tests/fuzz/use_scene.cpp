@@ -193,11 +193,14 @@ void check_surfaces(const std::vector<Surface>& surfaces, const glm::dvec3& orig
         for (int i = 0; i < 3; ++i)
             expect(row.color[i] >= 0.0f && row.color[i] <= 1.0f, "a surface scatters more than it gets");
     }
-    for (const shared::SurfacePrimitive& piece : table.primitives) {
+    for (std::size_t i = 0; i < table.primitives.size(); ++i) {
+        const shared::SurfacePrimitive& piece = table.primitives[i];
         expect_finite(piece.a, "a piece of a surface is not finite");
         expect_finite(piece.b, "a piece of a surface is not finite");
         expect_finite(piece.c, "a piece of a surface is not finite");
-        expect(piece.surface < table.rows.size(), "a piece of no surface");
+        expect(piece.details < table.primitives.size(), "a piece without its details");
+        if (i < table.met)
+            expect(piece.surface < table.rows.size(), "a piece of no surface");
     }
     for (const shared::BvhNode& node : table.nodes)
         expect(node.skip <= table.nodes.size() && (node.leaf >> 3) + (node.leaf & 7) <= table.primitives.size(),
@@ -205,7 +208,7 @@ void check_surfaces(const std::vector<Surface>& surfaces, const glm::dvec3& orig
 }
 
 void use_scene(const Scene& authored) {
-    const Scene scene = with_surface_meshes(with_preset(authored));
+    const Scene scene = with_surface_files(with_preset(authored));
     const Method method = choose_method(scene);
     expect(scene_hash(scene).size() == 16, "a scene hash has 16 digits");
     const Assets assets = load_assets(scene, method);

@@ -286,6 +286,7 @@ TEST_CASE("a batch of particles that would not end is given up whole", "[gpu][pa
     Scene scene = still({with_material(BallSurface{{0.0, 0.0, 0.0}, 20.0}, MaterialKind::diffuse)},
                         {PointLight{{0.0, 3.0, 0.0}, Rgb(1.0)}});
     scene.volumes.clear();
+    scene.surfaces.pop_back(); // the floor
     scene.surfaces.front().material.color = Rgb(1.0);
     scene.settings.spp = 4;
     RenderJob job;

@@ -17,7 +17,7 @@ constexpr double least = 1e-9; // from where a ray begins, in units of the scene
 
 void keep_nearer(std::optional<SurfaceHit>& found, double t, const glm::dvec3& normal, const vkvol::Surface& surface) {
     if (t > least && (!found || t < found->t))
-        found = {t, normal, normal, &surface};
+        found = {t, normal, normal, &surface, {}};
 }
 
 // Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
@@ -30,6 +30,45 @@ std::optional<glm::dvec3> meet_triangle(const glm::dvec3& a, const glm::dvec3& b
     const glm::dvec3 s = ray.origin - a, q = glm::cross(s, u);
     const double x = glm::dot(s, p) / det, y = glm::dot(ray.direction, q) / det;
     return x >= 0.0 && y >= 0.0 && x + y <= 1.0 ? std::optional(glm::dvec3(glm::dot(v, q) / det, x, y)) : std::nullopt;
+}
+
+// Of what is no mesh, in shares of its texture from the lower left.
+glm::dvec2 place_on(const vkvol::Surface& surface, const glm::dvec3& at, const glm::dvec3& normal) {
+    const glm::dvec3 own = glm::transpose(surface.axes) * normal;
+    if (std::holds_alternative<vkvol::BallSurface>(surface.shape))
+        return {0.5 + std::atan2(own.x, own.z) / (2.0 * pi), 0.5 + std::asin(glm::clamp(own.y, -1.0, 1.0)) / pi};
+    if (const auto* disk = std::get_if<vkvol::DiskSurface>(&surface.shape))
+        return 0.5 + glm::dvec2(glm::transpose(surface.axes) * (at - disk->center)) / (2.0 * disk->radius);
+    if (const auto* plane = std::get_if<vkvol::PlaneSurface>(&surface.shape))
+        return glm::transpose(surface.axes) * (at - plane->point);
+    const auto& r = std::get<vkvol::RectangleSurface>(surface.shape);
+    const auto share = [&](const glm::dvec3& edge) {
+        return 0.5 + 0.5 * glm::dot(at - r.center, edge) / glm::dot(edge, edge);
+    };
+    return {share(r.edge_u), share(r.edge_v)};
+}
+
+// The sum of all texels' tents, of which four are not 0 there.
+Rgb texture_color(const vkvol::Material& material, const glm::dvec2& place) {
+    const vkvol::Texture& image = *material.image;
+    const double x = place.x * material.repeat.x * image.width, y = -place.y * material.repeat.y * image.height;
+    Rgb color(0.0);
+    for (const double column : {std::floor(x - 0.5), std::floor(x + 0.5)})
+        for (const double row : {std::floor(y - 0.5), std::floor(y + 0.5)}) {
+            const double tent = (1.0 - std::abs(x - column - 0.5)) * (1.0 - std::abs(y - row - 0.5));
+            const auto wrapped = [](double i, int n) { return static_cast<int>(i - n * std::floor(i / n)); };
+            color +=
+                tent *
+                Rgb(image.colors[std::size_t(wrapped(row, image.height) * image.width + wrapped(column, image.width))]);
+        }
+    return color;
+}
+
+vkvol::Material material_at(const SurfaceHit& hit) {
+    vkvol::Material material = hit.surface->material;
+    if (material.image)
+        material.color *= texture_color(material, hit.place);
+    return material;
 }
 
 void meet(const vkvol::Surface& surface, const Ray& ray, std::optional<SurfaceHit>& found) {
@@ -46,6 +85,10 @@ void meet(const vkvol::Surface& surface, const Ray& ray, std::optional<SurfaceHi
             const double before = found ? found->t : -1.0;
             if (at)
                 keep_nearer(found, at->x, glm::normalize(glm::cross(b - a, c - a)), surface);
+            if (at && !mesh->places.empty() && found && found->t != before) {
+                const glm::dmat3x2 p(mesh->places[i]);
+                found->place = p[0] + at->y * (p[1] - p[0]) + at->z * (p[2] - p[0]);
+            }
             if (at && !mesh->normals.empty() && found && found->t != before) {
                 const glm::dmat3 n(mesh->normals[i]);
                 const glm::dvec3 mixed = n[0] + at->y * (n[1] - n[0]) + at->z * (n[2] - n[0]);
@@ -191,17 +234,19 @@ std::optional<SurfaceHit> nearest_surface(const std::vector<vkvol::Surface>& sur
     std::optional<SurfaceHit> found;
     for (const vkvol::Surface& surface : surfaces)
         meet(surface, ray, found);
+    if (found && !std::holds_alternative<vkvol::TriangleSurface>(found->surface->shape))
+        found->place = place_on(*found->surface, ray.at(found->t), found->normal);
     return found && found->t < ray.reach ? found : std::nullopt;
 }
 
 Rgb scatter_value(const SurfaceHit& hit, const glm::dvec3& travel, const glm::dvec3& direction, Rng& rng) {
     const Sides sides(hit, travel);
-    return sides.disagree(direction) ? Rgb(0.0) : value(hit.surface->material, sides, travel, direction, rng);
+    return sides.disagree(direction) ? Rgb(0.0) : value(material_at(hit), sides, travel, direction, rng);
 }
 
 Scattered scatter(const SurfaceHit& hit, const glm::dvec3& travel, const Draw& draw, Rng& rng) {
     const Sides sides(hit, travel);
-    Scattered next = drawn(hit.surface->material, sides, travel, draw, rng);
+    Scattered next = drawn(material_at(hit), sides, travel, draw, rng);
     if (sides.disagree(next.direction))
         next.weight = Rgb(0.0);
     return next;

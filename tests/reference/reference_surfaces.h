@@ -15,6 +15,7 @@ struct SurfaceHit {
     glm::dvec3 normal; // unit, outward
     glm::dvec3 smooth; // likewise, of what a face stands for
     const vkvol::Surface* surface;
+    glm::dvec2 place = {}; // on its texture
 };
 
 // The nearest within the ray's reach.

@@ -1,0 +1,210 @@
+// Images on surfaces: by closed form, against the reference on every shape, and as files have them.
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+#include <fstream>
+
+#include "error.h"
+#include "scene_hash.h"
+#include "support/images.h"
+#include "support/scene_text.h"
+#include "support/scenes.h"
+#include "support/test_directory.h"
+#include "surface_mesh.h"
+
+using namespace vkvol;
+using Catch::Contains;
+
+namespace {
+
+// Colours without any order.
+std::shared_ptr<const Texture> motley(int width, int height) {
+    Texture image{width, height, {}};
+    for (int i = 0; i < width * height; ++i)
+        image.colors.emplace_back(float(i * 37 % 101) / 100.0f, float(i * 53 % 97) / 96.0f, float(i * 71 % 89) / 88.0f);
+    return std::make_shared<const Texture>(image);
+}
+
+Surface textured(SurfaceShape shape, const std::shared_ptr<const Texture>& image, glm::dvec2 repeat = glm::dvec2(1.0)) {
+    Surface surface;
+    surface.shape = std::move(shape);
+    surface.material.color = Rgb(1.0);
+    surface.material.image = image;
+    surface.material.repeat = repeat;
+    return surface;
+}
+
+glm::dmat3 turned_axes(const glm::dvec3& z) {
+    const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0.3, 1.0, 0.2), z));
+    return {x, glm::cross(z, x), z};
+}
+
+// Of two triangles that do not agree about where on the image they are, and lean on each other.
+TriangleSurface tent() {
+    return {{{-1.2, -1.0, 0.0}, {0.0, -1.0, 0.8}, {0.0, 1.0, 0.8}, {1.2, -1.0, 0.0}},
+            {{0, 1, 2}, {1, 3, 2}},
+            {},
+            {{{0.1, 0.0}, {1.3, 0.2}, {0.4, -0.9}}, {{0.0, 0.0}, {0.5, 0.1}, {0.2, 2.0}}}};
+}
+
+std::vector<Surface> all_shapes() {
+    TriangleSurface round = tent();
+    const glm::vec3 left = glm::normalize(glm::vec3(-0.8f, 0.0f, 1.0f)),
+                    right = glm::normalize(glm::vec3(0.8f, 0.0f, 1.0f)), ridge(0.0f, 0.0f, 1.0f);
+    round.normals = {{left, ridge, ridge}, {ridge, right, ridge}};
+    for (glm::dvec3& vertex : round.vertices)
+        vertex += glm::dvec3(1.8, 1.4, -0.5);
+    TriangleSurface flat = tent();
+    for (glm::dvec3& vertex : flat.vertices)
+        vertex += glm::dvec3(-1.8, 1.4, -0.5);
+    std::vector<Surface> all = {
+        textured(PlaneSurface{{0.3, -1.4, 0.0}, {0.0, 1.0, 0.0}}, motley(3, 2), {0.4, 0.7}),
+        textured(BallSurface{{-1.6, -0.6, 0.6}, 0.8}, motley(7, 5)),
+        textured(DiskSurface{{0.1, 0.0, -1.0}, glm::normalize(glm::dvec3(0.2, 0.3, 1.0)), 0.9}, motley(4, 4),
+                 {1.5, 1.0}),
+        textured(RectangleSurface{{1.6, -0.6, 0.4}, {0.7, 0.2, 0.0}, {-0.2, 0.7, 0.0}}, motley(5, 4), {1.0, 2.0}),
+        textured(flat, motley(6, 3)),
+        textured(round, motley(6, 3))};
+    all[0].axes = glm::dmat3({1.0, 0.0, 0.0}, {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0});
+    all[1].axes = turned_axes(glm::normalize(glm::dvec3(0.5, 0.4, 1.0)));
+    all[2].axes = turned_axes(std::get<DiskSurface>(all[2].shape).normal);
+    all[1].material.kind = MaterialKind::coated;
+    all[3].material.kind = MaterialKind::mirror;
+    all[4].material.color = {0.9, 0.6, 0.3};
+    return all;
+}
+
+// Without a medium, in an even sky.
+Scene bare(int pixels, int spp) {
+    Scene scene =
+        scene_of(medium(Sphere{{0.0, 0.0, 0.0}, 1.0}, 0.0, 0.0), 5.5, pixels, 9.0, glm::dvec3(0.0), {-8.0, 12.0, 0.0});
+    scene.volumes.clear();
+    scene.background = Rgb(1.0);
+    scene.settings.spp = spp;
+    return scene;
+}
+
+} // namespace
+
+// In an even sky what is flat and matte is as bright as it is coloured. Over a texel its own colour has the mean weight
+// 3/4, and those beside it 1/8 each.
+TEST_CASE("a texel is seen where it lies, and its neighbours beside it", "[gpu][image][surfaces]") {
+    constexpr int n = 8;
+    const int times = GENERATE(1, 2);
+    const auto image = motley(n / times, n / times);
+    Scene scene = bare(n, 1024);
+    scene.camera = {};
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.view_height = 2.0;
+    scene.camera.position = {0.0, 5.0, 0.0};
+    scene.camera.pitch = -90.0; // right is x, upwards -z
+    scene.surfaces = {
+        textured(RectangleSurface{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, -1.0}}, image, glm::dvec2(times))};
+    std::vector<Rgb> expected;
+    for (int row = 0; row < n; ++row)
+        for (int column = 0; column < n; ++column) {
+            Rgb sum(0.0);
+            for (int y = -1; y <= 1; ++y)
+                for (int x = -1; x <= 1; ++x) {
+                    const int i = (row + y + n) % image->height, k = (column + x + n) % image->width;
+                    sum += (x == 0 ? 0.75 : 0.125) * (y == 0 ? 0.75 : 0.125) *
+                           Rgb(image->colors[std::size_t(i * image->width + k)]);
+                }
+            expected.push_back(sum);
+        }
+    CHECK_AGREEMENT(agree_with_means(render_here(scene, 1).film, expected, "texels"));
+}
+
+TEST_CASE("textures on every shape equal the reference", "[gpu][image][surfaces]") {
+    Scene scene = bare(20, 256);
+    scene.surfaces = all_shapes();
+    scene.lights = {SunLight{glm::normalize(glm::dvec3(0.5, 1.0, 1.2)), {2.0, 1.5, 1.0}, 10.0}};
+    scene.background = {0.4, 0.5, 0.7};
+    CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_reference(scene, 2), "textures"));
+    // Beside a map of the sky, in whose buffer they are.
+    RadianceMap map{4, 2, {}, 0};
+    for (int i = 0; i < 8; ++i)
+        map.texels.emplace_back(0.2f + 0.1f * float(i), 0.5f, 0.9f - 0.1f * float(i));
+    scene.lights.push_back(write_sky(map));
+    CHECK_AGREEMENT(agree(render_here(scene, 3).film, render_reference(scene, 4), "textures under a sky"));
+}
+
+TEST_CASE("places on textures are those of the file", "[cpu][mesh][surfaces]") {
+    const TestDirectory directory;
+    RadianceMap map{2, 2, {{0.0f, 0.5f, 1.0f}, {0.1f, 0.2f, 0.3f}, {1.0f, 1.0f, 1.0f}, {0.0f, 0.0f, 0.0f}}, 0};
+    Surface surface;
+    surface.material.texture = write_sky(map).file;
+    const auto loaded = [&](const std::filesystem::path& file) {
+        Scene scene;
+        surface.shape = MeshSurface{file};
+        scene.surfaces = {surface, surface};
+        return with_surface_files(scene).surfaces;
+    };
+    const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    const auto all = loaded(directory.write("a.obj", corners + "vt 0.1 0.2\nvt 0.3 0.4\nvt 2 -1\nf 1/1 2/-2 3/3\n"));
+    CHECK(all[0].material.image->colors == map.texels);
+    CHECK(all[0].material.image == all[1].material.image);
+    CHECK(std::get<TriangleSurface>(all[0].shape).places ==
+          std::vector<glm::mat3x2>{{{0.1f, 0.2f}, {0.3f, 0.4f}, {2.0f, -1.0f}}});
+    surface.transform[0][0] = -1.0; // a mirror: corners change places
+    CHECK(std::get<TriangleSurface>(
+              loaded(directory.write("a.obj", corners + "vt 0.1 0.2\nvt 0.3 0.4\nvt 2 -1\nf 1/1 2/2 3/3\n"))[0].shape)
+              .places[0][1] == glm::vec2(2.0f, -1.0f));
+    surface.transform = glm::dmat4(1.0);
+    for (const char* names : {"s t", "u v", "texture_u texture_v"}) {
+        const std::string text(names);
+        const std::size_t space = text.find(' ');
+        const auto ply = loaded(directory.write(
+            "a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                     "property float " +
+                         text.substr(0, space) + "\nproperty float " + text.substr(space + 1) +
+                         "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                         "0 0 0 0.5 0.25\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n"));
+        CHECK(std::get<TriangleSurface>(ply[0].shape).places ==
+              std::vector<glm::mat3x2>{{{0.5f, 0.25f}, {1.0f, 0.0f}, {0.0f, 1.0f}}});
+    }
+    CHECK_THROWS_WITH(loaded(directory.write("b.obj", corners + "f 1 2 3\n")), Contains("b.obj") && Contains("UVs"));
+    map.texels[3].y = 1.5f;
+    surface.material.texture = write_sky(map).file;
+    CHECK_THROWS_WITH(loaded(directory.write("a.obj", corners + "vt 0 0\nf 1/1 2/1 3/1\n")),
+                      Contains("column 1, row 1") && Contains("more than it gets"));
+    surface.material.texture = directory.path / "none.png";
+    CHECK_THROWS_AS(loaded(directory.write("a.obj", corners + "vt 0 0\nf 1/1 2/1 3/1\n")), InputError);
+}
+
+TEST_CASE("textures are read and refused by name", "[xml][surfaces]") {
+    const Scene scene = parse("<surfaces><rectangle lookAt=\"0 0 1\" texture=\"wood.png\" repeat=\"2 3\"/>"
+                              "<disk lookAt=\"0 0 1\" up=\"1 0 0\" texture=\"a.exr\" r=\".5\" g=\".4\" b=\".3\"/>"
+                              "<sphere><transform><rotate y=\"1\" angle=\"90\"/></transform></sphere>"
+                              "<box texture=\"wood.png\"/></surfaces>");
+    const auto& all = scene.surfaces;
+    CHECK(all[0].material.texture.filename() == "wood.png");
+    CHECK(all[0].material.repeat == glm::dvec2(2.0, 3.0));
+    CHECK(all[0].material.color == Rgb(1.0));
+    CHECK(all[1].material.color == Rgb(0.5, 0.4, 0.3));
+    CHECK(glm::distance(all[1].axes[1], glm::dvec3(1.0, 0.0, 0.0)) < 1e-12);
+    CHECK(glm::distance(glm::cross(all[1].axes[0], all[1].axes[1]), all[1].axes[2]) < 1e-12);
+    CHECK(glm::distance(all[2].axes[2], glm::dvec3(1.0, 0.0, 0.0)) < 1e-12);
+    // Each face of a box shows the image upright, and not mirrored, to who stands before it.
+    const auto& box = std::get<TriangleSurface>(all[3].shape);
+    for (std::size_t i = 0; i < box.triangles.size(); ++i) {
+        const glm::dmat3 corners(box.vertices[box.triangles[i].x], box.vertices[box.triangles[i].y],
+                                 box.vertices[box.triangles[i].z]);
+        const glm::dmat3x2 places(box.places[i]);
+        const glm::dvec3 front = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+        const glm::dvec2 u = places[1] - places[0], v = places[2] - places[0];
+        CHECK(u.x * v.y - u.y * v.x == Approx(1.0)); // half of the image, turned as the face is
+        CHECK(glm::length(front) == Approx(1.0));
+        for (int k = 0; k < 3; ++k)
+            if (std::abs(front.y) < 0.5)
+                CHECK(places[k].y == Approx(corners[k].y + 0.5));
+    }
+    const auto refused = [](const std::string& surface) { return error_of("<surfaces>" + surface + "</surfaces>"); };
+    CHECK_THAT(refused("<sphere repeat=\"2\"/>"), Contains("repeat") && Contains("texture"));
+    CHECK_THAT(refused("<sphere texture=\"a.png\" repeat=\"1 2 3\"/>"), Contains("3 numbers"));
+    CHECK_THAT(refused("<sphere texture=\"a.png\" repeat=\"0\"/>"), Contains("above 0"));
+    CHECK_THAT(refused("<sphere texture=\"\"/>"), Contains("names no file"));
+    CHECK_THAT(refused("<sphere texture=\"a.png\" material=\"dielectric\"/>"), Contains("texture"));
+    Scene other = scene;
+    other.surfaces[0].material.repeat.x = 5.0;
+    CHECK(scene_hash(other) != scene_hash(scene));
+}
