@@ -223,14 +223,12 @@ BoundBuffers SceneBuffers::bound() const {
         buffers[BINDING_SURFACE_TEXELS] = place(surfaces_);
         buffers[BINDING_LIGHT_TEXELS] = place(lights_);
     }
-    buffers[BINDING_CONTROLS] = place(controls_);
+    buffers[BINDING_CONTROLS] = place(overlaps_ ? overlaps_ : controls_);
     buffers[BINDING_BLACKBODY] = place(blackbody_);
-    buffers[BINDING_TRIANGLES] = place(triangles_);
+    buffers[BINDING_TRIANGLES] = place(media_ ? media_ : triangles_);
     buffers[BINDING_BVH] = place(bvh_);
     buffers[BINDING_PHASE] = place(phase_);
     buffers[BINDING_MAPS] = place(maps_);
-    buffers[BINDING_MEDIA] = place(media_);
-    buffers[BINDING_OVERLAPS] = place(overlaps_);
     buffers[BINDING_SURFACES] = place(surfaces_);
     buffers[BINDING_PRIMITIVES] = place(primitives_);
     buffers[BINDING_POINTS] = place(points_);

@@ -8,6 +8,7 @@
 
 #include "pipeline_cache.h"
 #include "pipelines.h"
+#include "shared/constants.h"
 #include "vulkan_error.h"
 
 namespace vkvol {
@@ -74,6 +75,9 @@ std::string find_rejection(VkPhysicalDevice physical, const VkPhysicalDeviceProp
         return "it has no compute queue";
     if (!features_of(physical).scalarBlockLayout)
         return "it lacks the feature scalarBlockLayout";
+    constexpr std::uint32_t needed = BINDING_BUFFERS - 1; // but the frame's
+    if (const std::uint32_t most = properties.limits.maxPerStageDescriptorStorageBuffers; most < needed)
+        return fmt::format("it lets kernels see {} storage buffers, at least {} are needed", most, needed);
     return "";
 }
 

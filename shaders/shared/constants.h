@@ -28,32 +28,33 @@
 #define BINDING_SKY_ALIAS 22  // AliasEntry per row of that map, then per texel
 #define BINDING_LIGHT_TREE 23 // LightNode, depth first
 #define BINDING_PHASE 24      // PhaseNode, of phase functions that are tables
-#define BINDING_MEDIA 25      // MediumParams, where there are several media; see superposition.glsl
-#define BINDING_OVERLAPS 26   // words: what look-ups ask several media for, and which of them are where; see superposition.glsl
-#define BINDING_SURFACES 27   // SurfaceRow
-#define BINDING_PRIMITIVES 28 // SurfacePrimitive
-#define BINDING_MAPS 29       // MapKnot, a table for each medium that has a map; see value_map.glsl
-#define BINDING_POINTS 30     // vec3 per point of a sensor that reads flux at points, render space
-#define BINDING_LAYERS 31     // vec3 per layer of each path, then four of each pixel: see aovs.glsl
-// A scene has these or those: particles fill no layers, and where they fly no transmittances are cached.
+#define BINDING_SURFACES 25   // SurfaceRow
+#define BINDING_PRIMITIVES 26 // SurfacePrimitive
+#define BINDING_MAPS 27       // MapKnot, a table for each medium that has a map; see value_map.glsl
+#define BINDING_POINTS 28     // vec3 per point of a sensor that reads flux at points, render space
+#define BINDING_LAYERS 29     // vec3 per layer of each path, then four of each pixel: see aovs.glsl
+// A scene has these or those, since devices may allow no more than thirty: particles fill no layers, and where they fly no
+// transmittances are cached; of several media none is a mesh or has a control grid.
 #define BINDING_SPLATS BINDING_LAYERS    // words, six per sample of each pixel: see splats.glsl
 #define BINDING_EMITTERS BINDING_LATTICE // EmitterRow
+#define BINDING_MEDIA BINDING_TRIANGLES  // MediumParams; see superposition.glsl
+#define BINDING_OVERLAPS BINDING_CONTROLS // words: what look-ups ask several media for, and which of them are where; see superposition.glsl
 // Test kernels only. They use none of the two, and drivers may allow no more buffers than there are.
 #define BINDING_TEST_INPUT BINDING_POINTS
 #define BINDING_TEST_OUTPUT BINDING_LAYERS
-#define BINDING_BUFFERS 32
+#define BINDING_BUFFERS 30
 // The same buffers as texels: software drivers gather these, and read storage buffers lane by lane.
-#define BINDING_GRID_TEXELS 32
-#define BINDING_LEAF_TEXELS 33
-#define BINDING_MAJORANT_TEXELS 34
-#define BINDING_LATTICE_TEXELS 35
-#define BINDING_OVERLAP_TEXELS 36
-#define BINDING_MEMBER_TEXELS 37 // the same, four words at a time
-#define BINDING_NODE_TEXELS 38 // of BINDING_BVH, two to a node
-#define BINDING_PRIMITIVE_TEXELS 39 // three to a primitive
-#define BINDING_SURFACE_TEXELS 40 // four to a row
-#define BINDING_LIGHT_TEXELS 41 // LIGHT_ROW_TEXELS to a row
-#define BINDING_COUNT 42
+#define BINDING_GRID_TEXELS 30
+#define BINDING_LEAF_TEXELS 31
+#define BINDING_MAJORANT_TEXELS 32
+#define BINDING_LATTICE_TEXELS 33
+#define BINDING_OVERLAP_TEXELS 34
+#define BINDING_MEMBER_TEXELS 35 // the same, four words at a time
+#define BINDING_NODE_TEXELS 36 // of BINDING_BVH, two to a node
+#define BINDING_PRIMITIVE_TEXELS 37 // three to a primitive
+#define BINDING_SURFACE_TEXELS 38 // four to a row
+#define BINDING_LIGHT_TEXELS 39 // LIGHT_ROW_TEXELS to a row
+#define BINDING_COUNT 40
 
 #define WORKGROUP_SIZE 64
 
