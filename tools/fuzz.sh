@@ -6,8 +6,8 @@
 set -eu
 source "$(dirname "$0")/setup.sh"
 
-declare -A runs=([scene]=1000000 [grid]=100000 [vdb]=20000 [mesh]=200000 [image]=100000 [options]=200000)
-order=(scene grid vdb mesh image options)
+declare -A runs=([scene]=1000000 [pbrt]=200000 [grid]=100000 [vdb]=20000 [mesh]=200000 [image]=100000 [options]=200000)
+order=(scene pbrt grid vdb mesh image options)
 seed=1
 while [ $# -gt 0 ]; do
     case $1 in

@@ -131,8 +131,11 @@ SkyMap make_sky(const RadianceMap& map, const Rgb& scale, SkyMapping mapping) {
 }
 
 SkyMap load_sky(const SkyLight& light) {
-    const RadianceMap map = light.daylight ? make_daylight(*light.daylight) : read_radiance_map(light.file);
+    RadianceMap map = light.daylight ? make_daylight(*light.daylight) : read_radiance_map(light.file);
     check(map, light);
+    if (light.mirror)
+        for (auto row = map.texels.begin(); row != map.texels.end(); row += map.width)
+            std::reverse(row, row + map.width);
     return make_sky(map, light.scale, light.mapping);
 }
 

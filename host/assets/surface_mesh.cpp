@@ -17,7 +17,7 @@ namespace {
 TriangleSurface load(const MeshSurface& mesh, const glm::dmat4& transform, bool closed) {
     if (closed) {
         Mesh loaded = load_mesh({{mesh.file}}, transform);
-        return {std::move(loaded.vertices), std::move(loaded.triangles), std::move(loaded.normals), {}};
+        return {std::move(loaded.vertices), std::move(loaded.triangles), std::move(loaded.normals), {}, true};
     }
     Polygons read = read_polygons(mesh.file);
     for (glm::dvec3& vertex : read.vertices)
@@ -30,7 +30,7 @@ TriangleSurface load(const MeshSurface& mesh, const glm::dmat4& transform, bool 
             if (!read.places.empty())
                 std::swap(read.places[i][1], read.places[i][2]);
         }
-    return {std::move(read.vertices), std::move(read.triangles), std::move(read.normals), std::move(read.places)};
+    return {std::move(read.vertices), std::move(read.triangles), std::move(read.normals), std::move(read.places), true};
 }
 
 // Of its length twice the area; counterclockwise as seen from where it points to.
@@ -93,6 +93,21 @@ void load(const MeshSurface& mesh, Surface& surface) {
     surface.shape = std::move(loaded);
 }
 
+// One that the scene holds itself.
+void finish(TriangleSurface& mesh, const Surface& surface) {
+    if (surface.material.kind == MaterialKind::dielectric) {
+        Polygons polygons;
+        polygons.vertices = std::move(mesh.vertices);
+        polygons.triangles = std::move(mesh.triangles);
+        polygons.normals = std::move(mesh.normals);
+        close_polygons(polygons, "<mesh>");
+        mesh = {std::move(polygons.vertices), std::move(polygons.triangles), std::move(polygons.normals), {}, true};
+    }
+    if (!surface.material.texture.empty() && mesh.places.empty())
+        throw InputError("<mesh> does not say where on a texture its corners are; add <places>");
+    complete(mesh);
+}
+
 std::shared_ptr<const Texture> load_texture(const std::filesystem::path& file) {
     RadianceMap map = read_radiance_map(file);
     for (std::size_t i = 0; i < map.texels.size(); ++i) {
@@ -114,6 +129,8 @@ Scene with_surface_files(Scene scene) {
         try {
             if (const auto* found = std::get_if<MeshSurface>(&surface.shape))
                 load(MeshSurface(*found), surface);
+            else if (auto* mesh = std::get_if<TriangleSurface>(&surface.shape); mesh && mesh->is_mesh)
+                finish(*mesh, surface);
             if (!material.texture.empty() && !textures[material.texture])
                 textures[material.texture] = load_texture(material.texture);
             if (!material.texture.empty())

@@ -11,6 +11,7 @@
 
 #include "bench.h"
 #include "compare.h"
+#include "convert.h"
 #include "develop.h"
 #include "device_command.h"
 #include "error.h"
@@ -61,6 +62,8 @@ int run(const vkvol::Options& options) {
         return vkvol::run_merge(options.merge);
     case vkvol::Command::develop:
         return vkvol::run_develop(options.develop);
+    case vkvol::Command::convert:
+        return vkvol::run_convert(options.convert);
     case vkvol::Command::bench:
         return vkvol::run_bench(options.bench);
     case vkvol::Command::print:

@@ -129,7 +129,9 @@ void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
                  "Check scene, files, device and outputs, say what would be rendered, and render nothing")
         ->group("Output");
     app.add_flag("-q,--quiet", render.quiet, "Print errors only")->group("Output");
-    app.add_flag("--strict", render.strict, "End with code 5 if a cap was hit or a sample was not finite")
+    app.add_flag("--strict", render.strict,
+                 "End with code 5 if a cap was hit or a sample was not finite; refuse a pbrt scene of which "
+                 "something cannot be rendered")
         ->group("Output");
     app.add_flag("--version", texts.version, "Print the version")->group("Output");
 }
@@ -231,9 +233,10 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
 void parse_render(const std::vector<std::string>& arguments, Options& options) {
     CLI::App app(render_description, "vkvol");
     RenderTexts texts;
-    app.add_option("scene", options.render.scene,
-                   "Scene file, see scenes/README.md; or a density file, for which a scene is made")
-        ->option_text("SCENE.xml|FILE.nvdb|FILE.vdb");
+    app.add_option(
+           "scene", options.render.scene,
+           "Scene file, see scenes/README.md, or a scene of pbrt-v4; or a density file, for which a scene is made")
+        ->option_text("SCENE.xml|SCENE.pbrt|FILE.nvdb|FILE.vdb");
     add_picture_options(app, options.render, texts);
     add_sampling_options(app, options.render, texts);
     add_run_options(app, options.render, texts);
@@ -331,6 +334,20 @@ void parse_develop(const std::vector<std::string>& arguments, Options& options) 
     develop.tone = tone.request();
 }
 
+void parse_convert(const std::vector<std::string>& arguments, Options& options) {
+    ConvertOptions& convert = options.convert;
+    CLI::App app(convert_description, "vkvol convert");
+    app.add_option("scene", convert.scene, "A scene of pbrt-v4")->option_text("SCENE.pbrt");
+    app.add_option("-o,--output", convert.output, "Where to write, .xml")->option_text("FILE");
+    app.add_flag("--strict", convert.strict, "Write nothing if something of the scene cannot be rendered");
+    app.add_flag("-q,--quiet", convert.quiet, "Print errors only");
+    app.footer(convert_footer);
+    if (!run_parser(app, arguments, options))
+        return;
+    if (convert.scene.empty() || convert.output.empty())
+        fail_command_line("convert: a scene and an output are needed; e.g. vkvol convert cloud.pbrt -o cloud.xml");
+}
+
 // A misspelt command would be taken for a scene.
 void check_command_spelling(const std::string& word, const std::vector<std::string>& commands) {
     std::error_code ignored;
@@ -350,7 +367,8 @@ Options parse_options(int argc, const char* const* argv) {
         {"render", {Command::render, parse_render}},    {"devices", {Command::devices, parse_devices}},
         {"info", {Command::info, parse_info}},          {"integrators", {Command::integrators, parse_integrators}},
         {"compare", {Command::compare, parse_compare}}, {"merge", {Command::merge, parse_merge}},
-        {"develop", {Command::develop, parse_develop}}, {"bench", {Command::bench, parse_bench}}};
+        {"develop", {Command::develop, parse_develop}}, {"convert", {Command::convert, parse_convert}},
+        {"bench", {Command::bench, parse_bench}}};
     Options options;
     Parser parse = parse_render;
     if (!arguments.empty()) {

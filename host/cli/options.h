@@ -14,7 +14,7 @@
 
 namespace vkvol {
 
-enum class Command { render, devices, info, integrators, compare, merge, develop, bench, print };
+enum class Command { render, devices, info, integrators, compare, merge, develop, convert, bench, print };
 enum class ProgressStyle { automatic, json, none };
 
 struct RenderOptions : RenderRequest {
@@ -27,7 +27,7 @@ struct RenderOptions : RenderRequest {
     bool trace = false;               // print the path's vertices; crop and sample range hold just one
     ProgressStyle progress = ProgressStyle::automatic;
     bool quiet = false;  // errors only
-    bool strict = false; // caps hit or non-finite samples: exit code 5
+    bool strict = false; // caps hit or non-finite samples: exit code 5; of a pbrt scene all of it has to be rendered
 };
 
 struct CompareOptions {
@@ -51,12 +51,20 @@ struct DevelopOptions {
     bool quiet = false;
 };
 
+struct ConvertOptions {
+    std::filesystem::path scene;  // .pbrt
+    std::filesystem::path output; // .xml
+    bool strict = false;          // what cannot be rendered is an error
+    bool quiet = false;
+};
+
 struct Options {
     Command command = Command::render;
     RenderOptions render;
     CompareOptions compare;
     MergeOptions merge;
     DevelopOptions develop;
+    ConvertOptions convert;
     BenchRequest bench;
     std::filesystem::path info_file;
     bool info_json = false;

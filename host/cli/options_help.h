@@ -13,6 +13,7 @@ inline constexpr const char* render_footer = R"(Other commands (each has its own
   vkvol compare A.exr B.exr   are these renders of the same picture?
   vkvol merge A.exr B.exr -o OUT.exr   one image of all their samples
   vkvol develop A.exr -o B.png   a PNG of another exposure or tone curve, without rendering
+  vkvol convert S.pbrt -o S.xml  a scene of pbrt-v4 as a scene file to go on from
   vkvol bench SCENE.xml       error against time of the integrators that suit a scene
 
 Examples:
@@ -56,6 +57,13 @@ merged image adds up what its parts count, is biased if one of them is, and can 
 inline constexpr const char* develop_description =
     "Makes an 8-bit picture of an image's linear radiance, without rendering: with the tone curve and exposure of the "
     "render that wrote it, or with others.";
+
+inline constexpr const char* convert_description =
+    "Writes a scene of pbrt-v4 as a scene file of this renderer, and says what of it cannot be rendered.";
+
+inline constexpr const char* convert_footer =
+    R"(vkvol SCENE.pbrt renders one without writing it. Names of files are written as the new scene finds
+them; grids, meshes and images stay where they are.)";
 
 inline constexpr const char* develop_footer =
     R"(Without options the picture has the same bytes as the one that the render wrote, or would have. An image

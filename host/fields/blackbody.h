@@ -6,7 +6,11 @@
 
 namespace vkvol {
 
-// Colour of a black body at `kelvin`, in units where one at `reference` kelvin has luminance 1. Channels that Rec.709
+// Responses of the CIE 1931 standard observer at a wavelength, whose integral over the second is 106.9 nm.
+glm::dvec3 observer(double nanometre);
+
+// Colour of a black body at `kelvin`, in units where one at `reference` kelvin has luminance 1; or, at reference 0, of
+// its spectrum divided by that's maximum and integrated over nanometres, as pbrt-v4 has it. Channels that Rec.709
 // cannot show (blue below some 1900 K) are clipped at 0. Zero for kelvin <= 0; finite for all finite arguments.
 glm::dvec3 blackbody_rgb(double kelvin, double reference);
 

@@ -155,6 +155,17 @@ void append(Mesh& mesh, const Polygons& obj) {
 
 } // namespace
 
+void close_polygons(Polygons& polygons, const std::string& name) {
+    weld(polygons);
+    if (polygons.triangles.empty())
+        throw InputError(fmt::format("{}: all faces are degenerate; export the mesh again, at a scale at which its "
+                                     "vertices differ",
+                                     name));
+    const std::vector<Edge> edges = sorted_edges(polygons.triangles);
+    check_closed(polygons, edges, name);
+    turn_outward(polygons, find_bodies(polygons.triangles.size(), edges));
+}
+
 Mesh load_mesh(const MeshFiles& files, const glm::dmat4& transform) {
     if (files.paths.empty())
         throw InputError("a mesh needs at least one .obj or .ply file; name it in the scene");
@@ -166,14 +177,7 @@ Mesh load_mesh(const MeshFiles& files, const glm::dmat4& transform) {
             for (glm::dvec3& vertex : obj.vertices)
                 vertex = glm::dvec3(transform * glm::dvec4(vertex, 1.0));
         const std::string file = path.string();
-        weld(obj);
-        if (obj.triangles.empty())
-            throw InputError(fmt::format("{}: all faces are degenerate; export the mesh again, at a scale at which its "
-                                         "vertices differ",
-                                         file));
-        const std::vector<Edge> edges = sorted_edges(obj.triangles);
-        check_closed(obj, edges, file);
-        turn_outward(obj, find_bodies(obj.triangles.size(), edges));
+        close_polygons(obj, file);
         append(mesh, obj);
         mesh.warnings.insert(mesh.warnings.end(), obj.warnings.begin(), obj.warnings.end());
         if (first)

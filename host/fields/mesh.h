@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "polygons.h"
 #include "scene.h"
 
 namespace vkvol {
@@ -18,6 +19,9 @@ struct Mesh {
     std::optional<Rgb> diffuse;        // Kd of the first face's material
     std::vector<std::string> warnings; // what was understood but is not honoured
 };
+
+// Welds equal positions and turns bodies that are inside out. InputError, with `name`, for what is not closed.
+void close_polygons(Polygons& polygons, const std::string& name);
 
 // Reads all files, with the .mtl files they name beside them, and welds equal positions within each. Bodies that are
 // inside out are turned. InputError for what is not closed, or not readable.

@@ -7,6 +7,7 @@
 #include "method.h"
 #include "nearest_name.h"
 #include "shared/constants.h"
+#include "surface_lamps.h"
 
 namespace vkvol {
 
@@ -166,8 +167,9 @@ bool gains_by_cache(const Scene& scene) {
 } // namespace
 
 const Integrator& choose_integrator(const Scene& scene) {
+    const bool is_dark = scene.lights.empty() && !has_lamps_of_surfaces(scene);
     const std::string name = !scene.settings.integrator.empty() ? scene.settings.integrator
-                             : scene.lights.empty()             ? "deltaTracking"
+                             : is_dark                          ? "deltaTracking"
                              : !gains_by_cache(scene)           ? "ratioTracking"
                                                                 : "cachedRatioTracking";
     check_integrator(name);

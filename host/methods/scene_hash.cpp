@@ -168,6 +168,8 @@ void add_light(Writer& writer, const SkyLight& light) {
     if (light.mapping == SkyMapping::equal_area)
         writer.add("mapping", 1);
     writer.add("rotation", light.rotation);
+    if (light.mirror)
+        writer.add("mirror", 1);
     writer.add("scale", light.scale);
 }
 

@@ -40,9 +40,14 @@ std::vector<Light> lamps_of(const Surface& surface, std::size_t index) {
 
 } // namespace
 
-Scene with_lamps_of_surfaces(Scene scene) {
+bool has_lamps_of_surfaces(const Scene& scene) {
     const auto shines = [](const Surface& surface) { return !lamps_of(surface, 0).empty(); };
-    if (std::size_t(std::count_if(scene.surfaces.begin(), scene.surfaces.end(), shines)) > most_lamps)
+    const auto lamps = std::size_t(std::count_if(scene.surfaces.begin(), scene.surfaces.end(), shines));
+    return lamps > 0 && lamps <= most_lamps;
+}
+
+Scene with_lamps_of_surfaces(Scene scene) {
+    if (!has_lamps_of_surfaces(scene))
         return scene;
     for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
         const std::vector<Light> lamps = lamps_of(scene.surfaces[i], i);

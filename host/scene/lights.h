@@ -117,6 +117,7 @@ struct SkyLight {
     std::optional<Daylight> daylight; // in place of the file
     SkyMapping mapping = SkyMapping::equirectangular;
     double rotation = 0.0; // degrees, positive turns it counter-clockwise as seen from above
+    bool mirror = false;   // right for left, before it is turned
     Rgb scale{1.0};        // multiplies the map
     std::string group = {};
 };

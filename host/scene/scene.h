@@ -134,7 +134,7 @@ struct TemperatureEmission {
     double scale = 1.0;
     double offset = 0.0;       // kelvin
     double cutoff = 0.0;       // kelvin
-    double reference = 1500.0; // kelvin, > 0
+    double reference = 1500.0; // kelvin, > 0; or 0: each spectrum is divided by its own maximum, as in pbrt-v4
 };
 
 // Procedural density max(0, (1 + fbm(x)) / 2) with fbm(x) = sum over octaves k of gain^k perlin(frequency lacunarity^k

@@ -32,6 +32,7 @@ struct TriangleSurface {
     // Where they are on a texture, as columns: across and upwards, (0, 0) its lower left and (1, 1) its upper right; or
     // empty.
     std::vector<glm::mat3x2> places = {};
+    bool is_mesh = false; // as of a file: of glass it has to be closed
 };
 
 struct RectangleSurface {

@@ -10,6 +10,8 @@
 #include "framing.h"
 #include "integrators.h"
 #include "one_line.h"
+#include "scene_beside.h"
+#include "xml_text.h"
 
 namespace vkvol {
 
@@ -115,38 +117,6 @@ std::string number(double value, int decimals) {
     return text == "-0" ? "0" : text;
 }
 
-// In XML, where $ begins a key.
-std::string escaped(const std::string& text) {
-    std::string result;
-    for (const char c : text)
-        result += c == '&'   ? "&amp;"
-                  : c == '<' ? "&lt;"
-                  : c == '>' ? "&gt;"
-                  : c == '"' ? "&quot;"
-                  : c == '$' ? "$$"
-                             : std::string(1, c);
-    return result;
-}
-
-// The file as a scene in the folder `beside` names it.
-std::string path_from(const std::filesystem::path& file, const std::filesystem::path& beside) {
-    std::error_code error;
-    std::filesystem::path name = file;
-    if (file.is_relative()) {
-        name = std::filesystem::relative(file, beside.empty() ? "." : beside, error);
-        // Scenes take the .. of a name as text, which behind a link leads elsewhere.
-        if (error || name.empty() || !std::filesystem::equivalent((beside / name).lexically_normal(), file, error))
-            name = std::filesystem::absolute(file);
-    }
-    const std::string text = name.string();
-    const bool odd = std::any_of(text.begin(), text.end(),
-                                 [](char c) { return c == '\\' || std::iscntrl(static_cast<unsigned char>(c)); });
-    if (odd)
-        throw InputError(fmt::format("{}: a scene cannot name this file, for its \\ or control characters; rename it",
-                                     one_line(file.string())));
-    return text.starts_with(' ') ? "./" + text : text;
-}
-
 std::string integrator_element(const std::string& request) {
     if (request.empty())
         return "";
@@ -231,10 +201,11 @@ std::string medium_elements(const FileView& view) {
                                    "  <heyneygreenstein_g>{:g}</heyneygreenstein_g>\n",
                                    (1.0 - m.albedo) * m.sigma_t, m.albedo * m.sigma_t, m.g);
     if (m.kelvin)
-        text += fmt::format("  <emission grid=\"{}\" model=\"blackbody\" temperatureScale=\"{:.6g}\" "
-                            "temperatureOffset=\"{:g}\" referenceTemperature=\"{:.6g}\" r=\"1\" g=\"1\" b=\"1\" "
-                            "multiplier=\"{:.4g}\"/>\n",
-                            escaped(view.temperature), m.kelvin->scale, m.kelvin->offset, m.kelvin->hottest, m.glow);
+        text +=
+            fmt::format("  <emission grid=\"{}\" model=\"blackbody\" temperatureScale=\"{:.6g}\" "
+                        "temperatureOffset=\"{:g}\" referenceTemperature=\"{:.6g}\" r=\"1\" g=\"1\" b=\"1\" "
+                        "multiplier=\"{:.4g}\"/>\n",
+                        xml_escaped(view.temperature), m.kelvin->scale, m.kelvin->offset, m.kelvin->hottest, m.glow);
     return text;
 }
 
@@ -244,8 +215,8 @@ FileScene make_file_scene(const std::filesystem::path& file, const std::filesyst
     FileScene scene;
     scene.warnings = view.warnings;
     scene.assumed = assumed_line(file, view, options.up, grid_names(file).size() == 1);
-    scene.xml = fmt::format("  <densityField grid=\"{}\">{}</densityField>\n", escaped(view.grid),
-                            escaped(path_from(file, beside)));
+    scene.xml = fmt::format("  <densityField grid=\"{}\">{}</densityField>\n", xml_escaped(view.grid),
+                            xml_escaped(name_beside(file, beside)));
     scene.xml += medium_elements(view);
     scene.xml += light_elements(view);
     scene.xml += fmt::format("  {}\n", camera_element(view));

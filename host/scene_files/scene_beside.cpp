@@ -1,10 +1,14 @@
 #include "scene_beside.h"
 
+#include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
 
 #include "digest.h"
+#include "error.h"
+#include "one_line.h"
 
 namespace vkvol {
 
@@ -37,6 +41,24 @@ std::string marked(const std::string& scene) {
 bool is_untouched(const std::string& text) {
     const std::size_t end = text.find(after);
     return end != std::string::npos && text == marked(text.substr(end + std::string(after).size()));
+}
+
+std::string name_beside(const std::filesystem::path& file, const std::filesystem::path& beside) {
+    std::error_code error;
+    std::filesystem::path name = file;
+    if (file.is_relative()) {
+        name = std::filesystem::relative(file, beside.empty() ? "." : beside, error);
+        // Scenes take the .. of a name as text, which behind a link leads elsewhere.
+        if (error || name.empty() || !std::filesystem::equivalent((beside / name).lexically_normal(), file, error))
+            name = std::filesystem::absolute(file);
+    }
+    const std::string text = name.string();
+    const bool odd = std::any_of(text.begin(), text.end(),
+                                 [](char c) { return c == '\\' || std::iscntrl(static_cast<unsigned char>(c)); });
+    if (odd)
+        throw InputError(fmt::format("{}: a scene cannot name this file, for its \\ or control characters; rename it",
+                                     one_line(file.string())));
+    return text.starts_with(' ') ? "./" + text : text;
 }
 
 std::filesystem::path scene_beside(const std::filesystem::path& picture) {

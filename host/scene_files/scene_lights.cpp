@@ -143,12 +143,13 @@ Light SceneReader::light(const XmlElement& element) const {
         element.allow(with_colors({"x", "y", "z", "lookAt", "up", "width", "height", "power"}));
         return of_power(element, rectangle_light(element, light_color(element)), &RectangleLight::radiance);
     }
-    element.allow(with_colors({"baseDir", "mapping", "rotation"}), true);
+    element.allow(with_colors({"baseDir", "mapping", "rotation", "mirror"}), true);
     SkyLight sky;
     sky.mapping = sky_mapping(element);
     sky.file = file_path(element, "sky.exr");
     sky.place = element.place();
     sky.rotation = element.attribute_number("rotation", 0.0, any_number);
+    sky.mirror = element.attribute_boolean("mirror", false);
     sky.scale = light_color(element);
     return sky;
 }

@@ -81,7 +81,8 @@ void SceneReader::check_extinction(const Volume& volume) const {
 
 TemperatureEmission SceneReader::temperature_emission(bool is_grid) const {
     const XmlElement element = one("emission");
-    const auto blackbody_only = {"temperatureScale", "temperatureOffset", "temperatureCutoff", "referenceTemperature"};
+    const auto blackbody_only = {"temperatureScale", "temperatureOffset", "temperatureCutoff", "referenceTemperature",
+                                 "brightness"};
     std::vector<std::string> allowed = {"r", "g", "b", "multiplier", "model", "grid"};
     allowed.insert(allowed.end(), blackbody_only.begin(), blackbody_only.end());
     element.allow(allowed);
@@ -104,6 +105,15 @@ TemperatureEmission SceneReader::temperature_emission(bool is_grid) const {
     emission.cutoff = element.attribute_number("temperatureCutoff", emission.cutoff, kelvin);
     emission.reference = element.attribute_number("referenceTemperature", emission.reference,
                                                   {0.0, hottest_kelvin, false, true, "a number > 0, at most 1e9"});
+    const std::string brightness = element.attribute("brightness", "planck");
+    if (brightness != "planck" && brightness != "peak")
+        element.fail_attribute(
+            "brightness", fmt::format("<emission> brightness: '{}' is unknown; expected planck or peak", brightness));
+    if (brightness == "peak" && element.has("referenceTemperature"))
+        element.fail_attribute("referenceTemperature", "<emission> referenceTemperature: has a meaning with "
+                                                       "brightness=\"planck\" only");
+    if (brightness == "peak")
+        emission.reference = 0.0;
     if (emission.model == TemperatureEmission::Model::color)
         for (const char* name : blackbody_only)
             if (!element.attribute(name).empty())

@@ -19,11 +19,11 @@ struct Rectangle {
     glm::dvec3 edge_u, edge_v; // halves of its edges; their cross product points to the side that it faces
 };
 
-// By x, y, z, lookAt, up, width and height, as a camera of this `lookAt` and `up` would have it.
 // x, y and z, as columns, of what is flat and faces along z: `up`, or else what is upright, is upwards as seen from
 // there.
 glm::dmat3 axes_facing(const XmlElement& element, const glm::dvec3& normal);
 
+// By x, y, z, lookAt, up, width and height, as a camera of this `lookAt` and `up` would have it.
 Rectangle rectangle(const XmlElement& element);
 
 } // namespace vkvol

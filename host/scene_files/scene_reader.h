@@ -66,6 +66,7 @@ private:
     std::vector<pugi::xml_node> with_those_it_is_like(pugi::xml_node volume, const NamedVolumes& named) const;
     void read_surfaces(Scene& scene);
     Surface surface(const XmlElement& element) const;
+    TriangleSurface triangles() const;
     Material material(const XmlElement& element) const;
     void read_texture(const XmlElement& element, Material& material) const;
     glm::dmat4 transform() const;

@@ -101,10 +101,17 @@ double scale_of(const XmlElement& element, const glm::dmat4& map) {
 TriangleSurface moved(const glm::dmat4& map, TriangleSurface shape) {
     for (glm::dvec3& vertex : shape.vertices)
         vertex = moved(map, vertex);
+    const glm::dmat3 of_normals = glm::transpose(glm::inverse(glm::dmat3(map)));
+    for (glm::mat3& normals : shape.normals)
+        for (int corner = 0; corner < 3; ++corner)
+            normals[corner] = glm::vec3(of_normals * glm::dvec3(normals[corner]));
     if (glm::determinant(glm::dmat3(map)) < 0.0) // a mirror turns them inside out
         for (std::size_t i = 0; i < shape.triangles.size(); ++i) {
             std::swap(shape.triangles[i].y, shape.triangles[i].z);
-            std::swap(shape.places[i][1], shape.places[i][2]);
+            if (!shape.normals.empty())
+                std::swap(shape.normals[i][1], shape.normals[i][2]);
+            if (!shape.places.empty())
+                std::swap(shape.places[i][1], shape.places[i][2]);
         }
     return shape;
 }
@@ -215,6 +222,55 @@ void SceneReader::read_texture(const XmlElement& element, Material& material) co
         material.repeat = {times.front(), times.back()};
 }
 
+// By the numbers of <vertices>, <triangles>, and, for each vertex, <normals> and <places> on a texture.
+TriangleSurface SceneReader::triangles() const {
+    const auto numbers = [&](const char* name, std::size_t each, const Limits& limits) {
+        const XmlElement element = one(name);
+        element.allow({}, true);
+        std::vector<double> values = element.text_numbers(limits);
+        if (values.size() % each != 0 || (values.empty() && element.exists()))
+            element.fail_text(fmt::format("<{}> has {} numbers; expected {} for each", name, values.size(), each));
+        return values;
+    };
+    const std::vector<double> points = numbers("vertices", 3, coordinate),
+                              corners = numbers("triangles", 3, not_negative);
+    const std::vector<double> normals = numbers("normals", 3, any_number), places = numbers("places", 2, any_number);
+    const std::size_t count = points.size() / 3;
+    for (const auto& [name, size] : {std::pair("normals", normals.size() / 3), std::pair("places", places.size() / 2)})
+        if (size != 0 && size != count)
+            one(name).fail_text(fmt::format("<{}> is for {} vertices, of {}; expected as many", name, size, count));
+    TriangleSurface shape;
+    shape.is_mesh = true;
+    for (std::size_t i = 0; i < count; ++i)
+        shape.vertices.emplace_back(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
+    for (std::size_t i = 0; i < corners.size(); i += 3) {
+        glm::uvec3 triangle;
+        glm::mat3 normal;
+        glm::mat3x2 place;
+        for (int k = 0; k < 3; ++k) {
+            const double vertex = corners[i + std::size_t(k)];
+            if (vertex != std::floor(vertex) || vertex >= double(count))
+                one("triangles")
+                    .fail_text(
+                        fmt::format("<triangles>: {:g} is none of the {} vertices, which count from 0", vertex, count));
+            const auto v = static_cast<std::size_t>(vertex);
+            triangle[k] = static_cast<unsigned>(v);
+            if (!normals.empty())
+                normal[k] = glm::vec3(normals[3 * v], normals[3 * v + 1], normals[3 * v + 2]);
+            if (!places.empty())
+                place[k] = glm::vec2(places[2 * v], places[2 * v + 1]);
+        }
+        shape.triangles.push_back(triangle);
+        if (!normals.empty())
+            shape.normals.push_back(normal);
+        if (!places.empty())
+            shape.places.push_back(place);
+    }
+    if (shape.triangles.empty())
+        one("vertices").fail("<vertices> has no <triangles> beside it; expected three vertices for each, from 0");
+    return shape;
+}
+
 // Within its own scope.
 Surface SceneReader::surface(const XmlElement& element) const {
     Surface surface;
@@ -249,10 +305,14 @@ Surface SceneReader::surface(const XmlElement& element) const {
         allow({"x", "y", "z", "width", "height", "depth"});
         const auto edge = [&](const char* name) { return element.attribute_number(name, 1.0, length); };
         surface.shape = moved(map, box_of({xyz(element, coordinate), {edge("width"), edge("height"), edge("depth")}}));
+    } else if (kind == "mesh" && !element.has("file") && one("vertices").exists()) {
+        element.allow(with_material({}), false,
+                      {"transform", "emission", "vertices", "normals", "places", "triangles"});
+        surface.shape = moved(map, triangles());
     } else {
         allow({"file", "baseDir", "normals"});
         if (element.attribute("file").empty())
-            element.fail("<mesh> names no file; write one, e.g. file=\"bunny.obj\"");
+            element.fail("<mesh> names no file; write one, e.g. file=\"bunny.obj\", or <vertices> and <triangles>");
         surface.shape = MeshSurface{file_path(element, element.attribute("file")), mesh_normals(element)};
         surface.transform = map;
     }

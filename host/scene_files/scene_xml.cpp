@@ -32,7 +32,26 @@ Scene parse_scene(const std::string& xml, const std::filesystem::path& file, con
     return SceneReader(document, overrides).read();
 }
 
+Scene parse_scene(const PbrtTranslation& translation, const std::filesystem::path& file,
+                  const SceneOverrides& overrides) {
+    XmlDocument document(translation.xml, file, {}, "options", translation.places);
+    Scene scene = SceneReader(document, overrides).read();
+    scene.warnings.insert(scene.warnings.begin(), translation.notes.begin(), translation.notes.end());
+    return scene;
+}
+
+bool is_pbrt_file(const std::filesystem::path& file) {
+    return file_ending(file) == ".pbrt";
+}
+
 Scene load_scene(const std::filesystem::path& file, const Defines& defines, const SceneOverrides& overrides) {
+    if (is_pbrt_file(file) && !defines.empty())
+        throw InputError(
+            fmt::format("{}: -D and -f fill in the $keys of a scene, and pbrt's have none; `vkvol convert` "
+                        "makes a scene of it that can have some",
+                        file.string()));
+    if (is_pbrt_file(file))
+        return parse_scene(translate_pbrt(read_pbrt(file)), file, overrides);
     if (is_grid_file(file))
         throw InputError(fmt::format("{}: is a density file; expected a scene file (.xml), like that which `vkvol {}` "
                                      "writes beside its picture",

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "pbrt_translation.h"
 #include "scene.h"
 
 namespace vkvol {
@@ -20,12 +21,19 @@ struct SceneOverrides {
 };
 
 // Throws InputError, "file:line:column: what is wrong; what would be right". What the scene asks for and this
-// renderer does not do ends up in Scene::warnings. Grid files are named here, not opened.
+// renderer does not do ends up in Scene::warnings. Grid files are named here, not opened. A file that ends in .pbrt is
+// translated first.
 Scene load_scene(const std::filesystem::path& file, const Defines& defines = {}, const SceneOverrides& overrides = {});
 
 // The same from text already in memory; `file` names it in messages, and relative paths start from its directory.
 Scene parse_scene(const std::string& xml, const std::filesystem::path& file, const Defines& defines = {},
                   const SceneOverrides& overrides = {});
+
+// The same of a scene that was translated: `file` is what it was before.
+Scene parse_scene(const PbrtTranslation& translation, const std::filesystem::path& file,
+                  const SceneOverrides& overrides = {});
+
+bool is_pbrt_file(const std::filesystem::path& file);
 
 // The same view in `width` x `height` pixels; with only one given the aspect is kept. Start and reference scale along.
 void resize_picture(Picture& picture, std::optional<int> width, std::optional<int> height);

@@ -108,8 +108,10 @@ void XmlDocument::warn(const std::string& place, const std::string& message) {
 }
 
 XmlDocument::XmlDocument(const std::string& text, std::filesystem::path file,
-                         const std::map<std::string, std::string>& defines, const std::string& root)
-    : text_(text), buffer_(text.begin(), text.end()), file_(std::move(file)), keys_(defines) {
+                         const std::map<std::string, std::string>& defines, const std::string& root,
+                         ElementPlaces places)
+    : places_(std::move(places)), text_(text), buffer_(text.begin(), text.end()), file_(std::move(file)),
+      keys_(defines) {
     for (std::size_t i = 0; i < text_.size(); ++i)
         if (text_[i] == '\n')
             line_starts_.push_back(std::ptrdiff_t(i + 1));
@@ -195,6 +197,10 @@ template <class Place> std::string XmlDocument::substitute(const std::string& ra
 }
 
 std::string XmlDocument::place_of_offset(std::ptrdiff_t offset) const {
+    const auto after = std::upper_bound(places_.begin(), places_.end(), offset,
+                                        [](std::ptrdiff_t at, const auto& place) { return at < place.first; });
+    if (after != places_.begin())
+        return std::prev(after)->second;
     const auto before = std::clamp<std::ptrdiff_t>(offset, 0, std::ptrdiff_t(text_.size()));
     const auto line = std::upper_bound(line_starts_.begin(), line_starts_.end(), before) - line_starts_.begin();
     const auto line_start = text_.begin() + line_starts_[std::size_t(line - 1)], end = text_.begin() + before;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "one_line.h"
+#include "pbrt_translation.h"
 #include "scene.h"
 #include "scene_keys.h"
 
@@ -21,9 +22,10 @@ namespace vkvol {
 class XmlDocument {
 public:
     // Throws InputError for malformed XML, a root element other than `root`, an attribute given twice, a $key
-    // without a value, and a define that no $key uses; see scene_keys.h.
+    // without a value, and a define that no $key uses; see scene_keys.h. `places`: of elements, where the text was made
+    // of something else.
     XmlDocument(const std::string& text, std::filesystem::path file, const std::map<std::string, std::string>& defines,
-                const std::string& root);
+                const std::string& root, ElementPlaces places = {});
 
     pugi::xml_node root() const { return root_; }
     const std::filesystem::path& file() const { return file_; }
@@ -49,6 +51,7 @@ private:
     template <class Place> std::string substitute(const std::string& raw, const Place& place);
     std::string place_of_offset(std::ptrdiff_t offset) const;
 
+    ElementPlaces places_;
     std::string text_; // as read, for places
     std::vector<std::ptrdiff_t> line_starts_{0};
     std::vector<char> buffer_; // what pugixml parsed in place: names still point into it

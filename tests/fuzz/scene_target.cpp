@@ -42,13 +42,15 @@ std::string attribute_value(std::string_view name, Source& random) {
         return one_of("voxel|world|world", random);
     if (name == "model")
         return one_of("color|blackbody", random);
+    if (name == "brightness")
+        return one_of("planck|peak", random);
     if (name == "grid")
         return one_of("density|temperature|density|colour|other", random);
     if (name == "baseDir")
         return one_of(".|./|", random);
     if (name == "file")
         return one_of("phase.txt|ball.obj|none.txt|.", random);
-    if (name == "jitter")
+    if (name == "jitter" || name == "mirror")
         return one_of("true|false", random);
     if (name == "scattering")
         return one_of("none|single|multiple", random);
@@ -164,6 +166,10 @@ std::string surface(Source& random) {
     xml.replace(xml.rfind("/>"), 2, ">");
     if (random.one_in(3))
         xml += element(random.pick(shine_grammar), random);
+    if (std::string_view(words.element) == "mesh" && random.one_in(2))
+        for (const Words& part : part_grammar)
+            if (!random.one_in(5))
+                xml += element(part, random);
     if (random.one_in(3)) {
         xml += "  <transform>\n";
         for (std::uint64_t steps = random.below(3); steps > 0; --steps)

@@ -63,7 +63,7 @@ inline constexpr const char* element_names[] = {"densityField",
 struct Words {
     const char* element;
     const char* text; // "": none; "n": number; "i": whole number; else alternatives separated by |
-    std::array<const char*, 10> attributes;
+    std::array<const char*, 11> attributes;
 };
 
 inline constexpr Words grammar[] = {
@@ -86,7 +86,7 @@ inline constexpr Words grammar[] = {
     {"emission",
      "",
      {"r", "g", "b", "multiplier", "grid", "model", "temperatureScale", "temperatureOffset", "temperatureCutoff",
-      "referenceTemperature"}},
+      "referenceTemperature", "brightness"}},
     {"albedo", "", {"grid"}},
     {"densityMap", "", {"gain", "offset", "threshold"}},
     {"light", "", {"x", "y", "z", "r", "g", "b", "multiplier", "group"}},
@@ -138,6 +138,10 @@ inline constexpr Words surface_grammar[] = {
     {"rectangle", "", {"x", "lookAt", "up", "width", "height", "r", "g", "b", "multiplier"}},
     {"box", "", {"x", "y", "z", "width", "height", "depth", "material"}},
     {"mesh", "", {"file", "baseDir", "normals", "material", "multiplier"}}};
+inline constexpr Words part_grammar[] = {{"vertices", "0 0 0 1 0 0 0 1 0|0 0 0 1 0 0 0 1 0 0 0 1|0 0", {}},
+                                         {"normals", "0 0 1 0 0 1 0 0 1|0 0 0 0 0 1 1 1 1 2 0 0|1", {}},
+                                         {"places", "0 0 1 0 0 1|0 0 1 1 5 5 -1 -1", {}},
+                                         {"triangles", "0 1 2|0 2 1 0 1 3 0 3 2 1 2 3|0 1 9|0 1 -1|0 1", {}}};
 inline constexpr Words shine_grammar[] = {{"emission", "", {"r", "g", "b", "multiplier", "sides"}},
                                           {"emission", "", {"kelvin", "multiplier"}}};
 
@@ -151,7 +155,7 @@ inline constexpr Words light_grammar[] = {
     {"disk", "", {"x", "y", "z", "lookAt", "radius", "r", "power"}},
     {"rectangle", "", {"x", "y", "z", "lookAt", "up", "width", "height", "b", "multiplier"}},
     {"daylight", "", {"x", "y", "z", "turbidity", "ground", "multiplier"}},
-    {"sky", "sky.exr|none.exr", {"baseDir", "mapping", "rotation", "kelvin", "multiplier"}}};
+    {"sky", "sky.exr|none.exr", {"baseDir", "mapping", "rotation", "mirror", "kelvin", "multiplier"}}};
 
 inline constexpr const char* ordinary_numbers[] = {"0.5",
                                                    "0.25",

@@ -44,6 +44,7 @@ protected:
 const std::vector<Target*>& targets();
 
 Target& scene_target();
+Target& pbrt_target();
 Target& grid_target();
 Target& vdb_target();
 Target& mesh_target();

@@ -114,6 +114,14 @@ TEST_CASE("the best unbiased choice is taken where none is named", "[cpu][method
     CHECK(method_of("", FIELD_GRID).integrator == "cachedRatioTracking");
     CHECK(method_of("", FIELD_CONSTANT).integrator == "ratioTracking");
     CHECK(method_of("", FIELD_GRID, false).integrator == "deltaTracking");
+    // A surface that shines is a light, where it can be looked for.
+    Scene room;
+    room.surfaces.resize(1);
+    room.surfaces[0].emission = Rgb(1.0);
+    room.surfaces[0].shape = RectangleSurface{};
+    CHECK(choose_integrator(room).name == std::string("ratioTracking"));
+    room.surfaces[0].shape = RectangleSurface{}.triangles();
+    CHECK(choose_integrator(room).name == std::string("deltaTracking"));
     CHECK(method_of(":flight=weighted", FIELD_GRID).integrator == "cachedRatioTracking:flight=weighted");
     CHECK_NOTHROW(choose_method(Scene{}));
     for (const Integrator& integrator : integrators()) {

@@ -390,8 +390,16 @@ TEST_CASE("surfaces that shine are lamps with bodies", "[gpu][image][surfaces]")
     chance.settings.choices.nee = NEE_NONE;
     chance.lights.clear();
     scene.lights.clear();
+    // Of the whole picture: there are pixels that meet a lamp by chance once in thousands of samples.
     const Film by_chance = render_here(chance, 3).film, looked = render_here(scene, 4).film;
-    CHECK_AGREEMENT(agree(looked, by_chance, "by chance"));
+    for (int channel = 0; channel < 3; ++channel) {
+        double difference = 0.0, variance = 0.0;
+        for (std::size_t i = 0; i < looked.mean.size(); ++i) {
+            difference += double(looked.mean[i][channel]) - by_chance.mean[i][channel];
+            variance += double(looked.variance[i][channel]) + by_chance.variance[i][channel];
+        }
+        CHECK(std::abs(difference) < 4.0 * std::sqrt(variance)); // one in 16,000
+    }
 }
 
 TEST_CASE("surfaces among media are the same for every estimator", "[gpu][image][surfaces]") {

@@ -1,0 +1,364 @@
+#include "pbrt_directives.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "error.h"
+#include "nearest_name.h"
+#include "pbrt_spectra.h"
+
+namespace vkvol {
+
+namespace {
+
+constexpr std::size_t most_shapes = 5'000'000;
+constexpr std::size_t deepest_state = 10'000;
+
+using Kind = PbrtToken::Kind;
+
+glm::dvec3 unit(const glm::dvec3& v) {
+    return v / glm::length(v);
+}
+
+} // namespace
+
+PbrtDirectives::PbrtDirectives(PbrtTokens tokens, PbrtScene& scene) : tokens_(std::move(tokens)), scene_(scene) {
+    state_.material.thing.type = "diffuse";
+    add_transforms();
+    add_settings();
+    add_world();
+}
+
+void PbrtDirectives::note(const PbrtPlace& place, const std::string& message) {
+    scene_.notes.push_back(place.text() + ": " + message);
+}
+
+void PbrtDirectives::read() {
+    for (PbrtToken token = tokens_.next(); !token.is(Kind::end); token = tokens_.next()) {
+        const auto handler = token.is(Kind::word) ? handlers_.find(token.value) : handlers_.end();
+        if (handler == handlers_.end()) {
+            std::vector<std::string> known;
+            for (const auto& [name, unused] : handlers_)
+                known.push_back(name);
+            const bool is_old = token.value == "WorldEnd" || token.value == "TransformTimes";
+            fail_at(token.place,
+                    is_old ? fmt::format("{} is of older versions of pbrt; pbrt --upgrade makes a scene of "
+                                         "version 4",
+                                         token.value)
+                           : fmt::format("'{}' is no directive{}", token.value, name_hint(token.value, known)));
+        }
+        handler->second(token);
+    }
+    if (object_)
+        throw InputError(fmt::format("ObjectBegin \"{}\" lacks its ObjectEnd; is the file whole?", *object_));
+}
+
+std::string PbrtDirectives::name(const char* expected) {
+    return tokens_.next(Kind::quoted, expected).value;
+}
+
+// TYPE and parameters; `target`: whose defaults of Attribute count.
+PbrtThing PbrtDirectives::thing(const PbrtToken& directive, const char* target) {
+    PbrtThing result;
+    result.place = directive.place;
+    result.type = name(fmt::format("a type in quotes after {}", directive.value).c_str());
+    auto parameters = std::make_shared<PbrtParameters>(tokens_);
+    if (const auto defaults = state_.defaults.find(target); defaults != state_.defaults.end())
+        parameters->add_defaults(defaults->second);
+    result.parameters = std::move(parameters);
+    result.transform = state_.transform;
+    result.color_space = state_.color_space;
+    return result;
+}
+
+void PbrtDirectives::concatenate(const glm::dmat4& transform) {
+    if (!state_.is_moving)
+        state_.transform = state_.transform * transform;
+}
+
+// Column by column.
+glm::dmat4 PbrtDirectives::matrix() {
+    glm::dmat4 m;
+    tokens_.next(Kind::open, "[ and 16 numbers");
+    for (int i = 0; i < 16; ++i)
+        m[i / 4][i % 4] = tokens_.number();
+    tokens_.next(Kind::close, "] after 16 numbers");
+    return m;
+}
+
+// From the world to the camera's space: x to the right, y upwards, z along the view.
+glm::dmat4 PbrtDirectives::look_at() {
+    glm::dvec3 eye, target, up;
+    for (glm::dvec3* point : {&eye, &target, &up})
+        for (int axis = 0; axis < 3; ++axis)
+            (*point)[axis] = tokens_.number();
+    const glm::dvec3 forward = unit(target - eye), right = unit(glm::cross(unit(up), forward));
+    return glm::inverse(glm::dmat4(glm::dvec4(right, 0.0), glm::dvec4(glm::cross(forward, right), 0.0),
+                                   glm::dvec4(forward, 0.0), glm::dvec4(eye, 1.0)));
+}
+
+void PbrtDirectives::add_transforms() {
+    const auto three = [this] {
+        glm::dvec3 v;
+        for (int axis = 0; axis < 3; ++axis)
+            v[axis] = tokens_.number();
+        return v;
+    };
+    // Names whatever leaves no inverse: without one there is nothing to be seen.
+    const auto checked = [this](const PbrtToken& directive, const glm::dmat4& m) {
+        const double size = glm::determinant(glm::dmat3(m));
+        if (!std::isfinite(size) || size == 0.0)
+            fail_at(directive.place,
+                    fmt::format("{} leaves nothing of space; expected a map with an inverse", directive.value));
+        return m;
+    };
+    handlers_["Identity"] = [this](const PbrtToken&) {
+        if (!state_.is_moving)
+            state_.transform = glm::dmat4(1.0);
+    };
+    handlers_["Translate"] = [this, three](const PbrtToken&) { concatenate(glm::translate(glm::dmat4(1.0), three())); };
+    handlers_["Scale"] = [=, this](const PbrtToken& token) {
+        concatenate(checked(token, glm::scale(glm::dmat4(1.0), three())));
+    };
+    handlers_["Rotate"] = [=, this](const PbrtToken& token) {
+        const double angle = glm::radians(tokens_.number());
+        const glm::dvec3 axis = three();
+        if (axis == glm::dvec3(0.0))
+            fail_at(token.place, "Rotate lacks its axis; expected an angle and x y z");
+        concatenate(glm::rotate(glm::dmat4(1.0), angle, unit(axis)));
+    };
+    handlers_["LookAt"] = [=, this](const PbrtToken& token) {
+        const glm::dmat4 m = look_at();
+        const double size = glm::determinant(glm::dmat3(m));
+        if (!(size > 0.5)) // or not a number
+            fail_at(token.place, "LookAt has no direction, or its up is along it; expected eye, target and up");
+        concatenate(m);
+    };
+    handlers_["Transform"] = [=, this](const PbrtToken& token) {
+        const glm::dmat4 m = checked(token, matrix());
+        if (!state_.is_moving)
+            state_.transform = m;
+    };
+    handlers_["ConcatTransform"] = [=, this](const PbrtToken& token) { concatenate(checked(token, matrix())); };
+    handlers_["CoordinateSystem"] = [this](const PbrtToken&) {
+        coordinate_systems_[name("a name in quotes")] = state_.transform;
+    };
+    handlers_["CoordSysTransform"] = [this](const PbrtToken& token) {
+        const std::string wanted = name("a name in quotes");
+        const auto system = coordinate_systems_.find(wanted);
+        if (system == coordinate_systems_.end())
+            fail_at(token.place, fmt::format("no CoordinateSystem \"{}\" before this", wanted));
+        state_.transform = system->second;
+    };
+    handlers_["ActiveTransform"] = [this](const PbrtToken& token) { read_active_transform(token); };
+}
+
+void PbrtDirectives::read_active_transform(const PbrtToken& directive) {
+    const PbrtToken which = tokens_.next(Kind::word, "All, StartTime or EndTime");
+    if (which.value != "All" && which.value != "StartTime" && which.value != "EndTime")
+        fail_at(which.place, fmt::format("'{}': expected All, StartTime or EndTime", which.value));
+    state_.is_moving = which.value == "EndTime";
+    if (state_.is_moving)
+        note(directive.place, "nothing moves while the shutter is open; all is where it is at StartTime");
+}
+
+void PbrtDirectives::add_settings() {
+    const auto keeps = [this](std::optional<PbrtThing>& where) {
+        return [this, &where](const PbrtToken& directive) {
+            if (in_world_)
+                fail_at(directive.place, fmt::format("{} belongs before WorldBegin", directive.value));
+            where = thing(directive);
+        };
+    };
+    handlers_["Film"] = keeps(scene_.film);
+    handlers_["PixelFilter"] = keeps(scene_.filter);
+    handlers_["Sampler"] = keeps(scene_.sampler);
+    handlers_["Integrator"] = keeps(scene_.integrator);
+    handlers_["Camera"] = [this, keep = keeps(scene_.camera)](const PbrtToken& directive) {
+        keep(directive);
+        scene_.camera_medium = state_.outside;
+        coordinate_systems_["camera"] = glm::inverse(state_.transform);
+    };
+    handlers_["Accelerator"] = [this](const PbrtToken& directive) { thing(directive); };
+    handlers_["Option"] = [this](const PbrtToken&) { read_option(); };
+    handlers_["ColorSpace"] = [this](const PbrtToken&) { read_color_space(); };
+}
+
+void PbrtDirectives::read_option() {
+    const PbrtToken option = tokens_.next(Kind::quoted, "an option in quotes");
+    tokens_.next();
+    if (!option.value.ends_with("seed") && !option.value.ends_with("rendercoordsys"))
+        note(option.place, fmt::format("Option \"{}\" is left out", option.value));
+}
+
+void PbrtDirectives::read_color_space() {
+    const PbrtToken space = tokens_.next(Kind::quoted, "a colour space in quotes");
+    if (!to_rec709(space.value))
+        fail_at(space.place, fmt::format("ColorSpace \"{}\" is unknown{}", space.value,
+                                         name_hint(space.value, {"srgb", "dci-p3", "rec2020", "aces2065-1"})));
+    if (space.value != "srgb")
+        note(space.place, fmt::format("colours of \"{}\" become Rec.709's, of which the picture is", space.value));
+    state_.color_space = space.value;
+}
+
+void PbrtDirectives::add_world() {
+    handlers_["WorldBegin"] = [this](const PbrtToken& token) {
+        if (in_world_)
+            fail_at(token.place, "a second WorldBegin; remove one");
+        in_world_ = true;
+        state_.transform = glm::dmat4(1.0);
+        state_.is_moving = false;
+        coordinate_systems_["world"] = state_.transform;
+    };
+    for (const char* begin : {"AttributeBegin", "TransformBegin"})
+        handlers_[begin] = [this](const PbrtToken& token) {
+            if (states_.size() >= deepest_state)
+                fail_at(token.place,
+                        fmt::format("{} within {} others, more than are read", token.value, deepest_state));
+            push();
+        };
+    handlers_["AttributeEnd"] = [this](const PbrtToken& token) { pop(token); };
+    handlers_["TransformEnd"] = [this](const PbrtToken& token) {
+        PbrtState inner = state_;
+        pop(token);
+        inner.transform = state_.transform;
+        inner.is_moving = state_.is_moving;
+        state_ = std::move(inner);
+    };
+    handlers_["Attribute"] = [this](const PbrtToken& token) { read_attribute(token); };
+    handlers_["ReverseOrientation"] = [this](const PbrtToken&) { state_.is_reversed = !state_.is_reversed; };
+    handlers_["MediumInterface"] = [this](const PbrtToken&) { read_medium_interface(); };
+    handlers_["Material"] = [this](const PbrtToken& token) { state_.material = {thing(token, "material"), false}; };
+    handlers_["NamedMaterial"] = [this](const PbrtToken& token) {
+        state_.material = {};
+        state_.material.thing.type = name("a name in quotes");
+        state_.material.thing.place = token.place;
+        state_.material.is_named = true;
+    };
+    handlers_["MakeNamedMaterial"] = [this](const PbrtToken& token) {
+        PbrtThing made = thing(token, "material");
+        const std::string called = made.type;
+        made.type = made.parameters->text("type");
+        scene_.materials[called] = std::move(made);
+    };
+    handlers_["MakeNamedMedium"] = [this](const PbrtToken& token) {
+        PbrtThing made = thing(token, "medium");
+        const std::string called = made.type;
+        made.type = made.parameters->text("type");
+        scene_.media[called] = std::move(made);
+    };
+    handlers_["Texture"] = [this](const PbrtToken& token) { read_texture(token); };
+    handlers_["LightSource"] = [this](const PbrtToken& token) { scene_.lights.push_back(thing(token, "light")); };
+    handlers_["AreaLightSource"] = [this](const PbrtToken& token) { state_.light = thing(token, "light"); };
+    handlers_["Shape"] = [this](const PbrtToken& token) { read_shape(token); };
+    handlers_["ObjectBegin"] = [this](const PbrtToken& token) { begin_object(token); };
+    handlers_["ObjectEnd"] = [this](const PbrtToken& token) { end_object(token); };
+    handlers_["ObjectInstance"] = [this](const PbrtToken&) { place_object(); };
+    for (const char* include : {"Include", "Import"})
+        handlers_[include] = [this](const PbrtToken& token) {
+            const std::string file = name("a file in quotes");
+            tokens_.include(scene_.folder / file, token.place);
+        };
+}
+
+void PbrtDirectives::pop(const PbrtToken& directive) {
+    if (states_.empty())
+        fail_at(directive.place, fmt::format("{} without what it ends", directive.value));
+    state_ = std::move(states_.back());
+    states_.pop_back();
+}
+
+void PbrtDirectives::read_attribute(const PbrtToken& directive) {
+    const std::string target = name("what it is for in quotes");
+    const std::vector<std::string> known = {"shape", "light", "material", "medium", "texture"};
+    if (std::find(known.begin(), known.end(), target) == known.end())
+        fail_at(directive.place, fmt::format("Attribute \"{}\" is unknown{}", target, name_hint(target, known)));
+    const PbrtParameters parameters(tokens_);
+    std::vector<PbrtParameter>& defaults = state_.defaults[target];
+    defaults.insert(defaults.begin(), parameters.all().begin(), parameters.all().end()); // the last one counts
+}
+
+void PbrtDirectives::read_medium_interface() {
+    state_.inside = name("the name of a medium in quotes");
+    PbrtToken second = tokens_.next();
+    if (second.is(Kind::quoted)) {
+        state_.outside = second.value;
+        return;
+    }
+    state_.outside = state_.inside;
+    tokens_.put_back(std::move(second));
+}
+
+void PbrtDirectives::read_texture(const PbrtToken& directive) {
+    const std::string called = name("a name in quotes");
+    name("\"spectrum\" or \"float\"");
+    scene_.textures[called] = thing(directive, "texture");
+}
+
+void PbrtDirectives::read_shape(const PbrtToken& directive) {
+    PbrtShape shape;
+    shape.thing = thing(directive, "shape");
+    shape.is_reversed = state_.is_reversed;
+    shape.material = state_.material;
+    shape.light = state_.light;
+    shape.inside = state_.inside;
+    shape.outside = state_.outside;
+    if (object_ && shape.light) {
+        note(directive.place, "shines, but in an object: pbrt leaves that light out, and so does this");
+        shape.light.reset();
+    }
+    (object_ ? objects_[*object_] : scene_.shapes).push_back(std::move(shape));
+}
+
+void PbrtDirectives::begin_object(const PbrtToken& directive) {
+    if (object_)
+        fail_at(directive.place, "ObjectBegin within another one; end that first");
+    push();
+    object_ = name("a name in quotes");
+    objects_[*object_].clear();
+}
+
+void PbrtDirectives::end_object(const PbrtToken& directive) {
+    if (!object_)
+        fail_at(directive.place, "ObjectEnd without ObjectBegin");
+    object_.reset();
+    pop(directive);
+}
+
+void PbrtDirectives::place_object() {
+    const PbrtToken which = tokens_.next(Kind::quoted, "a name in quotes");
+    const auto object = objects_.find(which.value);
+    if (object == objects_.end())
+        fail_at(which.place, fmt::format("no object \"{}\" before this; ObjectBegin defines one", which.value));
+    if (object_)
+        fail_at(which.place, "an ObjectInstance within an object; put it after ObjectEnd");
+    if (scene_.shapes.size() + object->second.size() > most_shapes)
+        fail_at(which.place, fmt::format("comes to more than {} shapes, the most that are read", most_shapes));
+    for (PbrtShape shape : object->second) {
+        shape.thing.transform = state_.transform * shape.thing.transform;
+        scene_.shapes.push_back(std::move(shape));
+    }
+}
+
+namespace {
+
+PbrtScene read(PbrtTokens tokens, const std::filesystem::path& file) {
+    PbrtScene scene;
+    scene.folder = file.parent_path();
+    PbrtDirectives(std::move(tokens), scene).read();
+    return scene;
+}
+
+} // namespace
+
+PbrtScene read_pbrt(const std::filesystem::path& file) {
+    return read(PbrtTokens(file), file);
+}
+
+PbrtScene read_pbrt(const std::string& text, const std::filesystem::path& file) {
+    return read(PbrtTokens(text, file.string()), file);
+}
+
+} // namespace vkvol

@@ -1,0 +1,66 @@
+// Reads the directives of a pbrt scene, one after another; pbrt_scene.h is its public face.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "pbrt_scene.h"
+
+namespace vkvol {
+
+// What a directive finds, and AttributeEnd brings back.
+struct PbrtState {
+    glm::dmat4 transform{1.0};
+    bool is_reversed = false;
+    PbrtMaterial material;
+    std::optional<PbrtThing> light;
+    std::string inside, outside;
+    std::string color_space = "srgb";
+    std::map<std::string, std::vector<PbrtParameter>> defaults; // by what they are for
+    bool is_moving = false;                                     // transforms count at the shutter's end alone
+};
+
+class PbrtDirectives {
+public:
+    PbrtDirectives(PbrtTokens tokens, PbrtScene& scene);
+    void read();
+
+private:
+    using Handler = std::function<void(const PbrtToken&)>;
+
+    void add_transforms();
+    void add_settings();
+    void add_world();
+    void concatenate(const glm::dmat4& transform);
+    glm::dmat4 matrix();
+    glm::dmat4 look_at();
+    std::string name(const char* expected);
+    PbrtThing thing(const PbrtToken& directive, const char* target = "");
+    void read_option();
+    void read_medium_interface();
+    void read_active_transform(const PbrtToken& directive);
+    void read_attribute(const PbrtToken& directive);
+    void read_color_space();
+    void read_shape(const PbrtToken& directive);
+    void read_texture(const PbrtToken& directive);
+    void begin_object(const PbrtToken& directive);
+    void end_object(const PbrtToken& directive);
+    void place_object();
+    void push() { states_.push_back(state_); }
+    void pop(const PbrtToken& directive);
+    void note(const PbrtPlace& place, const std::string& message);
+
+    PbrtTokens tokens_;
+    PbrtScene& scene_;
+    PbrtState state_;
+    std::vector<PbrtState> states_;
+    std::map<std::string, glm::dmat4> coordinate_systems_;
+    std::map<std::string, std::vector<PbrtShape>> objects_;
+    std::optional<std::string> object_; // that is being defined
+    std::map<std::string, Handler> handlers_;
+    bool in_world_ = false;
+};
+
+} // namespace vkvol

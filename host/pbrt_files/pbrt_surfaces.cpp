@@ -1,0 +1,290 @@
+// The part of PbrtTranslator that writes surfaces.
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+#include "nearest_name.h"
+#include "pbrt_translator.h"
+
+namespace vkvol {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double least_alpha = 1e-3; // of facets; what is smoother is a mirror to pbrt, too
+
+double size_of(const glm::dmat4& map) {
+    return std::cbrt(std::abs(glm::determinant(glm::dmat3(map))));
+}
+
+bool is_left_out(const std::string& material) {
+    return material.empty() || material == "none" || material == "interface";
+}
+
+} // namespace
+
+void PbrtTranslator::add_color(XmlAttributes& attributes, const PbrtThing& thing, const char* name,
+                               const glm::dvec3& fallback) {
+    const std::string texture = thing.parameters->texture(name);
+    if (texture.empty()) {
+        add_rgb(attributes, glm::clamp(colors_.share(thing, name).value_or(fallback), 0.0, 1.0));
+        return;
+    }
+    const auto found = scene_.textures.find(texture);
+    if (found == scene_.textures.end())
+        fail_at(thing.parameters->find(name)->place, fmt::format("no texture \"{}\"; Texture makes one", texture));
+    add_texture(attributes, found->second, glm::dvec3(1.0), 0);
+}
+
+void PbrtTranslator::add_texture(XmlAttributes& attributes, const PbrtThing& texture, const glm::dvec3& factor,
+                                 int depth) {
+    const PbrtParameters& p = *texture.parameters;
+    if (texture.type == "imagemap" && p.has("filename")) {
+        add_rgb(attributes, glm::clamp(factor * p.number("scale", 1.0), 0.0, 1.0));
+        attributes.emplace_back("texture", file_name(texture));
+        attributes.emplace_back("repeat", fmt::format("{} {}", p.number("uscale", 1.0), p.number("vscale", 1.0)));
+        note_unused(texture, {"filter", "encoding", "wrap", "maxanisotropy"});
+        return;
+    }
+    if (texture.type == "constant") {
+        add_rgb(attributes, glm::clamp(factor * colors_.share(texture, "value").value_or(glm::dvec3(1.0)), 0.0, 1.0));
+        return;
+    }
+    const auto inner = texture.type == "scale" ? scene_.textures.find(p.texture("tex")) : scene_.textures.end();
+    if (texture.type == "scale" && inner == scene_.textures.end() && p.has("tex") && p.texture("tex").empty()) {
+        add_rgb(attributes, glm::clamp(factor * *colors_.share(texture, "tex") * p.number("scale", 1.0), 0.0, 1.0));
+        return;
+    }
+    if (inner != scene_.textures.end() && depth < 16 && p.texture("scale").empty()) {
+        add_texture(attributes, inner->second, factor * p.number("scale", 1.0), depth + 1);
+        return;
+    }
+    note(texture.place, fmt::format("Texture \"{}\" is left out; what has it is grey", texture.type));
+    add_rgb(attributes, glm::dvec3(0.5));
+}
+
+// pbrt's GGX is along two axes, and its roughness the root of alpha unless told otherwise.
+void PbrtTranslator::add_roughness(XmlAttributes& attributes, const PbrtThing& thing) {
+    const PbrtParameters& p = *thing.parameters;
+    for (const char* name : {"roughness", "uroughness", "vroughness"})
+        if (!p.texture(name).empty()) {
+            note(p.find(name)->place, "a texture of roughness is left out; the surface is smooth");
+            return;
+        }
+    const double both = p.number("roughness", 0.0);
+    double u = p.number("uroughness", both), v = p.number("vroughness", both);
+    if (p.truth("remaproughness", true)) {
+        u = std::sqrt(std::max(u, 0.0));
+        v = std::sqrt(std::max(v, 0.0));
+    }
+    if (u != v)
+        note(thing.place, "its roughness is the same along both axes, their mean");
+    const double alpha = std::min(0.5 * (u + v), 1.0);
+    if (alpha >= least_alpha)
+        attributes.emplace_back("roughness", xml_number(alpha));
+}
+
+XmlAttributes PbrtTranslator::material(const PbrtThing& thing) {
+    const PbrtParameters& p = *thing.parameters;
+    XmlAttributes attributes;
+    const auto index = [&](const char* name) {
+        const glm::dvec3 eta = colors_.share(thing, name).value_or(glm::dvec3(1.5));
+        return xml_number((eta.x + eta.y + eta.z) / 3.0);
+    };
+    if (thing.type == "diffuse" || thing.type == "diffusetransmission") {
+        add_color(attributes, thing, "reflectance", glm::dvec3(thing.type == "diffuse" ? 0.5 : 0.25));
+        if (thing.type == "diffusetransmission")
+            note(thing.place, "lets no light through here; it is matte");
+    } else if (thing.type == "coateddiffuse") {
+        attributes.emplace_back("material", "coated");
+        add_color(attributes, thing, "reflectance", glm::dvec3(0.5));
+        attributes.emplace_back("ior", index("eta"));
+        if (p.number("roughness", 0.0) > 0.0 || p.number("uroughness", 0.0) > 0.0 || p.has("albedo"))
+            note(thing.place, "its coat is smooth and clear here");
+    } else if (thing.type == "conductor" || thing.type == "coatedconductor") {
+        const bool is_coated = thing.type == "coatedconductor";
+        attributes.emplace_back("material", "conductor");
+        const auto pair = [&](const char* own, const char* coated, const char* fallback) {
+            const std::optional<glm::dvec3> value = colors_.share(thing, is_coated ? coated : own);
+            return value.value_or(*named_share(fallback));
+        };
+        glm::dvec3 eta = pair("eta", "conductor.eta", "metal-Cu-eta"), k = pair("k", "conductor.k", "metal-Cu-k");
+        if (const std::optional<glm::dvec3> r =
+                p.texture("reflectance").empty() ? colors_.share(thing, "reflectance") : glm::dvec3(0.5)) {
+            const glm::dvec3 share = glm::clamp(*r, 0.0, 0.9999); // at normal incidence
+            eta = glm::dvec3(1.0);
+            k = 2.0 * glm::sqrt(share / (1.0 - share));
+        }
+        attributes.emplace_back("eta", xml_numbers(eta));
+        attributes.emplace_back("k", xml_numbers(k));
+        add_roughness(attributes, thing);
+        if (is_coated)
+            note(thing.place, "has no coat here; it is a conductor");
+    } else if (thing.type == "dielectric") {
+        attributes.emplace_back("material", "dielectric");
+        attributes.emplace_back("ior", index("eta"));
+        add_roughness(attributes, thing);
+    } else {
+        note(thing.place, fmt::format("Material \"{}\" is left out; what has it is grey and matte", thing.type));
+        return {};
+    }
+    note_unused(thing, {"type", "maxdepth", "nsamples"});
+    return attributes;
+}
+
+std::optional<XmlAttributes> PbrtTranslator::material_of(const PbrtShape& shape) {
+    const PbrtThing* thing = &shape.material.thing;
+    if (shape.material.is_named) {
+        const auto named = scene_.materials.find(thing->type);
+        if (named == scene_.materials.end()) {
+            std::vector<std::string> known;
+            for (const auto& [name, unused] : scene_.materials)
+                known.push_back(name);
+            fail_at(thing->place,
+                    fmt::format("no material \"{}\"{}", thing->type,
+                                known.empty() ? "; MakeNamedMaterial makes one" : name_hint(thing->type, known)));
+        }
+        thing = &named->second;
+    }
+    if (is_left_out(thing->type))
+        return std::nullopt;
+    if (thing->type == "thindielectric") {
+        note(thing->place, "a thin pane is left out; light goes straight through, as most of it would");
+        return std::nullopt;
+    }
+    return material(*thing);
+}
+
+// `area`: of the whole shape, where it is known.
+void PbrtTranslator::write_emission(const PbrtShape& shape, std::optional<double> area) {
+    if (!shape.light)
+        return;
+    const PbrtThing& light = *shape.light;
+    const PbrtParameters& p = *light.parameters;
+    if (!p.text("filename").empty())
+        note(light.place, "an image that shines does so evenly here");
+    glm::dvec3 radiance = light_color(light, "L");
+    const bool is_two_sided = p.truth("twosided", false);
+    if (const double power = p.number("power", -1.0); power > 0.0 && area)
+        radiance *= power / ((is_two_sided ? 2.0 : 1.0) * *area * pi);
+    else if (power > 0.0)
+        note(light.place, "\"power\" of a mesh in a file is left out");
+    note_unused(light);
+    XmlAttributes attributes;
+    add_rgb(attributes, radiance);
+    if (is_two_sided)
+        attributes.emplace_back("sides", "2");
+    xml_.element("emission", attributes, "", light.place.text());
+}
+
+void PbrtTranslator::write_ball(const PbrtShape& shape, const XmlAttributes& material) {
+    const PbrtParameters& p = *shape.thing.parameters;
+    // A texture's poles are at z, and it begins at x; here at y, with its middle at z.
+    const glm::dmat4 as_globe(0, -1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 0, 0, 0, 1);
+    const double radius = p.number("radius", 1.0);
+    XmlAttributes attributes = {{"radius", xml_number(radius)}};
+    attributes.insert(attributes.end(), material.begin(), material.end());
+    if (p.has("zmin") || p.has("zmax") || p.has("phimax"))
+        note(shape.thing.place, "a part of a sphere is whole here");
+    if (shape.is_reversed && shape.light)
+        note(shape.thing.place, "a sphere that shines inwards shines outwards here");
+    xml_.open("sphere", attributes, shape.thing.place.text());
+    write_matrix(world_ * shape.thing.transform * as_globe);
+    const double size = size_of(shape.thing.transform) * radius;
+    write_emission(shape, 4.0 * pi * size * size);
+    xml_.close();
+}
+
+void PbrtTranslator::write_disk(const PbrtShape& shape, const XmlAttributes& material) {
+    const PbrtParameters& p = *shape.thing.parameters;
+    const double radius = p.number("radius", 1.0), height = p.number("height", 0.0);
+    if (p.has("innerradius") || p.has("phimax"))
+        note(shape.thing.place, "a part of a disk is whole here");
+    const double side = shape.is_reversed ? -1.0 : 1.0;
+    XmlAttributes attributes = {
+        {"z", xml_number(height)}, {"lookAt", xml_numbers({0.0, 0.0, height + side})}, {"radius", xml_number(radius)}};
+    attributes.insert(attributes.end(), material.begin(), material.end());
+    xml_.open("disk", attributes, shape.thing.place.text());
+    write_matrix(world_ * shape.thing.transform);
+    const double size = size_of(shape.thing.transform) * radius;
+    write_emission(shape, pi * size * size);
+    xml_.close();
+}
+
+void PbrtTranslator::write_file_mesh(const PbrtShape& shape, const XmlAttributes& material) {
+    XmlAttributes attributes = {{"file", file_name(shape.thing)}};
+    attributes.insert(attributes.end(), material.begin(), material.end());
+    if (shape.is_reversed && (shape.light || !material.empty()))
+        note(shape.thing.place, "a mesh in a file has its front where its file says, whatever ReverseOrientation");
+    xml_.open("mesh", attributes, shape.thing.place.text());
+    write_matrix(world_ * shape.thing.transform);
+    write_emission(shape, std::nullopt);
+    xml_.close();
+}
+
+void PbrtTranslator::write_triangles(const PbrtShape& shape, const XmlAttributes& material) {
+    const PbrtTriangles mesh = moved(world_ * shape.thing.transform, read_triangles(shape.thing), shape.is_reversed);
+    const std::string place = shape.thing.place.text();
+    const std::optional<PbrtRectangle> rectangle = mesh.places.empty() ? as_rectangle(mesh) : std::nullopt;
+    if (rectangle) {
+        XmlAttributes attributes;
+        add_xyz(attributes, rectangle->center);
+        const glm::dvec3 normal = glm::normalize(glm::cross(rectangle->edge_u, rectangle->edge_v));
+        attributes.emplace_back("lookAt", xml_numbers(rectangle->center + normal * glm::length(rectangle->edge_v)));
+        attributes.emplace_back("up", xml_numbers(rectangle->edge_v));
+        attributes.emplace_back("width", xml_number(glm::length(rectangle->edge_u)));
+        attributes.emplace_back("height", xml_number(glm::length(rectangle->edge_v)));
+        attributes.insert(attributes.end(), material.begin(), material.end());
+        xml_.open("rectangle", attributes, place);
+    } else {
+        xml_.open("mesh", material, place);
+        const auto numbers = [&](const char* name, const auto& rows) {
+            std::string text;
+            for (const auto& row : rows)
+                for (int i = 0; i < row.length(); ++i)
+                    text += fmt::format("{}{}", text.empty() ? "" : " ", row[i]);
+            if (!rows.empty())
+                xml_.element(name, {}, text);
+        };
+        numbers("vertices", mesh.points);
+        numbers("normals", mesh.normals);
+        numbers("places", mesh.places);
+        numbers("triangles", mesh.triangles);
+    }
+    write_emission(shape, mesh.area());
+    xml_.close();
+}
+
+void PbrtTranslator::write_surface(const PbrtShape& shape) {
+    const std::optional<XmlAttributes> material = material_of(shape);
+    if (!material) {
+        if (shape.light)
+            note(shape.thing.place,
+                 "shines, but is an interface between media: pbrt leaves that light out, and so does "
+                 "this");
+        return;
+    }
+    const PbrtThing& thing = shape.thing;
+    if (thing.parameters->has("alpha"))
+        note(thing.place, "\"alpha\" is left out; it is opaque");
+    if (thing.type == "sphere")
+        write_ball(shape, *material);
+    else if (thing.type == "disk")
+        write_disk(shape, *material);
+    else if (thing.type == "plymesh")
+        write_file_mesh(shape, *material);
+    else if (thing.type == "trianglemesh" || thing.type == "bilinearmesh")
+        write_triangles(shape, *material);
+    else
+        note(thing.place, fmt::format("Shape \"{}\" is left out", thing.type));
+    note_unused(thing, {"S", "faceIndices", "shadowalpha"});
+}
+
+void PbrtTranslator::write_surfaces() {
+    xml_.open("surfaces");
+    for (const PbrtShape& shape : scene_.shapes)
+        write_surface(shape);
+    xml_.close();
+}
+
+} // namespace vkvol

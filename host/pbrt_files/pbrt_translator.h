@@ -1,0 +1,73 @@
+// Makes the elements of a scene file from a pbrt scene; pbrt_translation.h is its public face.
+//
+// pbrt's coordinates are left-handed: to its cameras x is right, y up and z ahead. A map of the world, `world_`, a
+// rotation that mirrors where it has to, makes them right-handed, and turns what pbrt's map of the sky has for its
+// zenith to the top, since maps stand upright here.
+#pragma once
+
+#include <set>
+#include <span>
+#include <string>
+
+#include "pbrt_colors.h"
+#include "pbrt_translation.h"
+#include "pbrt_triangles.h"
+#include "xml_text.h"
+
+namespace vkvol {
+
+class PbrtTranslator {
+public:
+    PbrtTranslator(const PbrtScene& scene, NameOfFile name_of_file);
+    PbrtTranslation translate();
+
+private:
+    void choose_world();
+    void write_camera();
+    void write_film();
+    void write_settings();
+    void write_filter();
+
+    void write_media();
+    void write_medium(const std::string& name, const PbrtThing& medium, const std::string& shape,
+                      const glm::dmat4& transform, const PbrtPlace& place);
+    void write_grid_medium(const std::string& name, const PbrtThing& medium);
+    void write_coefficients(const PbrtThing& medium);
+    std::optional<std::string> enclosed_shape(const PbrtShape& shape, glm::dmat4& transform);
+    const PbrtThing* medium_of(const std::string& name, const PbrtPlace& place) const;
+
+    void write_lights();
+    void write_light(const PbrtThing& light);
+    void write_sky(const PbrtThing& light);
+    glm::dvec3 light_color(const PbrtThing& light, const char* name);
+
+    void write_surfaces();
+    void write_surface(const PbrtShape& shape);
+    void write_ball(const PbrtShape& shape, const XmlAttributes& material);
+    void write_disk(const PbrtShape& shape, const XmlAttributes& material);
+    void write_file_mesh(const PbrtShape& shape, const XmlAttributes& material);
+    void write_triangles(const PbrtShape& shape, const XmlAttributes& material);
+    void write_emission(const PbrtShape& shape, std::optional<double> area);
+    void write_matrix(const glm::dmat4& matrix);
+    std::optional<XmlAttributes> material_of(const PbrtShape& shape); // nothing: it is not seen
+    XmlAttributes material(const PbrtThing& thing);
+    void add_color(XmlAttributes& attributes, const PbrtThing& thing, const char* name, const glm::dvec3& fallback);
+    void add_roughness(XmlAttributes& attributes, const PbrtThing& thing);
+    void add_texture(XmlAttributes& attributes, const PbrtThing& texture, const glm::dvec3& factor, int depth);
+
+    std::string file_name(const PbrtThing& thing, const char* parameter = "filename") const;
+    void note(const PbrtPlace& place, const std::string& message);
+    void note_unused(const PbrtThing& thing, std::initializer_list<const char*> known = {});
+
+    const PbrtScene& scene_;
+    NameOfFile name_of_file_;
+    PbrtColors colors_;
+    XmlText xml_;
+    std::vector<std::string> notes_;
+    std::set<std::string> heard_;
+    glm::dmat4 world_{1.0}; // from pbrt's world to this renderer's
+    bool sky_is_mirrored_ = false;
+    double exposure_ = 1.0; // by which pbrt's film multiplies radiance
+};
+
+} // namespace vkvol
