@@ -90,18 +90,18 @@ void PbrtTranslator::write_matrix(const glm::dmat4& matrix) {
     xml_.close();
 }
 
-void PbrtTranslator::write_medium(const std::string& name, const PbrtThing& medium, const std::string& shape,
-                                  const glm::dmat4& transform, const PbrtPlace& place) {
+void PbrtTranslator::write_medium(const std::string& name, const PbrtThing& medium, const Region& region,
+                                  const PbrtPlace& place) {
     xml_.open("volume", {{"name", name}}, place.text());
-    if (shape.ends_with(".ply")) {
+    if (region.element.empty()) {
         xml_.open("models");
-        xml_.element("model", {}, shape);
+        xml_.element("model", {}, region.model);
         xml_.close();
     } else {
-        xml_.element(shape);
+        xml_.element(region.element);
     }
-    if (shape != "everywhere")
-        write_matrix(transform);
+    if (region.element != "everywhere")
+        write_matrix(region.transform);
     write_coefficients(medium);
     if (const std::optional<glm::dvec3> glow = colors_.light(medium, "Le")) {
         XmlAttributes attributes;
@@ -138,22 +138,17 @@ void PbrtTranslator::write_grid_medium(const std::string& name, const PbrtThing&
     xml_.close();
 }
 
-// The element of a shape that a homogeneous medium can fill, and where it stands; nothing, with a note, for others.
-std::optional<std::string> PbrtTranslator::enclosed_shape(const PbrtShape& shape, glm::dmat4& transform) {
+// Nothing, with a note, for shapes that hold no medium here.
+std::optional<PbrtTranslator::Region> PbrtTranslator::region_within(const PbrtShape& shape) {
     const PbrtThing& thing = shape.thing;
-    transform = world_ * thing.transform;
-    if (thing.type == "sphere") {
-        const double radius = thing.parameters->number("radius", 1.0);
-        transform = transform * glm::dmat4(glm::dmat3(radius));
-        return "sphere";
-    }
+    const glm::dmat4 transform = world_ * thing.transform;
+    if (thing.type == "sphere")
+        return Region{"sphere", "", transform * glm::dmat4(glm::dmat3(thing.parameters->number("radius", 1.0)))};
     if (thing.type == "plymesh")
-        return file_name(thing);
+        return Region{"", file_name(thing), transform};
     if (thing.type == "trianglemesh" || thing.type == "bilinearmesh")
-        if (const std::optional<glm::dmat4> box = as_box(read_triangles(thing))) {
-            transform = transform * *box;
-            return "box";
-        }
+        if (const std::optional<glm::dmat4> box = as_box(read_triangles(thing)))
+            return Region{"box", "", transform * *box};
     note(thing.place, fmt::format("\"{}\" encloses medium \"{}\", which is left out: of shapes a sphere, a box or a "
                                   "plymesh can hold it",
                                   thing.type, shape.inside));
@@ -175,7 +170,7 @@ void PbrtTranslator::write_media() {
     const PbrtPlace camera = scene_.camera ? scene_.camera->place : PbrtPlace();
     if (const PbrtThing* medium = medium_of(scene_.camera_medium, camera))
         if (!is_grid(scene_.camera_medium, *medium))
-            write_medium(scene_.camera_medium, *medium, "everywhere", glm::dmat4(1.0), camera);
+            write_medium(scene_.camera_medium, *medium, {"everywhere", "", glm::dmat4(1.0)}, camera);
     for (const PbrtShape& shape : scene_.shapes) {
         if (shape.inside == shape.outside)
             continue;
@@ -188,9 +183,8 @@ void PbrtTranslator::write_media() {
                  fmt::format("medium \"{}\" goes on within: media add up where they overlap here", shape.outside));
         if (!inside || is_grid(shape.inside, *inside))
             continue;
-        glm::dmat4 transform;
-        if (const std::optional<std::string> element = enclosed_shape(shape, transform))
-            write_medium(shape.inside, *inside, *element, transform, shape.thing.place);
+        if (const std::optional<Region> region = region_within(shape))
+            write_medium(shape.inside, *inside, *region, shape.thing.place);
     }
     xml_.close();
 }

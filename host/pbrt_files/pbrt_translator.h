@@ -29,11 +29,15 @@ private:
     void write_filter();
 
     void write_media();
-    void write_medium(const std::string& name, const PbrtThing& medium, const std::string& shape,
-                      const glm::dmat4& transform, const PbrtPlace& place);
+    // What a homogeneous medium fills: an element of a scene file, or a model's file, and where it stands.
+    struct Region {
+        std::string element, model;
+        glm::dmat4 transform{1.0};
+    };
+    void write_medium(const std::string& name, const PbrtThing& medium, const Region& region, const PbrtPlace& place);
     void write_grid_medium(const std::string& name, const PbrtThing& medium);
     void write_coefficients(const PbrtThing& medium);
-    std::optional<std::string> enclosed_shape(const PbrtShape& shape, glm::dmat4& transform);
+    std::optional<Region> region_within(const PbrtShape& shape);
     const PbrtThing* medium_of(const std::string& name, const PbrtPlace& place) const;
 
     void write_lights();

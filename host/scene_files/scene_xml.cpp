@@ -14,13 +14,15 @@ namespace vkvol {
 namespace {
 
 std::string read_file(const std::filesystem::path& file) {
-    constexpr std::size_t limit = 16 << 20;
+    constexpr std::size_t limit = 256 << 20;
     std::error_code error;
     if (std::filesystem::is_directory(file, error))
         throw InputError(fmt::format("{}: is a directory; expected a scene file (.xml)", file.string()));
     std::string text = read_input_text(file, limit, "name a scene file (.xml)");
     if (text.size() > limit)
-        throw InputError(fmt::format("{}: larger than 16 MiB; expected a scene file (.xml)", file.string()));
+        throw InputError(
+            fmt::format("{}: larger than 256 MiB; expected a scene file (.xml), with its meshes in files of their own",
+                        file.string()));
     return text;
 }
 

@@ -308,6 +308,10 @@ TEST_CASE("pbrt's media", "[cpu][pbrt]") {
     CHECK(std::get<Box>(box.shape).size == glm::dvec3(1.0));
     CHECK(std::abs(glm::determinant(glm::dmat3(box.transform))) == Approx(24.0));
 
+    const Volume model =
+        medium(world_of(fog + R"(MediumInterface "fog" "" Shape "plymesh" "string filename" "a b.PLY")"));
+    CHECK(std::get<MeshFiles>(model.shape).paths.at(0).filename() == "a b.PLY");
+
     // Around the camera it has no end.
     const Scene around = scene_of(fog + R"(MediumInterface "" "fog" Camera "perspective" WorldBegin)");
     CHECK(is_everywhere(medium(around)));
