@@ -79,7 +79,8 @@ public:
             if (entry.path().extension() == ".pbrt")
                 files.push_back(entry.path());
             else if (entry.is_regular_file())
-                std::filesystem::copy_file(entry.path(), directory / entry.path().filename());
+                std::filesystem::copy_file(entry.path(), directory / entry.path().filename(),
+                                           std::filesystem::copy_options::overwrite_existing);
         }
         std::sort(files.begin(), files.end()); // directories have no order of their own
         for (const std::filesystem::path& file : files)
