@@ -231,15 +231,17 @@ shared::MediumParams make_whole(const Superposition& whole) {
     return params;
 }
 
-// Near enough that what it lights differs much from place to place, and where shadow rays cost next to nothing:
-// elsewhere they take more time than they save, see tools/results/README.md.
+// Near enough that what it lights differs much from place to place, and where shadow rays cost next to nothing or,
+// beside surfaces, the light is a point, about which there is no bound to that: elsewhere they take more time than they
+// save, see tools/results/README.md.
 bool gains_by_looks_along(const Scene& scene, Media media) {
     if (density_kind(scene) != FIELD_CONSTANT)
         return false;
     constexpr double near = 0.1; // of the medium's diagonal
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         for (const Light& light : scene.lights)
-            if (const std::optional<glm::dvec3> place = place_of(light))
+            if (const std::optional<glm::dvec3> place = place_of(light);
+                place && (scene.surfaces.empty() || !is_lamp(light)))
                 if (distance_to(scene.volumes[i], media[i], *place) < near * diagonal_of(scene.volumes[i], media[i]))
                     return true;
     return false;

@@ -246,12 +246,12 @@ void Resolution::choose_mis() {
 // Looks from along a flight need to know where it is within the medium, of which a mesh has many parts.
 void Resolution::choose_distance() {
     const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
-    const bool could = method_.paths == PATHS_CAMERA && method_.nee != NEE_NONE &&
-                       method_.scattering != SCATTERING_NONE && !any_medium(scene_, is_mesh) &&
-                       scene_.surfaces.empty() && std::any_of(scene_.lights.begin(), scene_.lights.end(), has_place);
+    const bool could =
+        method_.paths == PATHS_CAMERA && method_.nee != NEE_NONE && method_.scattering != SCATTERING_NONE &&
+        !any_medium(scene_, is_mesh) &&
+        (has_lamps_of_surfaces(scene_) || std::any_of(scene_.lights.begin(), scene_.lights.end(), has_place));
     if (choices_.distance && !could)
-        warn("distance is without effect: it is for point, spot, sphere, disk and rectangle lights, and not in models "
-             "or beside surfaces");
+        warn("distance is without effect: it is for point, spot, sphere, disk and rectangle lights, and not in models");
     method_.distance = could ? choices_.distance : DISTANCE_FLIGHTS;
 }
 

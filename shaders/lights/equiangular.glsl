@@ -11,7 +11,7 @@
 #define EQUIANGULAR_GLSL
 #include "lib/interval.glsl"
 
-// What of a flight may be within the medium, as a light sees it.
+// What of a flight may be within the medium and lit, as a light sees it.
 struct Stretch {
     vec2 t;     // from where to where, from the flight's beginning [world units]
     float foot; // where it is nearest to the light
@@ -20,10 +20,34 @@ struct Stretch {
     vec2 mass;  // of its part before the foot, and of that behind
 };
 
-Stretch stretch_of(MediumParams v, LightRow light, vec3 position, vec3 direction) {
+// Of a ray, counted from its `foot` next to the light, which is off that by `off`: what lies before a lamp that is flat, or in a
+// spot's cone, whose halves to both sides the quadratic cannot tell apart. Empty: both ends are the same.
+vec2 lit_part(LightRow light, vec3 off, vec3 direction) {
+    float a = dot(direction, light.direction), b = dot(off, light.direction);
+    float c = 1.0 - light.none_beyond;
+    vec2 part = vec2(-FAR, FAR);
+    if (light.kind == LIGHT_DISK || light.kind == LIGHT_RECTANGLE) {
+        float x = -b / a;
+        part = a > 0.0 ? vec2(x, FAR) : a < 0.0 ? vec2(-FAR, x) : part;
+    } else if (light.kind == LIGHT_SPOT && c > 0.0) {
+        // Lit is what has b + a x >= c sqrt(off^2 + x^2).
+        float A = (a - c) * (a + c), square = b * b + A * dot(off, off);
+        float root = c * sqrt(max(square, 0.0));
+        vec2 x = vec2(-a * b - root, -a * b + root) / A;
+        if (A > 0.0)
+            part = a > 0.0 ? vec2(x.y, FAR) : vec2(-FAR, x.x);
+        else if (A < 0.0)
+            part = square > 0.0 && b > 0.0 ? vec2(x.y, x.x) : vec2(0.0);
+    }
+    return part;
+}
+
+// `reach`: how far it goes, to a surface or not.
+Stretch stretch_of(MediumParams v, LightRow light, vec3 position, vec3 direction, float reach) {
     Stretch s;
     if (!medium_interval(v, to_medium(v, position, direction), s.t))
         s.t = vec2(0.0);
+    s.t.y = max(min(s.t.y, reach), s.t.x);
     vec3 apart = light.position - position;
     s.foot = dot(apart, direction);
     // Lamps are no points: nearer than half their size nothing grows any more. And no ray hits a point.
@@ -31,7 +55,10 @@ Stretch stretch_of(MediumParams v, LightRow light, vec3 position, vec3 direction
     if (UNBOUNDED != 0)
         size = min(size, 100.0 / v.usual_sigma_t);
     float least = max(0.3 * sqrt(light.kind >= LIGHT_SPHERE ? light.area : 0.0), 1.0e-5 * size);
-    s.off = max(length(apart - s.foot * direction), max(least, 1.0e-30));
+    vec3 off = apart - s.foot * direction;
+    s.off = max(length(off), max(least, 1.0e-30));
+    vec2 lit = s.foot + lit_part(light, -off, direction);
+    s.t = clamp(s.t, lit.x, lit.y);
     vec2 x = (s.t - s.foot) / s.off;
     s.y = 1.0 / (1.0 + abs(x));
     s.mass = vec2(x.x < 0.0 ? (x.y < 0.0 ? s.y.y : 1.0) - s.y.x : 0.0, x.y > 0.0 ? (x.x > 0.0 ? s.y.x : 1.0) - s.y.y : 0.0);
@@ -65,10 +92,11 @@ bool has_place(LightRow light) {
 }
 
 // Of a collision at distance t of a flight, from where this light is looked at.
-float weight_of_collision(MediumParams v, LightRow light, vec3 position, vec3 direction, float t) {
-    Stretch s = stretch_of(v, light, position, direction);
+float weight_of_collision(MediumParams v, LightRow light, vec3 direction, vec3 position, float t, float reach) {
+    Stretch s = stretch_of(v, light, position - t * direction, direction, reach);
     float flown = assumed_flight_pdf(v, s, t);
-    return has_place(light) && is_open(s) ? flown / max(flown + equiangular_pdf(s, t), 1.0e-30) : 1.0;
+    bool may_be_drawn = has_place(light) && is_open(s) && t >= s.t.x && t <= s.t.y;
+    return may_be_drawn ? flown / max(flown + equiangular_pdf(s, t), 1.0e-30) : 1.0;
 }
 
 #endif

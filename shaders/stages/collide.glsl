@@ -28,8 +28,8 @@ void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spec
                  (drawn.pdf > 0.0 ? weight_of_look(drawn.pdf, pdf) : 1.0);
     if (WEIGHS)
         light *= weight_of_found(lane, shares_of_found(row, position, drawn.direction, drawn.distance, 0.0), true);
-    if (LOOKS_ALONG)
-        light *= weight_of_collision(v, row, position - t * lane.path.direction, lane.path.direction, t);
+    if (LOOKS_ALONG && !is_surface(s))
+        light *= weight_of_collision(v, row, lane.path.direction, position, t, flying_as_far_as(lane));
     if (LOOKS) {
         lane.position = lit_position(s, position, drawn.direction);
         lane.lit = lit;

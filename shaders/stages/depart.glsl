@@ -105,25 +105,33 @@ void set_going(MediumParams v, uvec4 words, bool looks, bool at_camera, inout La
     lane.steps = 0u;
 }
 
-// At once or, where there are surfaces, once these have been asked.
-void begin_going(MediumParams v, uvec4 words, bool looks, bool at_camera, inout Lane lane, inout Tally tally) {
-    if (NEE == NEE_TENTATIVE && looks)
-        lane.flight = lane.walk;
 #ifdef SURFACES
+void begin_seeking(bool looks, inout Lane lane) {
     Ray ray = Ray(looks ? looking_from(lane) : lane.path.position, looks ? looking_along(lane) : lane.path.direction);
     lane.seek = begin_seek(ray, looks ? looking_as_far_as(lane) : FAR, looks ? lane.lit_surface : surface_at(lane.path));
     lane.todo = looks ? TODO_CHECK : lane.todo == TODO_FLY ? TODO_SEEK : lane.todo;
-#else
-    set_going(v, words, looks, at_camera, lane);
+}
 #endif
+
+// At once or, where there are surfaces, once these have been asked, unless it `knows` that none is in the way.
+void begin_going(MediumParams v, uvec4 words, bool looks, bool at_camera, bool knows, inout Lane lane, inout Tally tally) {
+    if (NEE == NEE_TENTATIVE && looks)
+        lane.flight = lane.walk;
+#ifdef SURFACES
+    if (!knows)
+        begin_seeking(looks, lane);
+    else
+#endif
+        set_going(v, words, looks, at_camera, lane);
     tally.shadow_rays += looks ? 1u : 0u;
-    if (!looks)
+    if (!looks && !(HAS_SURFACES && knows)) // else the search has begun there
         trace(TRACE_DEPART, lane, lane.path.position, lane.path.direction);
 }
 
 void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     bool looks = at_shadow_ray(lane.todo == TODO_LOOK);
-    bool has_looked = SETS_OUT && lane.todo == TODO_SET_OUT;
+    bool has_looked = sets_out_again(lane.todo);
+    bool knows = LOOKS_ALONG && (looks ? is_along(lane) : lane.todo == TODO_GO);
     bool at_camera = !looks && lane.path.depth == 0u;
     uvec4 words = first_words(looks, rng);
     lane.todo = looks ? TODO_SEE : TODO_FLY;
@@ -143,11 +151,11 @@ void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
         if (!looks && !at_camera && !has_looked)
             goes_to_look = look_at_shown_lamps(lane, rng);
 #endif
-    if (LOOKS_ALONG) // in an `if` of its own, which the compiler leaves out with all it leads to
-        if (lane.todo == TODO_FLY && !has_looked && !is_particle(lane))
+    if (LOOKS_ALONG && !HAS_SURFACES) // in an `if` of its own, which the compiler leaves out with all it leads to
+        if (lane.todo == TODO_FLY && !has_looked)
             goes_to_look = look_along(v, lane, rng, tally);
     if (!goes_to_look)
-        begin_going(v, words, looks, at_camera, lane, tally);
+        begin_going(v, words, looks, at_camera, knows, lane, tally);
 }
 
 #endif

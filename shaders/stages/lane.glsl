@@ -28,12 +28,16 @@ bool at_shadow_ray(bool is) {
 #endif
 }
 
-// Whether paths may come to look along the way that they have drawn, before they go it.
+// Whether paths may come to look along the way that they have drawn, before they go it: toward lamps that mirrors and glass show,
+// and, once its end is known, from along it.
 const bool SETS_OUT = LOOKS_ALONG || HAS_SURFACES;
+bool sets_out_again(uint todo) {
+    return SETS_OUT && ((HAS_SURFACES && todo == TODO_SET_OUT) || (LOOKS_ALONG && todo == TODO_GO));
+}
 
 // Whether a lane begins a segment, or goes on along one, of a kind that its pass has.
 bool departs(uint todo) {
-    bool sets_out = SETS_OUT && todo == TODO_SET_OUT;
+    bool sets_out = sets_out_again(todo);
 #if defined(FLIGHTS_ONLY)
     return todo == TODO_DEPART || sets_out;
 #elif defined(SHADOW_RAYS_ONLY)
@@ -132,7 +136,7 @@ uint label_at(Lane lane, MediumParams met) {
     bool keeps_place = KEEPS_PLACE;                                                                                   \
     bool several = SEVERAL_MEDIA;                                                                                     \
     bool looks_along = LOOKS_ALONG;                                                                                   \
-    bool sets_out = SETS_OUT && (looking || seeking || next == TODO_SET_OUT);                                         \
+    bool sets_out = SETS_OUT && (looking || seeking || sets_out_again(next));                                         \
     bool sees_sky = SEES_SKY;                                                                             \
     bool chooses_light = LIGHTS != LIGHTS_SUN;                                                                        \
     bool has_cache = LOOKS && NEE == NEE_CACHED;                                                                      \

@@ -28,7 +28,7 @@ bool look_along(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tall
     vec4 u = to_uniform(words);
     float chance;
     LightRow light = choose_placed(v, lane.path.position, lane.path.direction, u.x, rng, chance);
-    Stretch s = stretch_of(v, light, lane.path.position, lane.path.direction);
+    Stretch s = stretch_of(v, light, lane.path.position, lane.path.direction, flying_as_far_as(lane));
     float t = distance_in(s, u.y);
     vec3 position = lane.path.position + t * lane.path.direction;
     tally.lookups += 1u;
@@ -48,7 +48,11 @@ bool look_along(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tall
         lane.light_distance = drawn.distance;
         lane.leg = LEG_ALONG;
         lane.label = label;
-        lane.resume = TODO_SET_OUT;
+        if (HAS_SURFACES) {
+            lane.lit_surface = NO_SURFACE;
+            lane.lamp_body = light.body;
+        }
+        lane.resume = TODO_GO;
         lane.todo = TODO_LOOK;
         look_in_full(lane);
     } else if (is_lit) {

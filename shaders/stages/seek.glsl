@@ -1,4 +1,5 @@
-// Before a flight or shadow ray begins: the surface that ends it, or whether one is in its way. Then it sets out.
+// Before a flight or shadow ray begins: the surface that ends it, or whether one is in its way. Then it sets out, a flight where
+// there are looks from along it after these.
 #ifndef STAGE_SEEK_GLSL
 #define STAGE_SEEK_GLSL
 #include "stages/depart.glsl"
@@ -22,7 +23,12 @@ void seek(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
         lane.reach = looks ? lane.reach : lane.seek.nearest;
         lane.struck = looks ? lane.struck : lane.seek.primitive;
         lane.todo = looks ? TODO_SEE : TODO_FLY;
-        set_going(v, next_words(rng), looks, false, lane);
+        bool goes_to_look = false;
+        if (LOOKS_ALONG)
+            if (!looks)
+                goes_to_look = look_along(v, lane, rng, tally);
+        if (!goes_to_look)
+            set_going(v, next_words(rng), looks, false, lane);
     }
 }
 #endif

@@ -23,6 +23,10 @@ Scatterer surface_of(MediumParams v, Bsdf bsdf, float apart) {
     return Scatterer(v, true, bsdf, apart);
 }
 
+bool is_surface(Scatterer s) {
+    return s.is_surface;
+}
+
 // From `position` before the surface to where light arrives along -to_light: behind it, where that is.
 vec3 lit_position(Scatterer s, vec3 position, vec3 to_light) {
     bool behind = has_material(MATERIAL_ROUGH_DIELECTRIC) && s.is_surface && dot(s.bsdf.face, to_light) < 0.0;
@@ -62,6 +66,7 @@ float scatter_peak(Scatterer s) {
 #else
 #define Scatterer MediumParams
 #define matter_of(v) (v)
+#define is_surface(s) false
 #define scatter_value phase_eval
 #define scatter_pdf phase_eval
 #define scatter_direction phase_sample

@@ -368,6 +368,26 @@ TEST_CASE("surfaces among media equal the reference, by both schedules", "[gpu][
     CHECK_AGREEMENT(agree(render_here(bare, 1).film, render_reference(bare, 2), "no medium"));
 }
 
+// Flights that end at surfaces, from them and in the midst; mirrors and glass show lamps before these looks, lamps with
+// bodies are in their own way, and a spot lights a part of a flight.
+TEST_CASE("looks from along flights find the same light beside surfaces", "[gpu][image][surfaces]") {
+    Scene scene = rough_still_life();
+    scene.surfaces[1] = still_life().surfaces[1];
+    scene.surfaces[3] = still_life().surfaces[3];
+    scene.lights.push_back(SpotLight{{-0.6, 1.8, 1.2}, glm::normalize(glm::dvec3(0.2, -1.0, -0.4)), Rgb(6.0), 30.0});
+    scene.settings.choices.distance = DISTANCE_MIXED;
+    Scene several = scene;
+    several.volumes.push_back(fog(0.3, 0.8));
+    Scene steps = several;
+    steps.settings.choices.nee = NEE_TENTATIVE;
+    scene.volumes = {fog(0.8, 0.9)};
+    const std::vector<std::pair<std::string, Scene>> scenes = {{"fog, from along flights", scene},
+                                                               {"smoke in fog, from along flights", several},
+                                                               {"from along flights and every step", steps}};
+    for (const auto& [name, each] : in_turn(scenes, 0))
+        check_by_both_schedules(each, name);
+}
+
 TEST_CASE("surfaces that shine are lamps with bodies", "[gpu][image][surfaces]") {
     // All shapes, from both sides, before and behind each other, as mirrors and glass show them; against the reference,
     // which meets them by chance.
