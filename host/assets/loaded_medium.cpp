@@ -54,7 +54,7 @@ std::vector<GridFile> grid_files(const Scene& scene) {
     for (const Volume& volume : scene.volumes)
         if (const auto* file = std::get_if<GridFile>(&volume.shape))
             for (const std::string& grid : {file->grid, volume.temperature.grid, volume.albedo_grid})
-                files.push_back({file->path, grid});
+                files.push_back(file->beside(grid));
     return files;
 }
 
@@ -142,7 +142,7 @@ float Loader::largest_value(const DensityField& field) {
 void Loader::load_albedo(const Volume& volume, const GridFile& file, LoadedMedium& loaded) {
     if (volume.albedo_grid.empty())
         return;
-    DensityField field = field_of(volume, {file.path, volume.albedo_grid}, GridValues::numbers_or_colors);
+    DensityField field = field_of(volume, file.beside(volume.albedo_grid), GridValues::numbers_or_colors);
     if (field.active_voxels == 0)
         throw InputError(
             fmt::format("{}: \"{}\" has no active voxel, and would make the medium black; leave <albedo> out",
@@ -159,12 +159,12 @@ void Loader::load_temperature(const Volume& volume, const GridFile& file, Loaded
     const TemperatureEmission& emission = volume.temperature;
     if (emission.color * most_sigma_a(volume) == Rgb(0.0))
         return;
-    if (!fields_.has({file.path, emission.grid}))
+    if (!fields_.has(file.beside(emission.grid)))
         return warn(loaded, fmt::format("{}: has no grid \"{}\": <emission> is without effect", file.path.string(),
                                         emission.grid));
     const bool by_kelvin = emission.model == TemperatureEmission::Model::blackbody;
     DensityField field =
-        field_of(volume, {file.path, emission.grid}, by_kelvin ? GridValues::numbers : GridValues::numbers_or_colors);
+        field_of(volume, file.beside(emission.grid), by_kelvin ? GridValues::numbers : GridValues::numbers_or_colors);
     if (field.active_voxels == 0)
         return;
     loaded.largest_temperature = largest_value(field);

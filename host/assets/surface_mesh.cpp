@@ -22,15 +22,11 @@ TriangleSurface load(const MeshSurface& mesh, const glm::dmat4& transform, bool 
     Polygons read = read_polygons(mesh.file);
     for (glm::dvec3& vertex : read.vertices)
         vertex = glm::dvec3(transform * glm::dvec4(vertex, 1.0));
-    if (glm::determinant(glm::dmat3(transform)) < 0.0) // a mirror turns them inside out
-        for (std::size_t i = 0; i < read.triangles.size(); ++i) {
-            std::swap(read.triangles[i].y, read.triangles[i].z);
-            if (!read.normals.empty())
-                std::swap(read.normals[i][1], read.normals[i][2]);
-            if (!read.places.empty())
-                std::swap(read.places[i][1], read.places[i][2]);
-        }
-    return {std::move(read.vertices), std::move(read.triangles), std::move(read.normals), std::move(read.places), true};
+    TriangleSurface shape{std::move(read.vertices), std::move(read.triangles), std::move(read.normals),
+                          std::move(read.places), true};
+    if (glm::determinant(glm::dmat3(transform)) < 0.0)
+        shape.turn_about();
+    return shape;
 }
 
 // Of its length twice the area; counterclockwise as seen from where it points to.

@@ -1,7 +1,6 @@
 #include "convert.h"
 
 #include <fmt/format.h>
-#include <system_error>
 
 #include "atomic_file.h"
 #include "error.h"
@@ -27,24 +26,31 @@ int run_convert(const ConvertOptions& options) {
         throw InputError(fmt::format("{}: convert writes a scene file; expected .xml", options.output.string()));
     const PbrtScene pbrt = read_pbrt(options.scene);
     const std::filesystem::path beside = options.output.parent_path();
-    const PbrtTranslation translation =
-        translate_pbrt(pbrt, [&](const std::string& name) { return name_beside(pbrt.folder / name, beside); });
-    PbrtTranslation as_read = translation; // where the new file will be, of places in the old one
-    as_read.notes.clear();
-    const Scene scene = parse_scene(as_read, options.output);
+    PbrtTranslationOptions choices;
+    choices.name_of_file = [&](const std::string& name) { return name_beside(pbrt.folder / name, beside); };
+    choices.grid_prefix = options.output.stem().string() + "_";
+    const PbrtTranslation translation = translate_pbrt(pbrt, choices);
+    if (is_special(options.output) && !translation.grids.empty())
+        throw InputError(
+            fmt::format("{}: has densities of its own, which become files beside the new scene; name a file "
+                        "with -o",
+                        options.scene.string()));
+    // Files are looked for where the new scene will be.
+    const Scene scene = parse_scene(translation, options.output, {{}, {}, options.strict});
     FileUses uses;
     uses.reads("the scene", options.scene);
     uses.reads_files_of(scene);
     uses.writes("the new scene", options.output, "-o");
+    for (const auto& [name, grids] : translation.grids)
+        uses.writes("densities of the new scene", beside / name, "-o");
     uses.check();
-    if (options.strict && !translation.notes.empty())
-        throw InputError(translation.notes.front() + " (under --strict)");
+    for (const auto& [name, grids] : translation.grids)
+        write_text(beside / name, nvdb_file_of(*grids));
     write_text(options.output, head + translation.xml);
     if (options.quiet)
         return exit_done;
-    for (const std::vector<std::string>& lines : {translation.notes, scene.warnings})
-        for (const std::string& line : lines)
-            tell(stderr, "vkvol: warning: {}\n", line);
+    for (const std::string& warning : scene.warnings)
+        tell(stderr, "vkvol: warning: {}\n", warning);
     tell(stdout, "{}: {} media, {} lights, {} surfaces\n", options.output.string(), scene.volumes.size(),
          scene.lights.size(), scene.surfaces.size());
     return exit_done;

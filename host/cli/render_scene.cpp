@@ -55,9 +55,7 @@ RenderScene load_render_scene(const RenderOptions& options, FieldCache& fields) 
     else if (options.up)
         throw InputError("--up: is for grid files rendered without a scene; a scene's <camera> has lookAt and up");
     else
-        result.scene = load_scene(options.scene, options.defines, {options.grid, options.integrator});
-    if (options.strict && is_pbrt_file(options.scene) && !result.scene.warnings.empty())
-        throw InputError(result.scene.warnings.front() + " (under --strict)");
+        result.scene = load_scene(options.scene, options.defines, {options.grid, options.integrator, options.strict});
     Scene& scene = result.scene;
     if (options.spp)
         scene.settings.spp = *options.spp;

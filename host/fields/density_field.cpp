@@ -11,6 +11,7 @@
 #include "file_ending.h"
 #include "grid_tree.h"
 #include "input_file.h"
+#include "memory_grids.h"
 #include "missing_field.h"
 #include "nearest_name.h"
 #include "one_line.h"
@@ -56,9 +57,11 @@ std::string list_names(const std::vector<std::string>& names) {
 }
 
 GridBytes read_grid(const GridFile& file, GridValues values) {
-    const std::vector<std::string> names = grid_names(file.path);
+    const std::vector<std::string> names = grid_names(file);
     if (std::find(names.begin(), names.end(), file.grid) == names.end())
         no_such_grid(file, names);
+    if (file.memory)
+        return *file.memory->find(file.grid);
     if (file_ending(file.path) == ".vdb")
         return read_vdb_grid(file.path, file.grid, values);
     const std::vector<GridEntry> entries = read_nvdb_entries(file.path);
@@ -175,8 +178,17 @@ std::vector<std::string> grid_names(const std::filesystem::path& file) {
     return names;
 }
 
+std::vector<std::string> grid_names(const GridFile& file) {
+    if (!file.memory)
+        return grid_names(file.path);
+    std::vector<std::string> names;
+    for (const MemoryGrids::Grid& grid : file.memory->grids)
+        names.push_back(grid.name);
+    return names;
+}
+
 bool has_grid(const GridFile& file) {
-    const std::vector<std::string> names = grid_names(file.path);
+    const std::vector<std::string> names = grid_names(file);
     return std::find(names.begin(), names.end(), file.grid) != names.end();
 }
 

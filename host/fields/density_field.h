@@ -50,6 +50,7 @@ DensityField load_density_field(const GridFile& file, GridValues values = GridVa
 
 // Of all grids in the file, in its order. Throws InputError if it cannot be read.
 std::vector<std::string> grid_names(const std::filesystem::path& file);
+std::vector<std::string> grid_names(const GridFile& file); // or in memory
 
 // True if the file can be read and has a grid of that name. Throws InputError if it cannot be read.
 bool has_grid(const GridFile& file);

@@ -6,13 +6,15 @@
 
 namespace vkvol {
 
-FieldCache::Stamp FieldCache::stamp_of(const std::filesystem::path& path) {
+FieldCache::Stamp FieldCache::stamp_of(const GridFile& file) {
+    if (file.memory)
+        return {0, {}, file.memory};
     std::error_code ignored;
-    return {std::filesystem::file_size(path, ignored), std::filesystem::last_write_time(path, ignored)};
+    return {std::filesystem::file_size(file.path, ignored), std::filesystem::last_write_time(file.path, ignored), {}};
 }
 
 DensityField FieldCache::take(const GridFile& file, GridValues values) {
-    const Stamp stamp = stamp_of(file.path);
+    const Stamp stamp = stamp_of(file);
     const Key key = key_of(file);
     const auto is_of = [&](const DensityField& field) {
         return values == GridValues::numbers_or_colors || field.type != GRID_COLOR;
@@ -26,7 +28,7 @@ DensityField FieldCache::take(const GridFile& file, GridValues values) {
 }
 
 bool FieldCache::has(const GridFile& file) {
-    const Stamp stamp = stamp_of(file.path);
+    const Stamp stamp = stamp_of(file);
     const Key key = key_of(file);
     if (const auto found = there_.find(key); found != there_.end() && found->second.stamp == stamp)
         return found->second.value;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +28,7 @@ private:
     struct Stamp {
         std::uintmax_t bytes = 0;
         std::filesystem::file_time_type changed;
+        std::shared_ptr<const MemoryGrids> memory;
         bool operator==(const Stamp&) const = default;
     };
     template <class T> struct Stamped {
@@ -35,7 +37,7 @@ private:
     };
 
     static Key key_of(const GridFile& file) { return {file.path.native(), file.grid}; }
-    static Stamp stamp_of(const std::filesystem::path& path);
+    static Stamp stamp_of(const GridFile& file);
 
     std::map<Key, Stamped<DensityField>> fields_;
     std::map<Key, Stamped<bool>> there_;

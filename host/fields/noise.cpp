@@ -1,6 +1,5 @@
 #include "noise.h"
 
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -29,6 +28,10 @@ constexpr std::array<std::uint8_t, 256> permutation{
 constexpr double period = 256.0; // of the lattice's gradients, along each axis
 
 } // namespace
+
+const std::array<std::uint8_t, 256>& noise_permutation() {
+    return permutation;
+}
 
 // Derivation of perlin_bound. At a point p of the unit cell the noise is the sum over the eight corners c of
 // weight(c, p) * dot(gradient(c), p - c), where the weights are products of the fade curve and its complement, >= 0,

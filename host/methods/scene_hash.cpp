@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "digest.h"
+#include "memory_grids.h"
 #include "method.h"
 #include "shared/constants.h"
 #include "surface_lamps.h"
@@ -37,6 +38,13 @@ void add_file(Writer& writer, const std::filesystem::path& path) {
     writer.add("bytes", error ? -1.0 : double(size));
 }
 
+void add_grids(Writer& writer, const MemoryGrids& grids) {
+    for (const MemoryGrids::Grid& grid : grids.grids) {
+        const std::string bytes(reinterpret_cast<const char*>(grid.bytes.data()), grid.bytes.size());
+        writer.add(grid.name.c_str(), digest_text(bytes));
+    }
+}
+
 void add_shape(Writer& writer, const Volume& volume) {
     if (const Sphere* sphere = std::get_if<Sphere>(&volume.shape)) {
         writer.add("sphere", sphere->center);
@@ -45,7 +53,10 @@ void add_shape(Writer& writer, const Volume& volume) {
         writer.add("box", box->center);
         writer.add("size", box->size);
     } else if (const GridFile* grid = std::get_if<GridFile>(&volume.shape)) {
-        add_file(writer, grid->path);
+        if (grid->memory)
+            add_grids(writer, *grid->memory);
+        else
+            add_file(writer, grid->path);
         writer.add("grid", grid->grid);
         writer.add("unit", volume.unit == CoefficientUnit::world ? 1 : 0);
     } else if (is_everywhere(volume)) {

@@ -122,20 +122,26 @@ void PbrtTranslator::write_grid_medium(const std::string& name, const PbrtThing&
     write_matrix(world_ * medium.transform);
     write_coefficients(medium);
     const std::string temperature = p.text("temperaturename", "temperature");
-    const double glow = p.number("Lescale", 1.0), scale = p.number("temperaturescale", 1.0);
-    const double offset = p.number("temperatureoffset", p.number("temperaturecutoff", 0.0));
-    if (glow > 0.0 && has_grid(scene_.folder / file, temperature)) {
-        XmlAttributes attributes = {{"grid", temperature},
-                                    {"model", "blackbody"},
-                                    {"brightness", "peak"},
-                                    {"temperatureScale", xml_number(scale)},
-                                    {"temperatureOffset", xml_number(-offset * scale)},
-                                    {"temperatureCutoff", "100"}};
-        add_rgb(attributes, glm::dvec3(glow * exposure_));
-        xml_.element("emission", attributes);
-    }
+    const double glow = p.number("Lescale", 1.0);
+    if (glow > 0.0 && has_grid(scene_.folder / file, temperature))
+        write_black_body(temperature, glow, medium);
     note_unused(medium, {"type"});
     xml_.close();
+}
+
+// Of temperatures, scaled and offset as the medium says.
+void PbrtTranslator::write_black_body(const std::string& grid, double glow, const PbrtThing& medium) {
+    const PbrtParameters& p = *medium.parameters;
+    const double scale = p.number("temperaturescale", 1.0);
+    const double offset = p.number("temperatureoffset", p.number("temperaturecutoff", 0.0));
+    XmlAttributes attributes = {{"grid", grid},
+                                {"model", "blackbody"},
+                                {"brightness", "peak"},
+                                {"temperatureScale", xml_number(scale)},
+                                {"temperatureOffset", xml_number(-offset * scale)},
+                                {"temperatureCutoff", "100"}};
+    add_rgb(attributes, glm::dvec3(glow * exposure_));
+    xml_.element("emission", attributes);
 }
 
 // Nothing, with a note, for shapes that hold no medium here.
@@ -159,13 +165,20 @@ void PbrtTranslator::write_media() {
     xml_.open("volumes");
     std::set<std::string> grids; // those that are written: they end by themselves
     const auto is_grid = [&](const std::string& name, const PbrtThing& medium) {
-        if (medium.type == "nanovdb" && grids.insert(name).second)
-            write_grid_medium(name, medium);
-        if (medium.type != "nanovdb" && medium.type != "homogeneous")
+        const bool is_file = medium.type == "nanovdb", is_one = is_file || is_dense(medium);
+        if (!is_one && medium.type != "homogeneous")
             fail_at(
                 medium.place,
-                fmt::format("medium \"{}\" cannot be rendered; take homogeneous, or nanovdb with a file", medium.type));
-        return medium.type == "nanovdb";
+                fmt::format("medium \"{}\" cannot be rendered; take homogeneous, uniformgrid, cloud, or nanovdb with a "
+                            "file",
+                            medium.type));
+        if (is_one && grids.insert(name).second) {
+            if (is_file)
+                write_grid_medium(name, medium);
+            else
+                write_dense_medium(name, medium);
+        }
+        return is_one;
     };
     const PbrtPlace camera = scene_.camera ? scene_.camera->place : PbrtPlace();
     if (const PbrtThing* medium = medium_of(scene_.camera_medium, camera))
@@ -176,7 +189,7 @@ void PbrtTranslator::write_media() {
             continue;
         const PbrtThing* inside = medium_of(shape.inside, shape.thing.place);
         const PbrtThing* outside = medium_of(shape.outside, shape.thing.place);
-        if (outside && outside->type == "nanovdb")
+        if (outside && outside->type != "homogeneous")
             is_grid(shape.outside, *outside);
         else if (outside && lets_light_in(shape))
             note(shape.thing.place,

@@ -106,8 +106,8 @@ bool is_map(const PbrtThing& light) {
 
 } // namespace
 
-PbrtTranslator::PbrtTranslator(const PbrtScene& scene, NameOfFile name_of_file)
-    : scene_(scene), name_of_file_(std::move(name_of_file)), colors_(scene.folder) {
+PbrtTranslator::PbrtTranslator(const PbrtScene& scene, PbrtTranslationOptions options)
+    : scene_(scene), options_(std::move(options)), colors_(scene.folder) {
     const PbrtThing& film = thing_or(scene.film, usual_film);
     const PbrtParameters& camera = *thing_or(scene.camera, usual_camera).parameters;
     const double open = camera.number("shutteropen", 0.0), close = camera.number("shutterclose", 1.0);
@@ -125,7 +125,7 @@ void PbrtTranslator::note(const PbrtPlace& place, const std::string& message) {
 // Empty if it names none.
 std::string PbrtTranslator::file_name(const PbrtThing& thing, const char* parameter) const {
     const std::string name = thing.parameters->text(parameter);
-    return name.empty() || !name_of_file_ ? name : name_of_file_(name);
+    return name.empty() || !options_.name_of_file ? name : options_.name_of_file(name);
 }
 
 // Parameters that nothing here has asked for; `known`: those that make no difference here.
@@ -288,11 +288,11 @@ PbrtTranslation PbrtTranslator::translate() {
     write_filter();
     write_settings();
     xml_.close();
-    return {xml_.text(), xml_.places(), std::move(notes_)};
+    return {xml_.text(), xml_.places(), std::move(notes_), std::move(grids_)};
 }
 
-PbrtTranslation translate_pbrt(const PbrtScene& scene, const NameOfFile& name_of_file) {
-    return PbrtTranslator(scene, name_of_file).translate();
+PbrtTranslation translate_pbrt(const PbrtScene& scene, const PbrtTranslationOptions& options) {
+    return PbrtTranslator(scene, options).translate();
 }
 
 } // namespace vkvol

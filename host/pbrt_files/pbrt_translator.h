@@ -16,9 +16,12 @@
 
 namespace vkvol {
 
+// A medium whose densities stand in the scene, or are made up.
+bool is_dense(const PbrtThing& medium);
+
 class PbrtTranslator {
 public:
-    PbrtTranslator(const PbrtScene& scene, NameOfFile name_of_file);
+    PbrtTranslator(const PbrtScene& scene, PbrtTranslationOptions options);
     PbrtTranslation translate();
 
 private:
@@ -36,6 +39,9 @@ private:
     };
     void write_medium(const std::string& name, const PbrtThing& medium, const Region& region, const PbrtPlace& place);
     void write_grid_medium(const std::string& name, const PbrtThing& medium);
+    std::string free_name(const std::string& medium) const;
+    void write_dense_medium(const std::string& name, const PbrtThing& medium);
+    void write_black_body(const std::string& grid, double glow, const PbrtThing& medium);
     void write_coefficients(const PbrtThing& medium);
     std::optional<Region> region_within(const PbrtShape& shape);
     const PbrtThing* medium_of(const std::string& name, const PbrtPlace& place) const;
@@ -64,7 +70,8 @@ private:
     void note_unused(const PbrtThing& thing, std::initializer_list<const char*> known = {});
 
     const PbrtScene& scene_;
-    NameOfFile name_of_file_;
+    PbrtTranslationOptions options_;
+    NamedGrids grids_;
     PbrtColors colors_;
     XmlText xml_;
     std::vector<std::string> notes_;

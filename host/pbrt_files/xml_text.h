@@ -10,6 +10,9 @@
 
 namespace vkvol {
 
+// Where elements of a text come from: the offset of each one's <, ascending, and "file:line:column".
+using ElementPlaces = std::vector<std::pair<std::ptrdiff_t, std::string>>;
+
 // In an attribute or a text of a scene file, where $ begins a key.
 std::string xml_escaped(const std::string& text);
 
@@ -33,14 +36,14 @@ public:
                  const std::string& place = {});
 
     const std::string& text() const { return text_; }
-    const std::vector<std::pair<std::ptrdiff_t, std::string>>& places() const { return places_; }
+    const ElementPlaces& places() const { return places_; }
 
 private:
     void begin(const std::string& name, const XmlAttributes& attributes, const std::string& place);
 
     std::string text_;
     std::vector<std::string> open_;
-    std::vector<std::pair<std::ptrdiff_t, std::string>> places_;
+    ElementPlaces places_;
 };
 
 } // namespace vkvol

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -114,9 +115,14 @@ struct MeshFiles {
     std::vector<std::filesystem::path> paths;
 };
 
+struct MemoryGrids;
+
 struct GridFile {
     std::filesystem::path path; // .nvdb or .vdb
     std::string grid = "density";
+    std::shared_ptr<const MemoryGrids> memory = {}; // instead of a file; `path` is then its name alone
+
+    GridFile beside(const std::string& other) const { return {path, other, memory}; } // another grid of it
 };
 
 // What "per length" in sigma_a and sigma_s means: per index-space unit of the grid, or per world unit.

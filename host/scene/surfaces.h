@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -33,6 +34,17 @@ struct TriangleSurface {
     // empty.
     std::vector<glm::mat3x2> places = {};
     bool is_mesh = false; // as of a file: of glass it has to be closed
+
+    // Its front to the other side, as after a mirror, which turns triangles inside out.
+    void turn_about() {
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            std::swap(triangles[i].y, triangles[i].z);
+            if (!normals.empty())
+                std::swap(normals[i][1], normals[i][2]);
+            if (!places.empty())
+                std::swap(places[i][1], places[i][2]);
+        }
+    }
 };
 
 struct RectangleSurface {

@@ -56,7 +56,7 @@ void FileUses::reads_files_of(const Scene& scene) {
     for (const Volume& volume : scene.volumes) {
         if (volume.phase == PhaseFunction::table)
             reads("the scene's phase function", volume.phase_details.file);
-        if (const auto* grid = std::get_if<GridFile>(&volume.shape))
+        if (const auto* grid = std::get_if<GridFile>(&volume.shape); grid && !grid->memory)
             reads("the scene's density field", grid->path);
         if (const auto* mesh = std::get_if<MeshFiles>(&volume.shape))
             for (const path& model : mesh->paths) {

@@ -125,6 +125,8 @@ std::filesystem::path SceneReader::file_path(const XmlElement& element, const st
 GridFile SceneReader::grid_file(const XmlElement& element) const {
     GridFile file;
     file.path = file_path(element, "cloud.nvdb");
+    if (const auto found = grids_.find(file.path.filename().string()); found != grids_.end())
+        file.memory = found->second;
     file.grid = element.attribute("grid", file.grid);
     if (file.grid.empty())
         element.fail_attribute("grid", "<densityField> grid: is empty; expected the name of a grid in the file");

@@ -105,14 +105,8 @@ TriangleSurface moved(const glm::dmat4& map, TriangleSurface shape) {
     for (glm::mat3& normals : shape.normals)
         for (int corner = 0; corner < 3; ++corner)
             normals[corner] = glm::vec3(of_normals * glm::dvec3(normals[corner]));
-    if (glm::determinant(glm::dmat3(map)) < 0.0) // a mirror turns them inside out
-        for (std::size_t i = 0; i < shape.triangles.size(); ++i) {
-            std::swap(shape.triangles[i].y, shape.triangles[i].z);
-            if (!shape.normals.empty())
-                std::swap(shape.normals[i][1], shape.normals[i][2]);
-            if (!shape.places.empty())
-                std::swap(shape.places[i][1], shape.places[i][2]);
-        }
+    if (glm::determinant(glm::dmat3(map)) < 0.0)
+        shape.turn_about();
     return shape;
 }
 

@@ -36,8 +36,10 @@ Scene parse_scene(const std::string& xml, const std::filesystem::path& file, con
 
 Scene parse_scene(const PbrtTranslation& translation, const std::filesystem::path& file,
                   const SceneOverrides& overrides) {
+    if (overrides.strict && !translation.notes.empty())
+        throw InputError(translation.notes.front() + " (under --strict)");
     XmlDocument document(translation.xml, file, {}, "options", translation.places);
-    Scene scene = SceneReader(document, overrides).read();
+    Scene scene = SceneReader(document, overrides, translation.grids).read();
     scene.warnings.insert(scene.warnings.begin(), translation.notes.begin(), translation.notes.end());
     return scene;
 }

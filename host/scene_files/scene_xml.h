@@ -18,6 +18,7 @@ using Defines = std::map<std::string, std::string>;
 struct SceneOverrides {
     std::optional<std::filesystem::path> grid; // instead of the scene's shape, with the coefficients of its medium
     std::optional<std::string> integrator;     // NAME:axis=choice..., instead of the scene's and of its choices
+    bool strict = false;                       // of a scene that is translated nothing may be left out
 };
 
 // Throws InputError, "file:line:column: what is wrong; what would be right". What the scene asks for and this

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "one_line.h"
-#include "pbrt_translation.h"
 #include "scene.h"
 #include "scene_keys.h"
+#include "xml_text.h"
 
 namespace vkvol {
 

@@ -148,4 +148,7 @@ TEST_CASE("emission in scene files", "[cpu][emission]") {
                       Catch::Contains("s.xml:2:") && Catch::Contains("blackbody"));
     CHECK_THROWS_WITH(parse(R"(<emission temperatureScale="2"/>)"), Catch::Contains("blackbody\" only"));
     CHECK_THROWS_WITH(parse(R"(<emission model="blackbody" referenceTemperature="0"/>)"), Catch::Contains("> 0"));
+    CHECK_THROWS_WITH(parse(R"(<emission model="blackbody" brightness="peak" referenceTemperature="2000"/>)"),
+                      Catch::Contains("brightness=\"planck\" only"));
+    CHECK_THROWS_WITH(parse(R"(<emission model="blackbody" brightness="bright"/>)"), Catch::Contains("planck or peak"));
 }

@@ -1,0 +1,64 @@
+// Meshes that stand in a scene file.
+#include <catch2/catch.hpp>
+
+#include "error.h"
+#include "support/scene_text.h"
+#include "surface_mesh.h"
+
+using namespace vkvol;
+using Catch::Contains;
+
+namespace {
+
+const std::string corners = "<vertices>0 0 0  1 0 0  0 1 0  0 0 1</vertices>";
+const std::string tetrahedron = corners + "<triangles>0 2 1  0 1 3  0 3 2  1 2 3</triangles>";
+
+std::string mesh(const std::string& inside, const std::string& attributes = {}) {
+    return "<surfaces><mesh" + attributes + ">" + inside + "</mesh></surfaces>";
+}
+
+TriangleSurface read(const std::string& body) {
+    return std::get<TriangleSurface>(with_surface_files(parse(body)).surfaces.at(0).shape);
+}
+
+} // namespace
+
+TEST_CASE("meshes in scene files have their vertices, normals and places", "[cpu][xml][surfaces]") {
+    const std::string triangle = "<vertices>0 0 0  1 0 0  0 1 0</vertices><triangles>0 1 2</triangles>"
+                                 "<normals>0 0 2  0 0 1  1 0 1</normals><places>0 0  1 0  0 1</places>";
+    const TriangleSurface plain = read(mesh(triangle));
+    CHECK(plain.vertices == std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    CHECK(plain.triangles == std::vector<glm::uvec3>{{0, 1, 2}});
+    CHECK(plain.normals[0][0] == glm::vec3(0, 0, 1)); // made unit
+    CHECK(glm::distance(plain.normals[0][2], glm::vec3(std::sqrt(0.5), 0.0, std::sqrt(0.5))) < 1e-6f);
+    CHECK(plain.places == std::vector<glm::mat3x2>{{{0, 0}, {1, 0}, {0, 1}}});
+    // Mirrored and stretched: the front stays in front, and normals stay across.
+    const TriangleSurface mirrored = read(mesh(triangle + "<transform><scale x=\"-2\"/></transform>"));
+    CHECK(mirrored.vertices[1] == glm::dvec3(-2, 0, 0));
+    CHECK(mirrored.triangles == std::vector<glm::uvec3>{{0, 2, 1}});
+    CHECK(mirrored.places[0][1] == glm::vec2(0, 1));
+    CHECK(glm::distance(mirrored.normals[0][1], glm::normalize(glm::vec3(-0.5, 0, 1))) < 1e-6f);
+}
+
+TEST_CASE("meshes of glass in scene files have to be closed", "[cpu][xml][surfaces]") {
+    const std::string glass = " material=\"dielectric\"";
+    CHECK(read(mesh(tetrahedron, glass)).triangles.size() == 4);
+    CHECK_THROWS_AS(read(mesh(corners + "<triangles>0 2 1  0 1 3  0 3 2</triangles>", glass)), InputError);
+    CHECK(read(mesh(corners + "<triangles>0 2 1  0 1 3  0 3 2</triangles>")).triangles.size() == 3);
+}
+
+TEST_CASE("wrong meshes in scene files are refused with their place", "[cpu][xml][surfaces]") {
+    const auto refused = [](const std::string& inside) { return error_of(mesh(inside)); };
+    CHECK_THAT(refused(corners), Contains("no <triangles>"));
+    CHECK_THAT(refused(corners + "<triangles>0 1</triangles>"), Contains("2 numbers") && Contains("3 for each"));
+    CHECK_THAT(refused(corners + "<triangles>0 1 4</triangles>"), Contains("4 is none of the 4 vertices"));
+    CHECK_THAT(refused(corners + "<triangles>0 1 1.5</triangles>"), Contains("1.5 is none"));
+    CHECK_THAT(refused(corners + "<triangles>0 1 -1</triangles>"), Contains("-1"));
+    CHECK_THAT(refused("<vertices>0 0 0 1</vertices><triangles>0 0 0</triangles>"), Contains("<vertices> has 4"));
+    CHECK_THAT(refused("<vertices></vertices><triangles>0 0 0</triangles>"), Contains("<vertices> has 0"));
+    CHECK_THAT(refused(tetrahedron + "<normals>0 0 1</normals>"), Contains("<normals> is for 1 vertices, of 4"));
+    CHECK_THAT(refused(tetrahedron + "<places>0 1 0</places>"), Contains("<places> has 3"));
+    CHECK_THAT(refused("<triangles>0 1 2</triangles>"), Contains("unknown element <triangles>"));
+    CHECK_THAT(refused(""), Contains("names no file"));
+    CHECK_THROWS_WITH(with_surface_files(parse(mesh(tetrahedron, " texture=\"none.png\""))), Contains("add <places>"));
+}
