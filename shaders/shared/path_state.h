@@ -1,17 +1,17 @@
-// What is known of a path between two passes, a row a field: the structs in memory, what a lane holds, laying aside,
-// taking up and the layout's test are all made of these rows, so that none can be forgotten in one of them.
+// What is known of a path between two passes, a row a field: the structs in memory, what a lane holds, laying aside, taking
+// up and the layout's test are all made of these rows, so that none can be forgotten in one of them.
 #ifndef SHARED_PATH_STATE_H
 #define SHARED_PATH_STATE_H
 
 // What a lane does next.
-#define TODO_TAKE 0u    // take a pixel (fused) or a path (staged) from the queue
-#define TODO_DEPART 1u  // from a vertex: scatter, unless it is the camera, and fly
-#define TODO_LOOK 2u    // toward the light
-#define TODO_FLY 3u     // go on along the flight
-#define TODO_SEE 4u     // go on along the shadow ray
-#define TODO_END 5u     // the path is over
-#define TODO_DONE 6u    // the pixel has its samples
-#define TODO_BEGIN 7u   // a path, at the camera
+#define TODO_TAKE 0u   // take a pixel (fused) or a path (staged) from the queue
+#define TODO_DEPART 1u // from a vertex: scatter, unless it is the camera, and fly
+#define TODO_LOOK 2u   // toward the light
+#define TODO_FLY 3u    // go on along the flight
+#define TODO_SEE 4u    // go on along the shadow ray
+#define TODO_END 5u    // the path is over
+#define TODO_DONE 6u   // the pixel has its samples
+#define TODO_BEGIN 7u  // a path, at the camera
 #define TODO_SET_OUT 8u // from a vertex, where it has scattered and seen the lamps that it shows
 #define TODO_SEEK 9u    // the surface that ends the flight, before that begins
 #define TODO_CHECK 10u  // whether a surface is in the way of the shadow ray, before that begins
@@ -21,96 +21,90 @@
 #define LEG_ALONG 0u // to where it begins
 #define LEG_LOOK 1u  // toward the light, as all other looks
 
-// ROW(type, name). Of every path, at its last vertex: the camera, or a real collision. Its throughput beta is in a
-// buffer of its own, since its type depends on the scene; at a collision it includes that collision's albedo.
-#define VERTEX_STATE(ROW)                                                                                              \
-    ROW(vec3, position)  /* render space */                                                                            \
-    ROW(vec3, direction) /* unit, of travel: the camera ray's, or that which led to this collision */                  \
-    ROW(vec3, radiance)  /* gathered so far */                                                                         \
-    ROW(uint, pixel)     /* fused: index into the film; staged: into the work list */                                  \
-    ROW(uint, place)     /* of the pixel in the picture, x | y << 16 */                                                \
-    ROW(uint, sample_index)                                                                                            \
-    ROW(uint, draw)  /* random draws consumed; 0 at the camera, whose draw also holds the first free flight */         \
-    ROW(uint, depth) /* scattering events, this one included; 0 at the camera */                                       \
-    ROW(uint,                                                                                                          \
-        medium)     /* of several, the row of that which it collided with; at a surface AT_SURFACE + its primitive */  \
-    ROW(uint, todo) /* TODO_...: what comes next */
+// ROW(type, name). Of every path, at its last vertex: the camera, or a real collision. Its throughput beta is in a buffer
+// of its own, since its type depends on the scene; at a collision it includes that collision's albedo.
+#define VERTEX_STATE(ROW)                                                                                             \
+    ROW(vec3, position)  /* render space */                                                                           \
+    ROW(vec3, direction) /* unit, of travel: the camera ray's, or that which led to this collision */                 \
+    ROW(vec3, radiance)  /* gathered so far */                                                                        \
+    ROW(uint, pixel)     /* fused: index into the film; staged: into the work list */                                 \
+    ROW(uint, place)     /* of the pixel in the picture, x | y << 16 */                                               \
+    ROW(uint, sample_index)                                                                                           \
+    ROW(uint, draw)  /* random draws consumed; 0 at the camera, whose draw also holds the first free flight */        \
+    ROW(uint, depth) /* scattering events, this one included; 0 at the camera */                                      \
+    ROW(uint, medium) /* of several, the row of that which it collided with; at a surface AT_SURFACE + its primitive */ \
+    ROW(uint, todo)  /* TODO_...: what comes next */
 
 // ROW(type, name, when): `when` is what has to hold for the field to mean something, see lane.glsl. A SPECTRUM_ROW has
 // three channels in memory, and one or three in a lane; a WALK_ROW is a Walk. Of a path amid a segment: a free flight,
 // or a shadow ray.
-#define SEGMENT_STATE(ROW, SPECTRUM_ROW, WALK_ROW)                                                                     \
-    WALK_ROW(walk, under_way)                                                                                          \
-    WALK_ROW(flight, seeing&& flight_rests)    /* to come back to from a shadow ray that was sent amid it */           \
-    SPECTRUM_ROW(T, seeing)                    /* of the shadow ray so far */                                          \
-    SPECTRUM_ROW(lit, looking&& keeps_place)   /* throughput of what it lights, */                                     \
-    ROW(vec3, position, looking&& keeps_place) /* and where that is, render space */                                   \
-    ROW(uint, lit_medium, looking&& keeps_place&& several) /* of several, the row of that which it lights */           \
-    ROW(uint, resume, looking&& keeps_place)               /* what to do after it */                                   \
-    ROW(uint, leg, looking&& looks_along)                  /* LEG_... */                                               \
-    ROW(uint, steps, under_way)                            /* of the segment */                                        \
-    ROW(float, phase_pdf,                                                                                              \
-        (under_way || sets_out) && sees_sky)     /* with which the flight's direction was drawn; 0 at the camera */    \
-    ROW(vec3, to_light, looking&& chooses_light) /* unit */                                                            \
-    ROW(float, light_distance, looking&& chooses_light) /* world units */                                              \
-    ROW(vec3, light, looking&& chooses_light) /* what comes along the shadow ray if nothing is in between, per unit of \
-                                                 the throughput that it lights */                                                                                          \
-    SPECTRUM_ROW(cached, has_cache)           /* transmittance that the shadow ray corrects */                         \
-    ROW(float, chance, looking&& has_cache)   /* with which it was sent */                                             \
-    ROW(uint, label, looking&& has_layers)    /* of what it brings: see aovs.glsl */                                   \
-    ROW(uint, first_label, has_layers)        /* part of it that is the same for all that comes later */               \
-    ROW(uint, is_particle, has_particles)     /* 1: it comes from a light, and looks toward the sensor */              \
-    ROW(uint, target, looking&& has_particles) /* the film entry that what it lights is seen in */                     \
-    ROW(vec2, shares, weighs_families) /* what its first segment has to say in its weights: see families.glsl */       \
-    ROW(PartSearch, search, under_way&& SHAPE == SHAPE_MESH)                                                           \
-    ROW(SurfaceSearch, seek, seeking)                                                                                  \
-    ROW(float, reach,                                                                                                  \
-        (under_way || (looks_along && sets_out)) &&                                                                    \
-            HAS_SURFACES) /* of the flight, to the surface that ends it, or FAR [world units] */                       \
-    ROW(uint, struck, (under_way || (looks_along && sets_out)) && HAS_SURFACES) /* that surface's primitive */         \
-    ROW(uint, lit_surface, looking&& HAS_SURFACES) /* the primitive that the shadow ray lights, or NO_SURFACE */       \
-    ROW(uint, lamp_body, looking&& HAS_SURFACES)   /* the surface whose light it looks for, or NO_SURFACE */
+#define SEGMENT_STATE(ROW, SPECTRUM_ROW, WALK_ROW)                                                                    \
+    WALK_ROW(walk, under_way)                                                                                         \
+    WALK_ROW(flight, seeing && flight_rests) /* to come back to from a shadow ray that was sent amid it */            \
+    SPECTRUM_ROW(T, seeing)                  /* of the shadow ray so far */                                           \
+    SPECTRUM_ROW(lit, looking && keeps_place) /* throughput of what it lights, */                                     \
+    ROW(vec3, position, looking && keeps_place) /* and where that is, render space */                                 \
+    ROW(uint, lit_medium, looking && keeps_place && several) /* of several, the row of that which it lights */        \
+    ROW(uint, resume, looking && keeps_place) /* what to do after it */                                               \
+    ROW(uint, leg, looking && looks_along) /* LEG_... */                                                              \
+    ROW(uint, steps, under_way)                /* of the segment */                                                   \
+    ROW(float, phase_pdf, (under_way || sets_out) && sees_sky) /* with which the flight's direction was drawn; 0 at the camera */     \
+    ROW(vec3, to_light, looking && chooses_light) /* unit */                                                          \
+    ROW(float, light_distance, looking && chooses_light) /* world units */                                            \
+    ROW(vec3, light, looking && chooses_light) /* what comes along the shadow ray if nothing is in between, per unit of the \
+                                                  throughput that it lights */                                        \
+    SPECTRUM_ROW(cached, has_cache)            /* transmittance that the shadow ray corrects */                       \
+    ROW(float, chance, looking && has_cache)   /* with which it was sent */                                           \
+    ROW(uint, label, looking && has_layers)    /* of what it brings: see aovs.glsl */                                 \
+    ROW(uint, first_label, has_layers)         /* part of it that is the same for all that comes later */             \
+    ROW(uint, is_particle, has_particles)      /* 1: it comes from a light, and looks toward the sensor */            \
+    ROW(uint, target, looking && has_particles) /* the film entry that what it lights is seen in */                   \
+    ROW(vec2, shares, weighs_families)         /* what its first segment has to say in its weights: see families.glsl */ \
+    ROW(PartSearch, search, under_way && SHAPE == SHAPE_MESH)                                                         \
+    ROW(SurfaceSearch, seek, seeking)                                                                                 \
+    ROW(float, reach, (under_way || (looks_along && sets_out)) && HAS_SURFACES) /* of the flight, to the surface that ends it, or FAR [world units] */ \
+    ROW(uint, struck, (under_way || (looks_along && sets_out)) && HAS_SURFACES) /* that surface's primitive */                                       \
+    ROW(uint, lit_surface, looking && HAS_SURFACES) /* the primitive that the shadow ray lights, or NO_SURFACE */ \
+    ROW(uint, lamp_body, looking && HAS_SURFACES) /* the surface whose light it looks for, or NO_SURFACE */
 
-// ROW(type, name, when): a segment as far as it has gone, and which estimators need the field; see kept() in
-// segment.glsl.
-#define WALK_STATE(ROW)                                                                                                \
-    ROW(vec3, origin, true)    /* medium space, where the present part of the ray within the medium begins */          \
-    ROW(vec3, direction, true) /* what one world unit of travel becomes in medium space */                             \
-    ROW(float, start, true)    /* of that part, from the vertex [world units] */                                       \
-    ROW(float, t_end, true)    /* its length */                                                                        \
-    ROW(float, t, true)        /* travelled in it */                                                                   \
-    ROW(float, at, false)      /* where in it the last interaction was: set by every step */                           \
-    ROW(uint, met, false)      /* of several media, the row of that which it was with: likewise */                     \
-    ROW(float, tau, true) /* optical depth left: of the majorant, or, where no collision is null, of the medium */     \
-    ROW(float, depth, adds_depth) /* density integrated so far, over all parts */                                      \
-    ROW(float, sigma_maj,                                                                                              \
-        walks) /* of the present cell [1 / world unit]; if it is empty, minus its reach, see majorant.glsl */          \
-    ROW(float, control, controlled) /* control density of the present cell */                                          \
-    ROW(ivec3, cell, cells)         /* majorant cell; the voxel in regular tracking */                                 \
-    ROW(uint, cell_row, listed)     /* of several media: the cell's in their tables */                                 \
-    ROW(int, cell_edge, bricks)     /* of several media: more than 1 in a coarse cell, in which `cell` is any one */   \
-    ROW(float, dt, marches)         /* marches: length of a step */                                                    \
-    ROW(uint, index, marches)       /* marches: the next step */                                                       \
-    ROW(uint, level, sets)          /* telescoping: the refinement */                                                  \
-    ROW(uint, residue, sets)        /* telescoping: which samples the coarser sums take */                             \
-    ROW(float, offset, sets)        /* telescoping: of the samples in their steps */                                   \
-    ROW(float, coarse, sets)        /* telescoping: density integrated with half of the samples */                     \
-    ROW(float, base, sets)          /* telescoping: with the coarsest set of samples */
+// ROW(type, name, when): a segment as far as it has gone, and which estimators need the field; see kept() in segment.glsl.
+#define WALK_STATE(ROW)                                                                                               \
+    ROW(vec3, origin, true)     /* medium space, where the present part of the ray within the medium begins */        \
+    ROW(vec3, direction, true)  /* what one world unit of travel becomes in medium space */                           \
+    ROW(float, start, true)     /* of that part, from the vertex [world units] */                                     \
+    ROW(float, t_end, true)     /* its length */                                                                      \
+    ROW(float, t, true)         /* travelled in it */                                                                 \
+    ROW(float, at, false)       /* where in it the last interaction was: set by every step */                         \
+    ROW(uint, met, false)       /* of several media, the row of that which it was with: likewise */                   \
+    ROW(float, tau, true)       /* optical depth left: of the majorant, or, where no collision is null, of the medium */ \
+    ROW(float, depth, adds_depth) /* density integrated so far, over all parts */                                     \
+    ROW(float, sigma_maj, walks)  /* of the present cell [1 / world unit]; if it is empty, minus its reach, see majorant.glsl */ \
+    ROW(float, control, controlled) /* control density of the present cell */                                         \
+    ROW(ivec3, cell, cells)       /* majorant cell; the voxel in regular tracking */                                  \
+    ROW(uint, cell_row, listed) /* of several media: the cell's in their tables */ \
+    ROW(int, cell_edge, bricks) /* of several media: more than 1 in a coarse cell, in which `cell` is any one */ \
+    ROW(float, dt, marches)       /* marches: length of a step */                                                     \
+    ROW(uint, index, marches)     /* marches: the next step */                                                        \
+    ROW(uint, level, sets)        /* telescoping: the refinement */                                                   \
+    ROW(uint, residue, sets)      /* telescoping: which samples the coarser sums take */                              \
+    ROW(float, offset, sets)      /* telescoping: of the samples in their steps */                                    \
+    ROW(float, coarse, sets)      /* telescoping: density integrated with half of the samples */                      \
+    ROW(float, base, sets)        /* telescoping: with the coarsest set of samples */
 
 // ROW(type, name): a search for the next part of a ray within meshes, as far as it has gone; see mesh.glsl.
-#define SEARCH_STATE(ROW)                                                                                              \
-    ROW(uint, stage)   /* SEARCH_... */                                                                                \
-    ROW(float, t_from) /* beyond which */                                                                              \
-    ROW(uint, node)    /* of the hierarchy, to be visited next */                                                      \
-    ROW(int, winding)  /* bodies that the ray is inside of just behind t_from, by the crossings found so far */        \
-    ROW(float, first)  /* distance to the first crossing, or infinitely far */                                         \
-    ROW(int, turn)     /* surfaces left less those entered there */                                                    \
+#define SEARCH_STATE(ROW)                                                                                             \
+    ROW(uint, stage)   /* SEARCH_... */                                                                               \
+    ROW(float, t_from) /* beyond which */                                                                             \
+    ROW(uint, node)    /* of the hierarchy, to be visited next */                                                     \
+    ROW(int, winding)  /* bodies that the ray is inside of just behind t_from, by the crossings found so far */       \
+    ROW(float, first)  /* distance to the first crossing, or infinitely far */                                        \
+    ROW(int, turn)     /* surfaces left less those entered there */                                                   \
     ROW(float, second) /* distance to the next crossing behind that, or infinitely far */
 
 // ROW(type, name): a search for the nearest surface along a ray, as far as it has gone; see nearest.glsl.
-#define SEEK_STATE(ROW)                                                                                                \
-    ROW(uint, node)      /* of the hierarchy, to be visited next */                                                    \
-    ROW(float, nearest)  /* distance to the nearest surface so far, or how far the ray goes */                         \
+#define SEEK_STATE(ROW)                                                                                               \
+    ROW(uint, node)     /* of the hierarchy, to be visited next */                                                    \
+    ROW(float, nearest) /* distance to the nearest surface so far, or how far the ray goes */                         \
     ROW(uint, primitive) /* what it is there; NO_SURFACE: nothing yet */
 
 #endif
