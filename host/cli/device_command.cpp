@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "device.h"
+#include "device_json.h"
 #include "error.h"
 #include "messages.h"
 
@@ -24,28 +24,14 @@ void print_table(const std::vector<DeviceInfo>& devices) {
     }
 }
 
-void print_json(const std::vector<DeviceInfo>& devices) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const DeviceInfo& d : devices)
-        list.push_back({{"index", d.index},
-                        {"name", d.name},
-                        {"type", d.type},
-                        {"driver", d.driver},
-                        {"uuid", d.uuid},
-                        {"api", d.api},
-                        {"memory", d.memory},
-                        {"storageBufferRange", d.storage_range},
-                        {"bufferDeviceAddress", d.addresses},
-                        {"usable", d.rejection.empty()},
-                        {"rejection", d.rejection}});
-    put(stdout, list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-}
-
 } // namespace
 
 int run_devices(bool json) {
     const std::vector<DeviceInfo> devices = list_devices();
-    json ? print_json(devices) : print_table(devices);
+    if (json)
+        put(stdout, devices_json(devices));
+    else
+        print_table(devices);
     const bool usable =
         std::any_of(devices.begin(), devices.end(), [](const DeviceInfo& d) { return d.rejection.empty(); });
     if (!usable)

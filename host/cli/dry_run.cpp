@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "messages.h"
+#include "requested_scene.h"
 
 namespace vkvol {
 
@@ -17,10 +18,14 @@ std::string picture_text(const RenderOptions& options, const Picture& picture) {
 }
 
 std::string samples_text(const RenderOptions& options, std::uint32_t spp) {
+    const std::string at_most = options.time_limit ? fmt::format(", {:g} s at most", *options.time_limit) : "";
+    const std::string or_noise =
+        options.noise_goal ? fmt::format(", until the noise is {:g} %", 100.0 * *options.noise_goal) : "";
+    if (options.noise_goal && !options.spp)
+        return "samples" + or_noise + at_most;
     if (options.time_limit && !options.spp)
         return fmt::format("as many samples as {:g} s allow", *options.time_limit);
-    return fmt::format("{} {} per pixel{}", spp, spp == 1 ? "sample" : "samples",
-                       options.time_limit ? fmt::format(", {:g} s at most", *options.time_limit) : "");
+    return fmt::format("{} {} per pixel{}{}", spp, spp == 1 ? "sample" : "samples", or_noise, at_most);
 }
 
 } // namespace

@@ -19,10 +19,6 @@ namespace vkvol {
 
 namespace {
 
-bool same_window(const Crop& a, const Crop& b) {
-    return a.x0 == b.x0 && a.x1 == b.x1 && a.y0 == b.y0 && a.y1 == b.y1;
-}
-
 bool disjoint(const Crop& a, const Crop& b) {
     return a.x1 <= b.x0 || b.x1 <= a.x0 || a.y1 <= b.y0 || b.y1 <= a.y0;
 }
@@ -41,7 +37,7 @@ void check_pair(const MergeInput& a, const MergeInput& b) {
             refuse(a, b, fmt::format("{} is '{}' and '{}'", key, text_of(a.metadata, key), text_of(b.metadata, key)));
     if (layer_list(a.film) != layer_list(b.film))
         refuse(a, b, fmt::format("their layers are '{}' and '{}'", layer_list(a.film), layer_list(b.film)));
-    if (same_window(a.film.crop, b.film.crop)) {
+    if (a.film.crop == b.film.crop) {
         const std::string shared =
             shared_samples(sample_ranges_of(a.metadata, a.name), sample_ranges_of(b.metadata, b.name));
         if (!shared.empty())
@@ -185,7 +181,7 @@ Film film_of(const std::vector<Moments>& moments, const Film& like, const Crop& 
 void warn_of_unknown_ranges(const std::vector<MergeInput>& inputs, std::vector<std::string>& warnings) {
     for (const MergeInput& input : inputs) {
         const bool is_alone = std::none_of(inputs.begin(), inputs.end(), [&input](const MergeInput& other) {
-            return &other != &input && same_window(other.film.crop, input.film.crop);
+            return &other != &input && other.film.crop == input.film.crop;
         });
         if (!is_alone && !sample_ranges_of(input.metadata, input.name).complete)
             warnings.push_back(fmt::format("{}: does not say which samples it holds: whether other images hold the "

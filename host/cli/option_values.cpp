@@ -63,6 +63,15 @@ CropRequest parse_crop(const std::string& text) {
     return request;
 }
 
+double parse_noise(const std::string& text) {
+    const bool percent = !text.empty() && text.back() == '%';
+    const double noise =
+        parse_number(percent ? text.substr(0, text.size() - 1) : text, "--noise") * (percent ? 0.01 : 1.0);
+    if (!(noise > 0.0 && noise < 1.0))
+        fail_command_line(fmt::format("--noise: '{}' is not between 0 and 100 %; expected e.g. 1% or 0.01", text));
+    return noise;
+}
+
 Plan parse_schedule(const std::string& text) {
     const std::vector<std::string> parts = split(text, ':');
     const std::map<std::string, Schedule> names = {
@@ -100,20 +109,6 @@ void add_define(std::map<std::string, std::string>& defines, const std::string& 
         fail_command_line(fmt::format("-D: '{}' is not of the form key=value, key of letters, digits and _", text));
     if (!defines.emplace(key, text.substr(equals + 1)).second)
         fail_command_line(fmt::format("-D: {} given twice", key));
-}
-
-Crop resolve_crop(const std::optional<CropRequest>& request, const Picture& picture) {
-    if (!request)
-        return {0, picture.width, 0, picture.height};
-    std::array<double, 4> window = request->window;
-    if (request->fractions) // rounded, so that neighbouring windows meet without gap or overlap
-        window = {std::round(window[0] * picture.width), std::round(window[1] * picture.width),
-                  std::round(window[2] * picture.height), std::round(window[3] * picture.height)};
-    const bool inside = window[0] >= 0 && window[1] <= picture.width && window[2] >= 0 && window[3] <= picture.height;
-    if (!inside || window[0] >= window[1] || window[2] >= window[3])
-        fail_command_line(fmt::format("--crop {}: expected 0 <= x0 < x1 <= {} and 0 <= y0 < y1 <= {}",
-                                      fmt::join(window, ","), picture.width, picture.height));
-    return {int(window[0]), int(window[1]), int(window[2]), int(window[3])};
 }
 
 double parse_duration(const std::string& text, const char* option) {

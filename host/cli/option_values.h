@@ -14,6 +14,9 @@ namespace vkvol {
 // "x0,x1,y0,y1": fractions if all are at most 1 and a dot is among them, else pixels.
 CropRequest parse_crop(const std::string& text);
 
+// "1%" or "0.01", in (0, 1).
+double parse_noise(const std::string& text);
+
 // "NAME[:slots=N][:steps=N]".
 Plan parse_schedule(const std::string& text);
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "bench_options.h"
+#include "demo_scene.h"
 #include "error.h"
 #include "frames.h"
 #include "integrators.h"
@@ -34,7 +35,7 @@ T choose(const char* option, const std::string& name, const std::vector<std::pai
 
 // The options of `render` that need a second look after CLI11 has read them.
 struct RenderTexts {
-    std::string time, crop, checkpoint, pixel, up, schedule, progress = "auto";
+    std::string time, noise, crop, checkpoint, pixel, up, schedule, progress = "auto";
     std::vector<std::string> defines;
     std::vector<std::string> outputs;
     ToneTexts tone;
@@ -80,6 +81,12 @@ void add_sampling_options(CLI::App& app, RenderOptions& render, RenderTexts& tex
                    "Render for this long: 30s, 5m, 2h, or seconds; with --spp, whichever is reached first")
         ->option_text("T")
         ->group(group);
+    app.add_option(
+           "--noise", texts.noise,
+           "Render until the picture's noise, as the summary has it, is no more than this: 1%, or 0.01; looked at "
+           "when samples are a power of two. With --spp or --time, whichever is reached first")
+        ->option_text("P%")
+        ->group(group);
     app.add_option("--seed", render.seed, "Another seed gives another, independent noise pattern")
         ->transform(whole_number(0, max_seed))
         ->option_text("S [0]")
@@ -123,7 +130,10 @@ void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
                    "Keep the state of the render this often, beside the first output as NAME.checkpoint")
         ->option_text("T")
         ->group("Output");
-    app.add_flag("--resume", render.resume, "Go on from the checkpoint, to the same bits; without one, begin")
+    app.add_flag("--resume", render.resume,
+                 "Go on from the checkpoint, to the same bits; without one, begin. Frames of -f whose pictures are "
+                 "there already "
+                 "are passed over")
         ->group("Output");
     app.add_flag("--dry-run", render.dry_run,
                  "Check scene, files, device and outputs, say what would be rendered, and render nothing")
@@ -182,10 +192,11 @@ void finish_trace(RenderOptions& render, const RenderTexts& texts) {
     if (!render.trace && texts.pixel.empty() && !texts.sample)
         return;
     check_trace_complete(render, texts);
-    if (render.crop || render.spp || render.time_limit || render.sample_offset != 0 || render.checkpoint ||
-        render.resume)
-        fail_command_line("--trace follows one path; --crop, --spp, --time, --sample-offset, --checkpoint and --resume "
-                          "are of no use with it");
+    if (render.crop || render.spp || render.time_limit || render.noise_goal || render.sample_offset != 0 ||
+        render.checkpoint || render.resume)
+        fail_command_line(
+            "--trace follows one path; --crop, --spp, --time, --noise, --sample-offset, --checkpoint and --resume "
+            "are of no use with it");
     const auto [x, y] = parse_pixel(texts.pixel);
     render.crop = CropRequest{{double(x), x + 1.0, double(y), y + 1.0}, false};
     render.sample_offset = *texts.sample;
@@ -200,7 +211,9 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
         render.outputs = {render.scene.stem().string() + ".exr", render.scene.stem().string() + ".png"};
     if (!texts.time.empty())
         render.time_limit = parse_duration(texts.time);
-    if (render.time_limit && !render.spp && render.sample_offset >= max_samples)
+    if (!texts.noise.empty())
+        render.noise_goal = parse_noise(texts.noise);
+    if ((render.time_limit || render.noise_goal) && !render.spp && render.sample_offset >= max_samples)
         fail_command_line(fmt::format("--sample-offset: {} leaves no samples to take; expected less than {}",
                                       render.sample_offset, max_samples));
     if (!texts.checkpoint.empty())
@@ -250,6 +263,16 @@ void parse_render(const std::vector<std::string>& arguments, Options& options) {
         return;
     }
     finish_render(options.render, texts);
+}
+
+// A render of the scene that comes with the program.
+void parse_demo(const std::vector<std::string>& arguments, Options& options) {
+    std::vector<std::string> with_scene = arguments;
+    const bool asks = std::any_of(arguments.begin(), arguments.end(),
+                                  [](const std::string& word) { return word == "--help" || word == "-h"; });
+    if (!asks)
+        with_scene.insert(with_scene.begin(), {demo_scene().string(), "--tonemap=aces"});
+    parse_render(with_scene, options);
 }
 
 void parse_devices(const std::vector<std::string>& arguments, Options& options) {
@@ -368,7 +391,7 @@ Options parse_options(int argc, const char* const* argv) {
         {"info", {Command::info, parse_info}},          {"integrators", {Command::integrators, parse_integrators}},
         {"compare", {Command::compare, parse_compare}}, {"merge", {Command::merge, parse_merge}},
         {"develop", {Command::develop, parse_develop}}, {"convert", {Command::convert, parse_convert}},
-        {"bench", {Command::bench, parse_bench}}};
+        {"bench", {Command::bench, parse_bench}},       {"demo", {Command::render, parse_demo}}};
     Options options;
     Parser parse = parse_render;
     if (!arguments.empty()) {

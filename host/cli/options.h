@@ -76,9 +76,6 @@ struct Options {
 // Throws InputError: one line with a hint.
 Options parse_options(int argc, const char* const* argv);
 
-// The window in pixels; the whole picture without a request. Throws InputError if it is empty or leaves the picture.
-Crop resolve_crop(const std::optional<CropRequest>& request, const Picture& picture);
-
 // "30s", "5m", "2h" or plain seconds. Throws InputError.
 double parse_duration(const std::string& text, const char* option = "--time");
 

@@ -15,12 +15,14 @@ inline constexpr const char* render_footer = R"(Other commands (each has its own
   vkvol develop A.exr -o B.png   a PNG of another exposure or tone curve, without rendering
   vkvol convert S.pbrt -o S.xml  a scene of pbrt-v4 as a scene file to go on from
   vkvol bench SCENE.xml       error against time of the integrators that suit a scene
+  vkvol demo                  a cloud, to see that all is well: cumulus.exr and cumulus.png here
 
 Examples:
   vkvol scenes/cumulus.xml                         writes cumulus.exr and cumulus.png here
   vkvol cloud.nvdb                                 a picture of a density file, and a scene to start from
   vkvol cloud.xml --width 480 --spp 4 -o look.png  a quick look
   vkvol cloud.xml --time 5m -o cloud.exr           the best picture of five minutes
+  vkvol cloud.xml --noise 1% -o cloud.exr          as many samples as that takes
   vkvol cloud.xml --spp 64 --sample-offset 64 -o part2.exr   samples 64 to 127, for merge
   vkvol sweep.xml -D g=0.8 -o g0.8.exr             fills $g in the scene
   vkvol turntable.xml -f 1..8 -o turn.####.png     eight frames: $F in the scene is 1, 2, ... 8

@@ -27,8 +27,9 @@ int terminal_width(std::FILE* out) {
 } // namespace
 
 Progress::Progress(ProgressStyle style, bool quiet, std::uint32_t total, std::optional<double> time_limit,
-                   std::FILE* out)
-    : total_(total), time_limit_(time_limit), out_(out), start_(Clock::now()), last_draw_(start_) {
+                   std::optional<double> noise_goal, std::FILE* out)
+    : total_(total), time_limit_(time_limit), noise_goal_(noise_goal), out_(out), start_(Clock::now()),
+      last_draw_(start_) {
     if (quiet || style == ProgressStyle::none)
         mode_ = Mode::none;
     else if (style == ProgressStyle::json)
@@ -41,25 +42,40 @@ Progress::~Progress() {
     finish();
 }
 
+// Noise falls as 1 / sqrt(samples), and is looked at when these are a power of two. Without a goal, or before anything
+// is known of it: all samples.
+std::uint32_t Progress::samples_to_goal() const {
+    if (!noise_goal_ || !noise_)
+        return total_;
+    const double ratio = *noise_ / *noise_goal_;
+    const double needed = std::exp2(std::ceil(std::log2(noise_samples_ * ratio * ratio)));
+    return static_cast<std::uint32_t>(std::clamp(needed, 1.0, double(total_)));
+}
+
 void Progress::update(std::uint32_t samples, std::optional<double> noise) {
     if (mode_ == Mode::none)
         return;
     const Clock::time_point now = Clock::now();
     const double seconds = std::chrono::duration<double>(now - start_).count();
-    const double of_samples = total_ > 0 ? double(samples) / total_ : 0.0;
+    if (noise) {
+        noise_ = noise;
+        noise_samples_ = samples;
+    }
+    const std::uint32_t total = samples_to_goal();
+    const double of_samples = total > 0 ? double(samples) / total : 0.0;
     const double of_time = time_limit_ && *time_limit_ > 0.0 ? seconds / *time_limit_ : 0.0;
     const double fraction = std::min(std::max(of_samples, of_time), 1.0);
     const double remaining = fraction > 0.0 ? seconds * (1.0 - fraction) / fraction : 0.0;
-    noise_ = noise ? noise : noise_;
 
     if (mode_ == Mode::json) {
         tell(out_, R"({{"progress": {:.4f}, "samples": {}, "total": {}, "seconds": {:.3f}, "remaining": {:.1f}, )",
-             fraction, samples, total_, seconds, remaining);
+             fraction, samples, total, seconds, remaining);
         tell(out_, "\"noise\": {}}}\n", noise_ ? fmt::format("{:.6g}", *noise_) : "null");
         std::fflush(out_);
         return;
     }
-    const std::string of_total = of_time > of_samples ? "" : fmt::format("/{}", total_);
+    const bool is_known = of_time <= of_samples && (!noise_goal_ || noise_);
+    const std::string of_total = is_known ? fmt::format("/{}", total) : "";
     const std::string status =
         fmt::format("{}{} samples, {} left{}", samples, of_total, fraction > 0.0 ? duration_text(remaining) : "?",
                     noise_ ? fmt::format(", noise {:.2g} %", 100.0 * *noise_) : "");

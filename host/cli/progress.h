@@ -15,9 +15,10 @@ namespace vkvol {
 // {"progress": 0.25, "samples": 16, "total": 64, "seconds": 1.5, "remaining": 4.5, "noise": 0.03}. none: nothing.
 class Progress {
 public:
-    // `total` in samples per pixel. With a time limit (seconds) whichever of the two is further along counts.
+    // `total` in samples per pixel. With a time limit (seconds) or a goal of noise whichever of them is further along
+    // counts.
     Progress(ProgressStyle style, bool quiet, std::uint32_t total, std::optional<double> time_limit = std::nullopt,
-             std::FILE* out = stderr);
+             std::optional<double> noise_goal = std::nullopt, std::FILE* out = stderr);
     ~Progress(); // finishes
 
     Progress(const Progress&) = delete;
@@ -34,14 +35,17 @@ private:
     using Clock = std::chrono::steady_clock;
 
     void draw_bar(double fraction, const std::string& status);
+    std::uint32_t samples_to_goal() const;
 
     Mode mode_;
     std::uint32_t total_;
     std::optional<double> time_limit_;
+    std::optional<double> noise_goal_;
     std::FILE* out_;
     Clock::time_point start_;
     Clock::time_point last_draw_;
     std::optional<double> noise_;
+    std::uint32_t noise_samples_ = 0; // of which it is the noise
     int last_tenth_ = -1;
     bool drawn_ = false;
 };

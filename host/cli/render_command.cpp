@@ -18,6 +18,7 @@
 #include "render_outputs.h"
 #include "render_scene.h"
 #include "render_summary.h"
+#include "requested_scene.h"
 #include "sequence.h"
 #include "session.h"
 #include "trace.h"
@@ -66,10 +67,11 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
     job.plan = options.plan;
     job.sample_offset = options.sample_offset;
     job.time_limit = options.time_limit;
+    job.noise_goal = options.noise_goal;
     job.disk_cache = !options.no_cache && !options.dry_run;
     job.interrupted = interrupted;
     Progress progress(options.progress, options.quiet || options.trace || options.dry_run, scene.settings.spp,
-                      options.time_limit);
+                      options.time_limit, options.noise_goal);
     job.progress = [&](double samples, std::optional<double> noise) {
         progress.update(static_cast<std::uint32_t>(samples), noise);
     };
@@ -129,7 +131,7 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
         shown.tone = choose_tone(options.tone, result.film, make_metadata(options, scene, device, result));
     shown.explanation = foreseen || options.trace ? foreseen : explain(scene, result, shown.tone);
     outputs.write(device, result, shown);
-    if (result.samples == scene.settings.spp) // it is of no more use
+    if (result.samples == scene.settings.spp || result.reached_goal) // it is of no more use
         checkpoint.remove();
     if (!foreseen)
         tell_why(options, workshop, shown.explanation);

@@ -1,14 +1,13 @@
 #include "render_scene.h"
 
 #include <fmt/format.h>
-#include <limits>
 
 #include "error.h"
 #include "file_ending.h"
 #include "file_scene.h"
-#include "framing.h"
 #include "image_io.h"
 #include "messages.h"
+#include "requested_scene.h"
 #include "scene_beside.h"
 #include "scene_xml.h"
 
@@ -56,24 +55,9 @@ RenderScene load_render_scene(const RenderOptions& options, FieldCache& fields) 
         throw InputError("--up: is for grid files rendered without a scene; a scene's <camera> has lookAt and up");
     else
         result.scene = load_scene(options.scene, options.defines, {options.grid, options.integrator, options.strict});
-    Scene& scene = result.scene;
-    if (options.spp)
-        scene.settings.spp = *options.spp;
-    else if (options.time_limit) // time alone decides
-        scene.settings.spp = std::numeric_limits<std::int32_t>::max() - options.sample_offset;
-    resize_picture(scene, options.width, options.height);
-    std::string wrong; // none: the command line was read
-    scene.layers |= parse_layers(options.aov, wrong).value_or(0) | (options.alpha ? unsigned(layer_alpha) : 0u);
-    scene.holds_out = scene.holds_out || options.alpha;
-    if (const std::string trouble = trouble_with_layers(scene); !trouble.empty())
-        throw InputError("--aov, --alpha: " + trouble);
-    try {
-        if (result.xml.empty())
-            result.assumed = give_camera(scene, fields);
-    } catch (const InputError&) { // of a file, say: whoever loads it says so, once no output can be in danger
-    }
-    if (options.frame && result.xml.empty()) // what was made for a file is framed
-        frame_medium(scene, fields);
+    const std::string given = apply_request(options, !result.xml.empty(), result.scene, fields);
+    if (!given.empty())
+        result.assumed = given;
     return result;
 }
 

@@ -11,6 +11,8 @@
 #include "interrupt.h"
 #include "messages.h"
 #include "render_command.h"
+#include "render_scene.h"
+#include "rendered_before.h"
 #include "workshop.h"
 
 namespace vkvol {
@@ -63,6 +65,17 @@ void announce(const RenderOptions& options, std::size_t index) {
              options.frames.size());
 }
 
+// What was rendered before is not rendered again.
+int render_frame(const RenderOptions& options, int frame, Workshop& workshop) {
+    if (options.resume && !options.dry_run &&
+        rendered_before(options, load_render_scene(options, workshop.fields()).scene)) {
+        if (!options.quiet)
+            tell(stdout, "frame {}: {} is there\n", frame, options.outputs.front().string());
+        return exit_done;
+    }
+    return render_picture(options, workshop);
+}
+
 void print_end(const RenderOptions& options, const std::vector<int>& done, int code, double seconds) {
     const std::size_t total = options.frames.size();
     if (code == exit_interrupted) {
@@ -100,7 +113,7 @@ int run_sequence(const RenderOptions& options) {
         const int frame = options.frames[i];
         announce(options, i);
         const int result = interrupted() ? int(exit_interrupted) : of_frame(frame, done, [&] {
-            return render_picture(frame_options(options, frame), workshop);
+            return render_frame(frame_options(options, frame), frame, workshop);
         });
         code = result == exit_done ? code : result; // caps of any frame
         if (result == exit_done || result == exit_caps_hit)

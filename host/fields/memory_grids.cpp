@@ -5,29 +5,49 @@
 #include <nanovdb/util/GridBuilder.h>
 #include <nanovdb/util/IO.h>
 #include <sstream>
+#include <type_traits>
 
 #include "error.h"
 
 namespace vkvol {
+
+namespace {
+
+template <class Value, class ValueAt>
+GridBytes build(const std::string& name, glm::ivec3 dims, const GridPlace& place, const ValueAt& value_at) {
+    const Value nothing(0.0f);
+    constexpr bool is_number = std::is_same_v<Value, float>;
+    nanovdb::GridBuilder<Value> builder(nothing,
+                                        is_number ? nanovdb::GridClass::FogVolume : nanovdb::GridClass::Unknown);
+    auto accessor = builder.getAccessor();
+    std::size_t i = 0;
+    for (int z = 0; z < dims.z; ++z)
+        for (int y = 0; y < dims.y; ++y)
+            for (int x = 0; x < dims.x; ++x, ++i)
+                if (const Value value = value_at(i); value != nothing)
+                    accessor.setValue({x, y, z}, value);
+    const nanovdb::Vec3d origin(place.origin.x, place.origin.y, place.origin.z);
+    const auto handle = builder.getHandle(place.voxel_size, origin, name);
+    GridBytes bytes(handle.size());
+    std::memcpy(bytes.edit(), handle.data(), handle.size());
+    return bytes;
+}
+
+} // namespace
 
 const GridBytes* MemoryGrids::find(const std::string& name) const {
     const auto found = std::find_if(grids.begin(), grids.end(), [&](const Grid& grid) { return grid.name == name; });
     return found == grids.end() ? nullptr : &found->bytes;
 }
 
-GridBytes make_grid(const std::string& name, glm::ivec3 dims, const std::vector<float>& values) {
-    nanovdb::GridBuilder<float> builder(0.0f, nanovdb::GridClass::FogVolume);
-    auto accessor = builder.getAccessor();
-    std::size_t i = 0;
-    for (int z = 0; z < dims.z; ++z)
-        for (int y = 0; y < dims.y; ++y)
-            for (int x = 0; x < dims.x; ++x, ++i)
-                if (values[i] != 0.0f)
-                    accessor.setValue({x, y, z}, values[i]);
-    const auto handle = builder.getHandle(1.0, nanovdb::Vec3d(0.0), name);
-    GridBytes bytes(handle.size());
-    std::memcpy(bytes.edit(), handle.data(), handle.size());
-    return bytes;
+GridBytes make_grid(const std::string& name, glm::ivec3 dims, std::span<const float> values, const GridPlace& place) {
+    return build<float>(name, dims, place, [&](std::size_t i) { return values[i]; });
+}
+
+GridBytes make_grid(const std::string& name, glm::ivec3 dims, std::span<const glm::vec3> colors,
+                    const GridPlace& place) {
+    return build<nanovdb::Vec3f>(name, dims, place,
+                                 [&](std::size_t i) { return nanovdb::Vec3f(colors[i].x, colors[i].y, colors[i].z); });
 }
 
 std::string nvdb_file_of(const MemoryGrids& grids) {

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,17 @@ struct MemoryGrids {
 // By the names of files that they stand for.
 using NamedGrids = std::map<std::string, std::shared_ptr<const MemoryGrids>>;
 
-// Of a box of values, x fastest and then y, at (0, 0, 0) to dims - 1 of index space, which is also its world; those
-// that are 0 take no memory. Throws InputError if it cannot be built.
-GridBytes make_grid(const std::string& name, glm::ivec3 dims, const std::vector<float>& values);
+// Where in the world a grid's index space lies, axes along axes.
+struct GridPlace {
+    double voxel_size = 1.0; // > 0
+    glm::dvec3 origin{0.0};  // of the middle of voxel (0, 0, 0)
+};
+
+// Of a box of values, x fastest and then y, at (0, 0, 0) to dims - 1 of index space; those that are 0 take no memory.
+GridBytes make_grid(const std::string& name, glm::ivec3 dims, std::span<const float> values,
+                    const GridPlace& place = {});
+GridBytes make_grid(const std::string& name, glm::ivec3 dims, std::span<const glm::vec3> colors,
+                    const GridPlace& place = {});
 
 // As the bytes of an .nvdb file.
 std::string nvdb_file_of(const MemoryGrids& grids);

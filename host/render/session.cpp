@@ -1,6 +1,7 @@
 #include "session.h"
 
 #include <algorithm>
+#include <bit>
 #include <fmt/format.h>
 #include <utility>
 
@@ -11,8 +12,9 @@ namespace vkvol {
 
 namespace {
 
-constexpr double noise_seconds = 3.0; // between two figures of noise
-constexpr double patience = 5.0;      // seconds, for paths that will not end
+constexpr double noise_seconds = 3.0;    // between two figures of noise
+constexpr double patience = 5.0;         // seconds, for paths that will not end
+constexpr std::uint32_t first_look = 16; // at the noise to be reached; samples per pixel
 
 void add_counts(RenderCounts& total, const shared::Counters& c) {
     total.paths += c.paths;
@@ -43,11 +45,11 @@ void Session::render(std::uint32_t samples) {
     watch_.lap();
     next_noise_ = noise_seconds;
     checkpoint_at_ = 0.0;
-    stopped_ = false;
+    stopped_ = result_.interrupted = false;
     stopped_at_.reset();
-    while (done_ < wanted_ && !stopping()) {
+    while (done_ < wanted_ && !is_good_enough() && !stopping()) {
         if (batch_ == 0)
-            batch_ = std::min(next_, wanted_ - done_);
+            batch_ = std::min({next_, wanted_ - done_, until_next_look()});
         const double begun = watch_.seconds();
         while (band_ < bands_.size() && !stopped_)
             run_band(bands_[band_]);
@@ -58,7 +60,7 @@ void Session::render(std::uint32_t samples) {
         }
         report_noise();
     }
-    if (job_.checkpoint && done_ < wanted_ && !gave_up_)
+    if (job_.checkpoint && done_ < wanted_ && !result_.reached_goal && !gave_up_)
         save_checkpoint();
     result_.render_seconds += watch_.lap();
     result_.samples = done_;
@@ -130,6 +132,23 @@ void Session::report_noise() {
     next_noise_ = watch_.seconds() + noise_seconds;
     develop_film();
     job_.progress(done_, relative_noise(result_.film));
+}
+
+// Where noise is looked at: at powers of two of the samples. The fewer looks, the less often one of them ends a render
+// that by chance looks better than it is, and which it is does not depend on the machine.
+std::uint32_t Session::until_next_look() const {
+    return job_.noise_goal ? std::bit_ceil(std::max(done_ + 1, first_look)) - done_ : most_batch_;
+}
+
+bool Session::is_good_enough() {
+    if (!job_.noise_goal || batch_ > 0 || done_ < first_look || !std::has_single_bit(done_))
+        return false;
+    develop_film();
+    const std::optional<double> noise = relative_noise(result_.film);
+    if (job_.progress)
+        job_.progress(done_, noise);
+    result_.reached_goal = noise && *noise <= *job_.noise_goal;
+    return result_.reached_goal;
 }
 
 bool Session::stopping() {

@@ -26,6 +26,7 @@ struct RenderJob {
     std::uint32_t seed = 0;
     std::uint32_t sample_offset = 0;   // number of the first sample
     std::optional<double> time_limit;  // seconds of rendering; the batch then under way is cut short
+    std::optional<double> noise_goal;  // the render ends once relative_noise is no more; see Session::is_good_enough
     bool disk_cache = true;            // keep compiled pipelines between runs
     Plan plan;                         // what of it is chosen wins
     std::function<bool()> interrupted; // asked between submits; true ends the render early
@@ -69,6 +70,7 @@ struct RenderResult {
     glm::dvec3 trace_origin{0.0};           // world space
     std::uint32_t samples = 0;              // per pixel, finished for every pixel
     bool interrupted = false;               // ended before the samples asked for, by a signal
+    bool reached_goal = false;              // by noise_goal
 };
 
 class Session {
@@ -80,6 +82,7 @@ public:
     // Until every pixel has `samples` in all, or the job ends it before. May be called again, for more; time limits
     // count from each call.
     void render(std::uint32_t samples);
+    std::uint32_t samples() const { return done_; } // per pixel, finished for every pixel
 
     // With the film as it is now. May be moved from by who renders no more.
     RenderResult& result();
@@ -103,6 +106,8 @@ private:
     void save_checkpoint();
     bool checkpoint_due() const;
     void report_noise();
+    std::uint32_t until_next_look() const;
+    bool is_good_enough();
     bool stopping();
     bool out_of_patience();
     void begin_band(const Band& band);

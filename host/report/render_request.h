@@ -37,6 +37,7 @@ struct RenderRequest {
     std::uint32_t seed = 0;
     std::uint32_t sample_offset = 0;  // the first sample's number: disjoint ranges of one seed can be merged
     std::optional<double> time_limit; // seconds
+    std::optional<double> noise_goal; // relative standard error of the picture, in (0, 1)
     DeviceOptions device;
     Plan plan;             // what of it is chosen
     bool no_cache = false; // neither read nor write the pipeline cache

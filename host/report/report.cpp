@@ -189,6 +189,7 @@ Metadata make_metadata(const RenderRequest& request, const Scene& scene, const D
                       {"vkvol/plan", describe(result.plan)},
                       {"vkvol/seed", std::to_string(request.seed)},
                       {"vkvol/sampleOffset", static_cast<int>(request.sample_offset)},
+                      {"vkvol/interrupted", result.interrupted ? 1 : 0},
                       {"vkvol/device", device.info().name},
                       {"vkvol/driver", device.info().driver},
                       {"vkvol/capsHit", result.counts.any_cap() ? 1 : 0},

@@ -26,9 +26,8 @@ pugi::xml_node find_one(XmlDocument& document, pugi::xml_node scope, std::initia
 
 class SceneReader {
 public:
-    // `grids`: files that are in memory.
-    SceneReader(XmlDocument& document, const SceneOverrides& overrides, const NamedGrids& grids = {})
-        : document_(document), overrides_(overrides), grids_(grids), scopes_{document.root()} {}
+    SceneReader(XmlDocument& document, const SceneOverrides& overrides)
+        : document_(document), overrides_(overrides), scopes_{document.root()} {}
 
     Scene read();
 
@@ -108,7 +107,6 @@ private:
 
     XmlDocument& document_;
     const SceneOverrides& overrides_;
-    NamedGrids grids_;
     // Whose elements are read: the scene's, or those of a <volume>, and, where it lacks some, of that which it is like.
     std::vector<pugi::xml_node> scopes_;
 };

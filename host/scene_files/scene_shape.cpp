@@ -125,7 +125,7 @@ std::filesystem::path SceneReader::file_path(const XmlElement& element, const st
 GridFile SceneReader::grid_file(const XmlElement& element) const {
     GridFile file;
     file.path = file_path(element, "cloud.nvdb");
-    if (const auto found = grids_.find(file.path.filename().string()); found != grids_.end())
+    if (const auto found = overrides_.grids.find(file.path.filename().string()); found != overrides_.grids.end())
         file.memory = found->second;
     file.grid = element.attribute("grid", file.grid);
     if (file.grid.empty())

@@ -38,8 +38,10 @@ Scene parse_scene(const PbrtTranslation& translation, const std::filesystem::pat
                   const SceneOverrides& overrides) {
     if (overrides.strict && !translation.notes.empty())
         throw InputError(translation.notes.front() + " (under --strict)");
+    SceneOverrides with_grids = overrides;
+    with_grids.grids.insert(translation.grids.begin(), translation.grids.end());
     XmlDocument document(translation.xml, file, {}, "options", translation.places);
-    Scene scene = SceneReader(document, overrides, translation.grids).read();
+    Scene scene = SceneReader(document, with_grids).read();
     scene.warnings.insert(scene.warnings.begin(), translation.notes.begin(), translation.notes.end());
     return scene;
 }

@@ -14,11 +14,12 @@ namespace vkvol {
 // Values for `$key` in attribute values and text.
 using Defines = std::map<std::string, std::string>;
 
-// What the command line puts in the place of the scene's own; known while loading so that checks and warnings fit.
+// What whoever asks for a scene puts in the place of its own; known while loading so that checks and warnings fit.
 struct SceneOverrides {
     std::optional<std::filesystem::path> grid; // instead of the scene's shape, with the coefficients of its medium
     std::optional<std::string> integrator;     // NAME:axis=choice..., instead of the scene's and of its choices
     bool strict = false;                       // of a scene that is translated nothing may be left out
+    NamedGrids grids = {};                     // instead of density fields of these names
 };
 
 // Throws InputError, "file:line:column: what is wrong; what would be right". What the scene asks for and this

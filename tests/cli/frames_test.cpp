@@ -173,11 +173,39 @@ TEST_CASE("an interrupted sequence says how to go on, and does", "[gpu][command]
     CHECK_THAT(stopped.text, Contains("interrupted at frame 2: 1 of 3 frames are done; -f 2,3 goes on, with --resume"));
     CHECK_FALSE(std::filesystem::exists(folder.file("a.3.exr")));
     const std::uint32_t before = read_exr(folder.file("a.2.exr")).samples.front();
+    // What was interrupted is not there, also without its checkpoint.
+    std::filesystem::rename(folder.file("a.2.checkpoint"), folder.file("kept"));
+    CHECK_THAT(folder.vkvol("two.xml -f 1..2 -o a.#.exr --resume --time 0.1s").text,
+               Contains("frame 1: a.1.exr is there") && !Contains("frame 2: a.2.exr is there"));
+    std::filesystem::rename(folder.file("kept"), folder.file("a.2.checkpoint"));
     const Run on = folder.vkvol("two.xml -f 2..3 -o a.#.exr --checkpoint 0.1s --resume --time 0.2s -q");
     INFO(on.text);
     CHECK(on.code == exit_done);
     CHECK(read_exr(folder.file("a.2.exr")).samples.front() > before);
     CHECK(read_exr(folder.file("a.3.exr")).samples.front() > 0);
+}
+
+TEST_CASE("a sequence that is gone on with passes over the frames that are there", "[gpu][command]") {
+    const Turntable scene("${= 0.5*$F}");
+    REQUIRE(scene.vkvol("ball.xml -f 1..3 -o a.#.exr -o a.#.png -q").code == exit_done);
+    const auto written = [&](const char* name) { return std::filesystem::last_write_time(scene.file(name)); };
+    const auto first = written("a.1.exr"), second = written("a.2.exr"), third = written("a.3.exr");
+    std::filesystem::remove(scene.file("a.2.png"));
+    const Run on = scene.vkvol("ball.xml -f 1..4 -o a.#.exr -o a.#.png --resume");
+    INFO(on.text);
+    CHECK(on.code == exit_done);
+    CHECK_THAT(on.text, Contains("frame 1: a.1.exr is there") && Contains("frame 3: a.3.exr is there") &&
+                            !Contains("frame 2:") && Contains("4 frames (1..4)"));
+    CHECK((written("a.1.exr") == first && written("a.3.exr") == third && written("a.2.exr") != second));
+    CHECK(std::filesystem::exists(scene.file("a.4.png")));
+    // Of other samples, or of another integrator or window, they are no longer what was asked for.
+    for (const char* other : {"--spp 3", "--seed 4", "--integrator ratioTracking", "--crop 0,4,0,4", "-D unused=1"}) {
+        const bool is_wrong = std::string(other).starts_with("-D");
+        CAPTURE(other);
+        const Run again = scene.vkvol(fmt::format("ball.xml -f 1..2 -o a.#.exr --resume {}", other));
+        CHECK(again.code == (is_wrong ? exit_bad_input : exit_done));
+        CHECK_THAT(again.text, !Contains("is there"));
+    }
 }
 
 TEST_CASE("errors of a sequence say in which frame, before any is rendered", "[gpu][command]") {

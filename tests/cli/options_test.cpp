@@ -2,6 +2,7 @@
 
 #include "error.h"
 #include "options.h"
+#include "requested_scene.h"
 
 using namespace vkvol;
 
@@ -60,6 +61,8 @@ TEST_CASE("every option is read, before or after the scene", "[cpu][options]") {
                                    "ratioTracking:flight=weighted",
                                    "--time",
                                    "5m",
+                                   "--noise",
+                                   "2.5%",
                                    "--width",
                                    "64",
                                    "--height",
@@ -94,6 +97,7 @@ TEST_CASE("every option is read, before or after the scene", "[cpu][options]") {
     CHECK(render.sample_offset == 48);
     CHECK(render.integrator.value() == "ratioTracking:flight=weighted");
     CHECK(render.time_limit.value() == 300.0);
+    CHECK(render.noise_goal.value() == 0.025);
     CHECK(render.width.value() == 64);
     CHECK(render.height.value() == 32);
     CHECK(render.grid.value() == "x.vdb");
@@ -147,6 +151,9 @@ TEST_CASE("a bad command line is one line with a hint", "[cpu][options]") {
     CHECK_THAT(error_of({"s.xml", "--width", "0"}), Catch::Contains("--width"));
     CHECK_THAT(error_of({"s.xml", "--time", "5d"}), Catch::Contains("30s, 5m or 2h"));
     CHECK_THAT(error_of({"s.xml", "--time", "-5"}), Catch::Contains("30s, 5m or 2h"));
+    for (const char* noise : {"1", "100%", "0%", "-1%", "nan", "1 %"})
+        CHECK_THAT(error_of({"s.xml", "--noise", noise}), Catch::Contains("--noise: '"));
+    CHECK(parse({"s.xml", "--noise", "0.03"}).render.noise_goal.value() == 0.03);
     CHECK_THAT(error_of({"s.xml", "-D", "novalue"}), Catch::Contains("key=value"));
     CHECK_THAT(error_of({"s.xml", "-D", "a=1", "-D", "a=2"}), Catch::Contains("a given twice"));
     CHECK_THAT(error_of({"s.xml", "--tonemap", "acs"}), Catch::Contains("did you mean aces?"));
@@ -203,7 +210,7 @@ TEST_CASE("numbers out of range say the range", "[cpu][options]") {
 
 TEST_CASE("what is empty is an error, and takes no other word's place", "[cpu][options]") {
     for (const char* option : {"--device", "--report", "-o", "--output", "--grid", "-D", "--define", "--integrator",
-                               "--time", "--width", "--crop", "--checkpoint"}) {
+                               "--time", "--noise", "--width", "--crop", "--checkpoint"}) {
         CAPTURE(option);
         CHECK_THAT(error_of({"s.xml", option, ""}), Catch::Contains(std::string(option) + ": is empty"));
     }

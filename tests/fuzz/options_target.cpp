@@ -5,6 +5,7 @@
 #include "mutate.h"
 #include "option_values.h"
 #include "options.h"
+#include "requested_scene.h"
 #include "scene_words.h"
 #include "target.h"
 
@@ -32,6 +33,7 @@ constexpr const char* words[] = {"render",
                                  "--exposure",
                                  "--spp",
                                  "--time",
+                                 "--noise",
                                  "--seed",
                                  "--sample-offset",
                                  "--integrator",
@@ -58,6 +60,7 @@ constexpr const char* words[] = {"render",
                                  "--dry-run",
                                  "--spp=4",
                                  "--time=5m",
+                                 "--noise=1%",
                                  "--crop=0,1,0,1",
                                  "-ofile.png",
                                  "-Dkey=value",
@@ -123,6 +126,8 @@ std::vector<std::string> split(const std::string& text) {
 
 void check_render(const RenderOptions& render, Random& random) {
     expect(!render.scene.empty() && !render.outputs.empty(), "a render without a scene or without an output");
+    if (render.noise_goal)
+        expect(*render.noise_goal > 0.0 && *render.noise_goal < 1.0, "a goal of noise is out of range");
     if (render.time_limit)
         expect(std::isfinite(*render.time_limit) && *render.time_limit > 0.0, "a time limit is not finite");
     const std::uint64_t spp = render.spp.value_or(1);

@@ -291,6 +291,26 @@ TEST_CASE("a render stopped by its time limit keeps true sample counts", "[gpu][
     check_samples_are_true(scene, 38, result.film);
 }
 
+TEST_CASE("a render ends at the first power of two of samples whose noise is low enough", "[gpu][determinism]") {
+    const auto noise_of = [](std::uint32_t spp) { return relative_noise(render_here(cloud(spp), 39).film).value(); };
+    const Scene scene = cloud(1u << 20);
+    RenderJob job;
+    job.plan.schedule = GENERATE(Schedule::fused, Schedule::staged);
+    const double between = 0.5 * (noise_of(32) + noise_of(64));
+    job.noise_goal = between;
+    const RenderResult result = render_here(scene, 39, job);
+    CHECK((result.reached_goal && !result.interrupted));
+    CHECK(result.samples == 64);
+    CHECK(result.film.mean == render_here(cloud(64), 39).film.mean);
+    // Nothing is looked at before there are 16 samples.
+    job.noise_goal = 0.9;
+    CHECK(render_here(scene, 39, job).samples == 16);
+    // With fewer samples than that takes.
+    job.noise_goal = between;
+    const RenderResult few = render_here(cloud(48), 39, job);
+    CHECK((few.samples == 48 && !few.reached_goal));
+}
+
 TEST_CASE("all samples are taken, though a driver's loops end after 65535 iterations", "[gpu][determinism]") {
     Scene scene;
     RenderJob job;

@@ -1,0 +1,51 @@
+#include "requested_scene.h"
+
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+#include "aovs.h"
+#include "error.h"
+#include "framing.h"
+#include "scene_xml.h"
+
+namespace vkvol {
+
+std::string apply_request(const RenderRequest& request, bool has_view, Scene& scene, FieldCache& fields) {
+    if (request.spp)
+        scene.settings.spp = *request.spp;
+    else if (request.time_limit || request.noise_goal) // these alone decide
+        scene.settings.spp = std::numeric_limits<std::int32_t>::max() - request.sample_offset;
+    resize_picture(scene, request.width, request.height);
+    std::string wrong; // none: whoever made the request has looked
+    scene.layers |= parse_layers(request.aov, wrong).value_or(0) | (request.alpha ? unsigned(layer_alpha) : 0u);
+    scene.holds_out = scene.holds_out || request.alpha;
+    if (const std::string trouble = trouble_with_layers(scene); !trouble.empty())
+        throw InputError("--aov, --alpha: " + trouble);
+    std::string given;
+    try {
+        if (!has_view)
+            given = give_camera(scene, fields);
+    } catch (const InputError&) { // of a file, say: whoever loads it says so, once no output can be in danger
+    }
+    if (request.frame && !has_view)
+        frame_medium(scene, fields);
+    return given;
+}
+
+Crop resolve_crop(const std::optional<CropRequest>& request, const Picture& picture) {
+    if (!request)
+        return {0, picture.width, 0, picture.height};
+    std::array<double, 4> window = request->window;
+    if (request->fractions) // rounded, so that neighbouring windows meet without gap or overlap
+        window = {std::round(window[0] * picture.width), std::round(window[1] * picture.width),
+                  std::round(window[2] * picture.height), std::round(window[3] * picture.height)};
+    const bool inside = window[0] >= 0 && window[1] <= picture.width && window[2] >= 0 && window[3] <= picture.height;
+    if (!inside || window[0] >= window[1] || window[2] >= window[3])
+        throw InputError(fmt::format("--crop {}: expected 0 <= x0 < x1 <= {} and 0 <= y0 < y1 <= {}",
+                                     fmt::join(window, ","), picture.width, picture.height));
+    return {int(window[0]), int(window[1]), int(window[2]), int(window[3])};
+}
+
+} // namespace vkvol
