@@ -31,6 +31,7 @@ NOT_INSTALLED = {
     "sudo": "asked for only by users other than root",
     "git": "for those who change the program: they have cloned it",
     "debootstrap": "tools/newcomer.sh says that it needs it",
+    "help2man": "tools/package.sh installs it",
     "mitsuba": "a renderer to compare with, of PyPI: tools/peers/README.md",
     "drjit": "comes with mitsuba",
 }

@@ -2,7 +2,9 @@
 # The README's two commands on a new machine: in a bare Debian (debootstrap's minbase), on what HEAD holds, as root and as a
 # user with sudo. Prints how each ended and what it took, and keeps that in tools/results/newcomer.txt, a row each.
 #   tools/newcomer.sh                      all: on two cores about an hour and a half
-#   tools/newcomer.sh trixie user demo     words choose: bookworm or trixie, root or user, demo or test
+#   tools/newcomer.sh trixie user demo     words choose: bookworm or trixie, root or user, demo, test or package
+#     package: that which tools/package.sh has made on this machine is installed in a bare system of the same release, tried by
+#     `vkvol demo`, and removed without a trace; not among what is done without words
 #   tools/newcomer.sh --cache DIR          where bare systems are kept; default: ~/.cache/vkvol-newcomer
 #   tools/newcomer.sh --mirror URL         default: http://deb.debian.org/debian
 # Every release and user begins with a system of its own; if both commands are chosen, the second finds what the first left.
@@ -19,13 +21,13 @@ while [ $# -gt 0 ]; do
     case $1 in
     bookworm | trixie) releases+=("$1") ;;
     root | user) users+=("$1") ;;
-    demo | test) commands+=("$1") ;;
+    demo | test | package) commands+=("$1") ;;
     --cache | --mirror)
         [ $# -gt 1 ] || die "$1 needs a value"
         [ "$1" = --cache ] && cache=$2 || mirror=$2
         shift
         ;;
-    *) die "'$1' is neither a release (bookworm, trixie), a user (root, user), a command (demo, test), --cache DIR nor --mirror URL" ;;
+    *) die "'$1' is neither a release (bookworm, trixie), a user (root, user), a command (demo, test, package), --cache DIR nor --mirror URL" ;;
     esac
     shift
 done
@@ -93,6 +95,28 @@ circumstances() {
     echo "$commit"
 }
 
+# What is done there: the README's command, or what a user of the package does.
+steps() {
+    if [ "$1" != package ]; then
+        echo "cd /home/vkvol && ${2:+$2 }tools/$1.sh"
+        return
+    fi
+    cat <<'END'
+set -e
+rm -rf /home/vkvol
+find / -xdev -name '*vkvol*' >/before
+apt-get update -qq
+DEBIAN_FRONTEND=noninteractive apt-get install -y -qq /package.deb
+cd /tmp
+vkvol demo --width 160 --spp 16
+[ -s cumulus.png ] && [ -s cumulus.exr ] && [ -s /usr/share/man/man1/vkvol-bench.1.gz ]
+vkvol-make-field sphere && vkvol sphere.nvdb --width 64 --spp 4 -q
+rm -rf /tmp/* ~/.cache
+dpkg --purge vkvol
+find / -xdev -name '*vkvol*' | diff /before - && echo "nothing is left"
+END
+}
+
 # attempt RELEASE USER COMMAND: one row.
 attempt() {
     local start=$SECONDS result=ok log=$vkvol_root/out/newcomer-$1-$2-$3.log load row
@@ -100,7 +124,12 @@ attempt() {
     say "$1, $2: tools/$3.sh (output in $log)"
     local as=
     [ "$2" = root ] || as="runuser -u newcomer --"
-    inside "cd /home/vkvol && $as tools/$3.sh" >"$log" 2>&1 || result=FAILED
+    if [ "$3" = package ]; then
+        grep -q "VERSION_CODENAME=$1" /etc/os-release || die "a package made here is for this machine's release, not for $1"
+        cp "$(find "$vkvol_root/build/package" -maxdepth 1 -name '*.deb')" "$system/package.deb" ||
+            die "there is no package; tools/package.sh makes one"
+    fi
+    inside "$(steps "$3" "$as")" >"$log" 2>&1 || result=FAILED
     row=$(printf '%-9s %-5s %-14s %-7s %5s  %s' "$1" "$2" "tools/$3.sh" $result $((SECONDS - start)) "$(circumstances "$log" | paste -sd ';' | sed 's/;/, /g')")
     echo "$row"
     [ $result = ok ] || {

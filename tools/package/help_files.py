@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Completions of bash, zsh and fish for vkvol's words, from what its --help says.
+"""Man pages, by help2man, and completions of bash, zsh and fish, from what vkvol's --help says.
 
-    tools/package/help_files.py VKVOL FOLDER    writes FOLDER/vkvol.bash, _vkvol (zsh) and vkvol.fish
+    tools/package/help_files.py VKVOL FOLDER    writes FOLDER/man/*.1.gz and FOLDER/completions: vkvol.bash, _vkvol (zsh), vkvol.fish
 """
+import gzip
 import json
 import re
 import subprocess
@@ -124,13 +125,27 @@ def help_of(vkvol, *command):
     return subprocess.run([vkvol, *command, "--help"], check=True, capture_output=True, text=True).stdout
 
 
+def write_man_pages(vkvol, folder):
+    folder.mkdir(parents=True, exist_ok=True)
+    version = subprocess.run([vkvol, "--version"], check=True, capture_output=True, text=True).stdout.strip()
+    for name in COMMANDS:
+        command, page = (vkvol, "vkvol") if name == "render" else (f"{vkvol} {name}", f"vkvol-{name}")
+        purpose = help_of(*command.split()).splitlines()[0].split(". ")[0].rstrip(".")
+        text = subprocess.run(["help2man", "--no-info", f"--name={purpose[0].lower()}{purpose[1:]}", "--version-string=" + version,
+                               "--manual=vkvol", f"--source={version}", command], check=True, capture_output=True).stdout
+        text = text.replace(str(vkvol).encode(), b"vkvol")
+        (folder / f"{page}.1.gz").write_bytes(gzip.compress(text, mtime=0))
+
+
 def main(vkvol, folder):
     commands = {name: options_of(help_of(vkvol, *([] if name == "render" else [name]))) for name in COMMANDS}
     listed = json.loads(subprocess.run([vkvol, "integrators", "--json"], check=True, capture_output=True, text=True).stdout)
     integrators = [row["name"] for row in listed]
-    folder.mkdir(parents=True, exist_ok=True)
+    completions = folder / "completions"
+    completions.mkdir(parents=True, exist_ok=True)
     for name, make in (("vkvol.bash", bash), ("_vkvol", zsh), ("vkvol.fish", fish)):
-        (folder / name).write_text(make(commands, integrators))
+        (completions / name).write_text(make(commands, integrators))
+    write_man_pages(vkvol, folder / "man")
 
 
 if __name__ == "__main__":
