@@ -4,12 +4,13 @@
 #   scenes      every file under scenes/ by its name alone, small (2 minutes): tools/all_scenes.sh
 #   large       a grid of 342 MiB, larger than a storage buffer of Mesa's software driver, against its Fp8 form (1 minute)
 #   tests       tests on the device, of which many take a share of what they could combine, with all of it
+#   python      `pip install .` in a fresh environment: types, tests, the notebook (5 minutes; PyPI has to be there)
 #   estimators  the tables of all unbiased combinations of estimators, of the bias of marches, and of transmittances alone
 #   pictures    whole scenes with large grids, rendered by vkvol and by the scalar reference with different seeds, judged by
 #               `vkvol compare` (per-pixel z-test, Sidak-corrected, and a test of the means; a significance of 0.001 per
 #               scene, so that a table of this length raises a false alarm once in a hundred runs)
 # All but `tests` takes about an hour on two cores. Each part ends with a table; fails if anything differs.
-#   tools/validate.sh [--driver NAME] [hard|scenes|large|tests|estimators|pictures ...] [FILE.nvdb ...]
+#   tools/validate.sh [--driver NAME] [hard|scenes|large|tests|python|estimators|pictures ...] [FILE.nvdb ...]
 #       a driver as in tools/test.sh; further grids for pictures: in the thesis' bunny scenes
 set -eu
 source "$(dirname "$0")/setup.sh"
@@ -23,12 +24,12 @@ if [ "${1:-}" = --driver ]; then
 fi
 for argument in "$@"; do
     case $argument in
-    hard | scenes | large | tests | estimators | pictures) parts+=("$argument") ;;
+    hard | scenes | large | tests | python | estimators | pictures) parts+=("$argument") ;;
     *.nvdb) grids+=("$argument") ;;
-    *) die "'$argument' is neither a part (hard, scenes, large, tests, estimators, pictures) nor a .nvdb file" ;;
+    *) die "'$argument' is neither a part (hard, scenes, large, tests, python, estimators, pictures) nor a .nvdb file" ;;
     esac
 done
-[ ${#parts[@]} -gt 0 ] || parts=(hard scenes large tests estimators pictures)
+[ ${#parts[@]} -gt 0 ] || parts=(hard scenes large tests python estimators pictures)
 
 install_packages
 [ -z "$driver" ] || use_driver "$driver"
@@ -65,6 +66,17 @@ run_large() {
 run_tests() {
     say "Every combination of what tests combine"
     (cd "$work" && VKVOL_THOROUGH=1 "$vkvol_root/build/vkvol_tests" "[gpu]~[bench]") || failed=1
+}
+
+# What the notebook shows is kept with it.
+run_python() {
+    say "pip install . in a fresh environment"
+    local python=$work/venv/bin/python notebook=$vkvol_root/tools/notebooks/first_steps.ipynb
+    python3 -m venv "$work/venv" && "$python" -m pip install -q "$vkvol_root" mypy nbclient ipykernel matplotlib || die "pip install . failed"
+    "$python" -m mypy --strict "$vkvol_root/host/python/vkvol" || failed=1
+    (cd "$work" && VKVOL_INSTALLED=1 VKVOL_BUILD="$vkvol_root/build" PYTHONDONTWRITEBYTECODE=1 "$python" -W error -m unittest discover \
+        -p "*_test.py" -s "$vkvol_root/tests/python") || failed=1
+    (cd "$work" && "$work/venv/bin/jupyter-execute" --inplace "$notebook") || failed=1
 }
 
 run_estimators() {

@@ -14,7 +14,8 @@ import warnings
 import numpy as np
 
 BUILD = pathlib.Path(os.environ["VKVOL_BUILD"])
-sys.path.insert(0, str(BUILD / "python"))
+if "VKVOL_INSTALLED" not in os.environ:  # else that of `pip install .`
+    sys.path.insert(0, str(BUILD / "python"))
 import vkvol  # noqa: E402
 
 SCENES = pathlib.Path(__file__).resolve().parents[2] / "scenes"
@@ -246,10 +247,10 @@ class Running(unittest.TestCase):
         self.assertIn("ratioTracking", vkvol.integrators())
 
     def test_ends_in_peace(self):
-        code = ("import sys; sys.path.insert(0, sys.argv[1]); import vkvol; "
+        code = ("import sys; sys.path[:] = sys.argv[1:]; import vkvol; "
                 "s = vkvol.Session(vkvol.Scene.from_xml('<options><sphere/><camera z=\"4\"/></options>'), width=8, height=8); "
                 "s.render(1); print(s.picture())")
-        done = subprocess.run([sys.executable, "-c", code, BUILD / "python"], capture_output=True, text=True)
+        done = subprocess.run([sys.executable, "-c", code, *sys.path], capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("8x8, 1 samples", done.stdout)
 

@@ -54,7 +54,8 @@ class Picture:
     @cached_property
     def report(self) -> dict[str, Any]:
         """What was done and how long it took; README.md of the sources says what is in it."""
-        return json.loads(self._picture.report_json)
+        report: dict[str, Any] = json.loads(self._picture.report_json)
+        return report
 
     def develop(self, tonemap: Optional[str] = None, exposure: Union[float, str, None] = None) -> npt.NDArray[np.uint8]:
         """For looking at: (height, width, 3).

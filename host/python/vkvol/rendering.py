@@ -113,7 +113,8 @@ def render(scene: Union[Scene, StrPath], **options: Any) -> Picture:
 
 def devices() -> list[dict[str, Any]]:
     """What there is to render on: name, type, driver, and whether it is usable, or why not."""
-    return json.loads(_vkvol.devices_json())
+    found: list[dict[str, Any]] = json.loads(_vkvol.devices_json())
+    return found
 
 
 def integrators() -> list[str]:
