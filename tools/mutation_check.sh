@@ -68,6 +68,7 @@ lamps of surfaces with one side ~ host/methods/surface_lamps.cpp ~ (side > 0.0 |
 points on surfaces weighed as collisions are ~ shaders/stages/collide.glsl ~ if (LOOKS_ALONG && !is_surface(s)) ~ if (LOOKS_ALONG) ~ [surfaces]
 looks from along what lies behind surfaces ~ shaders/lights/equiangular.glsl ~ s.t.y = max(min(s.t.y, reach), s.t.x); ~ ; ~ [surfaces]
 no looks from along flights that surfaces end ~ shaders/stages/seek.glsl ~ goes_to_look = look_along(v, lane, rng, tally); ~ ; ~ [surfaces]
+flights counted from where light begins ~ shaders/lights/equiangular.glsl ~ max(t - s.first, 0.0) ~ max(t - s.t.x, 0.0) ~ [lights]
 a spot's cone the wrong way ~ shaders/lights/equiangular.glsl ~ square > 0.0 && b > 0.0 ? ~ square > 0.0 && b < 0.0 ? ~ [lights]
 pbrt's voxels at their corners ~ host/pbrt_files/pbrt_dense_media.cpp ~ bounds.low + 0.5 * voxel ~ bounds.low ~ [pbrt]
 pbrt's clouds of another noise ~ host/pbrt_files/pbrt_cloud.cpp ~ h < 4 || h == 12 || h == 13 ~ h < 4 || h == 12 || h == 14 ~ [pbrt]

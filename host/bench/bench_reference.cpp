@@ -64,7 +64,7 @@ bool is_newer_than_assets(const std::filesystem::path& file, const Scene& scene)
     for (const Volume& volume : scene.volumes) {
         if (volume.phase == PhaseFunction::table)
             assets.push_back(volume.phase_details.file);
-        if (const GridFile* grid = std::get_if<GridFile>(&volume.shape))
+        if (const GridFile* grid = std::get_if<GridFile>(&volume.shape); grid && !grid->memory)
             assets.push_back(grid->path);
         else if (const MeshFiles* mesh = std::get_if<MeshFiles>(&volume.shape))
             assets.insert(assets.end(), mesh->paths.begin(), mesh->paths.end());

@@ -1,6 +1,9 @@
 #include "convert.h"
 
 #include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <map>
 
 #include "atomic_file.h"
 #include "error.h"
@@ -17,6 +20,20 @@ namespace {
 
 constexpr const char* head = "<?xml version=\"1.0\"?>\n";
 
+// Nobody has named these files: what is there, and is not what would be written, may be of use.
+void check_unnamed(const std::filesystem::path& file, const std::string& bytes) {
+    std::error_code error;
+    if (!std::filesystem::exists(std::filesystem::symlink_status(file, error)))
+        return;
+    std::ifstream there(file, std::ios::binary);
+    const std::string old((std::istreambuf_iterator<char>(there)), std::istreambuf_iterator<char>());
+    if (old != bytes)
+        throw InputError(
+            fmt::format("{}: is there already, and densities of the new scene would be written over it; remove "
+                        "it, or name another scene with -o",
+                        file.string()));
+}
+
 } // namespace
 
 int run_convert(const ConvertOptions& options) {
@@ -28,7 +45,7 @@ int run_convert(const ConvertOptions& options) {
     const std::filesystem::path beside = options.output.parent_path();
     PbrtTranslationOptions choices;
     choices.name_of_file = [&](const std::string& name) { return name_beside(pbrt.folder / name, beside); };
-    choices.grid_prefix = options.output.stem().string() + "_";
+    choices.grid_stem = options.output.stem().string();
     const PbrtTranslation translation = translate_pbrt(pbrt, choices);
     if (is_special(options.output) && !translation.grids.empty())
         throw InputError(
@@ -44,8 +61,11 @@ int run_convert(const ConvertOptions& options) {
     for (const auto& [name, grids] : translation.grids)
         uses.writes("densities of the new scene", beside / name, "-o");
     uses.check();
+    std::map<std::filesystem::path, std::string> densities;
     for (const auto& [name, grids] : translation.grids)
-        write_text(beside / name, nvdb_file_of(*grids));
+        check_unnamed(beside / name, densities[beside / name] = nvdb_file_of(*grids));
+    for (const auto& [file, bytes] : densities)
+        write_text(file, bytes);
     write_text(options.output, head + translation.xml);
     if (options.quiet)
         return exit_done;

@@ -94,6 +94,50 @@ std::vector<float> values_of(const PbrtCloud& cloud, const glm::dmat4& to_medium
     return values;
 }
 
+// Where a scene says nothing of Le's scale pbrt takes a grid of one value, 1 in the middle of the box, which falls to 0
+// at the middles of its neighbours: to half at the faces.
+std::vector<float> usual_scales(glm::ivec3 dims) {
+    std::vector<float> scales;
+    const auto at = [](int i, int n) { return 1.0 - std::abs((i + 0.5) / n - 0.5); };
+    for (int z = 0; z < dims.z; ++z)
+        for (int y = 0; y < dims.y; ++y)
+            for (int x = 0; x < dims.x; ++x)
+                scales.push_back(static_cast<float>(at(x, dims.x) * at(y, dims.y) * at(z, dims.z)));
+    return scales;
+}
+
+// The largest value in the outermost voxels.
+float most_at_edge(glm::ivec3 dims, const std::vector<float>& values) {
+    float most = 0.0f;
+    std::size_t i = 0;
+    for (int z = 0; z < dims.z; ++z)
+        for (int y = 0; y < dims.y; ++y)
+            for (int x = 0; x < dims.x; ++x, ++i)
+                if (glm::any(glm::equal(glm::ivec3(x, y, z), glm::ivec3(0))) ||
+                    glm::any(glm::equal(glm::ivec3(x, y, z), dims - 1)))
+                    most = std::max(most, values[i]);
+    return most;
+}
+
+// Two and a half for a cell of the cloud's finest noise, at least 64 along the longest edge, and no more in all than
+// `most`. `is_coarse`: these are less than two for a cell.
+glm::ivec3 cloud_dims(const PbrtCloud& cloud, const Bounds& bounds, double most, bool& is_coarse) {
+    constexpr double finest = 1.99 * 1.99 * 1.99 * 1.99;
+    const double longest = std::max({bounds.size.x, bounds.size.y, bounds.size.z});
+    const double cells = cloud.frequency * finest * longest;
+    const glm::dvec3 shape = bounds.size / longest;
+    const auto dims_of = [&](double along) { return glm::max(glm::ivec3(glm::round(shape * along)), glm::ivec3(1)); };
+    const auto fits = [&](double along) {
+        const glm::dvec3 dims(dims_of(along));
+        return dims.x * dims.y * dims.z <= most;
+    };
+    double along = std::clamp(2.5 * cells, 64.0, 4096.0);
+    while (along > 1.0 && !fits(along))
+        along *= 0.98;
+    is_coarse = along < 2.0 * cells;
+    return dims_of(along);
+}
+
 // A file's name, made of the medium's.
 std::string file_stem(const std::string& medium) {
     std::string stem;
@@ -110,7 +154,8 @@ bool is_dense(const PbrtThing& medium) {
 
 // That neither a grid of the scene nor a file of another medium has.
 std::string PbrtTranslator::free_name(const std::string& medium) const {
-    const std::string stem = options_.grid_prefix + file_stem(medium);
+    const std::string prefix = options_.grid_stem.empty() ? "" : file_stem(options_.grid_stem) + "_";
+    const std::string stem = prefix + file_stem(medium);
     const auto is_taken = [&](const std::string& name) {
         return grids_.count(name) != 0 || std::any_of(scene_.media.begin(), scene_.media.end(), [&](const auto& other) {
                    return std::filesystem::path(other.second.parameters->text("filename")).filename() == name;
@@ -126,18 +171,26 @@ void PbrtTranslator::write_dense_medium(const std::string& name, const PbrtThing
     const PbrtParameters& p = *medium.parameters;
     const bool is_cloud = medium.type == "cloud";
     const Bounds bounds = bounds_of(medium);
-    const double voxel = std::max({bounds.size.x, bounds.size.y, bounds.size.z}) / options_.cloud_voxels;
+    bool is_coarse = false;
     const glm::ivec3 dims =
-        is_cloud ? glm::max(glm::ivec3(glm::round(bounds.size / voxel)), glm::ivec3(1)) : dims_of(medium);
+        is_cloud ? cloud_dims(cloud_of(medium), bounds, options_.most_cloud_voxels, is_coarse) : dims_of(medium);
+    if (is_coarse)
+        note(medium.place,
+             fmt::format("the cloud's finest noise is finer than its grid of {} x {} x {} voxels, which is "
+                         "the largest: that part of it is smoothed",
+                         dims.x, dims.y, dims.z));
     const glm::dmat4 place = to_medium(bounds, dims);
     const auto grids = std::make_shared<MemoryGrids>();
     const auto add = [&](const char* grid, const std::vector<float>& values) {
         grids->grids.push_back({grid, make_grid(grid, dims, values)});
     };
-    if (is_cloud)
-        add("density", values_of(cloud_of(medium), place, dims));
-    else
-        add("density", values_of(medium, "density", dims));
+    const std::vector<float> densities =
+        is_cloud ? values_of(cloud_of(medium), place, dims) : values_of(medium, "density", dims);
+    add("density", densities);
+    if (!is_cloud && std::max({dims.x, dims.y, dims.z}) < 64 && most_at_edge(dims, densities) > 0.0f)
+        note(medium.place,
+             "the densities at the grid's edge fall to 0 within half a voxel beyond its bounds, and not at "
+             "them; outermost voxels of 0 change nothing and are left as they are");
     const bool burns = !is_cloud && p.has("temperature"), has_scales = !is_cloud && p.has("Lescale");
     if (burns && p.has("Le"))
         fail_at(p.find("Le")->place, "both \"Le\" and \"temperature\"; expected one of them");
@@ -145,6 +198,8 @@ void PbrtTranslator::write_dense_medium(const std::string& name, const PbrtThing
         add("temperature", values_of(medium, "temperature", dims));
     else if (has_scales)
         add("Lescale", values_of(medium, "Lescale", dims));
+    else if (!is_cloud && p.has("Le"))
+        add("Lescale", usual_scales(dims));
     const std::string file = free_name(name);
     xml_.open("volume", {{"name", name}}, medium.place.text());
     xml_.element("densityField", {}, file);
@@ -153,11 +208,9 @@ void PbrtTranslator::write_dense_medium(const std::string& name, const PbrtThing
     if (burns)
         write_black_body("temperature", 1.0, medium);
     else if (const std::optional<glm::dvec3> glow = is_cloud ? std::nullopt : colors_.light(medium, "Le")) {
-        XmlAttributes attributes;
-        if (has_scales)
-            attributes = {{"grid", "Lescale"}, {"model", "color"}};
+        XmlAttributes attributes = {{"grid", "Lescale"}, {"model", "color"}};
         add_rgb(attributes, *glow * exposure_);
-        xml_.element(has_scales ? "emission" : "medium", attributes);
+        xml_.element("emission", attributes);
     }
     if (burns && has_scales)
         note(p.find("Lescale")->place, "\"Lescale\" beside a temperature is left out");

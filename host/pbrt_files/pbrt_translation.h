@@ -23,9 +23,8 @@ struct PbrtTranslation {
 
 struct PbrtTranslationOptions {
     NameOfFile name_of_file; // null: they stay as they are, relative to the pbrt scene's folder
-    std::string grid_prefix; // with which the names of `grids` begin
-    int cloud_voxels = 256;  // of clouds, along their longest edge: the finest of the usual one's noise has a cell on
-                             // some three of them
+    std::string grid_stem;   // with which the names of `grids` begin; odd characters of it do not matter
+    double most_cloud_voxels = 256.0 * 256.0 * 256.0;
 };
 
 // Throws InputError, "file:line:column: what is wrong; what would be right".

@@ -138,6 +138,8 @@ Answer no_medium(const Evidence& e) {
         return fmt::format("{} leaves sigma_s out and sigma_a is 0, which leaves no medium; raise sigma_a",
                            e.method.integrator);
     const GridFile* file = std::get_if<GridFile>(&volume->shape);
+    if (file && file->memory)
+        return fmt::format("the values of \"{}\" are all 0, so there is no medium", file->grid);
     return fmt::format("the grid \"{}\" has no voxels, so there is no medium; vkvol info {} says what the file has",
                        file ? file->grid : "", file ? file->path.string() : "FILE");
 }

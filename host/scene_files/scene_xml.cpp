@@ -36,13 +36,13 @@ Scene parse_scene(const std::string& xml, const std::filesystem::path& file, con
 
 Scene parse_scene(const PbrtTranslation& translation, const std::filesystem::path& file,
                   const SceneOverrides& overrides) {
-    if (overrides.strict && !translation.notes.empty())
-        throw InputError(translation.notes.front() + " (under --strict)");
     SceneOverrides with_grids = overrides;
     with_grids.grids.insert(translation.grids.begin(), translation.grids.end());
     XmlDocument document(translation.xml, file, {}, "options", translation.places);
     Scene scene = SceneReader(document, with_grids).read();
     scene.warnings.insert(scene.warnings.begin(), translation.notes.begin(), translation.notes.end());
+    if (overrides.strict && !scene.warnings.empty())
+        throw InputError(scene.warnings.front() + " (under --strict)");
     return scene;
 }
 

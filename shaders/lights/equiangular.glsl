@@ -14,6 +14,7 @@
 // What of a flight may be within the medium and lit, as a light sees it.
 struct Stretch {
     vec2 t;     // from where to where, from the flight's beginning [world units]
+    float first; // where the flight comes into the medium, lit there or not
     float foot; // where it is nearest to the light
     float off;  // how far that is
     vec2 y;     // 1 / (1 + |x|) at its ends
@@ -30,10 +31,15 @@ vec2 lit_part(LightRow light, vec3 off, vec3 direction) {
         float x = -b / a;
         part = a > 0.0 ? vec2(x, FAR) : a < 0.0 ? vec2(-FAR, x) : part;
     } else if (light.kind == LIGHT_SPOT && c > 0.0) {
-        // Lit is what has b + a x >= c sqrt(off^2 + x^2).
-        float A = (a - c) * (a + c), square = b * b + A * dot(off, off);
+        // Lit is what has b + a x >= c sqrt(off^2 + x^2). By a - c and a + c, and roots, that keep their digits beside the cone's
+        // edge: 1 - a is half of the square of what the two directions are apart.
+        vec3 apart = direction - light.direction, sum = direction + light.direction;
+        float A = (light.none_beyond - 0.5 * dot(apart, apart)) * (0.5 * dot(sum, sum) - light.none_beyond);
+        float off2 = dot(off, off), square = b * b + A * off2;
         float root = c * sqrt(max(square, 0.0));
-        vec2 x = vec2(-a * b - root, -a * b + root) / A;
+        float q = a * b > 0.0 ? -a * b - root : root - a * b, C = b * b - c * c * off2;
+        float other = q != 0.0 ? C / q : 0.0;
+        vec2 x = a * b > 0.0 ? vec2(q / A, other) : vec2(other, q / A);
         if (A > 0.0)
             part = a > 0.0 ? vec2(x.y, FAR) : vec2(-FAR, x.x);
         else if (A < 0.0)
@@ -48,6 +54,7 @@ Stretch stretch_of(MediumParams v, LightRow light, vec3 position, vec3 direction
     if (!medium_interval(v, to_medium(v, position, direction), s.t))
         s.t = vec2(0.0);
     s.t.y = max(min(s.t.y, reach), s.t.x);
+    s.first = s.t.x;
     vec3 apart = light.position - position;
     s.foot = dot(apart, direction);
     // Lamps are no points: nearer than half their size nothing grows any more. And no ray hits a point.
@@ -84,7 +91,7 @@ float equiangular_pdf(Stretch s, float t) {
     return y * y / (s.off * (s.mass.x + s.mass.y));
 }
 float assumed_flight_pdf(MediumParams v, Stretch s, float t) {
-    return v.usual_sigma_t * exp(-v.usual_sigma_t * max(t - s.t.x, 0.0));
+    return v.usual_sigma_t * exp(-v.usual_sigma_t * max(t - s.first, 0.0));
 }
 
 bool has_place(LightRow light) {

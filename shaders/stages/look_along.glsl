@@ -8,14 +8,14 @@
 
 // One of those that have a place. Where there are many, one that is bright where a free flight might end; which one that is is
 // the look's own chance, and weights do not depend on it.
-LightRow choose_placed(MediumParams v, vec3 position, vec3 direction, float u, inout Rng rng, out float chance) {
+LightRow choose_placed(MediumParams v, vec3 position, vec3 direction, float reach, float u, inout Rng rng, out float chance) {
     uint i = frame.choices - 1u;
     chance = 1.0;
     if (HAS_TREE) {
         vec2 t;
         if (!medium_interval(v, to_medium(v, position, direction), t))
             t = vec2(0.0);
-        float flown = min(t.x - log(1.0 - u) / v.usual_sigma_t, t.y);
+        float flown = min(t.x - log(1.0 - u) / v.usual_sigma_t, min(t.y, reach));
         i = descend(position + flown * direction, rng, chance);
     }
     return light_at(i);
@@ -27,8 +27,9 @@ bool look_along(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tall
     uvec4 words = next_words(rng);
     vec4 u = to_uniform(words);
     float chance;
-    LightRow light = choose_placed(v, lane.path.position, lane.path.direction, u.x, rng, chance);
-    Stretch s = stretch_of(v, light, lane.path.position, lane.path.direction, flying_as_far_as(lane));
+    float reach = flying_as_far_as(lane);
+    LightRow light = choose_placed(v, lane.path.position, lane.path.direction, reach, u.x, rng, chance);
+    Stretch s = stretch_of(v, light, lane.path.position, lane.path.direction, reach);
     float t = distance_in(s, u.y);
     vec3 position = lane.path.position + t * lane.path.direction;
     tally.lookups += 1u;

@@ -118,7 +118,7 @@ public:
     void use(const std::string& input, Random&) override {
         const std::filesystem::path file = directory_ / "scene.pbrt";
         PbrtTranslationOptions coarse; // a cloud as fine as usual takes seconds
-        coarse.cloud_voxels = 16;
+        coarse.most_cloud_voxels = 4096;
         const PbrtTranslation translation = translate_pbrt(read_pbrt(input, file), coarse);
         for (const std::string& note : translation.notes)
             expect(note.size() <= 4000 && note.find('\n') == std::string::npos, "a note is not one short line");

@@ -89,8 +89,12 @@ TEST_CASE("pbrt's grids within scenes glow", "[cpu][pbrt]") {
     const Volume hot = only_medium(world_of(grid_medium(
         eight + "\"float temperature\" [ 0 100 200 300 400 500 600 700 ] \"float temperaturescale\" 3 \"float "
                 "temperatureoffset\" 50")));
-    CHECK(even.Le.x > 0.0);
-    CHECK(near(varied.temperature.color, even.Le));
+    CHECK(near(varied.temperature.color, even.temperature.color));
+    CHECK((even.temperature.color.x > 0.0 && even.temperature.model == TemperatureEmission::Model::color));
+    // pbrt's usual scale is a grid of one voxel: 1 - |x - 1/2| along each axis, here at 1/4 and 3/4.
+    const DensityField scales = load_density_field(std::get<GridFile>(even.shape).beside("Lescale"));
+    for (const glm::ivec3 voxel : {glm::ivec3(0, 0, 0), glm::ivec3(1, 0, 1)})
+        CHECK(scales.value(voxel) == 0.75f * 0.75f * 0.75f);
     CHECK(varied.temperature.grid == "Lescale");
     CHECK(has_grid(std::get<GridFile>(varied.shape).beside("Lescale")));
     CHECK(hot.temperature.model == TemperatureEmission::Model::blackbody);
@@ -118,11 +122,37 @@ TEST_CASE("pbrt's clouds have pbrt's densities", "[cpu][pbrt]") {
                  "Shape \"sphere\" \"float radius\" 99");
     const Volume& volume = only_medium(scene);
     const DensityField field = field_of(volume);
-    for (const glm::ivec3 voxel : {glm::ivec3(0, 0, 0), glm::ivec3(255, 63, 63), glm::ivec3(100, 20, 30)}) {
+    // 2.5 voxels for a cell of the finest of its octaves, which are 6, 6 1.99, ... 6 1.99^4 in a unit of length.
+    const glm::ivec3 last(std::lround(2.5 * 6.0 * std::pow(1.99, 4) * 2.0) - 1,
+                          std::lround(2.5 * 6.0 * std::pow(1.99, 4) * 0.5) - 1,
+                          std::lround(2.5 * 6.0 * std::pow(1.99, 4) * 0.5) - 1);
+    for (const glm::ivec3 voxel : {glm::ivec3(0, 0, 0), last, glm::ivec3(100, 20, 30)}) {
         const glm::dvec3 here(field.index_to_world * glm::dvec4(voxel, 1.0));
         CHECK(field.value(voxel) == Approx(PbrtCloud{1.0, 1.0, 6.0}.at({here.x, here.y, -here.z})).margin(1e-6));
     }
-    CHECK(glm::all(glm::equal(field.voxel_max, glm::ivec3(255, field.voxel_max.y, 63))));
+    CHECK((field.voxel_max.x == last.x && field.voxel_max.z == last.z));
+    CHECK(scene.warnings.empty());
+}
+
+TEST_CASE("grids of pbrt that cannot be quite as there are noted", "[cpu][pbrt]") {
+    const auto noted = [](const Scene& scene, const std::string& text) {
+        return std::any_of(scene.warnings.begin(), scene.warnings.end(),
+                           [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+    };
+    CHECK(noted(world_of(grid_medium("\"float density\" 1")), "within half a voxel beyond its bounds"));
+    CHECK_FALSE(
+        noted(world_of(grid_medium("\"integer nx\" 3 \"integer ny\" 3 \"integer nz\" 3 \"float density\" [ 0 0 0 0 0 0 "
+                                   "0 0 0 0 0 0 0 1 0 0 0 0 0 0 0 0 0 0 0 0 0 ]")),
+              "half a voxel"));
+    PbrtTranslationOptions few;
+    few.most_cloud_voxels = 30000;
+    const PbrtTranslation coarse = translate_pbrt(
+        read_pbrt("WorldBegin MakeNamedMedium \"c\" \"string type\" \"cloud\" MediumInterface \"c\" \"\" Material "
+                  "\"interface\" Shape \"sphere\" \"float radius\" 99",
+                  "s.pbrt"),
+        few);
+    REQUIRE(coarse.notes.size() == 1);
+    CHECK_THAT(coarse.notes.front(), Contains("s.pbrt:1:") && Contains("finer than its grid of 31 x 31 x 31 voxels"));
 }
 
 TEST_CASE("wrong media of pbrt are refused with their place", "[cpu][pbrt]") {

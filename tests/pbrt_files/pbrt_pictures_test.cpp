@@ -140,7 +140,11 @@ TEST_CASE("all of scenes/pbrt is rendered, and converted to the same bits", "[gp
         CAPTURE(file);
         const Run run = folder.vkvol(file + " --width 40 --spp 2 -o a.exr");
         CHECK(run.code == exit_done);
-        REQUIRE(folder.vkvol("convert " + file + " -q --strict -o b.xml").code == exit_done); // all of it
+        // All of each, but for the sun that no path finds through glass.
+        const bool is_whole = entry.path().stem() != "gems";
+        REQUIRE(folder.vkvol("convert " + file + " -q --strict -o b.xml").code ==
+                (is_whole ? exit_done : exit_bad_input));
+        REQUIRE(folder.vkvol("convert " + file + " -q -o b.xml").code == exit_done);
         REQUIRE(folder.vkvol("b.xml --width 40 --spp 2 -q -o b.exr").code == exit_done);
         CHECK(same_bits(read_exr(folder.file("a.exr")), read_exr(folder.file("b.exr"))));
     }
@@ -167,4 +171,15 @@ TEST_CASE("pbrt scenes on the command line", "[gpu][pbrt]") {
     refused("convert b.pbrt --strict -o b.xml", "(under --strict)");
     CHECK_FALSE(std::filesystem::exists(folder.file("b.xml")));
     refused("convert none.pbrt -o b.xml", "none.pbrt: no such file");
+    // Densities get files that nobody has named: nothing is written over, but by what is the same.
+    folder.write("g.pbrt",
+                 "WorldBegin LightSource \"infinite\" MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"float "
+                 "density\" 1\nMediumInterface \"m\" \"\" Material \"interface\" Shape \"sphere\"\n");
+    folder.write("g_m.nvdb", "mine");
+    refused("convert g.pbrt -o g.xml", "g_m.nvdb: is there already");
+    CHECK_FALSE(std::filesystem::exists(folder.file("g.xml")));
+    CHECK(folder.vkvol("convert g.pbrt -q -o h.xml").code == exit_done);
+    CHECK(folder.vkvol("convert g.pbrt -q -o h.xml").code == exit_done);
+    CHECK(folder.vkvol("convert g.pbrt -q -o ' odd name.xml'").code == exit_done);
+    CHECK(folder.vkvol("' odd name.xml' --width 4 --height 4 -q -o odd.exr").code == exit_done);
 }
