@@ -131,9 +131,9 @@ void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
         ->option_text("T")
         ->group("Output");
     app.add_flag("--resume", render.resume,
-                 "Go on from the checkpoint, to the same bits; without one, begin. Frames of -f whose pictures are "
-                 "there already "
-                 "are passed over")
+                 "Go on from the checkpoint, to the same bits; without one, begin. Frames of -f whose .exr is there, "
+                 "whole and "
+                 "of the same request, are passed over")
         ->group("Output");
     app.add_flag("--dry-run", render.dry_run,
                  "Check scene, files, device and outputs, say what would be rendered, and render nothing")
@@ -271,7 +271,11 @@ void parse_demo(const std::vector<std::string>& arguments, Options& options) {
     const bool asks = std::any_of(arguments.begin(), arguments.end(),
                                   [](const std::string& word) { return word == "--help" || word == "-h"; });
     if (!asks)
-        with_scene.insert(with_scene.begin(), {demo_scene().string(), "--tonemap=aces"});
+        with_scene.insert(with_scene.begin(), demo_scene().string());
+    const bool has_curve = std::any_of(arguments.begin(), arguments.end(),
+                                       [](const std::string& word) { return word.starts_with("--tonemap"); });
+    if (!asks && !has_curve)
+        with_scene.push_back("--tonemap=aces");
     parse_render(with_scene, options);
 }
 

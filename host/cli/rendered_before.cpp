@@ -6,6 +6,7 @@
 #include "checkpoint_file.h"
 #include "error.h"
 #include "file_ending.h"
+#include "file_uses.h"
 #include "image_io.h"
 #include "metadata.h"
 #include "method.h"
@@ -16,43 +17,55 @@ namespace vkvol {
 
 namespace {
 
-bool is_this_render(const std::filesystem::path& exr, const RenderOptions& options, const Scene& scene) {
+// Of the picture of this render; none if it is another one, or was interrupted.
+std::optional<int> code_of(const std::filesystem::path& exr, const RenderOptions& options, const Scene& scene) {
     Metadata metadata;
-    Film film;
     try {
-        film = read_exr(exr, &metadata);
+        read_exr(exr, &metadata);
     } catch (const InputError&) { // whatever it is, it is no such picture
-        return false;
+        return std::nullopt;
     }
-    const bool counts_samples = options.spp || !(options.time_limit || options.noise_goal);
-    return text_of(metadata, "vkvol/sceneHash") == scene_hash(scene) &&
-           text_of(metadata, "vkvol/integrator") == choose_method(with_preset(scene)).integrator &&
-           text_of(metadata, "vkvol/seed") == std::to_string(options.seed) &&
-           text_of(metadata, "vkvol/sampleOffset") == std::to_string(options.sample_offset) &&
-           text_of(metadata, "vkvol/interrupted") == "0" && film.crop == resolve_crop(options.crop, scene.picture) &&
-           (!counts_samples || text_of(metadata, "samplesPerPixel") == std::to_string(scene.settings.spp));
+    const bool is_this = text_of(metadata, "vkvol/sceneHash") == scene_hash(scene) &&
+                         text_of(metadata, "vkvol/integrator") == choose_method(with_preset(scene)).integrator &&
+                         text_of(metadata, "vkvol/asked") == asked_text(options, scene) &&
+                         text_of(metadata, "vkvol/interrupted") == "0";
+    if (!is_this)
+        return std::nullopt;
+    return options.strict && text_of(metadata, "vkvol/capsHit") != "0" ? exit_caps_hit : exit_done;
 }
 
-// The hash knows grids by their names and sizes.
-bool has_newer_grid(const std::filesystem::path& picture, const Scene& scene) {
+// The hash knows files by their names and sizes.
+bool is_newer_than_inputs(const std::filesystem::path& output, const Scene& scene) {
+    FileUses uses;
+    uses.reads_files_of(scene);
+    const std::vector<std::filesystem::path> inputs = uses.inputs();
     std::error_code error;
-    const auto made = std::filesystem::last_write_time(picture, error);
-    return std::any_of(scene.volumes.begin(), scene.volumes.end(), [&](const Volume& volume) {
-        const auto* grid = std::get_if<GridFile>(&volume.shape);
-        return grid && !grid->memory && std::filesystem::last_write_time(grid->path, error) > made;
+    const auto made = std::filesystem::last_write_time(output, error);
+    return !error && std::all_of(inputs.begin(), inputs.end(), [&](const std::filesystem::path& input) {
+        return std::filesystem::last_write_time(input, error) < made && !error;
     });
 }
 
 } // namespace
 
-bool rendered_before(const RenderOptions& options, const Scene& scene) {
+std::optional<int> rendered_before(const RenderOptions& options, const Scene& scene) {
     std::error_code error;
     if (std::filesystem::exists(CheckpointFile(options).path(), error))
-        return false;
-    return std::all_of(options.outputs.begin(), options.outputs.end(), [&](const std::filesystem::path& output) {
-        return std::filesystem::is_regular_file(output, error) && !has_newer_grid(output, scene) &&
-               (file_ending(output) != ".exr" || is_this_render(output, options, scene));
-    });
+        return std::nullopt;
+    std::vector<std::filesystem::path> outputs = options.outputs;
+    if (options.report)
+        outputs.push_back(*options.report);
+    std::optional<int> code;
+    for (const std::filesystem::path& output : outputs) {
+        if (!std::filesystem::is_regular_file(output, error) || !is_newer_than_inputs(output, scene))
+            return std::nullopt;
+        if (file_ending(output) != ".exr")
+            continue;
+        code = code_of(output, options, scene);
+        if (!code)
+            return std::nullopt;
+    }
+    return code;
 }
 
 } // namespace vkvol

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <fmt/format.h>
 #include <map>
+#include <optional>
 
 #include "atomic_file.h"
 #include "error.h"
@@ -67,13 +68,14 @@ void announce(const RenderOptions& options, std::size_t index) {
 
 // What was rendered before is not rendered again.
 int render_frame(const RenderOptions& options, int frame, Workshop& workshop) {
-    if (options.resume && !options.dry_run &&
-        rendered_before(options, load_render_scene(options, workshop.fields()).scene)) {
-        if (!options.quiet)
-            tell(stdout, "frame {}: {} is there\n", frame, options.outputs.front().string());
-        return exit_done;
-    }
-    return render_picture(options, workshop);
+    std::optional<int> code;
+    if (options.resume && !options.dry_run)
+        code = rendered_before(options, load_render_scene(options, workshop.fields()).scene);
+    if (!code)
+        return render_picture(options, workshop);
+    if (!options.quiet)
+        tell(stdout, "frame {}: {} is there\n", frame, options.outputs.front().string());
+    return *code;
 }
 
 void print_end(const RenderOptions& options, const std::vector<int>& done, int code, double seconds) {

@@ -1,8 +1,12 @@
 // What renders of one device share: the device and what is compiled for it. One render at a time works there.
 #pragma once
 
+#include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <thread>
+#include <vector>
 
 #include "workshop.h"
 
@@ -11,10 +15,32 @@ namespace vkvol::python {
 struct DeviceShop {
     explicit DeviceShop(const DeviceOptions& options) : device(workshop.device(options)) {}
 
-    std::mutex mutex; // held by who uses the rest; never asked for with Python's lock held
     Workshop workshop{false};
     const Device& device;
+
+private:
+    friend class Turn;
+    friend void retire(const std::shared_ptr<DeviceShop>& shop, std::shared_ptr<void> things);
+    std::timed_mutex mutex_; // never asked for with Python's lock held
+    std::atomic<std::thread::id> owner_{};
+    std::vector<std::shared_ptr<void>> retired_; // the owner's
 };
+
+// Whoever works in the shop. A render calls what Python wants to be called, and that may come here again, on the same
+// thread: RenderError. `interrupted`, asked while others have their turn, ends the wait: RenderError as well.
+class Turn {
+public:
+    explicit Turn(DeviceShop& shop, const std::function<bool()>& interrupted = {});
+    ~Turn();
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+private:
+    DeviceShop& shop_;
+};
+
+// Destroys what has buffers of the device, in a turn, or at the end of the one that this thread has.
+void retire(const std::shared_ptr<DeviceShop>& shop, std::shared_ptr<void> things);
 
 // The same for the same options. Throws DeviceError.
 std::shared_ptr<DeviceShop> device_shop(const DeviceOptions& options);

@@ -141,18 +141,16 @@ RenderRequest request_of(const py::dict& options) {
     return request;
 }
 
-// What Python raises while a render goes on ends it, and is raised when that has come to rest.
+// What Python raises while a render goes on ends it, and is raised when that has come to rest. Python's objects are
+// kept only meanwhile: nothing that refers to this one can be found by Python's collector through it.
 class SessionObject {
 public:
-    SessionObject(const SceneSource& source, const py::dict& options, bool strict, py::object progress)
-        : progress_(std::move(progress)) {
+    SessionObject(const SceneSource& source, const py::dict& options, bool strict) {
         Callbacks callbacks;
-        if (!progress_.is_none())
-            callbacks.progress = [this](double samples, std::optional<double> noise) { tell(samples, noise); };
+        callbacks.progress = [this](double samples, std::optional<double> noise) { tell(samples, noise); };
         callbacks.interrupted = [this] { return ask(); };
         const RenderRequest request = request_of(options);
-        const py::gil_scoped_release release;
-        session_ = std::make_unique<PythonSession>(source, request, strict, std::move(callbacks));
+        run([&] { session_ = std::make_unique<PythonSession>(source, request, strict, std::move(callbacks)); });
     }
     ~SessionObject() {
         const py::gil_scoped_release release;
@@ -161,28 +159,48 @@ public:
     SessionObject(const SessionObject&) = delete;
     SessionObject& operator=(const SessionObject&) = delete;
 
-    std::uint32_t render(std::optional<std::uint32_t> samples) {
-        raised_.reset();
-        {
-            const py::gil_scoped_release release;
-            session_->render(samples);
+    std::uint32_t render(std::optional<std::uint32_t> samples, py::object progress) {
+        if (!progress_.is_none()) // by what this calls
+            throw RenderError("this session is rendering");
+        progress_ = std::move(progress);
+        try {
+            run([&] { session_->render(samples); });
+        } catch (...) {
+            progress_ = py::none();
+            throw;
         }
-        if (raised_)
-            throw py::error_already_set(*raised_);
+        progress_ = py::none();
         return session_->samples();
     }
 
     PythonPicture picture() {
-        const py::gil_scoped_release release;
-        return session_->picture();
+        PythonPicture picture;
+        run([&] { picture = session_->picture(); });
+        return picture;
     }
 
     const PythonSession& session() const { return *session_; }
 
 private:
+    template <class Work> void run(const Work& work) {
+        std::exception_ptr failure;
+        {
+            const py::gil_scoped_release release;
+            try {
+                work();
+            } catch (...) {
+                failure = std::current_exception();
+            }
+        }
+        if (const auto raised = std::move(raised_)) // which is why
+            throw py::error_already_set(*raised);
+        if (failure)
+            std::rethrow_exception(failure);
+    }
+
     void tell(double samples, std::optional<double> noise) {
         const py::gil_scoped_acquire acquire;
-        if (raised_)
+        if (raised_ || progress_.is_none())
             return;
         try {
             progress_(samples, noise);
@@ -198,7 +216,7 @@ private:
         return raised_ != nullptr;
     }
 
-    py::object progress_;
+    py::object progress_ = py::none();
     std::unique_ptr<py::error_already_set> raised_;
     std::unique_ptr<PythonSession> session_;
 };
@@ -242,9 +260,9 @@ void add_classes(py::module_& module) {
             },
             py::arg("file"), py::arg("tonemap"), py::arg("exposure"));
     py::class_<SessionObject>(module, "Session")
-        .def(py::init<const SceneSource&, const py::dict&, bool, py::object>(), py::arg("scene"), py::arg("options"),
-             py::arg("strict"), py::arg("progress"))
-        .def("render", &SessionObject::render, py::arg("samples"))
+        .def(py::init<const SceneSource&, const py::dict&, bool>(), py::arg("scene"), py::arg("options"),
+             py::arg("strict"))
+        .def("render", &SessionObject::render, py::arg("samples"), py::arg("progress"))
         .def("picture", &SessionObject::picture)
         .def_property_readonly("samples", [](const SessionObject& s) { return s.session().samples(); })
         .def_property_readonly("assumed", [](const SessionObject& s) { return s.session().assumed(); })

@@ -13,47 +13,51 @@ namespace vkvol::python {
 PythonSession::PythonSession(const SceneSource& source, const RenderRequest& request, bool strict, Callbacks callbacks)
     : request_(request), shop_(device_shop(request.device)) {
     request_.scene = source.file;
-    const std::lock_guard lock(shop_->mutex);
+    const Turn turn(*shop_, callbacks.interrupted);
     ReadScene read = read_scene(source, request_, strict, shop_->workshop.fields());
-    scene_ = std::move(read.scene);
     assumed_ = std::move(read.assumed);
-    job_.workshop = &shop_->workshop;
-    job_.crop = resolve_crop(request_.crop, scene_.picture);
-    job_.seed = request_.seed;
-    job_.sample_offset = request_.sample_offset;
-    job_.time_limit = request_.time_limit;
-    job_.noise_goal = request_.noise_goal;
-    job_.disk_cache = !request_.no_cache;
-    job_.plan = request_.plan;
-    job_.progress = std::move(callbacks.progress);
-    job_.interrupted = std::move(callbacks.interrupted);
-    session_ = std::make_unique<Session>(shop_->device, scene_, job_);
+    work_->scene = std::move(read.scene);
+    RenderJob& job = work_->job;
+    job.workshop = &shop_->workshop;
+    job.crop = resolve_crop(request_.crop, work_->scene.picture);
+    job.seed = request_.seed;
+    job.sample_offset = request_.sample_offset;
+    job.time_limit = request_.time_limit;
+    job.noise_goal = request_.noise_goal;
+    job.disk_cache = !request_.no_cache;
+    job.plan = request_.plan;
+    job.progress = std::move(callbacks.progress);
+    job.interrupted = std::move(callbacks.interrupted);
+    work_->session = std::make_unique<Session>(shop_->device, work_->scene, job);
+    warnings_ = work_->scene.warnings;
+    const std::vector<std::string>& found = work_->session->warnings();
+    warnings_.insert(warnings_.end(), found.begin(), found.end());
 }
 
 PythonSession::~PythonSession() {
-    const std::lock_guard lock(shop_->mutex);
-    session_.reset();
+    retire(shop_, std::move(work_));
 }
 
 void PythonSession::render(std::optional<std::uint32_t> samples) {
-    const std::lock_guard lock(shop_->mutex);
-    session_->render(samples.value_or(scene_.settings.spp));
+    const Turn turn(*shop_, work_->job.interrupted);
+    work_->session->render(samples.value_or(work_->scene.settings.spp));
     if (const auto& objections = shop_->device.validation_messages(); !objections.empty())
         throw RenderError(fmt::format("the validation layer has {} objections, the first: {}", objections.size(),
                                       objections.front()));
 }
 
 PythonPicture PythonSession::picture() {
-    const std::lock_guard lock(shop_->mutex);
-    const RenderResult& result = session_->result();
+    const Turn turn(*shop_, work_->job.interrupted);
+    const Scene& scene = work_->scene;
+    const RenderResult& result = work_->session->result();
     const Film& film = result.film;
     if (std::none_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n > 0; }))
         throw RenderError("there is no picture: nothing was rendered yet");
-    PythonPicture picture{film, make_metadata(request_, scene_, shop_->device, result), {}};
+    PythonPicture picture{film, make_metadata(request_, scene, shop_->device, result), {}};
     Shown shown;
     shown.tone = choose_tone(request_.tone, film, picture.metadata);
-    shown.explanation = explain(scene_, result, shown.tone);
-    picture.report = make_report(request_, scene_, shop_->device, result, shown, 0.0);
+    shown.explanation = explain(scene, result, shown.tone);
+    picture.report = make_report(request_, scene, shop_->device, result, shown, 0.0);
     return picture;
 }
 

@@ -27,17 +27,22 @@ public:
     // Until every pixel has `samples` in all; none: as many as were asked for with the session.
     void render(std::optional<std::uint32_t> samples);
     PythonPicture picture();
-    std::uint32_t samples() const { return session_->samples(); }
-    const std::vector<std::string>& warnings() const { return scene_.warnings; }
+    std::uint32_t samples() const { return work_->session->samples(); }
+    const std::vector<std::string>& warnings() const { return warnings_; }
     const std::string& assumed() const { return assumed_; }
 
 private:
+    struct Work { // what ends in a turn of its device
+        Scene scene;
+        RenderJob job;
+        std::unique_ptr<Session> session;
+    };
+
     RenderRequest request_;
     std::shared_ptr<DeviceShop> shop_;
     std::string assumed_;
-    Scene scene_;
-    RenderJob job_;
-    std::unique_ptr<Session> session_;
+    std::vector<std::string> warnings_;
+    std::shared_ptr<Work> work_ = std::make_shared<Work>();
 };
 
 } // namespace vkvol::python

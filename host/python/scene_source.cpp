@@ -11,12 +11,16 @@ namespace vkvol::python {
 
 namespace {
 
-FileScene scene_for_grids(const SceneSource& source, const std::filesystem::path& beside) {
+FileScene scene_for_grids(const SceneSource& source, const std::filesystem::path& beside,
+                          const RenderRequest& request) {
     if (!source.defines.empty())
         throw InputError(
             fmt::format("{}: defines fill in the $keys of a scene, and a grid file has none", source.file.string()));
     FileSceneOptions options;
     options.picture = file_picture();
+    resize_picture(options.picture, request.width, request.height);
+    options.spp = request.spp;
+    options.integrator = request.integrator.value_or("");
     options.up = source.up;
     return make_file_scene(source.file, beside, options);
 }
@@ -29,7 +33,7 @@ ReadScene read_scene(const SceneSource& source, const RenderRequest& request, bo
     ReadScene read;
     if (is_made) {
         const std::filesystem::path folder = source.file.parent_path();
-        const FileScene made = scene_for_grids(source, folder);
+        const FileScene made = scene_for_grids(source, folder, request);
         read.scene = parse_scene(made.xml, folder / "scene.xml", {}, overrides);
         read.scene.warnings.insert(read.scene.warnings.begin(), made.warnings.begin(), made.warnings.end());
         read.assumed = made.assumed;

@@ -12,9 +12,10 @@ namespace vkvol {
 
 namespace {
 
-constexpr double noise_seconds = 3.0;    // between two figures of noise
-constexpr double patience = 5.0;         // seconds, for paths that will not end
-constexpr std::uint32_t first_look = 16; // at the noise to be reached; samples per pixel
+constexpr double noise_seconds = 3.0;        // between two figures of noise
+constexpr double patience = 5.0;             // seconds, for paths that will not end
+constexpr std::uint32_t first_look = 16;     // at the noise to be reached; samples per pixel
+constexpr std::uint32_t surely_black = 1024; // likewise: a picture without any light by then will have none
 
 void add_counts(RenderCounts& total, const shared::Counters& c) {
     total.paths += c.paths;
@@ -36,6 +37,10 @@ void add_counts(RenderCounts& total, const shared::Counters& c) {
 
 // Runs batches of samples over all bands until the samples, the time or the user's patience is used up.
 void Session::render(std::uint32_t samples) {
+    if (gave_up_)
+        throw RenderError(
+            "paths of this render did not end and were abandoned; what they are part of is missing, and it "
+            "cannot be gone on with");
     wanted_ = samples;
     if (next_ == 0) { // nothing was rendered yet
         if (job_.resume)
@@ -147,7 +152,7 @@ bool Session::is_good_enough() {
     const std::optional<double> noise = relative_noise(result_.film);
     if (job_.progress)
         job_.progress(done_, noise);
-    result_.reached_goal = noise && *noise <= *job_.noise_goal;
+    result_.reached_goal = noise ? *noise <= *job_.noise_goal : done_ >= surely_black;
     return result_.reached_goal;
 }
 

@@ -84,6 +84,9 @@ public:
     void render(std::uint32_t samples);
     std::uint32_t samples() const { return done_; } // per pixel, finished for every pixel
 
+    // What the scene asks for and does not get.
+    const std::vector<std::string>& warnings() const { return result_.warnings; }
+
     // With the film as it is now. May be moved from by who renders no more.
     RenderResult& result();
 

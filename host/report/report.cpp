@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 
 #include "camera_view.h"
+#include "requested_scene.h"
 #include "scene_hash.h"
 #include "version.h"
 
@@ -190,6 +191,7 @@ Metadata make_metadata(const RenderRequest& request, const Scene& scene, const D
                       {"vkvol/seed", std::to_string(request.seed)},
                       {"vkvol/sampleOffset", static_cast<int>(request.sample_offset)},
                       {"vkvol/interrupted", result.interrupted ? 1 : 0},
+                      {"vkvol/asked", asked_text(request, scene)},
                       {"vkvol/device", device.info().name},
                       {"vkvol/driver", device.info().driver},
                       {"vkvol/capsHit", result.counts.any_cap() ? 1 : 0},

@@ -34,6 +34,14 @@ std::string apply_request(const RenderRequest& request, bool has_view, Scene& sc
     return given;
 }
 
+std::string asked_text(const RenderRequest& request, const Scene& scene) {
+    const Crop crop = resolve_crop(request.crop, scene.picture);
+    return fmt::format("{} samples from {} of seed {}, {} seconds, noise {}, window {},{},{},{}, layers {}{}",
+                       scene.settings.spp, request.sample_offset, request.seed, request.time_limit.value_or(0.0),
+                       request.noise_goal.value_or(0.0), crop.x0, crop.x1, crop.y0, crop.y1, scene.layers,
+                       scene.holds_out ? ", alpha" : "");
+}
+
 Crop resolve_crop(const std::optional<CropRequest>& request, const Picture& picture) {
     if (!request)
         return {0, picture.width, 0, picture.height};

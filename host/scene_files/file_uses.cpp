@@ -50,6 +50,13 @@ void FileUses::reads(const std::string& what, const path& file) {
         inputs_.push_back({what, file, ""});
 }
 
+std::vector<std::filesystem::path> FileUses::inputs() const {
+    std::vector<std::filesystem::path> files;
+    for (const Use& input : inputs_)
+        files.push_back(input.file);
+    return files;
+}
+
 void FileUses::reads_files_of(const Scene& scene) {
     if (!scene.camera.points_file.empty())
         reads("the scene's list of points", scene.camera.points_file);

@@ -18,6 +18,8 @@ public:
     // `option` is the one that gives the file its name: "-o".
     void writes(const std::string& what, const std::filesystem::path& file, const std::string& option);
 
+    std::vector<std::filesystem::path> inputs() const;
+
     // Throws InputError that names both uses and the remedy. Other spellings and links are the same file; devices and
     // pipes may be used more than once.
     void check() const;

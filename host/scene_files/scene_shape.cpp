@@ -125,8 +125,9 @@ std::filesystem::path SceneReader::file_path(const XmlElement& element, const st
 GridFile SceneReader::grid_file(const XmlElement& element) const {
     GridFile file;
     file.path = file_path(element, "cloud.nvdb");
-    if (const auto found = overrides_.grids.find(file.path.filename().string()); found != overrides_.grids.end())
-        file.memory = found->second;
+    for (const std::string& name : {element.text(), file.path.filename().string()})
+        if (const auto found = overrides_.grids.find(name); found != overrides_.grids.end() && !file.memory)
+            file.memory = found->second;
     file.grid = element.attribute("grid", file.grid);
     if (file.grid.empty())
         element.fail_attribute("grid", "<densityField> grid: is empty; expected the name of a grid in the file");

@@ -1,5 +1,6 @@
 """The Python module: scenes, grids, pictures, and what goes wrong."""
 
+import gc
 import json
 import os
 import pathlib
@@ -10,6 +11,7 @@ import threading
 import time
 import unittest
 import warnings
+import weakref
 
 import numpy as np
 
@@ -181,12 +183,12 @@ class Scenes(unittest.TestCase):
         self.assertTrue(issubclass(vkvol.RenderError, RuntimeError) and issubclass(vkvol.DeviceError, vkvol.Error))
 
     def test_what_is_not_honoured_is_a_warning(self):
-        scene = vkvol.Scene.from_xml("<options><sphere/><camera z='4'/><noise octaves='1'/><integrator>ratioTracking</integrator>"
-                                     "<multiThreadedChunkSize>4</multiThreadedChunkSize></options>")
+        scene = vkvol.Scene.from_xml("<options><sphere/><camera z='4'/><light x='1' r='1'/></options>")
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            session = vkvol.Session(scene, width=4, height=4)
-        self.assertEqual([str(w.message) for w in caught], session._session.warnings)
+            vkvol.Session(scene, width=4, height=4, integrator="ratioTracking:mis=power")
+        self.assertEqual([w.category for w in caught], [vkvol.SceneWarning])
+        self.assertIn("mis is without effect", str(caught[0].message))
 
 
 class Running(unittest.TestCase):
@@ -203,6 +205,46 @@ class Running(unittest.TestCase):
         stopped = vkvol.Session(scene, spp=64, progress=stop)
         with self.assertRaisesRegex(KeyError, "enough"):
             stopped.render()
+
+    def test_what_a_render_calls_cannot_render(self):
+        scene = vkvol.Scene.from_dict(smoke(placed()))
+        other = vkvol.Session(scene)
+        for work in (other.render, other.picture, lambda: vkvol.Session(scene)):
+            with self.assertRaisesRegex(vkvol.RenderError, "rendering on this thread"):
+                vkvol.Session(scene, progress=lambda samples, noise, work=work: work()).render()
+
+        class Old:  # a cycle, found by the collector amid a render
+            pass
+
+        old = Old()
+        old.me, old.session = old, vkvol.Session(scene)
+        gone = weakref.ref(old)
+        del old
+        vkvol.Session(scene, progress=lambda samples, noise: gc.collect()).render()
+        self.assertIsNone(gone())
+        other.render()
+
+    def test_sessions_go_when_nobody_has_them(self):
+        scene = vkvol.Scene.from_dict(smoke(placed()))
+
+        class Owner:
+            def __init__(self):
+                self.session = vkvol.Session(scene, progress=self.progress)
+
+            def progress(self, samples, noise):
+                raise KeyError("enough")
+
+        owner = Owner()
+        with self.assertRaises(KeyError):
+            owner.session.render()
+        gone = weakref.ref(owner.session)
+        del owner
+        gc.collect()
+        self.assertIsNone(gone())
+
+    def test_black_is_good_enough(self):
+        scene = vkvol.Scene.from_xml("<options><sphere/><camera z='4'/></options>")
+        self.assertEqual(int(vkvol.render(scene, width=4, height=4, noise=0.01).samples.max()), 1024)
 
     def test_interrupted_and_gone_on_with(self):
         scene = vkvol.Scene.from_dict(smoke(placed()))

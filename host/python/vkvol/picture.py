@@ -33,7 +33,7 @@ class Picture:
 
     @cached_property
     def samples(self) -> npt.NDArray[np.uint32]:
-        """Of each pixel: (height, width). They differ only if the render was interrupted."""
+        """Of each pixel: (height, width). They differ only if Ctrl-C or `time` ended the render."""
         return self._picture.samples
 
     @cached_property

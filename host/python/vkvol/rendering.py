@@ -40,7 +40,7 @@ class Session:
     validate: under the Vulkan validation layer, whose objections are errors.
     strict: what of a pbrt scene cannot be rendered is an error; so is a picture for which something was cut short.
     progress: called now and then, progress(samples, noise), on the thread that renders; noise may be None. What it
-        raises ends the render.
+        raises ends the render. It cannot use sessions of the device that renders: RenderError.
 
     Sessions of one device take turns, in whatever threads they are. Python runs on while one renders, and Ctrl-C ends it;
     a session goes on after that as if nothing had been. (After os.fork() a session, and its device, are the parent's.)
@@ -76,14 +76,16 @@ class Session:
         if grid is not None:
             options["grid"] = Path(grid)
         self._strict = strict
-        self._session = _vkvol.Session(source._source, options, strict, progress)
+        self._progress = progress
+        self._session = _vkvol.Session(source._source, options, strict)
         for warning in self._session.warnings:
             warnings.warn(warning, SceneWarning, stacklevel=2)
 
     def render(self, samples: Optional[int] = None) -> int:
         """Renders until every pixel has as many samples in all, or time or noise end it. None: as many as the scene or
         `spp` say; without `spp` time and noise alone decide, where they are there. Returns how many every pixel has."""
-        return self._session.render(None if samples is None else _whole("samples", samples, 1, 2**31 - 1))
+        return self._session.render(None if samples is None else _whole("samples", samples, 1, 2**31 - 1),
+                                    self._progress)
 
     @property
     def samples(self) -> int:
