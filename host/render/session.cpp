@@ -140,7 +140,7 @@ void Session::report_noise() {
 }
 
 // Where noise is looked at: at powers of two of the samples. The fewer looks, the less often one of them ends a render
-// that by chance looks better than it is, and which it is does not depend on the machine.
+// that by chance looks better than it is, which is a bias, and which it is does not depend on the machine.
 std::uint32_t Session::until_next_look() const {
     return job_.noise_goal ? std::bit_ceil(std::max(done_ + 1, first_look)) - done_ : most_batch_;
 }
