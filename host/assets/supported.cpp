@@ -9,7 +9,25 @@
 
 namespace vkvol {
 
+namespace {
+
+void check_periodic(const Scene& scene) {
+    const auto fail = [](const char* message) { throw InputError(std::string("<periodic>: ") + message); };
+    if (std::any_of(scene.lights.begin(), scene.lights.end(), has_place))
+        fail("a light that has a place would stand in every domain that there is; take directional lights, suns and "
+             "skies, or surfaces that shine");
+    for (const Surface& surface : scene.surfaces)
+        if (const auto* plane = std::get_if<PlaneSurface>(&surface.shape))
+            for (int axis = 0; axis < 3; ++axis)
+                if (scene.periodic->size()[axis] > 0.0 && plane->normal[axis] != 0.0)
+                    fail("a plane has to lie along all axes that repeat; turn it, or take a rectangle");
+}
+
+} // namespace
+
 void check_supported(const Scene& scene) {
+    if (scene.periodic)
+        check_periodic(scene);
     const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
     if (is_superposition(scene) && any_medium(scene, is_mesh))
         throw InputError(

@@ -19,6 +19,7 @@
 #include "info.h"
 #include "integrators_command.h"
 #include "interrupt.h"
+#include "measure.h"
 #include "merge.h"
 #include "options.h"
 #include "printable.h"
@@ -64,6 +65,8 @@ int run(const vkvol::Options& options) {
         return vkvol::run_develop(options.develop);
     case vkvol::Command::convert:
         return vkvol::run_convert(options.convert);
+    case vkvol::Command::measure:
+        return vkvol::run_measure(options.measure);
     case vkvol::Command::bench:
         return vkvol::run_bench(options.bench);
     case vkvol::Command::print:

@@ -13,6 +13,21 @@ namespace vkvol {
 
 namespace {
 
+std::uint32_t parse_plan_number(const std::string& text, const char* key, std::uint32_t least, std::uint32_t most) {
+    std::uint32_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size() || number < least || number > most)
+        fail_command_line(
+            fmt::format("--schedule: {}={}: expected a whole number from {} to {}", key, text, least, most));
+    return number;
+}
+
+} // namespace
+
+void fail_command_line(const std::string& message) {
+    throw InputError("command line: " + one_line(message));
+}
+
 double parse_number(const std::string& text, const std::string& what) {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -28,21 +43,6 @@ std::vector<std::string> split(const std::string& text, char separator) {
         parts.push_back(text.substr(start, end - start));
     parts.push_back(text.substr(start));
     return parts;
-}
-
-std::uint32_t parse_plan_number(const std::string& text, const char* key, std::uint32_t least, std::uint32_t most) {
-    std::uint32_t number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size() || number < least || number > most)
-        fail_command_line(
-            fmt::format("--schedule: {}={}: expected a whole number from {} to {}", key, text, least, most));
-    return number;
-}
-
-} // namespace
-
-void fail_command_line(const std::string& message) {
-    throw InputError("command line: " + one_line(message));
 }
 
 CropRequest parse_crop(const std::string& text) {

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "options.h"
 
@@ -10,6 +11,11 @@ namespace vkvol {
 
 // Throws InputError, "command line: " and the message.
 [[noreturn]] void fail_command_line(const std::string& message);
+
+// Finite. `what`: for the message.
+double parse_number(const std::string& text, const std::string& what);
+
+std::vector<std::string> split(const std::string& text, char separator);
 
 // "x0,x1,y0,y1": fractions if all are at most 1 and a dot is among them, else pixels.
 CropRequest parse_crop(const std::string& text);

@@ -8,6 +8,7 @@
 #include "error.h"
 #include "frames.h"
 #include "integrators.h"
+#include "measure_options.h"
 #include "nearest_name.h"
 #include "one_line.h"
 #include "option_groups.h"
@@ -395,7 +396,8 @@ Options parse_options(int argc, const char* const* argv) {
         {"info", {Command::info, parse_info}},          {"integrators", {Command::integrators, parse_integrators}},
         {"compare", {Command::compare, parse_compare}}, {"merge", {Command::merge, parse_merge}},
         {"develop", {Command::develop, parse_develop}}, {"convert", {Command::convert, parse_convert}},
-        {"bench", {Command::bench, parse_bench}},       {"demo", {Command::render, parse_demo}}};
+        {"bench", {Command::bench, parse_bench}},       {"demo", {Command::render, parse_demo}},
+        {"measure", {Command::measure, parse_measure}}};
     Options options;
     Parser parse = parse_render;
     if (!arguments.empty()) {

@@ -14,7 +14,7 @@
 
 namespace vkvol {
 
-enum class Command { render, devices, info, integrators, compare, merge, develop, convert, bench, print };
+enum class Command { render, devices, info, integrators, compare, merge, develop, convert, measure, bench, print };
 enum class ProgressStyle { automatic, json, none };
 
 struct RenderOptions : RenderRequest {
@@ -58,6 +58,20 @@ struct ConvertOptions {
     bool quiet = false;
 };
 
+// Values that a $key of the scene has one after the other.
+struct Sweep {
+    std::string key;
+    std::vector<std::string> values;
+};
+
+struct MeasureOptions {
+    RenderRequest request; // whose defines are among the sweeps
+    std::vector<Sweep> sweeps;
+    std::optional<std::filesystem::path> output; // .csv; else the table is printed
+    bool means = false;                          // of pictures, in place of all pixels
+    bool quiet = false;
+};
+
 struct Options {
     Command command = Command::render;
     RenderOptions render;
@@ -65,6 +79,7 @@ struct Options {
     MergeOptions merge;
     DevelopOptions develop;
     ConvertOptions convert;
+    MeasureOptions measure;
     BenchRequest bench;
     std::filesystem::path info_file;
     bool info_json = false;

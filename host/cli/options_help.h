@@ -14,6 +14,7 @@ inline constexpr const char* render_footer = R"(Other commands (each has its own
   vkvol merge A.exr B.exr -o OUT.exr   one image of all their samples
   vkvol develop A.exr -o B.png   a PNG of another exposure or tone curve, without rendering
   vkvol convert S.pbrt -o S.xml  a scene of pbrt-v4 as a scene file to go on from
+  vkvol measure SCENE.xml     its readings with their standard errors as a table, of many values of $keys
   vkvol bench SCENE.xml       error against time of the integrators that suit a scene
   vkvol demo                  a cloud, to see that all is well: cumulus.exr and cumulus.png here
 
@@ -66,6 +67,19 @@ inline constexpr const char* convert_description =
 inline constexpr const char* convert_footer =
     R"(vkvol SCENE.pbrt renders one without writing it. Names of files are written as the new scene finds
 them; grids, meshes and images stay where they are.)";
+
+inline constexpr const char* measure_description = "Renders a scene and prints its pixels, or what its sensors of flux "
+                                                   "read, with standard errors; for each of many values of its "
+                                                   "$keys.";
+
+inline constexpr const char* measure_footer =
+    R"(Combinations of values follow one another, the last key fastest, with the same random numbers: what
+they differ by has less noise than they have. Standard errors are of each row by itself.
+
+Examples:
+  vkvol measure slab.xml                                   one row for each pixel, or point
+  vkvol measure slab.xml -D sun=0.1,0.5,1 --noise 0.1% -o fluxes.csv
+  vkvol measure slab.xml -D depth=0..10x21 --mean          a row for each depth)";
 
 inline constexpr const char* develop_footer =
     R"(Without options the picture has the same bytes as the one that the render wrote, or would have. An image

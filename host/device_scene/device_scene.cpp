@@ -35,7 +35,7 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
         specialization_[SPEC_UNBOUNDED] != 0 || specialization_[SPEC_FIELD] == FIELD_LAYERS ||
         specialization_[SPEC_TEMPERATURE_TYPE] == GRID_COLOR || specialization_[SPEC_SENSOR] != SENSOR_PINHOLE ||
         specialization_[SPEC_PIXEL_FILTER] != 0 || specialization_[SPEC_LAYERS] != 0 ||
-        specialization_[SPEC_PATHS] != PATHS_CAMERA)
+        specialization_[SPEC_PATHS] != PATHS_CAMERA || scene.periodic)
         form_ |= form_full;
     if (!scene.surfaces.empty())
         make_surfaces(scene, assets);

@@ -56,6 +56,8 @@ std::string kernel_text(const Specialization& s, const Assets& assets, bool chro
                             choice(2, s[SPEC_TRANSMITTANCE]));
     if (s[SPEC_DISTANCE] == DISTANCE_MIXED)
         text += ", and looks from along flights";
+    if (s[SPEC_PERIODIC] != 0)
+        text += ", in a domain that repeats";
     if (s[SPEC_ALBEDO] == ALBEDO_GRID)
         text += ", albedo by a grid";
     text += s[SPEC_EMISSION] == EACH ? ", emission" : emissions[s[SPEC_EMISSION]];

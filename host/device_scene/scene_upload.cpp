@@ -16,6 +16,7 @@
 #include "light_cache.h"
 #include "light_table.h"
 #include "noise.h"
+#include "period.h"
 #include "phase_params.h"
 #include "pixel_filter.h"
 #include "placement.h"
@@ -276,7 +277,7 @@ double ray_start(const Scene& scene, glm::dvec3 forward, glm::dvec3 center, doub
 
 // `origin`: of render space, the middle of the medium. `radius`: of a ball about it that holds the medium.
 shared::SensorParams make_pinhole(const Scene& scene, const CameraRays& rays, glm::dvec3 origin, double radius) {
-    const double start = ray_start(scene, rays.forward, origin, radius);
+    const double start = scene.periodic ? 0.0 : ray_start(scene, rays.forward, origin, radius);
     shared::SensorParams params{};
     params.position = rays.position - origin + start * rays.corner;
     params.start = static_cast<float>(start);
@@ -304,7 +305,7 @@ shared::SensorParams make_sensor(const Scene& scene, glm::dvec3 origin, double r
     shared::SensorParams params{};
     params.position = rays.origin(0.0, 0.0) - origin;
     if (rays.projection == Projection::orthographic) {
-        const double start = ray_start(scene, rays.forward, origin, radius);
+        const double start = scene.periodic ? 0.0 : ray_start(scene, rays.forward, origin, radius);
         params.position += start * rays.forward;
         params.start = static_cast<float>(start);
     }
@@ -432,7 +433,10 @@ Specialization specialize(const Scene& scene, Media media, const Method& method,
     constants[SPEC_PATHS] = method.paths;
     if (method.paths != PATHS_CAMERA) // whose looks go toward the sensor
         constants[SPEC_LIGHTS] |= LIGHTS_TABLE;
-    if (!scene.surfaces.empty()) { // segments then have an end
+    constants[SPEC_PERIODIC] = scene.periodic ? 1 : 0;
+    if (scene.periodic) // segments then have an end,
+        constants[SPEC_LIGHTS] |= LIGHTS_TABLE;
+    if (!scene.surfaces.empty()) { // and here
         constants[SPEC_LIGHTS] |= LIGHTS_TABLE;
         constants[SPEC_MATERIALS] = material_bits(scene.surfaces);
     }
@@ -550,6 +554,7 @@ shared::FrameParams make_frame(const Scene& scene, Media media, const Method& me
     const std::vector<double> quantiles = filter_quantiles(scene.settings, FILTER_QUANTILES);
     std::copy(quantiles.begin(), quantiles.end(), frame.filter_quantiles);
     frame.march = make_march(scene, media, method, diagonal);
+    frame.period = make_period(scene, media, origin);
     frame.roulette_threshold = static_cast<float>(scene.settings.roulette_threshold);
     // Beyond a million scatterings a path of any albedo that scenes have is worth nothing; the bound is counted.
     frame.max_depth = scene.settings.max_depth.value_or(1'000'000);

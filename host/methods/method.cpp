@@ -126,6 +126,8 @@ void Resolution::check_particles() const {
         refuse("particles are seen by cameras, and this sensor reads flux");
     if (scene_.layers != 0)
         refuse("layers are filled by paths from the camera alone");
+    if (scene_.periodic)
+        refuse("particles of a domain that repeats would come from all of them");
     if (method_.paths == PATHS_BOTH) // paths from the camera find what particles do not
         return;
     if ((has_no_end() || any_surface(is_plane)) && from_afar)
@@ -226,8 +228,9 @@ void Resolution::choose_nee() {
         nee = NEE_COLLISIONS;
     } else if (nee == NEE_CACHED && (is_closed() || !can_cache_light(scene_))) {
         if (choices_.nee)
-            warn("a cache of transmittances is for grids, and for noise in spheres and boxes, without surfaces; shadow "
-                 "rays start at every collision");
+            warn("a cache of transmittances is for grids, and for noise in spheres and boxes, without surfaces and "
+                 "where "
+                 "nothing repeats; shadow rays start at every collision");
         nee = NEE_COLLISIONS;
     }
 }
@@ -426,8 +429,8 @@ int density_kind(const Scene& scene) {
 
 bool can_cache_light(const Scene& scene) {
     const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
-    return !scene.lights.empty() && scene.surfaces.empty() && density_kind(scene) != FIELD_CONSTANT &&
-           !any_medium(scene, is_mesh) && !any_medium(scene, is_everywhere);
+    return !scene.lights.empty() && scene.surfaces.empty() && !scene.periodic &&
+           density_kind(scene) != FIELD_CONSTANT && !any_medium(scene, is_mesh) && !any_medium(scene, is_everywhere);
 }
 
 bool has_chromatic_extinction(const Scene& scene) {

@@ -323,6 +323,10 @@ std::string scene_hash(const Scene& authored) {
         writer.add("looks", method.nee != NEE_NONE ? 1 : 0);
     if (method.biases & bias_shadow_steps)
         writer.add("mis", method.mis);
+    if (scene.periodic) {
+        writer.add("periodic", scene.periodic->low);
+        writer.add("size", scene.periodic->size());
+    }
     writer.add("background", scene.background);
     if (scene.holds_out)
         writer.add("holdout", 1);

@@ -41,6 +41,8 @@ std::vector<Light> lamps_of(const Surface& surface, std::size_t index) {
 } // namespace
 
 bool has_lamps_of_surfaces(const Scene& scene) {
+    if (scene.periodic) // then every domain has them, and looks would find those of one
+        return false;
     const auto shines = [](const Surface& surface) { return !lamps_of(surface, 0).empty(); };
     const auto lamps = std::size_t(std::count_if(scene.surfaces.begin(), scene.surfaces.end(), shines));
     return lamps > 0 && lamps <= most_lamps;

@@ -124,7 +124,8 @@ void Wavefront::make_passes(const Specialization& specialization, unsigned form,
         return std::make_unique<ComputePass>(device_, *bindings_, spirv, constants, cache);
     };
     const bool is_known = specialization[SPEC_TRANSMITTANCE] == TRANSMITTANCE_ANALYTIC &&
-                          specialization[SPEC_SHAPE] != SHAPE_MESH && !(form & form_surfaces); // LOOKS of segment.glsl
+                          specialization[SPEC_SHAPE] != SHAPE_MESH && specialization[SPEC_PERIODIC] == 0 &&
+                          !(form & form_surfaces); // LOOKS of segment.glsl
     const bool has_shadow_rays = specialization[SPEC_NEE] != NEE_NONE && !is_known;
     const std::vector<PassRow> rows = passes_of(plan_, form, has_shadow_rays);
     std::vector<std::future<std::unique_ptr<ComputePass>>> compiling;

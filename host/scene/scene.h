@@ -293,6 +293,14 @@ inline bool has_plain_pixels(const RenderSettings& settings) {
     return settings.pixel_filter == PixelFilter::box && settings.pixel_filter_radius == 0.5;
 }
 
+// A domain that repeats without end along some axes of the world. What is outside it is cut off.
+struct Periodic {
+    glm::dvec3 low{0.0};
+    glm::dvec3 high{0.0}; // world units; as `low` along axes that do not repeat
+
+    glm::dvec3 size() const { return high - low; }
+};
+
 // What the mean of the picture must be, for scenes that are tests: derived in the scene file, without effect on the
 // picture.
 struct Expected {
@@ -314,6 +322,7 @@ struct Scene {
     std::vector<Volume> volumes; // the media
     std::vector<Light> lights;
     std::vector<Surface> surfaces;
+    std::optional<Periodic> periodic;
     Rgb background{0.0};               // constant radiance from every direction
     std::string background_group = {}; // as of lights
     unsigned layers = 0;               // Aovs, besides radiance

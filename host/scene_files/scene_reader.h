@@ -43,6 +43,7 @@ private:
     void check_method(const Scene& scene) const;
     void warn_about_light(const Scene& scene, const Method& method) const;
     void warn_about_steps(const Scene& scene, const Method& method) const;
+    std::optional<Periodic> periodic() const;
     Camera sensor() const;
     Camera camera() const;
     Camera irradiance(const XmlElement& element) const;

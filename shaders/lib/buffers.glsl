@@ -55,6 +55,7 @@ layout(constant_id = SPEC_SENSOR) const int SENSOR = SENSOR_PINHOLE;
 layout(constant_id = SPEC_PIXEL_FILTER) const int PIXEL_FILTER = 0;
 layout(constant_id = SPEC_LAYERS) const int LAYERS = 0;
 layout(constant_id = SPEC_PATHS) const int PATHS = PATHS_CAMERA;
+layout(constant_id = SPEC_PERIODIC) const int PERIODIC = 0;
 #else
 const int PHASE = PHASE_HENYEY_GREENSTEIN;
 const int LIGHTS = LIGHTS_SUN;
@@ -69,6 +70,7 @@ const int SENSOR = SENSOR_PINHOLE;
 const int PIXEL_FILTER = 0;
 const int LAYERS = 0;
 const int PATHS = PATHS_CAMERA;
+const int PERIODIC = 0;
 #endif
 layout(constant_id = SPEC_MIS) const int MIS = MIS_BALANCE;
 #ifdef SURFACES
@@ -103,6 +105,7 @@ const bool SEES_LAMPS = (LIGHTS & LIGHTS_LAMPS) != 0;
 const bool HAS_TREE = (LIGHTS & LIGHTS_TREE) != 0;
 const bool HAS_LAYERS = LAYERS != 0;
 const bool HAS_PARTICLES = PATHS != PATHS_CAMERA;
+const bool REPEATS = PERIODIC != 0;
 const bool READS_FLUX = SENSOR >= SENSOR_IRRADIANCE; // and no radiance: see flux.glsl
 // (In bits, for the sake of glslang 12: see LOOKS.)
 const bool LOOKS_FROM_SENSOR = (int(READS_FLUX) & int(NEE != NEE_NONE) & int(LIGHTS != LIGHTS_SUN)) != 0;

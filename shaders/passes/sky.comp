@@ -16,9 +16,9 @@ void main() {
     FilmPixel entry = film[pixel];
     Tally tally = NOTHING_SEEN;
     uint place = place_of(pixel);
-    // Though rays miss the medium, they may meet surfaces, and looks may go through it; and layers are for paths to fill. Particles
-    // come from wherever.
-    bool hit = READS_FLUX || HAS_LAYERS || HAS_PARTICLES || frame.surface_nodes + frame.planes > 0u;
+    // Though rays miss the medium, they may meet surfaces, or it elsewhere where a domain repeats, and looks may go through it; and
+    // layers are for paths to fill. Particles come from wherever.
+    bool hit = READS_FLUX || HAS_LAYERS || HAS_PARTICLES || REPEATS || frame.surface_nodes + frame.planes > 0u;
     for (uint i = push.sample_begin; i < push.sample_end && !hit; ++i) {
         CameraRay ray = camera_ray(place, i);
         hit = may_meet_medium(frame.media[0], to_medium(frame.media[0], ray.origin, ray.direction));

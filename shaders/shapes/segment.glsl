@@ -7,11 +7,11 @@
 #include "estimators/transmittance.glsl"
 
 // Where a shadow ray is a walk of its own; that of a homogeneous medium of one part is known at once, where no
-// surface can be in the way. (In bits,
+// surface and no seam can be in the way. (In bits,
 // since glslang 12 branches for nested `&&` and `||`, and takes the outcome for a constant nevertheless.)
 const bool LOOKS =
     (int(NEE != NEE_NONE) &
-     (int(TRANSMITTANCE != TRANSMITTANCE_ANALYTIC) | int(SHAPE == SHAPE_MESH) | int(HAS_SURFACES))) != 0;
+     (int(TRANSMITTANCE != TRANSMITTANCE_ANALYTIC) | int(SHAPE == SHAPE_MESH) | int(HAS_SURFACES) | int(REPEATS))) != 0;
 
 // What the scene's estimators need of a walk that is laid aside. The rest is dropped, so that nothing computes it.
 Walk kept(Walk w) {

@@ -102,7 +102,8 @@
 #define SPEC_LAYERS 32       // LAYERS_..., a sum
 #define SPEC_TABLE_TEXELS 33 // 1: lights, surfaces, their pieces and the hierarchy of those are read as texels
 #define SPEC_PATHS 34        // PATHS_...
-#define SPEC_COUNT 35
+#define SPEC_PERIODIC 35     // 1: a domain repeats
+#define SPEC_COUNT 36
 
 // Of several media that differ in it: each one's own, which is in its row.
 #define EACH -1

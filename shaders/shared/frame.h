@@ -297,6 +297,14 @@ struct LightParams {
     uint group;     // of layers
 };
 
+// A domain that repeats along axes of the world, and where along the others there is anything: see period.glsl. Render space.
+struct PeriodParams {
+    vec3 low;
+    vec3 size; // world units; 0 along axes that do not repeat
+    vec3 range_low; // infinitely far along those that do
+    vec3 range_high;
+};
+
 struct FrameParams {
     SensorParams sensors[MOST_SENSORS];
     MediumParams media[MOST_MEDIA];
@@ -319,6 +327,7 @@ struct FrameParams {
     uint max_depth;
     AovParams layers;
     ParticleParams particles;
+    PeriodParams period;
     uint seed;
     uint crop_x; // the crop's first pixel within the picture
     uint crop_y;

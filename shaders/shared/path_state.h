@@ -63,6 +63,8 @@
     ROW(PartSearch, search, under_way && SHAPE == SHAPE_MESH)                                                         \
     ROW(SurfaceSearch, seek, seeking)                                                                                 \
     ROW(float, reach, (under_way || (looks_along && sets_out)) && HAS_SURFACES) /* of the flight, to the surface that ends it, or FAR [world units] */ \
+    ROW(float, flown, under_way && repeats) /* of the flight, before it came to where the path's position now is [world units] */ \
+    ROW(uint, seams, seeking && repeats) /* 1: the segment has passed some, and goes on */                            \
     ROW(uint, struck, (under_way || (looks_along && sets_out)) && HAS_SURFACES) /* that surface's primitive */                                       \
     ROW(uint, lit_surface, looking && HAS_SURFACES) /* the primitive that the shadow ray lights, or NO_SURFACE */ \
     ROW(uint, lamp_body, looking && HAS_SURFACES) /* the surface whose light it looks for, or NO_SURFACE */

@@ -100,8 +100,8 @@ void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, i
         note_shares(lane.path.position, lane.walk.start + lane.walk.t, lane);
     if (HAS_LAYERS)
         if (lane.path.depth == 0u)
-            note_collision(lane.record, vec3(lane.beta), lane.path.position, lane.path.direction, lane.walk.start + lane.walk.t,
-                           albedo);
+            note_collision(lane.record, vec3(lane.beta), lane.path.position, lane.path.direction,
+                           flown_before(lane) + lane.walk.start + lane.walk.t, albedo);
     lane.beta *= to_spectrum(albedo);
     bool capped = SCATTERING != SCATTERING_NONE && lane.path.depth >= frame.max_depth;
     tally.depth_caps += capped ? 1u : 0u;
@@ -121,7 +121,7 @@ void note_step(MediumParams v, MediumParams met, Spectrum deposit, float t, Lane
     if (FREE_FLIGHT == FREE_FLIGHT_ANALYTIC)
         t = lane.walk.start + mean_part(v.sigma_t * lane.walk.t_end) * lane.walk.t_end;
     vec3 position = lane.path.position + t * lane.path.direction;
-    note_collision(lane.record, vec3(deposit), position, lane.path.direction, t, albedo_at(met, position));
+    note_collision(lane.record, vec3(deposit), position, lane.path.direction, flown_before(lane) + t, albedo_at(met, position));
 }
 
 // Amid a flight: a null collision, or a step of a march through.

@@ -6,6 +6,7 @@
 #include "sensors/flux.glsl"
 #include "stages/look_along.glsl"
 #include "stages/look_straight.glsl"
+#include "stages/seam.glsl"
 #include "stages/show.glsl"
 #include "surfaces/nearest.glsl"
 
@@ -91,6 +92,13 @@ bool look_at_shown_lamps(inout Lane lane, inout Rng rng) {
 }
 #endif
 
+// A part of the flight or shadow ray, with what is left of its optical depth.
+void begin_here(MediumParams v, bool looks, inout Lane lane) {
+    begin_segment(v, looks ? looking_from(lane) : lane.path.position,
+                  looks ? looking_along(lane) : lane.path.direction,
+                  looks ? looking_as_far_as(lane) : flying_as_far_as(lane), looks, lane.walk, lane.search);
+}
+
 // The flight or shadow ray itself.
 void set_going(MediumParams v, uvec4 words, bool looks, bool at_camera, inout Lane lane) {
     float e = to_exponential(at_camera ? words.z : words.x, words);
@@ -98,17 +106,21 @@ void set_going(MediumParams v, uvec4 words, bool looks, bool at_camera, inout La
     lane.walk.depth = 0.0;
     if (LOOKS && looks)
         begin_transmittance(words, lane.walk);
-    begin_segment(v, looks ? looking_from(lane) : lane.path.position,
-                  looks ? looking_along(lane) : lane.path.direction,
-                  looks ? looking_as_far_as(lane) : flying_as_far_as(lane), looks, lane.walk, lane.search);
+    begin_here(v, looks, lane);
     lane.T = to_spectrum(vec3(1.0));
     lane.steps = 0u;
 }
 
 #ifdef SURFACES
+// The primitive that a segment begins at, or NO_SURFACE.
+uint begins_at(bool looks, Lane lane) {
+    uint from = looks ? lane.lit_surface : surface_at(lane.path);
+    return REPEATS && lane.seams != 0u ? NO_SURFACE : from;
+}
+
 void begin_seeking(bool looks, inout Lane lane) {
     Ray ray = Ray(looks ? looking_from(lane) : lane.path.position, looks ? looking_along(lane) : lane.path.direction);
-    lane.seek = begin_seek(ray, looks ? looking_as_far_as(lane) : FAR, looks ? lane.lit_surface : surface_at(lane.path));
+    lane.seek = begin_seek(ray, looks ? looking_as_far_as(lane) : FAR, begins_at(looks, lane));
     lane.todo = looks ? TODO_CHECK : lane.todo == TODO_FLY ? TODO_SEEK : lane.todo;
 }
 #endif
@@ -117,6 +129,8 @@ void begin_seeking(bool looks, inout Lane lane) {
 void begin_going(MediumParams v, uvec4 words, bool looks, bool at_camera, bool knows, inout Lane lane, inout Tally tally) {
     if (NEE == NEE_TENTATIVE && looks)
         lane.flight = lane.walk;
+    if (REPEATS)
+        enter_domain(looks, lane);
 #ifdef SURFACES
     if (!knows)
         begin_seeking(looks, lane);
@@ -126,6 +140,16 @@ void begin_going(MediumParams v, uvec4 words, bool looks, bool at_camera, bool k
     tally.shadow_rays += looks ? 1u : 0u;
     if (!looks && !(HAS_SURFACES && knows)) // else the search has begun there
         trace(TRACE_DEPART, lane, lane.path.position, lane.path.direction);
+}
+
+// Behind a seam the segment goes on, once surfaces have been asked there.
+void go_on_across(MediumParams v, bool looks, inout Lane lane) {
+#ifdef SURFACES
+    lane.todo = looks ? TODO_SEE : TODO_FLY;
+    begin_seeking(looks, lane);
+#else
+    begin_here(v, looks, lane);
+#endif
 }
 
 void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {

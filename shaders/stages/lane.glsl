@@ -3,6 +3,7 @@
 #define LANE_GLSL
 #include "film/aovs.glsl"
 #include "sensors/camera.glsl"
+#include "shapes/period.glsl"
 #include "shapes/segment.glsl"
 
 struct Lane {
@@ -69,7 +70,7 @@ bool is_under_way(uint todo) {
 }
 
 // What the shadow ray lights, and from where. At collisions that is the path's own vertex, and need not be kept.
-const bool KEEPS_PLACE = NEE == NEE_TENTATIVE || LOOKS_ALONG || HAS_SURFACES || HAS_PARTICLES;
+const bool KEEPS_PLACE = NEE == NEE_TENTATIVE || LOOKS_ALONG || HAS_SURFACES || HAS_PARTICLES || REPEATS;
 Spectrum lit_beta(Lane lane) {
     return KEEPS_PLACE ? lane.lit : lane.beta;
 }
@@ -86,22 +87,37 @@ vec3 looking_along(Lane lane) {
     return LIGHTS == LIGHTS_SUN ? frame.lights[LIGHT_SUN].direction : is_along(lane) ? lane.path.direction : lane.to_light;
 }
 // World units, how far it is to the light.
-float looking_as_far_as(Lane lane) {
+float reach_of_look(Lane lane) {
     return LIGHTS == LIGHTS_SUN ? FAR
            : is_along(lane)     ? distance(lane.path.position, lane.position)
                                 : lane.light_distance;
+}
+// Of the present part of it, where a domain repeats.
+float looking_as_far_as(Lane lane) {
+    ivec3 axis;
+    return REPEATS ? seam_ahead(looking_from(lane), looking_along(lane), FAR, axis) : reach_of_look(lane);
 }
 // The primitive that the path is at, or NO_SURFACE.
 uint surface_at(PathState path) {
     return (path.medium & AT_SURFACE) != 0u ? path.medium & ~AT_SURFACE : NO_SURFACE;
 }
 // How far a flight goes, unless it collides.
-float flying_as_far_as(Lane lane) {
+float reach_of_flight(Lane lane) {
 #ifdef SURFACES
     return lane.reach;
 #else
     return FAR;
 #endif
+}
+// Likewise the present part of it.
+float flying_as_far_as(Lane lane) {
+    float reach = reach_of_flight(lane);
+    ivec3 axis;
+    return REPEATS ? min(reach, seam_ahead(lane.path.position, lane.path.direction, reach, axis)) : reach;
+}
+// World units, of the flight, before it came to where the path's position now is.
+float flown_before(Lane lane) {
+    return REPEATS ? lane.flown : 0.0;
 }
 // One that corrects no cache.
 void look_in_full(inout Lane lane) {
@@ -130,7 +146,8 @@ uint label_at(Lane lane, MediumParams met) {
 // What the rows of path_state.h ask for.
 #define STATE_CONDITIONS(next, amid)                                                                                  \
     bool seeking = HAS_SURFACES && amid && (next == TODO_SEEK || next == TODO_CHECK);                                 \
-    bool seeing = LOOKS && amid && next == TODO_SEE;                                                                  \
+    bool repeats = REPEATS;                                                                                           \
+    bool seeing = LOOKS && amid && (next == TODO_SEE || (repeats && next == TODO_CHECK));                             \
     bool looking = seeing || (LOOKS && next == TODO_LOOK) || (HAS_SURFACES && LOOKS && amid && next == TODO_CHECK);   \
     bool flight_rests = NEE == NEE_TENTATIVE;                                                                         \
     bool keeps_place = KEEPS_PLACE;                                                                                   \
@@ -143,7 +160,7 @@ uint label_at(Lane lane, MediumParams met) {
     bool has_layers = HAS_LAYERS;                                                                                     \
     bool has_particles = HAS_PARTICLES;                                                                               \
     bool weighs_families = PATHS == PATHS_BOTH;                                                                       \
-    bool under_way = (amid && next == TODO_FLY) || seeing || (looking && flight_rests);
+    bool under_way = (amid && next == TODO_FLY) || seeing || (looking && flight_rests) || (seeking && repeats);
 
 // Of `pixel` see PathState. `amid`, a constant: it may be amid a segment; else that is not compiled.
 void lay_aside(uint slot, uint pixel, Rng rng, Lane lane, const bool amid) {

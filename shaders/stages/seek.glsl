@@ -10,7 +10,7 @@
 void seek(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     bool looks = at_shadow_ray(lane.todo == TODO_CHECK);
     Ray ray = Ray(looks ? looking_from(lane) : lane.path.position, looks ? looking_along(lane) : lane.path.direction);
-    uint from = looks ? lane.lit_surface : surface_at(lane.path);
+    uint from = begins_at(looks, lane);
     MeshRay mesh_ray = make_mesh_ray(frame.first_surface_node, frame.surface_nodes, ray);
     bool over = looks && lane.seek.primitive != NO_SURFACE;
     for (int k = 0; k < SURFACE_NODES_PER_TURN && !over; ++k) {
@@ -27,7 +27,9 @@ void seek(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
         if (LOOKS_ALONG)
             if (!looks)
                 goes_to_look = look_along(v, lane, rng, tally);
-        if (!goes_to_look)
+        if (REPEATS && lane.seams != 0u)
+            begin_here(v, looks, lane);
+        else if (!goes_to_look)
             set_going(v, next_words(rng), looks, false, lane);
     }
 }

@@ -21,7 +21,8 @@ void arrive_at_surface(MediumParams v, inout Lane lane, inout Rng rng, inout Tal
     Bsdf bsdf = bsdf_of(row, at, -lane.path.direction, key);
     if (HAS_LAYERS)
         if (lane.path.depth == 0u) {
-            note_collision(lane.record, vec3(lane.beta), at.position, lane.path.direction, lane.reach, row.color);
+            note_collision(lane.record, vec3(lane.beta), at.position, lane.path.direction, flown_before(lane) + lane.reach,
+                           row.color);
             note_normal(lane.record, vec3(lane.beta), bsdf.normal);
         }
     lane.path.position = at.position + at.apart * bsdf.face;

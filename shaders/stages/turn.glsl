@@ -13,7 +13,13 @@
 // What the present segment met, if anything, and what follows.
 void arrive(MediumParams v, uint event, Spectrum deposit, inout Lane lane, inout Rng rng, inout Tally tally) {
     bool seeing = at_shadow_ray(lane.todo == TODO_SEE);
-    if (seeing && event != EVENT_MOVING)
+    bool goes_on = false;
+    if (REPEATS)
+        if (event == EVENT_LEFT)
+            goes_on = passes_seam(seeing, lane);
+    if (goes_on)
+        go_on_across(v, seeing, lane);
+    else if (seeing && event != EVENT_MOVING)
         end_shadow(v, event, lane);
     else if (event == EVENT_CUT)
         lane.todo = TODO_END;

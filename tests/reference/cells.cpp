@@ -13,6 +13,14 @@ CellWalk::CellWalk(const Medium& medium, const Ray& ray)
 
 bool CellWalk::next(Cell& cell) {
     const double scale = medium_.majorant_scale;
+    if (medium_.periodic) { // one bound of all there is
+        if (interval_ == intervals_.size())
+            return false;
+        const Interval& interval = intervals_[interval_++];
+        const double most = largest_density(medium_);
+        cell = {interval.t0, interval.t1, most * scale, 0.0, most * scale};
+        return true;
+    }
     if (const Grid* grid = medium_.grid()) {
         if (!grid_walk_ && !intervals_.empty())
             grid_walk_.emplace(*grid, index_ray_, intervals_.front());

@@ -108,14 +108,16 @@ double Medium::grid_value(const glm::dvec3& index) const {
     return filter == vkvol::Filter::nearest ? grid()->nearest(index) : grid()->trilinear(index);
 }
 
-Rgb Medium::albedo_at(const glm::dvec3& world) const {
+Rgb Medium::albedo_at(const glm::dvec3& unfolded) const {
+    const glm::dvec3 world = folded(*this, unfolded);
     Rgb here = albedo_grid.empty() ? albedo : albedo * glm::min(albedo_grid.clamped(world), Rgb(1.0));
     if (map.is_transfer)
         here *= mapped(map, mapped_value(world)).albedo;
     return here;
 }
 
-Rgb Medium::emission_at(const glm::dvec3& world) const {
+Rgb Medium::emission_at(const glm::dvec3& unfolded) const {
+    const glm::dvec3 world = folded(*this, unfolded);
     Rgb here = emission.at(world);
     if (map.is_transfer)
         here += mapped(map, mapped_value(world)).emission;
@@ -176,7 +178,9 @@ std::vector<Interval> support(const Medium& medium, const Ray& ray) {
     if (medium.largest() == 0.0)
         return {};
     std::vector<Interval> parts;
-    if (const auto* sphere = std::get_if<vkvol::Sphere>(&medium.shape))
+    if (medium.periodic)
+        parts = {unfolded_support(medium, ray)};
+    else if (const auto* sphere = std::get_if<vkvol::Sphere>(&medium.shape))
         parts = {intersect(*sphere, medium.unmoved(ray))};
     else if (const auto* box = std::get_if<vkvol::Box>(&medium.shape))
         parts = {intersect(*box, medium.unmoved(ray))};
@@ -187,7 +191,7 @@ std::vector<Interval> support(const Medium& medium, const Ray& ray) {
     else
         parts = {medium.grid()->support(medium.grid()->to_index(ray))};
 
-    if (medium.layers)
+    if (medium.layers && !medium.periodic)
         parts = between_layers(medium, ray, parts);
     std::vector<Interval> ahead;
     for (const Interval& part : parts)

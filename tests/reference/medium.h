@@ -28,11 +28,12 @@ struct Medium {
     Emission emission;
     vkvol::Filter filter = vkvol::Filter::trilinear;
     double majorant_scale = 1.0;
+    std::optional<vkvol::Periodic> periodic; // see unfolded.cpp
 
     const Grid* grid() const { return std::get_if<Grid>(&shape); }
-    bool homogeneous() const { return !grid() && !noise && !layers; }   // density 1 throughout
-    bool fades() const { return layers && layers->scale_height > 0.0; } // exponentially
-    double fading_integral(const Ray& ray, const Interval& part) const; // of that density, world-space ray
+    bool homogeneous() const { return !grid() && !noise && !layers && !periodic; } // density 1 throughout
+    bool fades() const { return layers && layers->scale_height > 0.0; }            // exponentially
+    double fading_integral(const Ray& ray, const Interval& part) const;            // of that density, world-space ray
     bool unbounded() const { return std::holds_alternative<vkvol::Everywhere>(shape); }
     double density(const glm::dvec3& p) const; // at index coordinates of a grid, else before it is moved
 
@@ -60,12 +61,23 @@ Medium with_grid(Grid grid, const vkvol::Volume& volume, std::optional<vkvol::Fi
 // The parts of a world-space ray, t >= 0, where the density can be other than 0, in order.
 std::vector<Interval> support(const Medium& medium, const Ray& ray);
 
+// Where in the domain that repeats a point of the world is; where nothing does, there.
+glm::dvec3 folded(const Medium& medium, const glm::dvec3& world);
+// Of a medium that repeats: between where along the other axes there is anything, and how dense it is there.
+Interval unfolded_support(const Medium& medium, const Ray& ray);
+double unfolded_density(const Medium& medium, const glm::dvec3& world);
+double largest_density(const Medium& medium);
+
 // The density along a world-space ray.
 class DensityAlong {
 public:
     DensityAlong(const Medium& medium, const Ray& ray)
-        : medium_(medium), ray_(medium.grid() ? medium.grid()->to_index(ray) : medium.unmoved(ray)) {}
-    double operator()(double t) const { return medium_.density(ray_.at(t)); }
+        : medium_(medium), ray_(medium.periodic ? ray
+                                : medium.grid() ? medium.grid()->to_index(ray)
+                                                : medium.unmoved(ray)) {}
+    double operator()(double t) const {
+        return medium_.periodic ? unfolded_density(medium_, ray_.at(t)) : medium_.density(ray_.at(t));
+    }
     const Ray& ray() const { return ray_; } // in index space for a grid, else as before the medium is moved
 
 private:

@@ -98,7 +98,7 @@ Method resolve_method(const vkvol::Scene& scene, Medium& medium) {
     const vkvol::RenderSettings& settings = scene.settings;
     const vkvol::AxisChoices& choices = settings.choices;
     const bool cached = !scene.lights.empty() && !medium.homogeneous() && !medium.fades() && !medium.unbounded() &&
-                        !std::holds_alternative<Mesh>(medium.shape);
+                        !medium.periodic && !std::holds_alternative<Mesh>(medium.shape);
     const bool far = std::none_of(scene.lights.begin(), scene.lights.end(), vkvol::has_place);
     const std::string best = scene.lights.empty() ? "deltaTracking"
                              : cached && far      ? "cachedRatioTracking"

@@ -1,0 +1,188 @@
+#include "measure.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "atomic_file.h"
+#include "error.h"
+#include "file_ending.h"
+#include "file_uses.h"
+#include "film_table.h"
+#include "image_io.h"
+#include "interrupt.h"
+#include "messages.h"
+#include "render_scene.h"
+#include "requested_scene.h"
+#include "session.h"
+#include "workshop.h"
+
+namespace vkvol {
+
+namespace {
+
+using Values = std::vector<std::string>; // of each swept key
+
+// One after another, the last key fastest.
+std::vector<Values> combinations(const std::vector<Sweep>& sweeps) {
+    std::vector<Values> all{{}};
+    for (const Sweep& sweep : sweeps) {
+        std::vector<Values> longer;
+        for (const Values& before : all)
+            for (const std::string& value : sweep.values) {
+                longer.push_back(before);
+                longer.back().push_back(value);
+            }
+        all = std::move(longer);
+    }
+    return all;
+}
+
+RenderOptions request_of(const MeasureOptions& options, const Values& values) {
+    RenderOptions render;
+    static_cast<RenderRequest&>(render) = options.request;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        render.defines[options.sweeps[i].key] = values[i];
+    return render;
+}
+
+RenderResult measure(const MeasureOptions& options, const Scene& scene, Workshop& workshop) {
+    RenderJob job;
+    job.workshop = &workshop;
+    job.crop = {0, scene.picture.width, 0, scene.picture.height};
+    job.seed = options.request.seed;
+    job.plan = options.request.plan;
+    job.time_limit = options.request.time_limit;
+    job.noise_goal = options.request.noise_goal;
+    job.disk_cache = !options.request.no_cache;
+    job.interrupted = interrupted;
+    return render(workshop.device(options.request.device), scene, job);
+}
+
+// A line of a table that has one.
+std::string mean_table(const Film& film) {
+    const ImageMean mean = image_mean(film);
+    std::uint64_t samples = 0;
+    for (const std::uint32_t n : film.samples)
+        samples += n;
+    std::string text = "R,G,B,standardError.R,standardError.G,standardError.B,samples\n";
+    const auto numbers = [&text](const glm::dvec3& v) { text += fmt::format("{:.9g},{:.9g},{:.9g},", v.x, v.y, v.z); };
+    numbers(mean.value);
+    if (mean.standard_error)
+        numbers(*mean.standard_error);
+    else
+        text += ",,,";
+    return text + fmt::format("{}\n", samples);
+}
+
+// Of texts with commas between, after a heading.
+std::vector<Values> rows_of(const std::string& table) {
+    std::vector<Values> rows{{""}};
+    for (const char c : table) {
+        if (c == '\n')
+            rows.push_back({""});
+        else if (c == ',')
+            rows.back().emplace_back();
+        else
+            rows.back().back() += c;
+    }
+    rows.pop_back(); // behind the last line's end
+    return rows;
+}
+
+std::string as_csv(const std::vector<Values>& rows) {
+    std::string text;
+    for (const Values& row : rows)
+        text += fmt::format("{}\n", fmt::join(row, ","));
+    return text;
+}
+
+// In columns, for reading.
+std::string as_text(const std::vector<Values>& rows) {
+    std::vector<std::size_t> widths(rows.front().size(), 0);
+    for (const Values& row : rows)
+        for (std::size_t i = 0; i < row.size(); ++i)
+            widths[i] = std::max(widths[i], row[i].size());
+    std::string text;
+    for (const Values& row : rows)
+        for (std::size_t i = 0; i < row.size(); ++i)
+            text += fmt::format("{:>{}}{}", row[i], widths[i], i + 1 < row.size() ? "  " : "\n");
+    return text;
+}
+
+// A table's rows behind the values that they are of.
+void add(const std::vector<Sweep>& sweeps, const Values& values, const std::string& table, std::vector<Values>& rows) {
+    std::vector<Values> found = rows_of(table);
+    if (rows.empty()) {
+        Values heading;
+        for (const Sweep& sweep : sweeps)
+            heading.push_back(sweep.key);
+        heading.insert(heading.end(), found.front().begin(), found.front().end());
+        rows.push_back(std::move(heading));
+    }
+    for (std::size_t i = 1; i < found.size(); ++i) {
+        found[i].insert(found[i].begin(), values.begin(), values.end());
+        rows.push_back(std::move(found[i]));
+    }
+}
+
+// Which of several values it was.
+template <class Work> void of_values(const std::vector<Sweep>& sweeps, const Values& values, const Work& work) {
+    std::string which;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        which += fmt::format("-D {}={}: ", sweeps[i].key, values[i]);
+    try {
+        work();
+    } catch (const InputError& error) {
+        throw InputError(which + error.what());
+    } catch (const RenderError& error) {
+        throw RenderError(which + error.what());
+    }
+}
+
+void check_output(const MeasureOptions& options, const Scene& scene) {
+    if (!options.output)
+        return;
+    if (file_ending(*options.output) != ".csv" && !is_special(*options.output))
+        throw InputError(fmt::format("{}: measure writes a table; expected .csv", options.output->string()));
+    FileUses uses;
+    uses.reads("the scene", options.request.scene);
+    uses.reads_files_of(scene);
+    uses.writes("the table", *options.output, "-o");
+    uses.check();
+    check_directory_writable(*options.output, "-o");
+}
+
+} // namespace
+
+int run_measure(const MeasureOptions& options) {
+    install_interrupt_handler();
+    Workshop workshop(true);
+    std::vector<Values> rows;
+    bool was_interrupted = false;
+    for (const Values& values : combinations(options.sweeps)) {
+        of_values(options.sweeps, values, [&] {
+            const RenderScene loaded = load_render_scene(request_of(options, values), workshop.fields());
+            if (rows.empty())
+                check_output(options, loaded.scene);
+            const RenderResult result = measure(options, loaded.scene, workshop);
+            std::vector<std::string> warnings = loaded.scene.warnings;
+            warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
+            for (const std::string& warning : workshop.new_warnings(warnings))
+                if (!options.quiet)
+                    tell(stderr, "vkvol: warning: {}\n", warning);
+            if (result.samples == 0)
+                throw RenderError("ended before any sample was done");
+            add(options.sweeps, values, options.means ? mean_table(result.film) : film_table(result.film), rows);
+            was_interrupted = result.interrupted;
+        });
+        if (was_interrupted)
+            break;
+    }
+    if (options.output)
+        write_text(*options.output, as_csv(rows));
+    else
+        put(stdout, as_text(rows));
+    return was_interrupted ? exit_interrupted : exit_done;
+}
+
+} // namespace vkvol

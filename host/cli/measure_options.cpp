@@ -1,0 +1,135 @@
+#include "measure_options.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "error.h"
+#include "integrators.h"
+#include "option_groups.h"
+#include "option_values.h"
+#include "options_help.h"
+
+namespace vkvol {
+
+namespace {
+
+struct MeasureTexts {
+    std::vector<std::string> defines;
+    std::string output, time, noise, schedule;
+};
+
+constexpr std::size_t most_values = 100'000; // of all keys together
+
+// "A..BxN"; none if it is no such text.
+std::vector<std::string> evenly(const std::string& key, const std::string& text) {
+    const std::size_t dots = text.find(".."), times = text.rfind('x');
+    const bool begins_as_number = !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) ||
+                                                    text[0] == '-' || (text[0] == '.' && dots > 0));
+    if (!begins_as_number || dots == std::string::npos || times == std::string::npos || times < dots)
+        return {};
+    const std::string what = fmt::format("-D {}", key);
+    const double from = parse_number(text.substr(0, dots), what),
+                 to = parse_number(text.substr(dots + 2, times - dots - 2), what),
+                 count = parse_number(text.substr(times + 1), what);
+    if (!(count >= 2.0 && count <= double(most_values)) || count != std::floor(count))
+        fail_command_line(fmt::format("{}: '{}' values; expected a whole number from 2 to {}", what,
+                                      text.substr(times + 1), most_values));
+    std::vector<std::string> values;
+    const int last = static_cast<int>(count) - 1;
+    for (int i = 0; i <= last; ++i)
+        values.push_back(fmt::format("{:.12g}", from + (to - from) * i / last));
+    return values;
+}
+
+void add_options(CLI::App& app, MeasureOptions& measure, MeasureTexts& texts) {
+    RenderRequest& request = measure.request;
+    app.add_option("scene", request.scene, "Scene file, see scenes/README.md, or a scene of pbrt-v4")
+        ->option_text("SCENE.xml|SCENE.pbrt");
+    app.add_option("-o,--output", texts.output, "Write the table as .csv in place of printing it")
+        ->option_text("FILE.csv")
+        ->group("Picture");
+    add_size_options(app, request);
+    app.add_flag("--mean", measure.means, "The mean of the picture in place of all its pixels")->group("Picture");
+    const char* group = "Sampling";
+    app.add_option("--spp", request.spp, "Samples per pixel, in place of rayPerPixelCount")
+        ->transform(whole_number(1, 2147483647))
+        ->option_text("N [scene]")
+        ->group(group);
+    app.add_option("--time", texts.time, "At most this long for each combination of values")
+        ->option_text("T")
+        ->group(group);
+    app.add_option("--noise", texts.noise, "Until each picture's noise is no more than this: 1%, or 0.01")
+        ->option_text("P%")
+        ->group(group);
+    app.add_option("--seed", request.seed, "Of all combinations alike")
+        ->transform(whole_number(0, max_seed))
+        ->option_text("S [0]")
+        ->group(group);
+    app.add_option("--integrator", request.integrator, "In place of the scene's; see vkvol integrators")
+        ->option_text("NAME[:AXIS=CHOICE...] [scene]")
+        ->group(group);
+    app.add_option("--grid", request.grid, "A .nvdb or .vdb file in place of the scene's density field")
+        ->option_text("FILE [scene]")
+        ->group(group);
+    add_list(app, "-D,--define", texts.defines,
+             "Fills $KEY in the scene, with one value after the other; may be given several times")
+        ->option_text("KEY=A,B,...|KEY=A..BxN")
+        ->group(group);
+    add_device_options(app, request);
+    app.add_flag("--no-cache", request.no_cache, "Neither read nor write the pipeline cache")->group("Device");
+    app.add_option("--schedule", texts.schedule, "As of a render")->option_text("NAME [auto]")->group("Device");
+    app.add_flag("-q,--quiet", measure.quiet, "Print errors and the table only")->group("Output");
+    app.footer(measure_footer);
+}
+
+} // namespace
+
+Sweep parse_sweep(const std::string& text) {
+    std::map<std::string, std::string> one;
+    add_define(one, text);
+    const auto& [key, value] = *one.begin();
+    Sweep sweep{key, evenly(key, value)};
+    if (sweep.values.empty())
+        sweep.values = split(value, ',');
+    return sweep;
+}
+
+void parse_measure(const std::vector<std::string>& arguments, Options& options) {
+    MeasureOptions& measure = options.measure;
+    CLI::App app(measure_description, "vkvol measure");
+    MeasureTexts texts;
+    add_options(app, measure, texts);
+    if (!run_parser(app, arguments, options))
+        return;
+    if (measure.request.scene.empty())
+        fail_command_line("measure: no scene given; e.g. vkvol measure slab.xml -D sun=0.2,0.5,1");
+    std::size_t count = 1;
+    for (const std::string& define : texts.defines) {
+        measure.sweeps.push_back(parse_sweep(define));
+        const Sweep& sweep = measure.sweeps.back();
+        if (std::count_if(measure.sweeps.begin(), measure.sweeps.end(),
+                          [&](const Sweep& other) { return other.key == sweep.key; }) > 1)
+            fail_command_line(fmt::format("-D: {} given twice; write its values with commas between", sweep.key));
+        count *= sweep.values.size();
+        if (count > most_values)
+            fail_command_line(fmt::format("-D: more than {} combinations of values", most_values));
+    }
+    if (!texts.output.empty())
+        measure.output = texts.output;
+    if (!texts.time.empty())
+        measure.request.time_limit = parse_duration(texts.time);
+    if (!texts.noise.empty())
+        measure.request.noise_goal = parse_noise(texts.noise);
+    if (!texts.schedule.empty())
+        measure.request.plan = parse_schedule(texts.schedule);
+    if (measure.request.integrator)
+        try {
+            parse_integrator(*measure.request.integrator);
+        } catch (const InputError& error) {
+            fail_command_line(fmt::format("--integrator: {}", error.what()));
+        }
+}
+
+} // namespace vkvol

@@ -1,0 +1,66 @@
+#include "period.h"
+
+#include <limits>
+
+#include "placement.h"
+#include "surface_mesh.h"
+
+namespace vkvol {
+
+namespace {
+
+struct Range {
+    glm::dvec3 low{std::numeric_limits<double>::infinity()};
+    glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+
+    void take_in(glm::dvec3 point) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+};
+
+void take_in(const Volume& volume, const LoadedMedium& loaded, Range& range) {
+    const MediumBounds bounds = medium_bounds(loaded);
+    const glm::dmat4 to_world = medium_to_world(volume, loaded);
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 pick(corner & 1, corner >> 1 & 1, corner >> 2);
+        range.take_in(glm::dvec3(to_world * glm::dvec4(glm::mix(bounds.low, bounds.high, pick), 1.0)));
+    }
+}
+
+// Of all there is.
+Range range_of(const Scene& scene, Media media) {
+    Range range;
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+        take_in(scene.volumes[i], media[i], range);
+    if (const std::optional<SurfaceBounds> bounds = bounds_of(scene.surfaces)) {
+        range.take_in(bounds->low);
+        range.take_in(bounds->high);
+    }
+    for (const Surface& surface : scene.surfaces) // which lie along the domain: see supported.cpp
+        if (const auto* plane = std::get_if<PlaneSurface>(&surface.shape))
+            range.take_in(plane->point);
+    return range;
+}
+
+} // namespace
+
+shared::PeriodParams make_period(const Scene& scene, Media media, glm::dvec3 origin) {
+    shared::PeriodParams params{};
+    if (!scene.periodic)
+        return params;
+    const Range range = range_of(scene, media);
+    const double margin =
+        1e-5 * glm::length(glm::max(range.high - range.low, glm::dvec3(0.0)) + scene.periodic->size());
+    params.low = scene.periodic->low - origin;
+    params.size = scene.periodic->size();
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool repeats = params.size[axis] > 0.0f;
+        constexpr float infinite = std::numeric_limits<float>::max();
+        params.range_low[axis] = repeats ? -infinite : static_cast<float>(range.low[axis] - origin[axis] - margin);
+        params.range_high[axis] = repeats ? infinite : static_cast<float>(range.high[axis] - origin[axis] + margin);
+    }
+    return params;
+}
+
+} // namespace vkvol

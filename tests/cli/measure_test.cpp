@@ -1,0 +1,92 @@
+// Tables of readings, and values that a scene's $keys have one after the other.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+#include <sstream>
+
+#include "error.h"
+#include "measure_options.h"
+#include "support/command_folder.h"
+#include "support/shell.h"
+
+using namespace vkvol;
+using Catch::Contains;
+
+namespace {
+
+// Fluence in and beside a ball that glows, at two points.
+constexpr const char* ball =
+    "<options><sphere radius=\"1\"/><sigma_a>$sigma</sigma_a><sigma_s>0</sigma_s>"
+    "<medium r=\"1\" g=\"2\" b=\"1\" multiplier=\"$glow\"/><fluence>0 0 0  0 3 0</fluence></options>";
+
+std::vector<std::vector<std::string>> lines_of(const std::string& csv) {
+    std::vector<std::vector<std::string>> lines;
+    std::istringstream text(csv);
+    for (std::string line; std::getline(text, line);) {
+        lines.emplace_back();
+        std::istringstream words(line);
+        for (std::string word; std::getline(words, word, ',');)
+            lines.back().push_back(word);
+    }
+    return lines;
+}
+
+} // namespace
+
+TEST_CASE("values one after the other", "[cpu][options]") {
+    CHECK(parse_sweep("g=0.8").values == std::vector<std::string>{"0.8"});
+    CHECK(parse_sweep("g=0.8,0.9,x").values == std::vector<std::string>{"0.8", "0.9", "x"});
+    CHECK(parse_sweep("g=0..1x5").values == std::vector<std::string>{"0", "0.25", "0.5", "0.75", "1"});
+    CHECK(parse_sweep("g=1..-1x3").values == std::vector<std::string>{"1", "0", "-1"});
+    CHECK(parse_sweep("file=../box.obj").values == std::vector<std::string>{"../box.obj"});
+    CHECK_THROWS_WITH(parse_sweep("g=0..1x1"), Contains("whole number from 2"));
+    CHECK_THROWS_WITH(parse_sweep("g=0..axb3"), Contains("is not a number"));
+    CHECK_THROWS_WITH(parse_sweep("g"), Contains("key=value"));
+}
+
+TEST_CASE("readings are a table, a row for each point and combination of values", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("glow.xml", ball);
+    const Run run = folder.vkvol("measure glow.xml -D sigma=0.5,2 -D glow=1,3 --spp 4096 -o table.csv");
+    REQUIRE(run.code == exit_done);
+    const auto lines = lines_of(folder.text("table.csv"));
+    REQUIRE(lines.size() == 1 + 2 * 2 * 2);
+    CHECK(lines[0] == std::vector<std::string>{"sigma", "glow", "column", "row", "x", "y", "z", "R", "G", "B",
+                                               "standardError.R", "standardError.G", "standardError.B", "samples"});
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+        const double sigma = std::stod(lines[i][0]), glow = std::stod(lines[i][1]);
+        CHECK(sigma == (i <= 4 ? 0.5 : 2.0));
+        CHECK(glow == ((i - 1) / 2 % 2 == 0 ? 1.0 : 3.0));
+        CHECK(lines[i][2] == std::to_string((i - 1) % 2));
+        CHECK(std::stod(lines[i][8]) == Approx(2.0 * std::stod(lines[i][7])));
+        if ((i - 1) % 2 != 0)
+            continue;
+        // In the middle 4 pi Le (1 - exp(-sigma)), in every direction by chance all or nothing.
+        const double expected = 4.0 * std::numbers::pi * glow * -std::expm1(-sigma);
+        CHECK(std::abs(std::stod(lines[i][7]) - expected) < 5.0 * std::stod(lines[i][10]));
+        CHECK(std::stod(lines[i][10]) < 0.03 * expected);
+    }
+    // The same random numbers: three times the glow is three times the reading, bit for bit.
+    CHECK(std::stof(lines[3][7]) == Approx(3.0 * std::stof(lines[1][7])).epsilon(1e-6));
+    const Run means = folder.vkvol("measure glow.xml -D sigma=1 -D glow=1 --spp 64 --mean");
+    CHECK(means.code == exit_done);
+    CHECK_THAT(means.text, Contains("sigma  glow") && Contains("standardError.R") && Contains("128\n"));
+    const Run plain = folder.vkvol("measure glow.xml -D sigma=1 -D glow=1 --noise 5%");
+    CHECK(plain.code == exit_done);
+    CHECK(std::count(plain.text.begin(), plain.text.end(), '\n') == 3);
+}
+
+TEST_CASE("what is wrong with one of many values says which", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("glow.xml", ball);
+    const Run bad = folder.vkvol("measure glow.xml -D sigma=0.5,-2 -D glow=1 --spp 1");
+    CHECK(bad.code == exit_bad_input);
+    CHECK_THAT(bad.text, Contains("-D sigma=-2: -D glow=1: ") && Contains("glow.xml:1:"));
+    CHECK(folder.vkvol("measure glow.xml -D sigma=1 -D glow=1 -D sigma=2").code == exit_bad_input);
+    CHECK(folder.vkvol("measure glow.xml -D sigma=1 -D glow=1 -o glow.xml").code == exit_bad_input);
+    CHECK(folder.text("glow.xml") == ball);
+    CHECK(folder.vkvol("measure").code == exit_bad_input);
+    CHECK(folder.vkvol("measure glow.xml -D sigma=0..1x1000 -D glow=0..1x1000").code == exit_bad_input);
+}

@@ -1,0 +1,284 @@
+// Domains that repeat: against closed forms, domains that hold the same several times, and the reference, which unfolds
+// them.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+
+#include "camera_view.h"
+#include "error.h"
+#include "loaded_medium.h"
+#include "scene_hash.h"
+#include "shared/constants.h"
+#include "support/agreement.h"
+#include "support/images.h"
+#include "support/scene_text.h"
+#include "support/scenes.h"
+#include "support/test_device.h"
+#include "support/thorough.h"
+#include "tests/reference/reference.h"
+#include "tests/reference/transport.h"
+
+using namespace vkvol;
+using Catch::Contains;
+
+namespace {
+
+const glm::dvec3 up(0.0, 1.0, 0.0);
+
+// From above, aslant, so that rays pass several domains of ten across.
+Scene above(const Volume& volume, double half = 5.0) {
+    Scene scene = scene_of(volume, 30.0, 16, 40.0, glm::dvec3(0.0), {-25.0, 30.0, 0.0});
+    scene.background = {0.1, 0.2, 0.4};
+    scene.lights = {DirectionalLight{glm::normalize(glm::dvec3(0.8, 0.5, -0.3)), {1.5, 1.2, 1.0}}};
+    scene.settings.integrator = "ratioTracking";
+    scene.settings.spp = 128;
+    scene.periodic = Periodic{{-half, 0.0, -half}, {half, 0.0, half}};
+    return scene;
+}
+
+Volume cloud() {
+    return medium(write_grids({cloud_grid()}), 0.8, 0.9, 0.4);
+}
+
+Scene flux_through(double height, bool from_above, glm::dvec2 size, int across, std::uint32_t spp) {
+    Scene scene;
+    scene.camera.projection = Projection::irradiance;
+    scene.camera.position = {0.0, height, 0.0};
+    look_along(scene.camera, from_above ? up : -up, {0.0, 0.0, 1.0});
+    scene.camera.size = size;
+    scene.picture = {across, across, 0.0, 0.0, double(across), double(across)};
+    scene.settings.spp = spp;
+    return scene;
+}
+
+void check_means(const Scene& scene, double expected, const std::string& name) {
+    const std::vector<Rgb> means(std::size_t(scene.picture.width * scene.picture.height), Rgb(expected));
+    CHECK_AGREEMENT(agree_with_means(render_here(scene, 3).film, means, name));
+}
+
+void check_against_reference(const Scene& scene, const std::string& name) {
+    CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_reference(scene, 2), name));
+}
+
+// Along x and z, as many times as `copies` says; what was there is there again in each.
+Scene repeated(Scene scene, glm::ivec2 copies) {
+    const Scene one = scene;
+    const glm::dvec3 size = one.periodic->size();
+    for (int i = 0; i < copies.x; ++i)
+        for (int k = 0; k < copies.y; ++k) {
+            if (i == 0 && k == 0)
+                continue;
+            const glm::dvec3 shift = size * glm::dvec3(i, 0, k);
+            for (Volume volume : one.volumes) {
+                volume.transform = glm::translate(glm::dmat4(1.0), shift) * volume.transform;
+                scene.volumes.push_back(volume);
+            }
+            for (Surface surface : one.surfaces)
+                if (auto* ball = std::get_if<BallSurface>(&surface.shape)) {
+                    ball->center += shift;
+                    scene.surfaces.push_back(surface);
+                }
+        }
+    scene.periodic->high += size * glm::dvec3(copies.x - 1, 0, copies.y - 1);
+    return scene;
+}
+
+} // namespace
+
+TEST_CASE("a box that fills a domain that repeats is an infinite slab", "[gpu][image][periodic]") {
+    const double tau = GENERATE(1.0, 5.0), mu0 = GENERATE(1.0, 0.5);
+    const reference::SlabSolution beam = reference::slab_in_beam(1.0, tau, mu0, tau < 2.0 ? 400 : 800);
+    for (const bool below : {false, true}) {
+        Scene scene = flux_through(below ? -2.0 : 1.0, below, {0.7, 0.7}, 8, 1024);
+        scene.volumes = {medium(Box{{0.0, -0.5, 0.0}, glm::dvec3(1.0)}, tau, 1.0)};
+        scene.periodic = Periodic{{-0.5, 0.0, -0.5}, {0.5, 0.0, 0.5}};
+        scene.settings.integrator = "ratioTracking";
+        scene.lights = {DirectionalLight{{std::sqrt(1.0 - mu0 * mu0), mu0, 0.0}, Rgb(1.0)}};
+        check_means(scene, below ? beam.transmitted : beam.reflected, fmt::format("slab {}, {}, {}", tau, mu0, below));
+    }
+}
+
+TEST_CASE("a ray through a domain that repeats passes as much as its slant says", "[gpu][image][periodic]") {
+    for (const double pitch : {-90.0, -30.0, -4.0}) {
+        Scene scene;
+        scene.volumes = {medium(Box{{0.0, 0.0, 0.0}, glm::dvec3(2.0)}, 0.05, 0.0)};
+        scene.periodic = Periodic{{-1.0, 0.0, -1.0}, {1.0, 0.0, 1.0}};
+        scene.camera.projection = Projection::orthographic;
+        scene.camera.view_height = 1e-2;
+        scene.camera.position = {17.0, 9.0, -5.0};
+        scene.camera.pitch = pitch;
+        scene.camera.yaw = 35.0;
+        scene.picture = {4, 4, 0.0, 0.0, 4.0, 4.0};
+        scene.background = Rgb(1.0);
+        scene.settings.spp = 2000;
+        const double depth = 0.05 * 2.0 / std::sin(glm::radians(-pitch));
+        for (const int flight : {FREE_FLIGHT_ANALYTIC, FREE_FLIGHT_DELTA}) {
+            scene.settings.integrator = "deltaTracking";
+            scene.settings.choices.free_flight = flight;
+            const std::vector<double> p(16, std::exp(-depth));
+            CHECK_AGREEMENT(agree_with_escapes(render_here(scene, 1).film, p, Rgb(1.0), Rgb(0.0), "slant"));
+        }
+    }
+}
+
+// Far away over the horizon, and after a thousand domains.
+TEST_CASE("how often a ray is moved across costs it an ulp each time", "[gpu][image][periodic]") {
+    Scene scene;
+    scene.volumes = {medium(Box{{0.0, 0.0, 0.0}, {0.5, 2.0, 2.0}}, 0.004, 0.0)};
+    scene.periodic = Periodic{{-1.0, 0.0, -1.0}, {1.0, 0.0, 1.0}};
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.view_height = 1e-3;
+    scene.camera.position = {0.0, 1.0, 0.0};
+    scene.camera.pitch = -0.05; // 2300 to the bottom
+    scene.camera.yaw = -90.0;   // along x
+    scene.picture = {4, 4, 0.0, 0.0, 4.0, 4.0};
+    scene.background = Rgb(1.0);
+    scene.settings.spp = 1;
+    scene.settings.integrator = "densitySampling"; // its transmittance is exact
+    const double length = 2.0 / std::sin(glm::radians(0.05)), depth = 0.004 * 0.25 * length;
+    // The ray's slope, 9e-4, is known to 6e-8, its height to 6e-8 of 1; all 1146 domains but the last are whole.
+    for (const glm::vec3& pixel : render_here(scene, 1).film.mean)
+        CHECK(pixel.x == Approx(std::exp(-depth)).epsilon(0.004 * 0.5 + 3e-4));
+}
+
+TEST_CASE("domains that repeat equal the reference's, unfolded", "[gpu][image][periodic]") {
+    Scene scene = above(cloud());
+    check_against_reference(scene, "a cloud");
+    scene.settings.filter = Filter::nearest;
+    scene.periodic = Periodic{{-4.0, 0.0, -4.2}, {4.5, 0.0, 4.0}}; // cuts some of it off
+    check_against_reference(scene, "a cloud, cut");
+    scene.periodic->low.z = scene.periodic->high.z = 0.0;
+    check_against_reference(scene, "rows of clouds along x");
+    scene.periodic = Periodic{{-4.0, -5.0, 0.0}, {4.5, 5.0, 0.0}};
+    scene.camera.position = {1.0, 3.0, -2.0};
+    check_against_reference(scene, "clouds along x and y, from within");
+    Scene balls = above(medium(Sphere{{1.0, 0.5, 0.0}, 2.5}, 0.7, {0.95}, 0.6));
+    balls.lights = {SunLight{glm::normalize(glm::dvec3(-0.3, 0.9, 0.2)), {3.0, 2.8, 2.0}, 10.0}};
+    check_against_reference(balls, "balls under a sun with an extent");
+    Volume leaning = medium(Box{{0.0, 0.0, 0.0}, {4.0, 2.0, 3.0}}, 0.9, 0.9, -0.3);
+    leaning.transform = glm::rotate(glm::dmat4(1.0), 0.7, glm::normalize(glm::dvec3(1.0, 0.3, -0.5)));
+    leaning.Le = {0.3, 0.1, 0.0};
+    check_against_reference(above(leaning), "boxes that lean and glow");
+    Scene colors = above(leaning);
+    colors.volumes.front().sigma_s = {0.9, 0.5, 0.3};
+    check_against_reference(colors, "of colours");
+    Scene several = above(cloud());
+    several.volumes.push_back(medium(Sphere{{-1.0, 1.5, 2.0}, 2.0}, 0.8, 0.8));
+    check_against_reference(several, "several");
+}
+
+TEST_CASE("all unbiased estimators agree where a domain repeats", "[gpu][image][periodic][hard]") {
+    Scene scene = above(cloud());
+    scene.volumes.front().Le = Rgb(0.2);
+    const Film reference = render_reference(scene, 2);
+    const std::vector<Combination> all = unbiased_combinations(scene);
+    REQUIRE(all.size() > 20);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!thorough() && i % 7 != 3)
+            continue;
+        Scene other = scene;
+        other.settings.choices = all[i].choices;
+        CHECK_AGREEMENT(agree(render_here(other, 1).film, reference, all[i].name));
+    }
+}
+
+TEST_CASE("a domain that holds the same twice is the same", "[gpu][image][periodic]") {
+    const Scene balls = above(medium(Sphere{{1.0, 0.5, 0.0}, 2.5}, 0.7, 0.9, 0.6));
+    CHECK_AGREEMENT(agree(render_here(repeated(balls, {2, 1}), 1).film, render_here(balls, 2).film, "balls"));
+    Scene solid = balls;
+    solid.surfaces.emplace_back().shape = BallSurface{{-1.5, -1.0, 2.0}, 1.5};
+    solid.surfaces.back().material.color = {0.8, 0.4, 0.2};
+    solid.surfaces.emplace_back().shape = PlaneSurface{{0.0, -3.0, 0.0}, up};
+    solid.surfaces.back().material.color = Rgb(0.5);
+    CHECK_AGREEMENT(agree(render_here(repeated(solid, {2, 2}), 1).film, render_here(solid, 2).film, "and solid ones"));
+    for (const MaterialKind kind : {MaterialKind::mirror, MaterialKind::dielectric}) {
+        solid.surfaces.front().material.kind = kind;
+        CHECK_AGREEMENT(agree(render_here(repeated(solid, {1, 2}), 1).film, render_here(solid, 2).film, "and shiny"));
+    }
+    solid.volumes.clear();
+    CHECK_AGREEMENT(agree(render_here(repeated(solid, {2, 1}), 1).film, render_here(solid, 2).film, "no media"));
+}
+
+// Where the domain begins is for its author to say.
+TEST_CASE("a domain may be moved by its own size, and its camera by any number of them", "[gpu][image][periodic]") {
+    const Scene scene = above(cloud());
+    const Film film = render_here(scene, 1).film;
+    Scene far = scene;
+    far.camera.position += glm::dvec3(40.0, 0.0, -70.0);
+    CHECK_AGREEMENT(agree(film, render_here(far, 2).film, "from afar"));
+    Scene halved = scene; // the same matter, cut elsewhere: what the faces cut off has a copy on the other side
+    halved.volumes.push_back(scene.volumes.front());
+    halved.volumes.back().transform = glm::translate(glm::dmat4(1.0), glm::dvec3(-10.0, 0.0, 0.0));
+    halved.periodic = Periodic{{-9.0, 0.0, -5.0}, {1.0, 0.0, 5.0}};
+    CHECK_AGREEMENT(agree(film, render_here(halved, 3).film, "cut elsewhere"));
+}
+
+TEST_CASE("both schedules go through a domain that repeats alike", "[gpu][image][periodic][determinism]") {
+    Scene scene = above(cloud());
+    scene.settings.spp = 16;
+    Scene solid = scene;
+    solid.surfaces.emplace_back().shape = BallSurface{{-1.5, -1.0, 2.0}, 1.5};
+    solid.surfaces.emplace_back().shape = PlaneSurface{{0.0, -5.0, 0.0}, up};
+    Scene tentative = solid;
+    tentative.settings.integrator = "ratioNEE";
+    Scene layered = scene;
+    layered.layers = layer_depth | layer_position | layer_indirect;
+    for (const Scene& each : {scene, solid, tentative, layered}) {
+        RenderJob fused, staged;
+        fused.plan.schedule = Schedule::fused;
+        staged.plan.schedule = Schedule::staged;
+        CHECK((same_bits(render_here(each, 1, fused).film, render_here(each, 1, staged).film) ||
+               !test_device().is_cpu()));
+    }
+}
+
+TEST_CASE("depths count from the eye, however many domains are between", "[gpu][image][periodic][aovs]") {
+    Scene scene;
+    scene.volumes = {medium(Box{{0.0, -1.0, 0.0}, {2.0, 0.5, 2.0}}, 1e5, 0.5)};
+    scene.volumes.push_back(medium(Sphere{{0.0, 6.0, 0.0}, 0.1}, 1e-9, 0.5)); // so that rays enter far above
+    scene.periodic = Periodic{{-1.0, 0.0, -1.0}, {1.0, 0.0, 1.0}};
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.view_height = 1e-2;
+    scene.camera.position = {17.0, 9.25, -5.0};
+    scene.camera.pitch = -20.0;
+    scene.camera.yaw = 35.0;
+    scene.picture = {2, 2, 0.0, 0.0, 2.0, 2.0};
+    scene.layers = layer_depth;
+    scene.settings.integrator = "deltaTracking";
+    scene.settings.spp = 4;
+    const RenderResult result = render_here(scene, 1);
+    const FilmLayer* depth = result.film.layer("depth");
+    REQUIRE(depth);
+    for (const glm::vec3& pixel : depth->mean)
+        CHECK(pixel.x == Approx(10.0 / std::sin(glm::radians(20.0))).epsilon(1e-3));
+}
+
+TEST_CASE("domains that repeat in scene files", "[cpu][xml][periodic]") {
+    const Scene scene = parse(R"(<sphere/><periodic x="-1 1" z="0 2.5"/>)");
+    REQUIRE(scene.periodic);
+    CHECK(scene.periodic->low == glm::dvec3(-1.0, 0.0, 0.0));
+    CHECK(scene.periodic->high == glm::dvec3(1.0, 0.0, 2.5));
+    CHECK_FALSE(parse("<sphere/>").periodic);
+    CHECK(scene_hash(scene) != scene_hash(parse(R"(<sphere/><periodic x="-1 1" z="0 2"/>)")));
+    CHECK_THAT(error_of("<periodic/>"), Contains("repeats along no axis"));
+    CHECK_THAT(error_of("<periodic x='1'/>"), Contains("where the domain begins and where it ends"));
+    CHECK_THAT(error_of("<periodic x='1 1'/>"), Contains("where the domain begins and where it ends"));
+    CHECK_THAT(error_of("<periodic w='1 2'/>"), Contains("unknown attribute 'w'"));
+}
+
+TEST_CASE("what a domain that repeats cannot have is said", "[cpu][method][periodic]") {
+    Scene scene = above(cloud());
+    CHECK(choose_method(scene).nee == NEE_COLLISIONS);
+    scene.settings.integrator.clear();
+    CHECK(choose_method(scene).nee == NEE_COLLISIONS); // no lattice goes across
+    scene.settings.integrator = "bidirectional";
+    CHECK_THROWS_WITH(choose_method(scene), Contains("would come from all of them"));
+    scene.settings.integrator = "ratioTracking";
+    scene.lights.push_back(PointLight{{1.0, 2.0, 3.0}, Rgb(30.0)});
+    CHECK_THROWS_WITH(load_assets(scene, choose_method(scene)), Contains("would stand in every domain"));
+    scene.lights.pop_back();
+    scene.surfaces.emplace_back().shape = PlaneSurface{{0.0, -3.0, 0.0}, glm::normalize(glm::dvec3(0.1, 1.0, 0.0))};
+    CHECK_THROWS_WITH(load_assets(scene, choose_method(scene)), Contains("has to lie along all axes"));
+}

@@ -1,0 +1,82 @@
+"""Published results of radiative transfer, each reading beside the figure in print. A z is the difference over its standard error,
+that of the reading and that of the print (rounding, or the scatter of a consensus) together; fails where one is beyond
+Sidak's limit over all of them.
+
+    python3 tools/truth --figures DIR [WORD ...]     WORD: only groups whose name contains one
+    --share .33    standard errors as a share of the prints' own slack, where MOST_SAMPLES suffice
+    --schedule     fused or staged
+    --page FILE    an HTML page with the columns of the step cloud over the consensus
+"""
+
+import argparse
+import pathlib
+import sys
+import tempfile
+import time
+
+if __package__ in (None, ""): # run as a folder
+    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+    __package__ = "truth"
+    import truth
+
+from truth import i3rc, judge, page, reading, slabs, voids
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+
+
+def options():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("words", nargs="*")
+    parser.add_argument("--figures", type=pathlib.Path)
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build")
+    parser.add_argument("--schedule", default="auto")
+    parser.add_argument("--share", type=float, default=1 / 3)
+    parser.add_argument("--page", type=pathlib.Path)
+    return parser.parse_args()
+
+
+def cases(figures):
+    yield from slabs.cases(pathlib.Path(__file__).with_name("haze_l.txt"))
+    if figures:
+        yield from i3rc.cases(figures / "i3rc")
+        yield from voids.cases(figures / "kobayashi_problem1.csv")
+
+
+def row(verdict):
+    v = verdict
+    return f"{v.case.name:28} {v.case.what + ', ' + v.label if v.label != v.case.what else v.label:44.44} {v.reading:11.6g} " \
+           f"{v.published:11.6g} {v.reading - v.published:+9.1e} {v.error:8.1e} {v.slack:8.1e} {v.z:+6.2f}"
+
+
+def main():
+    chosen = options()
+    found, groups = [], {}
+    print(f"{'group':28} {'quantity':44} {'reading':>11} {'published':>11} {'less':>9} {'error':>8} {'slack':>8} {'z':>6}")
+    with tempfile.TemporaryDirectory() as folder:
+        reader = reading.Reader((chosen.build / "vkvol").resolve(), folder, chosen.schedule)
+        for case in cases(chosen.figures):
+            if chosen.words and not any(word in case.name for word in chosen.words):
+                continue
+            start = time.time()
+            rows, samples = reader.read_to(case, chosen.share)
+            verdicts = judge.judge(case, rows)
+            found += verdicts
+            seconds, figures = groups.get(case.name, (0.0, 0))
+            groups[case.name] = seconds + time.time() - start, figures + len(verdicts)
+            for verdict in verdicts:
+                print(row(verdict), flush=True)
+    if not found:
+        raise SystemExit("no group's name contains such a word")
+    most = judge.limit(len(found))
+    print(f"\n{len(found)} figures; |z| may be {most:.2f}\n")
+    for name, (seconds, figures) in groups.items():
+        here = [v for v in found if v.case.name == name]
+        worst = max(here, key=lambda v: abs(v.z))
+        print(f"{name:28} {figures:4} figures in {seconds:6.1f} s, largest |z| {abs(worst.z):.2f} ({worst.case.what}, {worst.label})")
+    if chosen.page:
+        page.write(chosen.page, found)
+    return 0 if all(abs(v.z) <= most for v in found) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

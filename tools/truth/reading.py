@@ -1,0 +1,37 @@
+"""Readings by vkvol, with as many samples as they need."""
+
+import csv
+import pathlib
+import subprocess
+
+MOST_SAMPLES = 1 << 26
+
+
+class Reader:
+    def __init__(self, vkvol, folder, schedule):
+        self.vkvol, self.folder, self.schedule = vkvol, pathlib.Path(folder), schedule
+        self.count = 0
+
+    def read(self, scene, samples, seed):
+        """Rows of mean, standard error: of the middle channel, since all are alike. And the seconds that it took."""
+        self.count += 1
+        file = self.folder / f"case{self.count}.xml"
+        table = file.with_suffix(".csv")
+        file.write_text(f"<options>{scene}<rayPerPixelCount>{samples}</rayPerPixelCount></options>\n")
+        done = subprocess.run([self.vkvol, file, "-q", "--seed", str(seed), "--schedule", self.schedule, "-o", table],
+                              capture_output=True, text=True)
+        if done.returncode != 0:
+            raise SystemExit(f"{file}: {done.stderr.strip()}")
+        with open(table, newline="") as stream:
+            return [(float(row["G"]), float(row["standardError.G"] or "inf")) for row in csv.DictReader(stream)]
+
+    def read_to(self, case, share, seed=1):
+        """Readings whose standard errors are at most `share` of the figures' slack, or as good as MOST_SAMPLES make them."""
+        samples, wanted = case.samples, [share * slack / case.scale for slack in case.slack]
+        while True:
+            rows = self.read(case.scene, samples, seed)
+            short = max((error / goal) ** 2 for (_, error), goal in zip(rows, wanted))
+            if short <= 1.0 or samples >= MOST_SAMPLES:
+                return rows, samples
+            samples = min(MOST_SAMPLES, max(2 * samples, int(1.15 * short * samples)))
+            seed += 1

@@ -1,0 +1,82 @@
+"""Parts of scene files: what cases are made of. Heights are y; the sun's zenith angle has the cosine mu0, its azimuth is where it
+stands, from +x toward -z, that is counter-clockwise as seen from above."""
+
+import math
+
+
+def toward(mu, azimuth=0.0):
+    """Unit vector that goes up by mu, down where that is negative."""
+    across = math.sqrt(max(0.0, 1.0 - mu * mu))
+    return across * math.cos(math.radians(azimuth)), mu, -across * math.sin(math.radians(azimuth))
+
+
+def sun(mu0, irradiance, azimuth=0.0):
+    """From there, of this irradiance across itself."""
+    x, y, z = toward(mu0, azimuth)
+    return f'<light x="{x!r}" y="{y!r}" z="{z!r}" r="1" g="1" b="1" multiplier="{irradiance!r}"/>'
+
+
+def even_sky(radiance):
+    """Of the upper half; the lower one is black, as below a slab it is."""
+    return f'<backgroundColor r="1" g="1" b="1" multiplier="{radiance!r}"/>'
+
+
+def flux(height, down, width=1.0, depth=1.0, columns=1, rows=1, middle=(0.0, 0.0)):
+    """A sensor of what comes down there, or goes up: a pixel for each of the columns along x and rows along z."""
+    x, z = middle
+    look = height + (1.0 if down else -1.0)
+    up = "0 0 1" if down else "0 0 -1"  # so that columns go along +x
+    return (f'<irradiance x="{x!r}" y="{height!r}" z="{z!r}" lookAt="{x!r} {look!r} {z!r}" up="{up}" width="{width!r}" '
+            f'height="{depth!r}"/><width>{columns}</width><height>{rows}</height>')
+
+
+def radiance(height, mu, azimuth=0.0, width=1.0, columns=1, middle=(0.0, 0.0)):
+    """A camera of parallel rays that sees what leaves a plane at `height`, upwards by mu, in this azimuth: columns along x, of the
+    plane, whatever the slant. One row, next to nothing high."""
+    d = toward(mu, azimuth)
+    x, z = middle
+    eye = [p + width * q for p, q in zip((x, height, z), d)]
+    slant = mu if abs(math.sin(math.radians(azimuth))) < 1e-9 else 1.0
+    high = width * slant / columns
+    look = f"{x!r} {height!r} {z!r}"
+    return (f'<camera projection="orthographic" viewHeight="{high!r}" x="{eye[0]!r}" y="{eye[1]!r}" z="{eye[2]!r}" '
+            f'lookAt="{look}" up="0 0 -1"/><width>{columns}</width><height>1</height>')
+
+
+def periodic(width, depth):
+    return f'<periodic x="{-0.5 * width!r} {0.5 * width!r}" z="{-0.5 * depth!r} {0.5 * depth!r}"/>'
+
+
+def coefficients(sigma_t, albedo, phase=""):
+    return f"<sigma_a>{sigma_t * (1.0 - albedo)!r}</sigma_a><sigma_s>{sigma_t * albedo!r}</sigma_s>{phase}"
+
+
+def henyey_greenstein(g):
+    return f"<heyneygreenstein_g>{g!r}</heyneygreenstein_g>"
+
+
+def box(low, high, sigma_t, albedo, phase="", more=""):
+    """A volume of the list."""
+    middle = [0.5 * (a + b) for a, b in zip(low, high)]
+    size = [b - a for a, b in zip(low, high)]
+    places = " ".join(f'{n}="{v!r}"' for n, v in zip(("x", "y", "z", "width", "height", "depth"), middle + size))
+    return f"<volume><box {places}/>{coefficients(sigma_t, albedo, phase)}{more}</volume>"
+
+
+def volumes(*items):
+    return "<volumes>" + "".join(items) + "</volumes>"
+
+
+def slab(layers, width=8.0):
+    """Infinite layers, from the top down: (optical depth, albedo, phase). Each is as thick as it is deep; the top is at height 0.
+    And the height of the bottom."""
+    items, height = [], 0.0
+    for tau, albedo, phase in layers:
+        items.append(box((-0.5 * width, height - tau, -0.5 * width), (0.5 * width, height, 0.5 * width), 1.0, albedo, phase))
+        height -= tau
+    return volumes(*items) + periodic(width, width), height
+
+
+def ground(height, albedo):
+    """Matte, without end."""
+    return f'<surfaces><plane y="{height!r}" r="{albedo!r}" g="{albedo!r}" b="{albedo!r}"/></surfaces>'
