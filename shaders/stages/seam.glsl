@@ -15,8 +15,10 @@ void enter_domain(bool looks, inout Lane lane) {
     lane.seams = 0u;
 }
 
-// True, if what ended was but a part: then the path, or what looks, is across, where the next one begins.
-bool passes_seam(bool looks, inout Lane lane) {
+const uint STEPS_OF_SEAM = 64u; // as many as it counts for: a level ray through nothing is cut after a million domains
+
+// True, if what ended was but a part: then the path, or what looks, is across, where the next one begins; unless it is cut.
+bool passes_seam(bool looks, inout uint event, inout Lane lane, inout Tally tally) {
     vec3 from = looks ? looking_from(lane) : lane.path.position;
     vec3 direction = looks ? looking_along(lane) : lane.path.direction;
     ivec3 axis;
@@ -28,7 +30,11 @@ bool passes_seam(bool looks, inout Lane lane) {
     lane.path.position = looks ? lane.path.position : across;
     lane.flown += looks ? 0.0 : t;
     lane.seams = 1u;
-    return true;
+    lane.steps += STEPS_OF_SEAM;
+    bool cut = lane.steps >= push.step_limit;
+    event = cut ? EVENT_CUT : event;
+    tally.step_caps += cut ? 1u : 0u;
+    return !cut;
 }
 
 #endif

@@ -16,7 +16,7 @@ void arrive(MediumParams v, uint event, Spectrum deposit, inout Lane lane, inout
     bool goes_on = false;
     if (REPEATS)
         if (event == EVENT_LEFT)
-            goes_on = passes_seam(seeing, lane);
+            goes_on = passes_seam(seeing, event, lane, tally);
     if (goes_on)
         go_on_across(v, seeing, lane);
     else if (seeing && event != EVENT_MOVING)

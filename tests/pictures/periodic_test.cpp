@@ -255,6 +255,24 @@ TEST_CASE("depths count from the eye, however many domains are between", "[gpu][
         CHECK(pixel.x == Approx(10.0 / std::sin(glm::radians(20.0))).epsilon(1e-3));
 }
 
+TEST_CASE("a level ray through nothing is cut after a million domains, and counted", "[gpu][periodic]") {
+    Scene scene;
+    scene.volumes = {medium(Sphere{{0.0, 0.5, 0.0}, 0.1}, 1.0, 0.5), medium(Sphere{{0.0, -0.5, 0.0}, 0.1}, 1.0, 0.5)};
+    scene.periodic = Periodic{{-1.0, 0.0, -1.0}, {1.0, 0.0, 1.0}};
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.view_height = 1e-3;
+    scene.camera.yaw = -90.0; // along x
+    scene.picture = {2, 1, 0.0, 0.0, 2.0, 1.0};
+    scene.background = Rgb(1.0);
+    scene.settings.integrator = "deltaTracking";
+    RenderJob job;
+    job.crop = {0, 2, 0, 1};
+    job.disk_cache = false;
+    const RenderResult result = render(test_device(), scene, job);
+    CHECK(result.counts.step_caps == 2);
+    CHECK(result.film.mean[0] == glm::vec3(0.0f));
+}
+
 TEST_CASE("domains that repeat in scene files", "[cpu][xml][periodic]") {
     const Scene scene = parse(R"(<sphere/><periodic x="-1 1" z="0 2.5"/>)");
     REQUIRE(scene.periodic);

@@ -2,8 +2,11 @@
 that of the reading and that of the print (rounding, or the scatter of a consensus) together; fails where one is beyond
 Sidak's limit over all of them.
 
-    python3 tools/truth --figures DIR [WORD ...]     WORD: only groups whose name contains one
-    --share .33    standard errors as a share of the prints' own slack, where MOST_SAMPLES suffice
+    python3 tools/truth [--figures DIR] [WORD ...]     WORD: only groups whose name contains one
+    --figures DIR  a folder with i3rc/ and kobayashi_problem1.csv; without it their cases are left out
+    --share .33    standard errors as a share of the prints' own slack
+    --least 1e-3   and as a share of the figures: what is printed to more digits is read no better than this
+    --slabs N      so many slabs and stacks at random besides, against PyPI's nanodisort, if it is there
     --schedule     fused or staged
     --page FILE    an HTML page with the columns of the step cloud over the consensus
 """
@@ -14,12 +17,9 @@ import sys
 import tempfile
 import time
 
-if __package__ in (None, ""): # run as a folder
-    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
-    __package__ = "truth"
-    import truth
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))  # where this is run as a folder
 
-from truth import i3rc, judge, page, reading, slabs, voids
+from truth import i3rc, judge, nanodisort_case, page, reading, slabs, voids
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
@@ -28,18 +28,21 @@ def options():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("words", nargs="*")
     parser.add_argument("--figures", type=pathlib.Path)
+    parser.add_argument("--slabs", type=int, default=0)
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build")
     parser.add_argument("--schedule", default="auto")
     parser.add_argument("--share", type=float, default=1 / 3)
+    parser.add_argument("--least", type=float, default=1e-3)
     parser.add_argument("--page", type=pathlib.Path)
     return parser.parse_args()
 
 
-def cases(figures):
-    yield from slabs.cases(pathlib.Path(__file__).with_name("haze_l.txt"))
-    if figures:
-        yield from i3rc.cases(figures / "i3rc")
-        yield from voids.cases(figures / "kobayashi_problem1.csv")
+def cases(chosen, folder):
+    yield from slabs.cases(pathlib.Path(folder))
+    yield from nanodisort_case.cases(chosen.slabs)
+    if chosen.figures:
+        yield from i3rc.cases(chosen.figures / "i3rc")
+        yield from voids.cases(chosen.figures / "kobayashi_problem1.csv")
 
 
 def row(verdict):
@@ -54,11 +57,11 @@ def main():
     print(f"{'group':28} {'quantity':44} {'reading':>11} {'published':>11} {'less':>9} {'error':>8} {'slack':>8} {'z':>6}")
     with tempfile.TemporaryDirectory() as folder:
         reader = reading.Reader((chosen.build / "vkvol").resolve(), folder, chosen.schedule)
-        for case in cases(chosen.figures):
+        for case in cases(chosen, folder):
             if chosen.words and not any(word in case.name for word in chosen.words):
                 continue
             start = time.time()
-            rows, samples = reader.read_to(case, chosen.share)
+            rows, samples = reader.read_to(case, chosen.share, chosen.least)
             verdicts = judge.judge(case, rows)
             found += verdicts
             seconds, figures = groups.get(case.name, (0.0, 0))

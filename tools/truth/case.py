@@ -9,13 +9,13 @@ class Case:
     what: str  # the quantity
     source: str  # whose figures they are
     scene: str  # elements between <options> and </options>; {spp} aside
-    labels: list  # of the readings, in the order of the picture's pixels
+    labels: list  # of the readings: columns of the picture, whose rows are the same again, for a device has more than one lane
     published: list  # numbers, one a reading
     slack: list  # of each, one standard deviation of what the print leaves out: rounding, or the scatter of a consensus
     scale: float = 1.0  # readings times this are in the figures' unit
     less: list = field(default_factory=list)  # taken from the readings after that: what the figures leave out, known exactly
     mean: tuple = ()  # published mean over the readings and its slack; or nothing
-    samples: int = 1 << 14  # of a reading, to begin with
+    samples: int = 1 << 10  # of a reading, to begin with
 
 
 def digits(value, last):

@@ -16,13 +16,13 @@ def consensus(folder, case, what):
     return [float(word) for word in text.split()]
 
 
-def sensor(what, top, bottom, width, columns, depth=1.0, rows=1, middle=(0.0, 0.0)):
+def sensor(what, top, bottom, width, columns):
     if what == "R":
-        return scenes.flux(top, False, width, depth, columns, rows, middle)
+        return scenes.flux(top, False, width, 1.0, columns)
     if what == "T":
-        return scenes.flux(bottom, True, width, depth, columns, rows, middle)
+        return scenes.flux(bottom, True, width, 1.0, columns)
     mu, azimuth = (1.0, 0.0) if what == "Iu" else (0.5, 180.0)
-    return scenes.radiance(top, mu, azimuth, width, columns, middle)
+    return scenes.radiance(top, mu, azimuth, width, columns)
 
 
 def step_cloud_scene(what):

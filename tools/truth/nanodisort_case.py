@@ -8,7 +8,7 @@ from . import scenes
 from .case import Case
 
 SOURCE = "nanodisort"
-STREAMS = 64
+STREAMS, MOMENTS = 64, 300
 MUS = (.2, .55, .95)
 
 
@@ -24,22 +24,22 @@ def draw(rng):
 
 
 def solve(layers, mu0, ground, azimuth):
-    """Flux up at the top, down at the bottom with what comes straight through; radiance at the top at MUS. The sun's irradiance is 1
-    across itself."""
+    """Flux up at the top, down at the bottom with what comes straight through; radiance at the top at MUS, in an azimuth that counts from
+    where the beam goes. The sun's irradiance is 1 across itself."""
     import nanodisort
     import numpy
 
     state = nanodisort.DisortState()
-    state.nstr = state.nmom = STREAMS
+    state.nstr, state.nmom = STREAMS, MOMENTS
     state.nlyr, state.ntau, state.numu, state.nphi = len(layers), 2, len(MUS), 1
-    state.usrtau = state.usrang = state.lamber = True
-    state.onlyfl, state.quiet, state.intensity_correction = False, True, True
+    state.usrtau = state.usrang = state.lamber = state.quiet = True
+    state.onlyfl = False
+    state.intensity_correction = state.old_intensity_correction = True
     state.allocate()
-    depth = sum(tau for tau, _, _ in layers)
     state.dtauc = numpy.array([tau for tau, _, _ in layers])
     state.ssalb = numpy.array([albedo for _, albedo, _ in layers])
-    state.pmom = numpy.array([[g**n for _, _, g in layers] for n in range(STREAMS + 1)])
-    state.utau, state.umu, state.phi = numpy.array([0.0, depth]), numpy.array(MUS), numpy.array([azimuth])
+    state.pmom = numpy.array([[g**n for _, _, g in layers] for n in range(MOMENTS + 1)])
+    state.utau, state.umu, state.phi = numpy.array([0.0, sum(state.dtauc)]), numpy.array(MUS), numpy.array([azimuth])
     state.fbeam, state.umu0, state.phi0, state.albedo = 1.0, mu0, 0.0, ground
     state.solve()
     return state.flup[0], state.rfldn[1] + state.rfldir[1], [state.uu[i, 0, 0] for i in range(len(MUS))]
@@ -62,5 +62,5 @@ def cases(count, seed=1):
             yield Case("nanodisort, fluxes", what, SOURCE, scene + sensor, ["up" if value is up else "down"], [value],
                        [1e-3 * value + 1e-6])
         for mu, value in zip(MUS, radiances):
-            yield Case("nanodisort, radiances", what, SOURCE, scene + scenes.radiance(1e-3, mu, azimuth), [f"mu {mu}"], [value],
+            yield Case("nanodisort, radiances", what, SOURCE, scene + scenes.radiance(1e-3, mu, 180.0 + azimuth), [f"mu {mu}"], [value],
                        [2e-3 * value + 1e-6])

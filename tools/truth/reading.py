@@ -1,6 +1,7 @@
 """Readings by vkvol, with as many samples as they need."""
 
 import csv
+import math
 import pathlib
 import subprocess
 
@@ -13,7 +14,7 @@ class Reader:
         self.count = 0
 
     def read(self, scene, samples, seed):
-        """Rows of mean, standard error: of the middle channel, since all are alike. And the seconds that it took."""
+        """Of each column its mean and standard error: of the middle channel, since all are alike."""
         self.count += 1
         file = self.folder / f"case{self.count}.xml"
         table = file.with_suffix(".csv")
@@ -23,11 +24,17 @@ class Reader:
         if done.returncode != 0:
             raise SystemExit(f"{file}: {done.stderr.strip()}")
         with open(table, newline="") as stream:
-            return [(float(row["G"]), float(row["standardError.G"] or "inf")) for row in csv.DictReader(stream)]
+            columns = {}
+            for row in csv.DictReader(stream):
+                columns.setdefault(int(row["column"]), []).append((float(row["G"]), float(row["standardError.G"] or "inf")))
+        return [(sum(mean for mean, _ in column) / len(column), math.sqrt(sum(error**2 for _, error in column)) / len(column))
+                for _, column in sorted(columns.items())]
 
-    def read_to(self, case, share, seed=1):
-        """Readings whose standard errors are at most `share` of the figures' slack, or as good as MOST_SAMPLES make them."""
-        samples, wanted = case.samples, [share * slack / case.scale for slack in case.slack]
+    def read_to(self, case, share, least):
+        """Readings whose standard errors are at most `share` of the figures' slack, or `least` of the figures, or as good as
+        MOST_SAMPLES make them."""
+        samples, seed = case.samples, 100 * self.count + 1  # cases are independent
+        wanted = [max(share * slack, least * abs(value)) / case.scale for slack, value in zip(case.slack, case.published)]
         while True:
             rows = self.read(case.scene, samples, seed)
             short = max((error / goal) ** 2 for (_, error), goal in zip(rows, wanted))

@@ -17,30 +17,32 @@ def sun(mu0, irradiance, azimuth=0.0):
 
 
 def even_sky(radiance):
-    """Of the upper half; the lower one is black, as below a slab it is."""
+    """From everywhere: below a slab belongs a black ground."""
     return f'<backgroundColor r="1" g="1" b="1" multiplier="{radiance!r}"/>'
 
 
-def flux(height, down, width=1.0, depth=1.0, columns=1, rows=1, middle=(0.0, 0.0)):
-    """A sensor of what comes down there, or goes up: a pixel for each of the columns along x and rows along z."""
+ROWS = 64  # that read the same
+
+
+def flux(height, down, width=1.0, depth=1.0, columns=1, middle=(0.0, 0.0)):
+    """A sensor of what comes down there, or goes up: columns along x, and rows along z."""
     x, z = middle
     look = height + (1.0 if down else -1.0)
     up = "0 0 1" if down else "0 0 -1"  # so that columns go along +x
     return (f'<irradiance x="{x!r}" y="{height!r}" z="{z!r}" lookAt="{x!r} {look!r} {z!r}" up="{up}" width="{width!r}" '
-            f'height="{depth!r}"/><width>{columns}</width><height>{rows}</height>')
+            f'height="{depth!r}"/><width>{columns}</width><height>{ROWS}</height>')
 
 
-def radiance(height, mu, azimuth=0.0, width=1.0, columns=1, middle=(0.0, 0.0)):
+def radiance(height, mu, azimuth=0.0, width=0.01, columns=1, middle=(0.0, 0.0)):
     """A camera of parallel rays that sees what leaves a plane at `height`, upwards by mu, in this azimuth: columns along x, of the
-    plane, whatever the slant. One row, next to nothing high."""
+    plane, whatever the slant, and rows along z. More than one column are for azimuths along x."""
     d = toward(mu, azimuth)
     x, z = middle
-    eye = [p + width * q for p, q in zip((x, height, z), d)]
-    slant = mu if abs(math.sin(math.radians(azimuth))) < 1e-9 else 1.0
-    high = width * slant / columns
-    look = f"{x!r} {height!r} {z!r}"
+    eye = [p + 2.0 * width * q for p, q in zip((x, height, z), d)]  # beyond all that slants down from it
+    slant = mu if abs(d[2]) < 1e-9 else 1.0
+    high = width * slant / columns * ROWS
     return (f'<camera projection="orthographic" viewHeight="{high!r}" x="{eye[0]!r}" y="{eye[1]!r}" z="{eye[2]!r}" '
-            f'lookAt="{look}" up="0 0 -1"/><width>{columns}</width><height>1</height>')
+            f'lookAt="{x!r} {height!r} {z!r}" up="0 0 -1"/><width>{columns}</width><height>{ROWS}</height>')
 
 
 def periodic(width, depth):

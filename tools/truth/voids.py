@@ -38,5 +38,5 @@ def cases(table):
             place = f"{row['x']} {row['y']} {row['z']}"
             value = float(row[f"flux_{case}"])
             share = float(row["relerr_ii"]) if case == "ii" else 5e-6 / 3**.5
-            yield Case(f"voids, case {case}", f"scalar flux at {place}", SOURCE, medium(albedo) + f"<fluence>{place}</fluence>",
-                       [place], [value], [share * value], samples=1 << 20)
+            yield Case(f"voids, case {case}", f"scalar flux at {place}", SOURCE, medium(albedo) + f"<fluence>{(place + '  ') * scenes.ROWS}</fluence><width>1</width>",
+                       [place], [value], [share * value], samples=1 << 14)
