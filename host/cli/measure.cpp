@@ -91,8 +91,15 @@ std::vector<Values> rows_of(const std::string& table) {
 
 std::string as_csv(const std::vector<Values>& rows) {
     std::string text;
-    for (const Values& row : rows)
+    for (Values row : rows) {
+        for (std::string& word : row)
+            if (word.find_first_of("\"\n\r") != std::string::npos) {
+                for (std::size_t at = 0; (at = word.find('"', at)) != std::string::npos; at += 2)
+                    word.insert(at, 1, '"');
+                word = '"' + word + '"';
+            }
         text += fmt::format("{}\n", fmt::join(row, ","));
+    }
     return text;
 }
 
@@ -152,36 +159,56 @@ void check_output(const MeasureOptions& options, const Scene& scene) {
     check_directory_writable(*options.output, "-o");
 }
 
+void write(const MeasureOptions& options, const std::vector<Values>& rows) {
+    if (rows.empty())
+        return;
+    if (options.output)
+        write_text(*options.output, as_csv(rows));
+    else
+        put(stdout, as_text(rows));
+}
+
+// Before any time is spent: what is wrong with the last of many values is wrong now.
+void check_all(const MeasureOptions& options, Workshop& workshop) {
+    for (const Values& values : combinations(options.sweeps))
+        of_values(options.sweeps, values, [&] {
+            check_output(options, load_render_scene(request_of(options, values), workshop.fields()).scene);
+        });
+}
+
 } // namespace
 
 int run_measure(const MeasureOptions& options) {
     install_interrupt_handler();
     Workshop workshop(true);
+    check_all(options, workshop);
     std::vector<Values> rows;
     bool was_interrupted = false;
-    for (const Values& values : combinations(options.sweeps)) {
+    const auto measure_one = [&](const Values& values) {
         of_values(options.sweeps, values, [&] {
             const RenderScene loaded = load_render_scene(request_of(options, values), workshop.fields());
-            if (rows.empty())
-                check_output(options, loaded.scene);
             const RenderResult result = measure(options, loaded.scene, workshop);
             std::vector<std::string> warnings = loaded.scene.warnings;
             warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
             for (const std::string& warning : workshop.new_warnings(warnings))
                 if (!options.quiet)
                     tell(stderr, "vkvol: warning: {}\n", warning);
-            if (result.samples == 0)
-                throw RenderError("ended before any sample was done");
-            add(options.sweeps, values, options.means ? mean_table(result.film) : film_table(result.film), rows);
             was_interrupted = result.interrupted;
+            if (result.samples == 0 && !was_interrupted)
+                throw RenderError("ended before any sample was done");
+            if (result.samples > 0)
+                add(options.sweeps, values, options.means ? mean_table(result.film) : film_table(result.film), rows);
         });
-        if (was_interrupted)
-            break;
+    };
+    try {
+        for (const Values& values : combinations(options.sweeps))
+            if (!was_interrupted)
+                measure_one(values);
+    } catch (const std::exception&) { // what was measured is not lost
+        write(options, rows);
+        throw;
     }
-    if (options.output)
-        write_text(*options.output, as_csv(rows));
-    else
-        put(stdout, as_text(rows));
+    write(options, rows);
     return was_interrupted ? exit_interrupted : exit_done;
 }
 

@@ -1,7 +1,7 @@
 #include "measure_options.h"
 
 #include <algorithm>
-#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -25,9 +25,11 @@ constexpr std::size_t most_values = 100'000; // of all keys together
 // "A..BxN"; none if it is no such text.
 std::vector<std::string> evenly(const std::string& key, const std::string& text) {
     const std::size_t dots = text.find(".."), times = text.rfind('x');
-    const bool begins_as_number = !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) ||
-                                                    text[0] == '-' || (text[0] == '.' && dots > 0));
-    if (!begins_as_number || dots == std::string::npos || times == std::string::npos || times < dots)
+    double begin = 0.0;
+    const char* const end = text.data() + std::min(dots, text.size());
+    const auto [rest, error] = std::from_chars(text.data(), end, begin);
+    const bool is_range = error == std::errc() && rest == end && times != std::string::npos && times > dots;
+    if (!is_range || dots == std::string::npos) // as names of files may be
         return {};
     const std::string what = fmt::format("-D {}", key);
     const double from = parse_number(text.substr(0, dots), what),

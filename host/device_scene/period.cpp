@@ -1,5 +1,6 @@
 #include "period.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "placement.h"
@@ -37,9 +38,13 @@ Range range_of(const Scene& scene, Media media) {
         range.take_in(bounds->low);
         range.take_in(bounds->high);
     }
-    for (const Surface& surface : scene.surfaces) // which lie along the domain: see supported.cpp
-        if (const auto* plane = std::get_if<PlaneSurface>(&surface.shape))
-            range.take_in(plane->point);
+    // Planes lie along the axes that repeat, see supported.cpp; along others they have no end but across.
+    for (const Surface& surface : scene.surfaces)
+        if (const auto* plane = std::get_if<PlaneSurface>(&surface.shape)) {
+            const glm::dvec3 along = everywhere_reach * (1.0 - glm::step(1.0, glm::abs(plane->normal)));
+            range.take_in(plane->point - along);
+            range.take_in(plane->point + along);
+        }
     return range;
 }
 
@@ -50,13 +55,12 @@ shared::PeriodParams make_period(const Scene& scene, Media media, glm::dvec3 ori
     if (!scene.periodic)
         return params;
     const Range range = range_of(scene, media);
-    const double margin =
-        1e-5 * glm::length(glm::max(range.high - range.low, glm::dvec3(0.0)) + scene.periodic->size());
     params.low = scene.periodic->low - origin;
     params.size = scene.periodic->size();
     for (int axis = 0; axis < 3; ++axis) {
         const bool repeats = params.size[axis] > 0.0f;
         constexpr float infinite = std::numeric_limits<float>::max();
+        const double margin = 1e-5 * std::max(range.high[axis] - range.low[axis], 0.0);
         params.range_low[axis] = repeats ? -infinite : static_cast<float>(range.low[axis] - origin[axis] - margin);
         params.range_high[axis] = repeats ? infinite : static_cast<float>(range.high[axis] - origin[axis] + margin);
     }

@@ -103,7 +103,7 @@ Rgb background_shown(const Scene& scene) {
 } // namespace
 
 std::optional<Explanation> explain(const Scene& authored, const RenderResult& result, const Tone& tone) {
-    if (!authored.surfaces.empty()) // what is said is about pictures of media
+    if (!authored.surfaces.empty() || authored.periodic) // what is said is about pictures of media, that are there once
         return std::nullopt;
     const Scene scene = with_preset(authored);
     const FilmLook seen = look(result.film, background_shown(scene), tone.mapping);

@@ -45,7 +45,7 @@ uint see(MediumParams v, Collision c, uint event, inout Walk w, inout Rng rng, i
          inout Tally tally) {
     switch (TRANSMITTANCE) {
     case TRANSMITTANCE_ANALYTIC:
-        event = analytic_step(w);
+        event = analytic_step(v, w);
         break;
     case TRANSMITTANCE_REGULAR:
         event = regular_transmittance(v, w, tally);

@@ -146,10 +146,9 @@ uint label_at(Lane lane, MediumParams met) {
 // What the rows of path_state.h ask for.
 #define STATE_CONDITIONS(next, amid)                                                                                  \
     bool seeking = HAS_SURFACES && amid && (next == TODO_SEEK || next == TODO_CHECK);                                 \
-    bool repeats = REPEATS;                                                                                           \
-    bool seeing = LOOKS && amid && (next == TODO_SEE || (repeats && next == TODO_CHECK));                             \
+    bool repeats = REPEATS, flight_rests = NEE == NEE_TENTATIVE;                                                      \
+    bool seeing = LOOKS && amid && (next == TODO_SEE || ((repeats || flight_rests) && next == TODO_CHECK)); \
     bool looking = seeing || (LOOKS && next == TODO_LOOK) || (HAS_SURFACES && LOOKS && amid && next == TODO_CHECK);   \
-    bool flight_rests = NEE == NEE_TENTATIVE;                                                                         \
     bool keeps_place = KEEPS_PLACE;                                                                                   \
     bool several = SEVERAL_MEDIA;                                                                                     \
     bool looks_along = LOOKS_ALONG;                                                                                   \

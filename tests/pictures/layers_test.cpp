@@ -181,6 +181,9 @@ TEST_CASE("media that are everywhere equal the reference", "[gpu][image][layers]
     several.volumes.push_back(medium(write_grids({cloud_grid()}), 1.0, 0.9, 0.2));
     several.volumes.push_back(boxed);
     check_against_reference(several, "several");
+    Scene grounded = lit(atmosphere(0.8, 0.9));
+    grounded.surfaces.emplace_back().shape = PlaneSurface{{0.0, 0.3, 0.0}, {0.0, 1.0, 0.0}};
+    check_against_reference(grounded, "an atmosphere over a ground");
     Scene alone = lit(fog(0.2, 0.9));
     alone.lights = {PointLight{{1.0, 2.0, 3.0}, Rgb(30.0)}};
     check_against_reference(alone, "a lamp in fog");

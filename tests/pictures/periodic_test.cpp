@@ -167,6 +167,13 @@ TEST_CASE("domains that repeat equal the reference's, unfolded", "[gpu][image][p
     Scene several = above(cloud());
     several.volumes.push_back(medium(Sphere{{-1.0, 1.5, 2.0}, 2.0}, 0.8, 0.8));
     check_against_reference(several, "several");
+    Volume thinning = medium(Box{{0.0, 0.0, 0.0}, {10.0, 6.0, 10.0}}, 0.8, 0.9, 0.3);
+    thinning.layers = Layers{1, -3.0, 3.0, 1.5, -3.0};
+    check_against_reference(above(thinning), "an exponential, in closed forms");
+    Scene in_air = above(cloud());
+    in_air.volumes.push_back(medium(Everywhere{}, 0.05, 0.9, 0.3));
+    in_air.volumes.back().layers = Layers{1, -6.0, 30.0, 8.0, -6.0};
+    check_against_reference(in_air, "clouds in air");
 }
 
 TEST_CASE("all unbiased estimators agree where a domain repeats", "[gpu][image][periodic][hard]") {

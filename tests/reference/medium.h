@@ -31,9 +31,9 @@ struct Medium {
     std::optional<vkvol::Periodic> periodic; // see unfolded.cpp
 
     const Grid* grid() const { return std::get_if<Grid>(&shape); }
-    bool homogeneous() const { return !grid() && !noise && !layers && !periodic; } // density 1 throughout
-    bool fades() const { return layers && layers->scale_height > 0.0; }            // exponentially
-    double fading_integral(const Ray& ray, const Interval& part) const;            // of that density, world-space ray
+    bool homogeneous() const { return !grid() && !noise && !layers && !periodic; }   // density 1 throughout
+    bool fades() const { return layers && layers->scale_height > 0.0 && !periodic; } // exponentially
+    double fading_integral(const Ray& ray, const Interval& part) const;              // of that density, world-space ray
     bool unbounded() const { return std::holds_alternative<vkvol::Everywhere>(shape); }
     double density(const glm::dvec3& p) const; // at index coordinates of a grid, else before it is moved
 

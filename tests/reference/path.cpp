@@ -75,7 +75,8 @@ Rgb light_from_beyond(const World& world, const glm::dvec3& direction, bool at_c
 }
 
 World make_world(const vkvol::Scene& scene, Medium medium) {
-    medium.periodic = scene.periodic;
+    if (!medium.unbounded())
+        medium.periodic = scene.periodic;
     World world{scene, std::move(medium), {}, load_sky(scene.lights)};
     world.medium->majorant_scale = scene.settings.majorant_scale;
     world.method = resolve_method(scene, *world.medium);
@@ -90,7 +91,8 @@ World load_several(const vkvol::Scene& scene) {
     for (const vkvol::Volume& volume : scene.volumes) {
         Medium medium = load(preset_volume(scene.settings.integrator, volume), scene.settings.filter);
         medium.majorant_scale = scene.settings.majorant_scale;
-        medium.periodic = scene.periodic;
+        if (!medium.unbounded()) // which is the same everywhere along its layers
+            medium.periodic = scene.periodic;
         if (!medium.grey())
             throw std::runtime_error("the reference's race is for grey extinction");
         if (medium.largest() > 0.0 && !(medium.grid() && medium.grid()->empty()))

@@ -134,6 +134,29 @@ TEST_CASE("samples wanted in several goes are those of one", "[gpu][determinism]
     CHECK((same_bits(session.result().film, whole) || !test_device().is_cpu()));
 }
 
+// A search through many pieces takes several turns, and lanes are laid aside amid it.
+TEST_CASE("a flight rests while a shadow ray from amid it asks for surfaces", "[gpu][determinism][surfaces]") {
+    Scene scene = cloud(4);
+    TriangleSurface sheet;
+    for (int i = 0; i < 24; ++i)
+        for (int k = 0; k < 24; ++k)
+            sheet.vertices.emplace_back(0.5 * i - 6.0, -5.0 + std::sin(0.7 * i) * std::cos(0.9 * k), 0.5 * k - 6.0);
+    for (int i = 0; i < 23; ++i)
+        for (int k = 0; k < 23; ++k) {
+            const int a = 24 * i + k;
+            sheet.triangles.emplace_back(a, a + 1, a + 24);
+            sheet.triangles.emplace_back(a + 1, a + 25, a + 24);
+        }
+    scene.surfaces.emplace_back().shape = sheet;
+    scene.settings.integrator = "ratioNEE";
+    RenderJob usual = with_tuning(0, 0, 0, 0), short_of_turns = with_tuning(0, 0, 16, 1);
+    for (const Schedule schedule : {Schedule::fused, Schedule::staged}) {
+        usual.plan.schedule = short_of_turns.plan.schedule = schedule;
+        CHECK((same_bits(render_here(scene, 3, usual).film, render_here(scene, 3, short_of_turns).film) ||
+               !test_device().is_cpu()));
+    }
+}
+
 TEST_CASE("trying both schedules leaves no trace in the picture", "[gpu][determinism]") {
     const Scene scene = cloud(11);
     const RenderResult usual = render_here(scene, 39);

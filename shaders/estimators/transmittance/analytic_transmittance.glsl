@@ -3,9 +3,9 @@ Spectrum analytic_transmittance(MediumParams v, float distance) {
     return exp(-v.sigma_t * distance * to_spectrum(v.sigma_ratio));
 }
 
-// Where the medium has several parts, a step passes one.
-uint analytic_step(inout Walk w) {
-    w.depth += w.t_end;
+// Where the medium has several parts, a step passes one. Of an exponential the depth is a closed form as well.
+uint analytic_step(MediumParams v, inout Walk w) {
+    w.depth += LAYERED ? faded_depth(fading_along(v, w.origin, w.direction), w.t_end) : w.t_end;
     w.t = w.t_end;
     return EVENT_LEFT;
 }
