@@ -34,6 +34,7 @@ NOT_INSTALLED = {
     "help2man": "tools/package.sh installs it",
     "mitsuba": "a renderer to compare with, of PyPI: tools/peers/README.md",
     "drjit": "comes with mitsuba",
+    "nanodisort": "discrete ordinates to compare with, of PyPI: tools/truth --slabs",
 }
 
 

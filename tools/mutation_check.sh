@@ -23,6 +23,7 @@ while [ $# -gt 0 ]; do
     shift
 done
 results=$root/tools/results/mutations.txt
+tab=$(printf '\t')
 work=${MUTATION_DIR:-${TMPDIR:-/tmp}/vkvol-mutation}
 copy=$work/source
 build=$work/build
@@ -248,7 +249,7 @@ sys.exit(missing > 0)'
 source=$root
 key() { # ROW
     local name file text replacement tests
-    IFS=$'\t' read -r name file text replacement tests <<<"${1// ~ /$'\t'}"
+    IFS=$tab read -r name file text replacement tests <<<"${1// ~ /$tab}"
     {
         printf '%s\n' "$1"
         cat "$source/$file"
@@ -396,7 +397,7 @@ bad=0
 made=0
 for line in "${selected[@]}"; do
     [ $((SECONDS / 60)) -lt "$minutes" ] || break
-    IFS=$'\t' read -r name file text replacement tests <<<"${line// ~ /$'\t'}"
+    IFS=$tab read -r name file text replacement tests <<<"${line// ~ /$tab}"
     verdict=$(try_error "$name" "$file" "$text" "$replacement" "$tests")
     # A test that would fail anyway has caught nothing; a build and its tests are dear, so that is asked of failures alone.
     case $verdict in
