@@ -32,7 +32,6 @@ build=$work/build
 mutations() {
     cat <<'END'
 an exponential taken for even by shadow rays in parts ~ shaders/estimators/transmittance/analytic_transmittance.glsl ~ LAYERED ? faded_depth(fading_along(v, w.origin, w.direction), w.t_end) : w.t_end ~ w.t_end ~ [layers]
-flights that rest forgotten while surfaces are asked ~ shaders/stages/lane.glsl ~ (repeats || flight_rests) && next == TODO_CHECK ~ repeats && next == TODO_CHECK ~ [determinism]
 misses taken for certain where a domain repeats ~ shaders/passes/sky.comp ~ HAS_PARTICLES || REPEATS || ~ HAS_PARTICLES || ~ [periodic]
 a domain a hundredth too large ~ host/device_scene/period.cpp ~ params.size = scene.periodic->size(); ~ params.size = 1.01 * scene.periodic->size(); ~ [periodic]
 eyes beyond a domain stay there ~ shaders/shapes/period.glsl ~ return position - p.size * floor((position - p.low) / size); ~ return position; ~ [periodic]
