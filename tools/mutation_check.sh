@@ -31,6 +31,7 @@ build=$work/build
 # name ~ file ~ text ~ replacement ~ tests (a Catch2 specification). "^" parts several texts and their replacements.
 mutations() {
     cat <<'END'
+flights that rest forgotten while surfaces are asked ~ shaders/stages/lane.glsl ~ (repeats || flight_rests) && next == TODO_CHECK ~ repeats && next == TODO_CHECK ~ [determinism]
 an exponential taken for even by shadow rays in parts ~ shaders/estimators/transmittance/analytic_transmittance.glsl ~ LAYERED ? faded_depth(fading_along(v, w.origin, w.direction), w.t_end) : w.t_end ~ w.t_end ~ [layers]
 misses taken for certain where a domain repeats ~ shaders/passes/sky.comp ~ HAS_PARTICLES || REPEATS || ~ HAS_PARTICLES || ~ [periodic]
 a domain a hundredth too large ~ host/device_scene/period.cpp ~ params.size = scene.periodic->size(); ~ params.size = 1.01 * scene.periodic->size(); ~ [periodic]

@@ -137,17 +137,17 @@ TEST_CASE("samples wanted in several goes are those of one", "[gpu][determinism]
 // A search through many pieces takes several turns, and lanes are laid aside amid it.
 TEST_CASE("a flight rests while a shadow ray from amid it asks for surfaces", "[gpu][determinism][surfaces]") {
     Scene scene = cloud(4);
-    TriangleSurface sheet;
-    for (int i = 0; i < 24; ++i)
-        for (int k = 0; k < 24; ++k)
-            sheet.vertices.emplace_back(0.5 * i - 6.0, -5.0 + std::sin(0.7 * i) * std::cos(0.9 * k), 0.5 * k - 6.0);
-    for (int i = 0; i < 23; ++i)
-        for (int k = 0; k < 23; ++k) {
-            const int a = 24 * i + k;
-            sheet.triangles.emplace_back(a, a + 1, a + 24);
-            sheet.triangles.emplace_back(a + 1, a + 25, a + 24);
-        }
-    scene.surfaces.emplace_back().shape = sheet;
+    TriangleSurface confetti; // which rays pass near, and seldom meet
+    for (int i = 0; i < 6000; ++i) {
+        const glm::dvec3 share =
+            glm::fract(double(i) * glm::dvec3(0.8191725, 0.6710436, 0.5497005)); // evenly in a cube
+        const glm::dvec3 at = 14.0 * share - glm::dvec3(6.0, 7.0, 7.0);
+        const int first = 3 * i;
+        for (const glm::dvec3& corner : {glm::dvec3(0.0), glm::dvec3(0.03, 0.0, 0.0), glm::dvec3(0.0, 0.0, 0.03)})
+            confetti.vertices.push_back(at + corner);
+        confetti.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    scene.surfaces.emplace_back().shape = confetti;
     scene.settings.integrator = "ratioNEE";
     RenderJob usual = with_tuning(0, 0, 0, 0), short_of_turns = with_tuning(0, 0, 16, 1);
     for (const Schedule schedule : {Schedule::fused, Schedule::staged}) {

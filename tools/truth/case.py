@@ -18,6 +18,6 @@ class Case:
     samples: int = 1 << 10  # of a reading, to begin with
 
 
-def digits(value, last):
+def digits(last):
     """Slack of a figure that is rounded to `last`, a standard deviation of what that has taken away."""
     return last / 12**0.5

@@ -24,25 +24,23 @@ def even_sky(radiance):
 ROWS = 64  # that read the same
 
 
-def flux(height, down, width=1.0, depth=1.0, columns=1, middle=(0.0, 0.0)):
+def flux(height, down, width=1.0, depth=1.0, columns=1):
     """A sensor of what comes down there, or goes up: columns along x, and rows along z."""
-    x, z = middle
     look = height + (1.0 if down else -1.0)
     up = "0 0 1" if down else "0 0 -1"  # so that columns go along +x
-    return (f'<irradiance x="{x!r}" y="{height!r}" z="{z!r}" lookAt="{x!r} {look!r} {z!r}" up="{up}" width="{width!r}" '
+    return (f'<irradiance y="{height!r}" lookAt="0 {look!r} 0" up="{up}" width="{width!r}" '
             f'height="{depth!r}"/><width>{columns}</width><height>{ROWS}</height>')
 
 
-def radiance(height, mu, azimuth=0.0, width=0.01, columns=1, middle=(0.0, 0.0)):
+def radiance(height, mu, azimuth=0.0, width=0.01, columns=1):
     """A camera of parallel rays that sees what leaves a plane at `height`, upwards by mu, in this azimuth: columns along x, of the
     plane, whatever the slant, and rows along z. More than one column are for azimuths along x."""
     d = toward(mu, azimuth)
-    x, z = middle
-    eye = [p + 2.0 * width * q for p, q in zip((x, height, z), d)]  # beyond all that slants down from it
+    eye = [p + 2.0 * width * q for p, q in zip((0.0, height, 0.0), d)]  # beyond all that slants down from it
     slant = mu if abs(d[2]) < 1e-9 else 1.0
     high = width * slant / columns * ROWS
     return (f'<camera projection="orthographic" viewHeight="{high!r}" x="{eye[0]!r}" y="{eye[1]!r}" z="{eye[2]!r}" '
-            f'lookAt="{x!r} {height!r} {z!r}" up="0 0 -1"/><width>{columns}</width><height>{ROWS}</height>')
+            f'lookAt="0 {height!r} 0" up="0 0 -1"/><width>{columns}</width><height>{ROWS}</height>')
 
 
 def periodic(width, depth):

@@ -16,7 +16,7 @@ def up_and_down(name, source, layers, light, up, down, last, direct=0.0, irradia
     for what, value, height, is_down in (("flux up at the top", up, 1e-3, False), ("flux down at the bottom", down, bottom - 1e-3, True)):
         if value is not None:
             yield Case(name, what, source, slab + light + more + scenes.flux(height, is_down), [what], [value],
-                       [digits(value, last[0] if not is_down else last[1])], scale=1.0 / irradiance,
+                       [digits(last[0] if not is_down else last[1])], scale=1.0 / irradiance,
                        less=[direct] if is_down else [])
 
 
@@ -32,7 +32,7 @@ def van_de_hulst():
     for mu0, value in published.items():
         # Of radiance per mu0 F, the sun's irradiance across itself being pi F.
         yield Case("van de Hulst, isotropic", f"radiance at the top, mu 0.5, mu0 {mu0}", source,
-                   slab + scenes.sun(mu0, PI, 70.0) + scenes.radiance(1e-3, .5), [f"mu0 {mu0}"], [value], [digits(value, 1e-5)],
+                   slab + scenes.sun(mu0, PI, 70.0) + scenes.radiance(1e-3, .5), [f"mu0 {mu0}"], [value], [digits(1e-5)],
                    scale=1.0 / mu0)
     name, source = "van de Hulst, forward", "van de Hulst 1980, as quoted by MCML (Wang, Jacques, Zheng 1995)"
     layers = [(2.0, .9, scenes.henyey_greenstein(.75))]
@@ -51,7 +51,7 @@ def haze_l(haze):
         slab, _ = slab_of(haze, few)
         for mu, value in figures.items():
             yield Case(name, f"radiance at the top, mu {mu}", source, slab + light + scenes.radiance(1e-3, mu), [f"mu {mu}"], [value],
-                       [digits(value, 1e-7)])
+                       [digits(1e-7)])
 
 
 def slab_of(haze, moments):
