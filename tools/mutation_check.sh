@@ -31,6 +31,13 @@ build=$work/build
 # name ~ file ~ text ~ replacement ~ tests (a Catch2 specification). "^" parts several texts and their replacements.
 mutations() {
     cat <<'END'
+particles at a surface in the sensor's plane missed ~ shaders/stages/count.glsl ~ HAS_SURFACES ? 2.0 * 3.8147e-6 ~ HAS_SURFACES ? 0.0 * 3.8147e-6 ~ [counted]
+particles counted in one domain alone ~ shaders/stages/count.glsl ~ position -= frame.period.size * floor ~ position -= 0.0 * floor ~ [counted]
+particles not counted on their way into a domain ~ shaders/stages/seam.glsl ~ if (COUNTS) ~ if (false) ~ [counted]
+channels of counted particles not weighted ~ shaders/stages/count.glsl ~ if (!collided && !NULL_FLIGHT) ~ if (false) ~ [counted]
+what is cut off glows nevertheless ~ shaders/lights/emit.glsl ~ && !is_in_domain(p.position) ~ && false ~ [counted]
+light aslant through a face as if straight ~ shaders/lights/emit.glsl ~ abs(rise) * light ~ light ~ [counted]
+lights of particles not in the hash ~ host/methods/scene_hash.cpp ~ if (method.uses_lights() || ~ if (method.nee != NEE_NONE || ~ [counted]
 flights that rest forgotten while surfaces are asked ~ shaders/stages/lane.glsl ~ (repeats || flight_rests) && next == TODO_CHECK ~ repeats && next == TODO_CHECK ~ [determinism]
 an exponential taken for even by shadow rays in parts ~ shaders/estimators/transmittance/analytic_transmittance.glsl ~ LAYERED ? faded_depth(fading_along(v, w.origin, w.direction), w.t_end) : w.t_end ~ w.t_end ~ [layers]
 misses taken for certain where a domain repeats ~ shaders/passes/sky.comp ~ HAS_PARTICLES || REPEATS || ~ HAS_PARTICLES || ~ [periodic]

@@ -65,6 +65,17 @@ CameraRays camera_rays(const Camera& camera, const Picture& picture) {
     return rays;
 }
 
+SensorBox sensor_box(const Camera& camera, const Picture& picture) {
+    const CameraRays rays = camera_rays(camera, picture);
+    SensorBox box{rays.origin(0.0, 0.0), rays.origin(0.0, 0.0)};
+    for (const glm::dvec2& corner : {glm::dvec2(1.0, 0.0), glm::dvec2(0.0, 1.0), glm::dvec2(1.0, 1.0)}) {
+        const glm::dvec3 place = rays.origin(corner.x * picture.width, corner.y * picture.height);
+        box.low = glm::min(box.low, place);
+        box.high = glm::max(box.high, place);
+    }
+    return box;
+}
+
 std::vector<glm::dvec3> reading_places(const Camera& camera, const Picture& picture, const Crop& window) {
     std::vector<glm::dvec3> places;
     if (!reads_flux(camera))

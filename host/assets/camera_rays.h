@@ -26,6 +26,12 @@ struct CameraRays {
 
 CameraRays camera_rays(const Camera& camera, const Picture& picture);
 
+// The box about the rectangle of a sensor that reads irradiance, world.
+struct SensorBox {
+    glm::dvec3 low, high;
+};
+SensorBox sensor_box(const Camera& camera, const Picture& picture);
+
 // Where a sensor of flux reads each pixel of the window, row by row, world; empty of cameras.
 std::vector<glm::dvec3> reading_places(const Camera& camera, const Picture& picture, const Crop& window);
 

@@ -42,7 +42,7 @@ IntegratorRequest same_light(const Estimator& of, const Integrator& preset) {
     IntegratorRequest request{preset.name, {}};
     if (of.method.scattering != preset.scattering)
         request.choices.scattering = of.method.scattering;
-    const bool sees_lights = of.method.nee != NEE_NONE;
+    const bool sees_lights = of.method.uses_lights();
     if (!of.scene.lights.empty() && sees_lights != (preset.nee != NEE_NONE))
         request.choices.nee = sees_lights ? NEE_COLLISIONS : NEE_NONE;
     return request;

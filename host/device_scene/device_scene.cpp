@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <limits>
 
+#include "camera_rays.h"
 #include "emitter_table.h"
 #include "kernel_text.h"
 #include "light_table.h"
@@ -95,16 +96,21 @@ void DeviceScene::make_surfaces(const Scene& scene, const Assets& assets) {
         buffers_.upload_textures(device_, commands_, surfaces_.texels, assets.sky ? &*assets.sky : nullptr);
 }
 
-// World units from the origin; infinite where a medium is everywhere, or a plane.
+// World units from the origin, of a sensor's rectangle too; infinite where a medium is everywhere, or a plane.
 double DeviceScene::reach_of_all(const Scene& scene, const Assets& assets) const {
-    const bool has_end = !any_medium(scene, is_everywhere);
-    return has_end ? std::max(lit_radius(scene, assets, frame_.media[0]), reach_of_surfaces(scene.surfaces, origin_))
-                   : std::numeric_limits<double>::infinity();
+    if (any_medium(scene, is_everywhere))
+        return std::numeric_limits<double>::infinity();
+    double reach = std::max(lit_radius(scene, assets, frame_.media[0]), reach_of_surfaces(scene.surfaces, origin_));
+    if (scene.camera.projection == Projection::irradiance) {
+        const SensorBox box = sensor_box(scene.camera, scene.picture);
+        reach = std::max(reach, glm::length(glm::max(glm::abs(box.low - origin_), glm::abs(box.high - origin_))));
+    }
+    return reach;
 }
 
 void DeviceScene::make_emitters(const Scene& scene, const Method& method, const Assets& assets) {
-    const EmitterTable table =
-        make_emitter_table(scene, method, lights_, surfaces_, frame_.media[0], media_, reach_of_all(scene, assets));
+    const EmitterTable table = make_emitter_table(scene, method, lights_, surfaces_, frame_.media[0], media_,
+                                                  frame_.period, reach_of_all(scene, assets), origin_);
     frame_.particles = table.params;
     text_ += method.paths == PATHS_LIGHT ? ", by particles" : ", and by particles";
     buffers_.upload_emitters(device_, commands_, table);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "alias_table.h"
+#include "camera_rays.h"
 
 namespace vkvol {
 
@@ -31,7 +32,7 @@ double glow_of(const shared::MediumParams& medium) {
 
 class Emitters {
 public:
-    Emitters(EmitterTable& table, double radius) : table_(table), across_(pi * radius * radius) {}
+    Emitters(EmitterTable& table, double across) : table_(table), across_(across) {}
 
     void add(std::uint32_t source, double power) {
         if (!(power > 0.0) || !std::isfinite(power))
@@ -69,7 +70,7 @@ public:
 
 private:
     EmitterTable& table_;
-    double across_; // the ball
+    double across_; // the ball, or a domain that repeats
     std::vector<double> powers_;
     double sum_ = 0.0;
 };
@@ -86,15 +87,57 @@ void place_glow(const shared::MediumParams& medium, shared::ParticleParams& para
     params.glow_volume = static_cast<float>(std::abs(glm::determinant(edges)));
 }
 
+// Of a domain that repeats along two axes, its faces along the third. World units^2: their area; 0 of other domains.
+double place_faces(const shared::PeriodParams& period, shared::ParticleParams& params) {
+    double area = 1.0;
+    int open = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        params.open[axis] = period.size[axis] > 0.0f ? 0.0f : 1.0f;
+        open += period.size[axis] > 0.0f ? 0 : 1;
+        area *= period.size[axis] > 0.0f ? double(period.size[axis]) : 1.0;
+        if (params.open[axis] != 0.0f) {
+            params.below = std::min(period.range_low[axis], period.range_high[axis]);
+            params.above = std::max(period.range_low[axis], period.range_high[axis]);
+        }
+    }
+    return open == 1 ? area : 0.0;
+}
+
+// World units^2: its area. Light comes from beyond it.
+double place_sensor(const Scene& scene, glm::dvec3 origin, shared::ParticleParams& params) {
+    const SensorBox box = sensor_box(scene.camera, scene.picture);
+    const glm::dvec3 low = box.low - origin, high = box.high - origin;
+    params.sensor_low = low;
+    const double margin = 1e-5 * std::max(double(params.above) - params.below, glm::length(high - low));
+    const glm::dvec3 open = params.open;
+    params.below = static_cast<float>(std::min(double(params.below), glm::dot(open, low) - margin));
+    params.above = static_cast<float>(std::max(double(params.above), glm::dot(open, high) + margin));
+    const CameraRays rays = camera_rays(scene.camera, scene.picture);
+    return glm::length(glm::cross(rays.right, rays.down)) * scene.picture.width * scene.picture.height;
+}
+
+// In which splats count: a power of two some 2^34 below a pixel's value, so that sums of 64 bits hold what is 2^25
+// above it; and 2^14 below that of a light that is seen.
+double unit_of_splats(double power, double across, const LightTable& lights) {
+    double usual = power / across;
+    for (const shared::LightRow& light : lights.rows)
+        usual = std::max(usual, mean(light.radiance) / double(1 << 20));
+    return std::exp2(std::floor(std::log2(usual)) - 34.0);
+}
+
 } // namespace
 
 EmitterTable make_emitter_table(const Scene& scene, const Method& method, const LightTable& lights,
                                 const SurfaceTable& surfaces, const shared::MediumParams& medium,
-                                std::span<const shared::MediumParams> media, double radius) {
+                                std::span<const shared::MediumParams> media, const shared::PeriodParams& period,
+                                double radius, glm::dvec3 origin) {
     EmitterTable table;
     const bool bounded = std::isfinite(radius);
     table.params.radius = bounded ? static_cast<float>(radius * 1.0001) : 0.0f;
-    Emitters emitters(table, bounded ? radius : 0.0);
+    const bool counts = scene.camera.projection == Projection::irradiance;
+    const double face = scene.periodic ? place_faces(period, table.params) : 0.0;
+    const double sensor = counts ? place_sensor(scene, origin, table.params) : 0.0;
+    Emitters emitters(table, scene.periodic ? face : bounded ? pi * radius * radius : 0.0);
     for (std::size_t i = 0; i < lights.rows.size(); ++i)
         emitters.add(static_cast<std::uint32_t>(i),
                      lights.powers[i] * (i < lights.lamp_first ? emitters.across() : 1.0));
@@ -113,13 +156,9 @@ EmitterTable make_emitter_table(const Scene& scene, const Method& method, const 
         }
     }
     emitters.finish();
-    // A power of two some 2^34 below a pixel's value, so that sums of 64 bits hold what is 2^25 above it; and 2^14
-    // below that of a light that is seen.
     const double reach = bounded && radius > 0.0 ? radius : 1.0;
-    double usual = table.params.power / (4.0 * pi * pi * reach * reach);
-    for (const shared::LightRow& light : lights.rows)
-        usual = std::max(usual, mean(light.radiance) / double(1 << 20));
-    table.params.unit = static_cast<float>(std::exp2(std::floor(std::log2(usual)) - 34.0));
+    table.params.unit =
+        static_cast<float>(unit_of_splats(table.params.power, counts ? sensor : 4.0 * pi * pi * reach * reach, lights));
     return table;
 }
 

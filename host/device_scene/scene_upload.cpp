@@ -428,7 +428,7 @@ Specialization specialize(const Scene& scene, Media media, const Method& method,
     constants[SPEC_STEPS] = 1;
     // Without looks only what flights meet by themselves is seen.
     const int lights = lights_kind(scene);
-    const int seen = method.nee == NEE_NONE ? lights & ~LIGHTS_LAMPS : lights;
+    const int seen = method.nee == NEE_NONE && method.paths == PATHS_CAMERA ? lights & ~LIGHTS_LAMPS : lights;
     constants[SPEC_LIGHTS] = seen == LIGHTS_TABLE && method.nee == NEE_NONE ? LIGHTS_SUN : seen;
     constants[SPEC_PATHS] = method.paths;
     if (method.paths != PATHS_CAMERA) // whose looks go toward the sensor

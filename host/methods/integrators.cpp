@@ -6,6 +6,7 @@
 #include "error.h"
 #include "method.h"
 #include "nearest_name.h"
+#include "particle_scenes.h"
 #include "shared/constants.h"
 #include "surface_lamps.h"
 
@@ -169,6 +170,7 @@ bool gains_by_cache(const Scene& scene) {
 const Integrator& choose_integrator(const Scene& scene) {
     const bool is_dark = scene.lights.empty() && !has_lamps_of_surfaces(scene);
     const std::string name = !scene.settings.integrator.empty() ? scene.settings.integrator
+                             : gains_by_particles(scene)        ? "lightTracing"
                              : is_dark                          ? "deltaTracking"
                              : !gains_by_cache(scene)           ? "ratioTracking"
                                                                 : "cachedRatioTracking";

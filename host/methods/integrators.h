@@ -60,7 +60,8 @@ const Integrator* find_integrator(const std::string& name);
 // Throws InputError (its message has no place) unless `name` is one of integrator_names().
 void check_integrator(const std::string& name);
 
-// The scene's own, or, if it names none, the best unbiased choice: next-event estimation if there is a light to see.
+// The scene's own, or, if it names none, the best unbiased choice: next-event estimation if there is a light to see, or
+// particles where a sensor of flux has most of them.
 // Throws InputError for an unknown name.
 const Integrator& choose_integrator(const Scene& scene);
 

@@ -7,6 +7,7 @@
 #include "error.h"
 #include "estimator_traits.h"
 #include "integrators.h"
+#include "particle_scenes.h"
 #include "shared/constants.h"
 #include "surface_lamps.h"
 
@@ -18,6 +19,10 @@ bool Method::flights_have(int traits) const {
 
 bool Method::shadow_rays_have(int traits) const {
     return nee != NEE_NONE && transmittance_has(transmittance, traits);
+}
+
+bool Method::uses_lights() const {
+    return nee != NEE_NONE || paths != PATHS_CAMERA;
 }
 
 namespace {
@@ -32,10 +37,6 @@ bool has_map(const Scene& scene) {
 bool fades(const Scene& scene) {
     const Volume& volume = scene.volumes.front();
     return volume.layers && volume.layers->scale_height > 0.0;
-}
-
-bool can_scatter(const Volume& volume) {
-    return volume.sigma_s * most_map_albedo(volume) != Rgb(0.0);
 }
 
 // One method in the making: each rule builds on those before.
@@ -54,7 +55,6 @@ private:
     bool loses_thrown_light() const;
     void find_chances();
     void choose_paths();
-    void check_particles() const;
     void choose_scattering();
     void choose_flight();
     const char* without_voxels() const;
@@ -105,38 +105,10 @@ void Resolution::choose_paths() {
         warn("paths are from the camera: without lights there are no particles");
         method_.paths = PATHS_CAMERA;
     }
-    if (method_.paths != PATHS_CAMERA)
-        check_particles();
-}
-
-// What particles cannot do, and what does it instead.
-void Resolution::check_particles() const {
-    const auto refuse = [&](const char* why) {
-        throw InputError(fmt::format("{}: {}; integrator ratioTracking renders it", method_.integrator, why));
-    };
-    const auto shines_plane = [](const Surface& surface) {
-        return std::holds_alternative<PlaneSurface>(surface.shape) && surface.emission != Rgb(0.0);
-    };
-    const auto is_plane = [](const Surface& surface) { return std::holds_alternative<PlaneSurface>(surface.shape); };
-    const auto is_model = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
-    const auto is_far = [](const Light& light) { return !has_place(light); };
-    const bool from_afar =
-        scene_.background != Rgb(0.0) || std::any_of(scene_.lights.begin(), scene_.lights.end(), is_far);
-    if (reads_flux(scene_.camera))
-        refuse("particles are seen by cameras, and this sensor reads flux");
-    if (scene_.layers != 0)
-        refuse("layers are filled by paths from the camera alone");
-    if (scene_.periodic)
-        refuse("particles of a domain that repeats would come from all of them");
-    if (method_.paths == PATHS_BOTH) // paths from the camera find what particles do not
+    if (method_.paths == PATHS_CAMERA)
         return;
-    if ((has_no_end() || any_surface(is_plane)) && from_afar)
-        refuse("light from infinitely far has no end where a medium is everywhere, or a plane, and particles can come "
-               "from some of it only");
-    if (any_surface(shines_plane))
-        refuse("a plane that shines has no end, and particles can come from some of it only");
-    if (emits_ && (has_no_end() || any_medium(scene_, is_model)))
-        refuse("particles of a medium's own light need a box or a grid that it is in");
+    if (const char* why = why_no_particles(scene_, method_.paths == PATHS_BOTH, emits_))
+        throw InputError(fmt::format("{}: {}; integrator ratioTracking renders it", method_.integrator, why));
 }
 
 void Resolution::choose_scattering() {
@@ -198,9 +170,10 @@ void Resolution::choose_nee() {
     int& nee = method_.nee;
     nee = choices_.nee.value_or(preset_.nee);
     if (method_.paths != PATHS_CAMERA) {
-        if (choices_.nee.value_or(NEE_COLLISIONS) != NEE_COLLISIONS)
-            warn("nee is at collisions: there particles look toward the camera");
-        nee = NEE_COLLISIONS;
+        nee = reads_flux(scene_.camera) ? NEE_NONE : NEE_COLLISIONS;
+        if (choices_.nee.value_or(nee) != nee)
+            warn(nee == NEE_NONE ? "nee is none: particles are counted where they pass"
+                                 : "nee is at collisions: there particles look toward the camera");
         return;
     }
     const bool scatters =
@@ -393,7 +366,7 @@ void Resolution::find_biases() {
     const bool needs_majorant = method_.flights_have(TRAIT_BOUND) || method_.shadow_rays_have(TRAIT_BOUND);
     if (needs_majorant && scene_.settings.majorant_scale < 1.0)
         add(bias_majorant, "the majorant is scaled below the density");
-    if (any_surface(is_smooth) && method_.paths == PATHS_LIGHT)
+    if (any_surface(is_smooth) && method_.paths == PATHS_LIGHT && !reads_flux(scene_.camera))
         add(bias_shown, "what smooth mirrors, coats and glass show is missing, which no particle finds");
     if (loses_thrown_light())
         add(bias_thrown, "what smooth mirrors, coats and glass throw of points, spots and directional lights is "
@@ -407,6 +380,10 @@ bool is_through(const Method& method) {
     if (method.scattering == SCATTERING_NONE && method.free_flight == FREE_FLIGHT_ANALYTIC)
         return true;
     return method.scattering != SCATTERING_MULTIPLE && method.flights_have(TRAIT_MARCH);
+}
+
+bool can_scatter(const Volume& volume) {
+    return volume.sigma_s * most_map_albedo(volume) != Rgb(0.0);
 }
 
 bool is_superposition(const Scene& scene) {

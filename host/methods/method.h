@@ -39,6 +39,8 @@ struct Method {
     // Any of `traits`, TRAIT_... of shaders/shared/estimators.h. Where no shadow rays are sent they have none.
     bool flights_have(int traits) const;
     bool shadow_rays_have(int traits) const;
+    // Lights that flights do not meet by themselves.
+    bool uses_lights() const;
 };
 
 // A march (or, without scattering, one analytic step) through the whole medium that samples no collision.
@@ -53,6 +55,7 @@ bool has_chromatic_extinction(const Scene& scene); // sigma_t differs between ch
 // Where transmittances towards lights can be cached: there are any, the density varies, the shape is no mesh, and no
 // surface is in the way.
 bool can_cache_light(const Scene& scene);
+bool can_scatter(const Volume& volume);
 bool emits(const Scene& scene); // judged by coefficients: the temperature grid may be missing
 
 // `field`: FIELD_... Expects the scene of with_preset(). Throws InputError, with the remedy, for what cannot be.

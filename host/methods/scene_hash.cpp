@@ -315,12 +315,12 @@ std::string scene_hash(const Scene& authored) {
     for (const Surface& surface : shining.surfaces)
         add_surface(writer, surface);
     for (const Light& light : shining.lights)
-        if (method.nee != NEE_NONE || is_met_by_chance(light))
+        if (method.uses_lights() || is_met_by_chance(light))
             std::visit([&writer](const auto& kind) { add_light(writer, kind); }, light);
     // Where light scatters but once, what flights meet is scattered by looks alone.
     if (method.scattering == SCATTERING_SINGLE &&
         std::any_of(scene.lights.begin(), scene.lights.end(), is_met_by_chance))
-        writer.add("looks", method.nee != NEE_NONE ? 1 : 0);
+        writer.add("looks", method.uses_lights() ? 1 : 0);
     if (method.biases & bias_shadow_steps)
         writer.add("mis", method.mis);
     if (scene.periodic) {

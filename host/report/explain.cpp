@@ -77,9 +77,9 @@ bool sees_light(const Scene& scene, const Method& method) {
         return std::any_of(scene.lights.begin(), scene.lights.end(), is);
     };
     if (any(is_met_by_chance) ||
-        ((any(is_lamp) || reads_flux(scene.camera)) && !scene.lights.empty() && method.nee != NEE_NONE))
+        ((any(is_lamp) || reads_flux(scene.camera)) && !scene.lights.empty() && method.uses_lights()))
         return true;
-    return !scene.lights.empty() && method.nee != NEE_NONE && scene.settings.max_depth != 0u;
+    return !scene.lights.empty() && method.uses_lights() && scene.settings.max_depth != 0u;
 }
 
 std::optional<Explanation> foresee(const Scene& authored) {

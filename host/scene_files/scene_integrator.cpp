@@ -87,7 +87,7 @@ void SceneReader::check_method(const Scene& scene) const {
 }
 
 void SceneReader::warn_about_light(const Scene& scene, const Method& method) const {
-    if (method.nee != NEE_NONE || scene.lights.empty())
+    if (method.uses_lights() || scene.lights.empty())
         return;
     const XmlElement light = one("light"), element = light.exists() && !scene.lights.empty() ? light : one("lights");
     if (std::all_of(scene.lights.begin(), scene.lights.end(), is_met_by_chance)) {

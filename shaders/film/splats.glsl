@@ -52,7 +52,8 @@ vec3 splatted(uint at) {
 // A path is over.
 void film_or_splats(inout FilmPixel sums, vec3 radiance, uint pixel, uint place, uint sample_index, inout Tally tally) {
     if (HAS_PARTICLES) {
-        splat(pixel, place, sample_index, radiance);
+        if (!COUNTS)
+            splat(pixel, place, sample_index, radiance);
         tally.paths += 1u;
     } else {
         film_add(sums, radiance, place, sample_index, tally);

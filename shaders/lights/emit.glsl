@@ -7,6 +7,7 @@
 #include "lights/families.glsl"
 #include "lights/lamp.glsl"
 #include "lights/table.glsl"
+#include "shapes/period.glsl"
 #include "surfaces/surface_point.glsl"
 
 // How light leaves its source, about where a particle begins.
@@ -33,9 +34,21 @@ float shine_toward(Particle p, vec3 direction) {
     return p.shines == SHINES_ALIKE ? INV_4PI : p.shines == SHINES_FLAT ? max(dot(p.normal, direction), 0.0) / PI : 0.0;
 }
 
+// Through a face of a domain that repeats along two axes, above all there is or below it: see from_afar.
+Particle through_face(vec3 toward, vec3 light, vec2 u) {
+    ParticleParams all = frame.particles;
+    float rise = dot(toward, all.open);
+    vec3 at = frame.period.size * vec3(u.x, all.open.x > 0.0 ? u.x : u.y, u.y);
+    vec3 position = mix(frame.period.low + at, vec3(rise > 0.0 ? all.above : all.below), all.open);
+    vec3 size = mix(frame.period.size, vec3(1.0), all.open);
+    return particle(position, -toward, size.x * size.y * size.z * abs(rise) * light, SHINES_UNSEEN);
+}
+
 // Across the ball that is lit from afar. `light`: irradiance.
 Particle from_afar(vec3 toward, vec3 light, vec2 u) {
     ParticleParams all = frame.particles;
+    if (REPEATS)
+        return through_face(toward, light, u);
     vec3 tangent, bitangent;
     build_frame(toward, tangent, bitangent);
     vec2 at = all.radius * in_disk(u);
@@ -79,6 +92,16 @@ Particle from_light(LightRow light, vec2 where, vec2 u, inout Rng rng) {
     if (WEIGHS)
         p.shares = light_shares(light, max(dot(p.normal, p.direction), 0.0), pdf);
     return p;
+}
+
+// The same from everywhere, `side` in [0, 1). What comes through a face goes by the cosine.
+Particle from_background(vec2 where, vec2 u, float side) {
+    vec3 light = frame.lights[LIGHT_BACKGROUND].radiance;
+    if (!REPEATS)
+        return from_afar(in_any_direction(u), 4.0 * PI * light, where);
+    vec3 open = frame.particles.open;
+    vec3 toward = by_cosine(side < 0.5 ? open : -open, u);
+    return from_afar(toward, 2.0 * PI / max(abs(dot(toward, open)), 1.0e-6) * light, where);
 }
 
 // Anywhere in the box about all media. What there is of light depends on where that is.
@@ -129,13 +152,15 @@ Particle emit_particle(MediumParams v, inout Rng rng) {
     if (EMISSION != EMISSION_NONE && source.source == SOURCE_GLOW)
         p = from_glow(v, where, u, more, rng);
     else if (source.source == SOURCE_BACKGROUND)
-        p = from_afar(in_any_direction(u), 4.0 * PI * frame.lights[LIGHT_BACKGROUND].radiance, where);
+        p = from_background(where, u, to_uniform(more).z);
 #ifdef SURFACES
     else if ((source.source & AT_SURFACE) != 0u)
         p = from_primitive(source.source & ~AT_SURFACE, where, u, to_uniform(more).z);
 #endif
     else
         p = from_light(light_at(source.source), where, u, rng);
+    if (REPEATS && p.shines != SHINES_UNSEEN && !is_in_domain(p.position)) // else its place is in no domain, or in another again
+        p.light = vec3(0.0);
     p.light /= source.chance * frame.particles.power;
     return p;
 }

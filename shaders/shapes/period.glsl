@@ -25,6 +25,12 @@ vec3 beyond_seam(vec3 position, vec3 direction, float t, ivec3 axis) {
     return mix(position + t * direction, across, equal(axis, ivec3(1)));
 }
 
+bool is_in_domain(vec3 position) {
+    PeriodParams p = frame.period;
+    bvec3 inside = lessThan(abs(position - p.low - 0.5 * p.size), 0.5 * p.size);
+    return all(equal(ivec3(1), ivec3(inside) | ivec3(equal(p.size, vec3(0.0)))));
+}
+
 // Where in the domain a ray that begins anywhere first comes near anything, `before` world units on.
 vec3 place_in_domain(vec3 position, vec3 direction, out float before) {
     PeriodParams p = frame.period;

@@ -281,6 +281,10 @@ struct ParticleParams {
     vec3 glow_corner;  // and where that is
     vec3 glow_edges[3];
     float unit;        // in which splats count
+    vec3 open;         // of a domain that repeats along two axes, 1 along the third,
+    float above;       // and where along that there is nothing beyond, nor below
+    float below;
+    vec3 sensor_low;   // of a box about a sensor of flux, render space
 };
 
 // A map of the sky, see sky.glsl.

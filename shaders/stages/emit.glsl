@@ -14,7 +14,7 @@ void emit(MediumParams v, inout Lane lane, inout Rng rng) {
     lane.beta = to_spectrum(p.light);
     lane.shares = p.shares;
     lane.todo = largest(p.light) > 0.0 ? TODO_DEPART : TODO_END;
-    if (PATHS == PATHS_LIGHT && lane.todo != TODO_END && p.shines != SHINES_UNSEEN) {
+    if (PATHS == PATHS_LIGHT && !COUNTS && lane.todo != TODO_END && p.shines != SHINES_UNSEEN) {
         SensorLook look = toward_sensor(p.position, rng);
         show(v, look, p.position, vec3(shine_toward(p, look.direction)), lane.beta, TODO_DEPART, lane);
     }

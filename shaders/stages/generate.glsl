@@ -69,8 +69,10 @@ void generate(MediumParams v, inout Lane lane, out Rng rng) {
     if (READS_FLUX) // in an `if` of its own, which kernels without such sensors are compiled without
         if (LOOKS_FROM_SENSOR)
             look_at_lights(v, lane, rng);
-    if (PATHS == PATHS_LIGHT)
+    if (PATHS == PATHS_LIGHT && !COUNTS)
         look_beyond(v, lane, rng);
+    if (COUNTS)
+        lane.todo = TODO_END;
 }
 
 #endif

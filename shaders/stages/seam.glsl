@@ -2,13 +2,16 @@
 // left of its optical depth is carried over to the next.
 #ifndef STAGE_SEAM_GLSL
 #define STAGE_SEAM_GLSL
-#include "stages/lane.glsl"
+#include "stages/count.glsl"
 
 // A segment is about to begin, wherever that is.
 void enter_domain(bool looks, inout Lane lane) {
     float before;
     vec3 position = place_in_domain(looks ? looking_from(lane) : lane.path.position,
                                     looks ? looking_along(lane) : lane.path.direction, before);
+    if (COUNTS)
+        if (is_particle(lane))
+            count_passing(lane.path.position, true, position, lane);
     lane.position = looks ? position : lane.position;
     lane.path.position = looks ? lane.path.position : position;
     lane.flown = looks ? lane.flown : before;

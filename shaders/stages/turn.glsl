@@ -2,6 +2,7 @@
 #ifndef STAGE_TURN_GLSL
 #define STAGE_TURN_GLSL
 #include "stages/collide.glsl"
+#include "stages/count.glsl"
 #include "stages/depart.glsl"
 #include "stages/emit.glsl"
 #include "stages/escape.glsl"
@@ -44,8 +45,12 @@ void turn(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
 #endif
     Spectrum deposit = to_spectrum(vec3(0.0));
     uint event = EVENT_MOVING;
+    vec3 from = lane.path.position;
     if (is_under_way(lane.todo))
         event = track(v, lane, rng, deposit, tally);
+    if (COUNTS)
+        if (is_particle(lane))
+            count_flight(v, from, event, lane);
     arrive(v, event, deposit, lane, rng, tally);
     if (HAS_PARTICLES)
         if (lane.todo == TODO_END && lane.is_particle == 0u)

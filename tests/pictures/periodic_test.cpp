@@ -299,7 +299,7 @@ TEST_CASE("what a domain that repeats cannot have is said", "[cpu][method][perio
     scene.settings.integrator.clear();
     CHECK(choose_method(scene).nee == NEE_COLLISIONS); // no lattice goes across
     scene.settings.integrator = "bidirectional";
-    CHECK_THROWS_WITH(choose_method(scene), Contains("would come from all of them"));
+    CHECK_THROWS_WITH(choose_method(scene), Contains("a camera sees all domains that repeat"));
     scene.settings.integrator = "ratioTracking";
     scene.lights.push_back(PointLight{{1.0, 2.0, 3.0}, Rgb(30.0)});
     CHECK_THROWS_WITH(load_assets(scene, choose_method(scene)), Contains("would stand in every domain"));

@@ -48,6 +48,17 @@ Volume medium(decltype(Volume::shape) shape, double sigma_t, double albedo, doub
 Scene scene_of(const Volume& volume, double width, int pixels, double distance = 10.0,
                glm::dvec3 target = glm::dvec3(0.0), glm::dvec3 pitch_yaw_roll = glm::dvec3(0.0));
 
+// One of each kind, about a body some 3 across amid the world.
+struct LightsAbout {
+    PointLight point{{1.2, 1.9, 1.5}, {12.0, 9.0, 6.0}};
+    SpotLight spot{{-1.5, 2.5, 1.0}, glm::normalize(glm::dvec3(1.5, -2.5, -1.0)), {30.0, 35.0, 40.0}, 50.0, 0.5};
+    SphereLight ball{{1.6, 1.6, 1.2}, 0.4, {9.0, 7.0, 5.0}};
+    DiskLight disk{{-1.8, 1.5, 1.0}, glm::normalize(glm::dvec3(1.8, -1.5, -1.0)), 0.5, {5.0, 6.0, 7.0}};
+    RectangleLight rectangle{{0.0, 2.4, 0.3}, {0.0, 0.0, 0.5}, {0.6, 0.0, 0.0}, {6.0, 4.0, 8.0}};
+    SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {2.0, 1.5, 1.0}, 20.0, 0.6};
+    DirectionalLight beam{glm::normalize(glm::dvec3(-2.0, 1.0, -0.5)), {0.5, 1.0, 2.0}};
+};
+
 // From the upper right, behind the camera.
 DirectionalLight sunlight(Rgb irradiance = Rgb(3.0));
 

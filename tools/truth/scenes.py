@@ -22,10 +22,11 @@ def even_sky(radiance):
 
 
 ROWS = 64  # that read the same
+SLAB = 8.0  # how wide a domain of one is
 
 
-def flux(height, down, width=1.0, depth=1.0, columns=1):
-    """A sensor of what comes down there, or goes up: columns along x, and rows along z."""
+def flux(height, down, width=SLAB, depth=SLAB, columns=1):
+    """A sensor of what comes down there, or goes up, in the whole of a domain: columns along x, and rows along z."""
     look = height + (1.0 if down else -1.0)
     up = "0 0 1" if down else "0 0 -1"  # so that columns go along +x
     return (f'<irradiance y="{height!r}" lookAt="0 {look!r} 0" up="{up}" width="{width!r}" '
@@ -67,7 +68,7 @@ def volumes(*items):
     return "<volumes>" + "".join(items) + "</volumes>"
 
 
-def slab(layers, width=8.0):
+def slab(layers, width=SLAB):
     """Infinite layers, from the top down: (optical depth, albedo, phase). Each is as thick as it is deep; the top is at height 0.
     And the height of the bottom."""
     items, height = [], 0.0

@@ -15,7 +15,9 @@ def up_and_down(name, source, layers, light, up, down, last, direct=0.0, irradia
     slab, bottom = scenes.slab(layers)
     for what, value, height, is_down in (("flux up at the top", up, 1e-3, False), ("flux down at the bottom", down, bottom - 1e-3, True)):
         if value is not None:
-            yield Case(name, what, source, slab + light + more + scenes.flux(height, is_down), [what], [value],
+            # Rays from the sensor read what comes straight through without noise.
+            rays = "<integrator>ratioTracking</integrator>" if is_down and direct else ""
+            yield Case(name, what, source, slab + light + more + scenes.flux(height, is_down) + rays, [what], [value],
                        [digits(last[0] if not is_down else last[1])], scale=1.0 / irradiance,
                        less=[direct] if is_down else [])
 

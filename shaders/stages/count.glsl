@@ -1,0 +1,57 @@
+// Particles that pass a sensor of flux, from the side that it reads, are counted by it.
+#ifndef STAGE_COUNT_GLSL
+#define STAGE_COUNT_GLSL
+#include "stages/show.glsl"
+
+// World units before the sensor's plane. Where there are surfaces, of a plane a little before it: particles that come to a surface
+// in the sensor's plane have passed then, and those that leave it, from a little off it, have not: see SurfacePoint.
+float before_sensor(vec3 position) {
+    vec3 reach = abs(position);
+    float apart = HAS_SURFACES ? 2.0 * 3.8147e-6 * max(reach.x, max(reach.y, reach.z)) : 0.0;
+    return dot(position - frame.sensors[0].position, frame.sensors[0].corner) - apart;
+}
+
+// The sensor's pixel there, and what a particle's power comes to in it, per area. Where a domain repeats so does the sensor, which is in one
+// domain alone: see Method.
+uint pixel_passed(vec3 position, Lane lane, out float weight) {
+    SensorParams s = frame.sensors[0];
+    vec2 u = vec2(0.0); // for filters alone
+    if (PIXEL_FILTER != PIXEL_EVEN)
+        u = to_uniform(pcg4d(uvec4(floatBitsToUint(position), lane.path.place ^ lane.path.sample_index))).xy;
+    if (REPEATS) {
+        vec3 size = mix(frame.period.size, vec3(1.0), equal(frame.period.size, vec3(0.0)));
+        position -= frame.period.size * floor((position - frame.particles.sensor_low) / size);
+    }
+    vec3 q = position - s.position;
+    uint pixel = pixel_at(vec2(dot(q, s.right) / dot(s.right, s.right), dot(q, s.down) / dot(s.down, s.down)), u, weight);
+    weight /= length(cross(s.right, s.down));
+    return pixel;
+}
+
+// Along a part of a flight, to `to`, or on for ever. Both ends are told before or behind the sensor, so that of parts that follow each
+// other exactly one passes it.
+void count_passing(vec3 from, bool ends, vec3 to, Lane lane) {
+    vec3 direction = lane.path.direction;
+    float before = before_sensor(from);
+    float behind = ends ? -before_sensor(to) : FAR;
+    float slope = -dot(direction, frame.sensors[0].corner);
+    if (!(before > 0.0 && behind >= 0.0 && slope > 0.0))
+        return;
+    float weight;
+    uint pixel = pixel_passed(from + before / slope * direction, lane, weight);
+    if (pixel != NO_PIXEL)
+        splat_of_particle(lane, pixel, weight * vec3(lane.beta));
+}
+
+// At the end of a part of a flight from there. That the throughput knows what came behind the sensor is on average no matter, since until
+// its albedo is applied a collision leaves it as it was on average.
+void count_flight(MediumParams v, vec3 from, uint event, Lane lane) {
+    bool collided = event == EVENT_COLLIDED;
+    float t = flying_as_far_as(lane);
+    if (!collided && !NULL_FLIGHT)
+        lane.beta *= depth_weight(v, lane.beta, lane.walk.depth, false);
+    if (collided || event == EVENT_LEFT)
+        count_passing(from, collided || t < FAR, collided ? lane.path.position : from + t * lane.path.direction, lane);
+}
+
+#endif

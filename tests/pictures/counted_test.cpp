@@ -1,0 +1,312 @@
+// Particles that pass sensors of flux, against closed forms and against paths that set out from the sensor.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+#include "camera_view.h"
+#include "method.h"
+#include "scene_hash.h"
+#include "shared/constants.h"
+#include "support/agreement.h"
+#include "support/images.h"
+#include "support/scene_text.h"
+#include "support/scenes.h"
+#include "support/test_device.h"
+#include "support/thorough.h"
+#include "tests/reference/reference.h"
+#include "tests/reference/transport.h"
+
+using namespace vkvol;
+using Catch::Contains;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+const glm::dvec3 up(0.0, 1.0, 0.0);
+
+// Of `across` by `across` pixels.
+Scene sensor(glm::dvec3 middle, glm::dvec3 facing, glm::dvec2 size, int across, std::uint32_t spp) {
+    Scene scene;
+    scene.camera.projection = Projection::irradiance;
+    scene.camera.position = middle;
+    look_along(scene.camera, facing, is_parallel(facing, up) ? glm::dvec3(0.0, 0.0, 1.0) : up);
+    scene.camera.size = size;
+    scene.picture = {across, across, 0.0, 0.0, double(across), double(across)};
+    scene.settings.spp = spp;
+    return scene;
+}
+
+Scene by(Scene scene, const char* integrator) {
+    scene.settings.integrator = integrator;
+    return scene;
+}
+
+// Against rays from the sensor, which the reference follows; but it knows no surfaces that repeat.
+void check_counts(const Scene& scene, const std::string& name) {
+    INFO(name);
+    const Scene rays = by(scene, "ratioTracking");
+    const bool repeats = scene.periodic && !scene.surfaces.empty();
+    CHECK_AGREEMENT(agree(render_here(by(scene, "lightTracing"), 1).film,
+                          repeats ? render_here(rays, 2).film : render_reference(rays, 2), name));
+}
+
+void check_means(const Scene& scene, double expected, const std::string& name) {
+    const std::vector<Rgb> means(std::size_t(scene.picture.width * scene.picture.height), Rgb(expected));
+    CHECK_AGREEMENT(agree_with_means(render_here(scene, 3).film, means, name));
+}
+
+// Of a domain [-0.5, 0.5]^2, from 0 down.
+Scene slab(double tau, double albedo, double height, bool from_above) {
+    Scene scene = sensor({0.1, height, -0.2}, from_above ? up : -up, {1.0, 0.7}, 4, 512);
+    scene.volumes = {medium(Box{{0.0, -0.5, 0.0}, glm::dvec3(1.0)}, tau, albedo)};
+    scene.periodic = Periodic{{-0.5, 0.0, -0.5}, {0.5, 0.0, 0.5}};
+    return scene;
+}
+
+Volume smoke() {
+    Volume volume = medium(Sphere{{0.1, -0.1, 0.0}, 1.5}, 3.0, 0.9, 0.4);
+    volume.noise = Noise{0.9, 3, 0.5, 2.0};
+    return volume;
+}
+
+Surface ball_of(MaterialKind kind, double roughness) {
+    Surface surface;
+    surface.shape = BallSurface{{-0.7, -0.6, 0.9}, 0.6};
+    surface.material.kind = kind;
+    surface.material.color = {0.8, 0.7, 0.6};
+    surface.material.roughness = roughness;
+    return surface;
+}
+
+struct Case {
+    const char* name;
+    Scene scene;
+};
+
+std::vector<Case> cases() {
+    const auto [point, spot, lamp, disk, rectangle, sun, beam] = LightsAbout{};
+    const auto among = [](const Volume& volume, std::vector<Light> lights) {
+        Scene scene = sensor({0.2, -0.5, 0.3}, {0.3, 1.0, 0.2}, {2.0, 1.5}, 2, 4096);
+        scene.volumes = {volume};
+        scene.lights = std::move(lights);
+        return scene;
+    };
+    std::vector<Case> all;
+    all.push_back(
+        {"a ball of fog, point and spot", among(medium(Sphere{{0.0, 0.0, 0.0}, 1.5}, 1.5, 0.95, -0.4), {point, spot})});
+    all.push_back({"smoke, far lights", among(smoke(), {sun, beam, write_sky(sunset_map())})});
+    all.push_back({"smoke, lamps", among(smoke(), {lamp, disk, rectangle})});
+    Volume colourful = medium(write_grid(cloud_grid()), 1.0, 0.9, 0.6);
+    const Rgb sigma_t = {0.4, 0.8, 1.0};
+    colourful.sigma_s = Rgb{0.9, 0.8, 0.95} * sigma_t;
+    colourful.sigma_a = sigma_t - colourful.sigma_s;
+    all.push_back({"a chromatic cloud", among(colourful, {beam})});
+    Volume fog = medium(Box{{0.0, 0.0, 0.0}, glm::dvec3(3.0)}, 1.0, 0.9);
+    fog.sigma_s = Rgb{0.9, 0.8, 0.95} * sigma_t;
+    fog.sigma_a = sigma_t - fog.sigma_s;
+    all.push_back({"chromatic fog, known in closed form", among(fog, {beam, lamp})});
+    Volume ember = smoke();
+    ember.Le = {1.0, 0.5, 0.2};
+    all.push_back({"what glows", among(ember, {})});
+    all.push_back({"a background", among(smoke(), {})});
+    all.back().scene.background = {0.3, 0.2, 0.1};
+    Scene several = among(smoke(), {point});
+    several.volumes.push_back(medium(Box{{-0.9, -0.5, -0.5}, {1.4, 0.6, 0.7}}, 2.0, 0.9));
+    all.push_back({"several media", several});
+    Scene filtered = among(smoke(), {lamp});
+    filtered.settings.pixel_filter = PixelFilter::tent;
+    filtered.settings.pixel_filter_radius = 0.9;
+    all.push_back({"a tent about each pixel", filtered});
+    // Turned away, from the other side, and larger than all that there is to be lit.
+    Scene large = among(smoke(), {sun, point});
+    look_along(large.camera, {0.1, -1.0, 0.0}, {0.0, 0.0, 1.0});
+    large.camera.position.y = 1.0;
+    large.camera.size = {9.0, 7.0};
+    all.push_back({"a large sensor", large});
+    Scene surfaces = among(smoke(), {lamp, point});
+    surfaces.surfaces = {ball_of(MaterialKind::conductor, 0.4), ball_of(MaterialKind::diffuse, 0.0)};
+    surfaces.surfaces[0].material.eta = {0.143, 0.375, 1.442};
+    surfaces.surfaces[0].material.k = {3.983, 2.386, 1.603};
+    surfaces.surfaces[1].shape = RectangleSurface{{0.0, -1.3, 0.0}, {2.5, 0.0, 0.0}, {0.0, 0.0, -2.5}};
+    all.push_back({"surfaces", surfaces});
+    return all;
+}
+
+Volume cloud() {
+    return medium(write_grids({cloud_grid()}), 0.8, 0.9, 0.4);
+}
+
+// From above clouds that repeat, or from below.
+Scene about_clouds(bool below, std::vector<Light> lights) {
+    Scene scene = sensor({1.0, below ? -6.0 : 6.0, 2.0}, below ? up : -up, {9.0, 10.0}, 2, 4096);
+    scene.volumes = {cloud()};
+    scene.lights = std::move(lights);
+    scene.periodic = Periodic{{-5.0, 0.0, -5.0}, {5.0, 0.0, 5.0}};
+    return scene;
+}
+
+std::vector<Case> domains() {
+    const DirectionalLight beam = LightsAbout{}.beam;
+    const DirectionalLight from_below{glm::normalize(glm::dvec3(1.0, -1.0, 0.5)), {1.0, 0.5, 0.2}};
+    const SunLight sun{glm::normalize(glm::dvec3(-0.3, 0.9, 0.2)), {3.0, 2.8, 2.0}, 10.0};
+    std::vector<Case> all;
+    all.push_back({"above clouds in a beam aslant", about_clouds(false, {beam})});
+    all.push_back({"below clouds in beams from both sides", about_clouds(true, {beam, from_below})});
+    all.push_back({"below clouds under a sun and a background", about_clouds(true, {sun})});
+    all.back().scene.background = {0.1, 0.2, 0.4};
+    all.push_back({"amid clouds under a map of the sky", about_clouds(true, {write_sky(sunset_map())})});
+    all.back().scene.camera.position.y = 0.7;
+    Scene turned = about_clouds(false, {beam});
+    turned.camera.size = {5.0, 3.0};
+    turned.camera.position = {4.0, 1.0, -4.5}; // beyond the domain's edges
+    look_along(turned.camera, -up, {0.6, 0.0, 0.8});
+    all.push_back({"a sensor turned, across seams", turned});
+    Scene grounded = about_clouds(true, {beam});
+    grounded.surfaces.emplace_back().shape = PlaneSurface{{0.0, -7.0, 0.0}, up};
+    grounded.surfaces.back().material.color = {0.5, 0.3, 0.2};
+    grounded.surfaces.push_back(ball_of(MaterialKind::diffuse, 0.0));
+    grounded.surfaces.back().shape = BallSurface{{-3.0, 0.0, 2.0}, 1.5};
+    all.push_back({"clouds over a ground", grounded});
+    Scene embers = about_clouds(false, {});
+    embers.volumes.front().Le = {1.0, 0.5, 0.2};
+    embers.periodic = Periodic{{-4.0, 0.0, -4.2}, {4.5, 0.0, 4.0}}; // cuts some of them off
+    embers.camera.size = {8.0, 8.0};
+    all.push_back({"clouds that glow, cut", embers});
+    return all;
+}
+
+} // namespace
+
+TEST_CASE("particles counted are the flux that rays from the sensor read", "[gpu][counted]") {
+    for (const Case& c : in_turn(cases(), 0))
+        check_counts(c.scene, c.name);
+}
+
+TEST_CASE("particles counted in domains that repeat", "[gpu][counted]") {
+    for (const Case& c : in_turn(domains(), 1))
+        check_counts(c.scene, c.name);
+}
+
+// Each of a sweep's particles passes or does not: through the whole of a domain all do, at all heights.
+TEST_CASE("particles that pass an empty domain are all counted", "[gpu][counted]") {
+    for (const double height : {0.3, -0.25, -2.0}) {
+        Scene scene = by(slab(1e-9, 0.0, height, true), "lightTracing");
+        scene.camera.size = {1.0, 1.0};
+        scene.lights = {DirectionalLight{{0.6, 0.8, 0.0}, Rgb(2.0)}};
+        const Film film = render_here(scene, 1).film;
+        double sum = 0.0;
+        for (const glm::vec3& pixel : film.mean)
+            sum += pixel.x / double(film.mean.size());
+        CHECK(sum == Approx(2.0 * 0.8).epsilon(2e-6));
+    }
+}
+
+TEST_CASE("particles counted above, below and amid slabs", "[gpu][counted]") {
+    const double tau = 2.0, albedo = GENERATE(1.0, 0.6), mu0 = GENERATE(1.0, 0.3);
+    const reference::SlabSolution beam = reference::slab_in_beam(albedo, tau, mu0, 800);
+    for (const bool below : {false, true}) {
+        Scene scene = by(slab(tau, albedo, below ? -1.5 : 0.0, below), "lightTracing"); // at its very top
+        scene.lights = {DirectionalLight{{std::sqrt(1.0 - mu0 * mu0), mu0, 0.0}, Rgb(1.0)}};
+        check_means(scene, below ? beam.transmitted : beam.reflected,
+                    fmt::format("slab of {}, {}, {}", albedo, mu0, below));
+    }
+    Scene absorbing = by(slab(tau, 0.0, -0.5, true), "lightTracing");
+    absorbing.lights = {DirectionalLight{{std::sqrt(1.0 - mu0 * mu0), mu0, 0.0}, Rgb(1.0)}};
+    check_means(absorbing, mu0 * std::exp(-0.5 * tau / mu0), "what is left amid");
+}
+
+// Also what comes to it again and again. Rays from just above it read as much.
+TEST_CASE("a sensor in the plane of the ground counts what comes to the ground", "[gpu][counted]") {
+    const double tau = 1.0, ground = 0.6;
+    const reference::SlabSolution beam = reference::slab_in_beam(0.9, tau, 1.0, 400);
+    const reference::SlabSolution even = reference::slab_in_half_sky(0.9, tau, 400);
+    for (const double height : {-1.5, 0.0, 7.0}) { // of the whole
+        Scene scene = by(slab(tau, 0.9, -1.2, true), "lightTracing");
+        scene.surfaces.emplace_back().shape = PlaneSurface{{0.0, height - 1.2, 0.0}, up};
+        scene.surfaces.back().material.color = Rgb(ground);
+        scene.camera.position.y += height;
+        std::get<Box>(scene.volumes.front().shape).center.y += height;
+        scene.lights = {DirectionalLight{up, Rgb(1.0)}};
+        check_means(scene, beam.transmitted / (1.0 - ground * even.reflected / pi),
+                    fmt::format("ground at {}", height));
+    }
+}
+
+// What no looks find: through a ball of glass, into its caustic.
+TEST_CASE("particles are counted behind glass", "[gpu][counted]") {
+    Scene scene = sensor({0.0, -2.0, 0.0}, up, {6.0, 6.0}, 1, 1 << 12);
+    scene.surfaces = {ball_of(MaterialKind::dielectric, 0.0)};
+    scene.surfaces.front().shape = BallSurface{{0.0, 0.0, 0.0}, 0.7};
+    scene.surfaces.front().material.color = Rgb(1.0);
+    scene.surfaces.front().material.eta = Rgb(1.5);
+    scene.background = Rgb(1.0);
+    check_means(by(scene, "lightTracing"), pi, "glass in an even sky");
+    scene.background = Rgb(0.0);
+    scene.lights = {DirectionalLight{up, Rgb(1.0)}};
+    CHECK(choose_method(with_preset(by(scene, "lightTracing"))).biased.empty());
+    CHECK_THAT(choose_method(with_preset(by(scene, "ratioTracking"))).biased, Contains("bidirectional"));
+}
+
+TEST_CASE("particles counted have the same bits however they are worked on", "[gpu][counted]") {
+    for (Scene scene : {cases()[2].scene, domains()[5].scene}) {
+        scene.settings.spp = 40;
+        scene = by(scene, "lightTracing");
+        const Film whole = render_here(scene, 1).film;
+        for (const Schedule schedule : {Schedule::fused, Schedule::staged}) {
+            RenderJob job;
+            job.plan.schedule = schedule;
+            job.plan.slots = 64;
+            job.plan.lanes = 64;
+            job.plan.budget = 17;
+            job.plan.most_batch = 7;
+            CHECK(same_bits(render_here(scene, 1, job).film, whole));
+        }
+    }
+}
+
+TEST_CASE("which particles no sensor counts", "[counted]") {
+    const auto refusal = [](const Scene& scene, const char* integrator = "lightTracing") -> std::string {
+        try {
+            choose_method(with_preset(by(scene, integrator)));
+        } catch (const std::exception& error) {
+            return error.what();
+        }
+        return "";
+    };
+    Scene scene = domains().front().scene;
+    CHECK(refusal(scene).empty());
+    CHECK_THAT(refusal(scene, "bidirectional"), Contains("no weights"));
+    CHECK(choose_method(with_preset(by(scene, "lightTracing"))).nee == NEE_NONE);
+    CHECK(scene_hash(by(scene, "lightTracing")) == scene_hash(by(scene, "ratioTracking")));
+    Scene other = scene;
+    other.lights = {DirectionalLight{up, Rgb(1.0)}};
+    CHECK(scene_hash(by(other, "lightTracing")) != scene_hash(by(scene, "lightTracing")));
+    SECTION("at points") {
+        scene.camera.projection = Projection::fluence;
+        CHECK_THAT(refusal(scene), Contains("no particle passes a point"));
+    }
+    SECTION("by cameras") {
+        scene.camera.projection = Projection::perspective;
+        CHECK_THAT(refusal(scene), Contains("a camera sees all domains"));
+    }
+    SECTION("aslant") {
+        look_along(scene.camera, {0.1, -1.0, 0.0}, {0.0, 0.0, 1.0});
+        CHECK_THAT(refusal(scene), Contains("along all axes"));
+    }
+    SECTION("too wide") {
+        scene.camera.size.x = 10.1;
+        CHECK_THAT(refusal(scene), Contains("wider than a domain"));
+        scene.camera.size = {8.0, 8.0};
+        CHECK(refusal(scene).empty());
+        look_along(scene.camera, -up, {1.0, 0.0, 1.0});
+        CHECK_THAT(refusal(scene), Contains("wider than a domain"));
+    }
+    SECTION("where a domain repeats along one axis") {
+        scene.periodic->low.z = scene.periodic->high.z = 0.0;
+        CHECK_THAT(refusal(scene), Contains("along two axes"));
+        scene.lights.clear();
+        scene.volumes.front().Le = Rgb(1.0);
+        CHECK(refusal(scene).empty());
+    }
+}
