@@ -66,6 +66,8 @@ CameraRays camera_rays(const Camera& camera, const Picture& picture) {
 }
 
 SensorBox sensor_box(const Camera& camera, const Picture& picture) {
+    if (camera.projection == Projection::absorption)
+        return {camera.position - 0.5 * camera.edges, camera.position + 0.5 * camera.edges};
     const CameraRays rays = camera_rays(camera, picture);
     SensorBox box{rays.origin(0.0, 0.0), rays.origin(0.0, 0.0)};
     for (const glm::dvec2& corner : {glm::dvec2(1.0, 0.0), glm::dvec2(0.0, 1.0), glm::dvec2(1.0, 1.0)}) {
@@ -81,11 +83,16 @@ std::vector<glm::dvec3> reading_places(const Camera& camera, const Picture& pict
     if (!reads_flux(camera))
         return places;
     const CameraRays rays = camera_rays(camera, picture);
+    const auto place = [&](int x, int y) {
+        if (camera.projection == Projection::fluence)
+            return camera.points[std::size_t(y) * std::size_t(picture.width) + std::size_t(x)];
+        return camera.projection == Projection::absorption
+                   ? camera.cell_low(camera.cell_of_pixel(x, y)) + 0.5 * camera.cell_size()
+                   : rays.origin(x + 0.5, y + 0.5);
+    };
     for (int y = window.y0; y < window.y1; ++y)
         for (int x = window.x0; x < window.x1; ++x)
-            places.push_back(camera.projection == Projection::fluence
-                                 ? camera.points[std::size_t(y) * std::size_t(picture.width) + std::size_t(x)]
-                                 : rays.origin(x + 0.5, y + 0.5));
+            places.push_back(place(x, y));
     return places;
 }
 

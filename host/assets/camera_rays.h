@@ -26,7 +26,7 @@ struct CameraRays {
 
 CameraRays camera_rays(const Camera& camera, const Picture& picture);
 
-// The box about the rectangle of a sensor that reads irradiance, world.
+// The box about the rectangle of a sensor that reads irradiance, or that in which absorption is read; world.
 struct SensorBox {
     glm::dvec3 low, high;
 };

@@ -14,6 +14,7 @@
 #include "interrupt.h"
 #include "messages.h"
 #include "progress.h"
+#include "reading_grid.h"
 #include "render_notes.h"
 #include "render_outputs.h"
 #include "render_scene.h"
@@ -44,7 +45,10 @@ void check_files(const RenderOptions& options, const RenderScene& loaded, const 
         uses.writes("the report", *options.report, "--report");
     uses.check();
     for (const std::filesystem::path& output : options.outputs)
-        check_writable(output);
+        if (is_reading_grid(output))
+            check_grid_file(output, loaded.scene.camera);
+        else
+            check_writable(output);
     if (options.report)
         check_directory_writable(*options.report, "--report");
     checkpoint.check();

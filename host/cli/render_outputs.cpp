@@ -8,6 +8,7 @@
 #include "file_ending.h"
 #include "image_io.h"
 #include "messages.h"
+#include "reading_grid.h"
 
 namespace vkvol {
 
@@ -43,7 +44,10 @@ void RenderOutputs::write(const Device& device, const RenderResult& result, cons
     bool exr_written = false;
     for (const std::filesystem::path& output : options_.outputs)
         try {
-            write_image(output, result.film, metadata, shown.tone.mapping);
+            if (is_reading_grid(output))
+                write_text(output, reading_grid(result.film, scene_.camera));
+            else
+                write_image(output, result.film, metadata, shown.tone.mapping);
             append(written, ", ", output.string());
             exr_written = exr_written || file_ending(output) == ".exr";
         } catch (const RenderError& error) {

@@ -103,7 +103,7 @@ double place_faces(const shared::PeriodParams& period, shared::ParticleParams& p
     return open == 1 ? area : 0.0;
 }
 
-// World units^2: its area. Light comes from beyond it.
+// World units^2: its area; of a box its volume^(2/3). Light comes from beyond it.
 double place_sensor(const Scene& scene, glm::dvec3 origin, shared::ParticleParams& params) {
     const SensorBox box = sensor_box(scene.camera, scene.picture);
     const glm::dvec3 low = box.low - origin, high = box.high - origin;
@@ -112,6 +112,8 @@ double place_sensor(const Scene& scene, glm::dvec3 origin, shared::ParticleParam
     const glm::dvec3 open = params.open;
     params.below = static_cast<float>(std::min(double(params.below), glm::dot(open, low) - margin));
     params.above = static_cast<float>(std::max(double(params.above), glm::dot(open, high) + margin));
+    if (scene.camera.projection == Projection::absorption)
+        return std::pow(scene.camera.edges.x * scene.camera.edges.y * scene.camera.edges.z, 2.0 / 3.0);
     const CameraRays rays = camera_rays(scene.camera, scene.picture);
     return glm::length(glm::cross(rays.right, rays.down)) * scene.picture.width * scene.picture.height;
 }
@@ -134,7 +136,7 @@ EmitterTable make_emitter_table(const Scene& scene, const Method& method, const 
     EmitterTable table;
     const bool bounded = std::isfinite(radius);
     table.params.radius = bounded ? static_cast<float>(radius * 1.0001) : 0.0f;
-    const bool counts = scene.camera.projection == Projection::irradiance;
+    const bool counts = reads_flux(scene.camera);
     const double face = scene.periodic ? place_faces(period, table.params) : 0.0;
     const double sensor = counts ? place_sensor(scene, origin, table.params) : 0.0;
     Emitters emitters(table, scene.periodic ? face : bounded ? pi * radius * radius : 0.0);

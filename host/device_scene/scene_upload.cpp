@@ -29,7 +29,7 @@
 namespace vkvol {
 
 static_assert(std::is_standard_layout_v<shared::FrameParams>);
-static_assert(sizeof(shared::SensorParams) == 7 * 12 + 4 * 4 + 2 * 8 + 4);
+static_assert(sizeof(shared::SensorParams) == 7 * 12 + 4 * 4 + 2 * 8 + 4 + 12);
 static_assert(sizeof(shared::GridParams) == 4 * 12 + 2 * 4);
 static_assert(sizeof(shared::AlbedoParams) == sizeof(shared::GridParams) + 3 * 16);
 static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 6 * 4);
@@ -303,6 +303,12 @@ shared::SensorParams make_sensor(const Scene& scene, glm::dvec3 origin, double r
     if (rays.projection == Projection::perspective)
         return make_pinhole(scene, rays, origin, radius);
     shared::SensorParams params{};
+    if (rays.projection == Projection::absorption) {
+        params.position = scene.camera.cell_low({0, 0, 0}) - origin;
+        params.corner = scene.camera.cell_size();
+        params.cells = scene.camera.cells;
+        return params;
+    }
     params.position = rays.origin(0.0, 0.0) - origin;
     if (rays.projection == Projection::orthographic) {
         const double start = scene.periodic ? 0.0 : ray_start(scene, rays.forward, origin, radius);
@@ -331,6 +337,8 @@ int sensor_kind(const Camera& camera) {
         return SENSOR_IRRADIANCE;
     case Projection::fluence:
         return SENSOR_FLUENCE;
+    case Projection::absorption:
+        return SENSOR_ABSORPTION;
     default:
         return camera.lens.radius > 0.0 ? SENSOR_LENS : SENSOR_PINHOLE;
     }
@@ -442,7 +450,8 @@ Specialization specialize(const Scene& scene, Media media, const Method& method,
     }
     constants[SPEC_MIS] = method.mis;
     constants[SPEC_SENSOR] = sensor_kind(scene.camera);
-    constants[SPEC_PIXEL_FILTER] = has_plain_pixels(scene.settings)                  ? PIXEL_EVEN
+    const bool is_plain = has_plain_pixels(scene.settings) || scene.camera.projection == Projection::absorption;
+    constants[SPEC_PIXEL_FILTER] = is_plain                                          ? PIXEL_EVEN
                                    : scene.settings.pixel_filter == PixelFilter::box ? PIXEL_BOX
                                                                                      : PIXEL_QUANTILES;
     constants[SPEC_LAYERS] = plan_layers(scene).kinds;

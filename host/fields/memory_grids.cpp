@@ -26,8 +26,12 @@ GridBytes build(const std::string& name, glm::ivec3 dims, const GridPlace& place
             for (int x = 0; x < dims.x; ++x, ++i)
                 if (const Value value = value_at(i); value != nothing)
                     accessor.setValue({x, y, z}, value);
-    const nanovdb::Vec3d origin(place.origin.x, place.origin.y, place.origin.z);
-    const auto handle = builder.getHandle(place.voxel_size, origin, name);
+    const glm::dvec3 size = place.voxel_size;
+    const double to_world[3][3] = {{size.x, 0.0, 0.0}, {0.0, size.y, 0.0}, {0.0, 0.0, size.z}};
+    const double to_index[3][3] = {{1.0 / size.x, 0.0, 0.0}, {0.0, 1.0 / size.y, 0.0}, {0.0, 0.0, 1.0 / size.z}};
+    nanovdb::Map map;
+    map.set(to_world, to_index, nanovdb::Vec3d(place.origin.x, place.origin.y, place.origin.z), 1.0);
+    const auto handle = builder.getHandle(map, name);
     GridBytes bytes(handle.size());
     std::memcpy(bytes.edit(), handle.data(), handle.size());
     return bytes;

@@ -27,8 +27,8 @@ using NamedGrids = std::map<std::string, std::shared_ptr<const MemoryGrids>>;
 
 // Where in the world a grid's index space lies, axes along axes.
 struct GridPlace {
-    double voxel_size = 1.0; // > 0
-    glm::dvec3 origin{0.0};  // of the middle of voxel (0, 0, 0)
+    glm::dvec3 voxel_size{1.0}; // > 0
+    glm::dvec3 origin{0.0};     // of the middle of voxel (0, 0, 0)
 };
 
 // Of a box of values, x fastest and then y, at (0, 0, 0) to dims - 1 of index space; those that are 0 take no memory.

@@ -105,10 +105,16 @@ void Resolution::choose_paths() {
         warn("paths are from the camera: without lights there are no particles");
         method_.paths = PATHS_CAMERA;
     }
+    const bool for_particles = scene_.camera.projection == Projection::absorption;
+    if (method_.paths == PATHS_CAMERA && for_particles)
+        throw InputError(
+            fmt::format("{}: what media absorb is read where particles leave it; take integrator lightTracing",
+                        method_.integrator));
     if (method_.paths == PATHS_CAMERA)
         return;
     if (const char* why = why_no_particles(scene_, method_.paths == PATHS_BOTH, emits_))
-        throw InputError(fmt::format("{}: {}; integrator ratioTracking renders it", method_.integrator, why));
+        throw InputError(fmt::format("{}: {}{}", method_.integrator, why,
+                                     for_particles ? "" : "; integrator ratioTracking renders it"));
 }
 
 void Resolution::choose_scattering() {

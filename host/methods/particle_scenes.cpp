@@ -42,12 +42,15 @@ const char* why_no_particles_in_domain(const Scene& scene) {
     const glm::dvec3 size = scene.periodic->size();
     const glm::dmat3 sensor = camera_rotation(scene.camera);
     const glm::dvec2 edges = sensor_size(scene);
+    const bool is_box = scene.camera.projection == Projection::absorption;
     for (int axis = 0; axis < 3; ++axis) {
         if (size[axis] == 0.0)
             continue;
-        if (std::abs(sensor[2][axis]) > 1e-6)
+        if (!is_box && std::abs(sensor[2][axis]) > 1e-6)
             return "a sensor that counts particles has to lie along all axes that repeat";
-        if (std::abs(sensor[0][axis]) * edges.x + std::abs(sensor[1][axis]) * edges.y > size[axis] * (1.0 + 1e-6))
+        const double wide = is_box ? scene.camera.edges[axis]
+                                   : std::abs(sensor[0][axis]) * edges.x + std::abs(sensor[1][axis]) * edges.y;
+        if (wide > size[axis] * (1.0 + 1e-6))
             return "a sensor that counts particles cannot be wider than a domain that repeats";
     }
     if (is_lit_from_afar(scene) && repeated_axes(scene) != 2)
@@ -84,6 +87,8 @@ const char* why_no_particles(const Scene& scene, bool both, bool emits) {
 
 bool gains_by_particles(const Scene& scene) {
     const AxisChoices& choices = scene.settings.choices;
+    if (scene.camera.projection == Projection::absorption)
+        return true; // nothing else does
     if (!scene.periodic || !is_lit_from_afar(scene) || !any_medium(scene, can_scatter) || emits(scene) ||
         choices.paths || choices.nee || choices.scattering || why_no_particles(scene, false, false))
         return false;

@@ -257,6 +257,10 @@ void add_view(Writer& writer, const Camera& camera, const Picture& picture) {
         writer.add("projection", static_cast<int>(camera.projection));
     if (camera.projection == Projection::irradiance)
         writer.add("size", glm::dvec3(camera.size, 0.0));
+    if (camera.projection == Projection::absorption) {
+        writer.add("edges", camera.edges);
+        writer.add("cells", glm::dvec3(camera.cells));
+    }
     for (const glm::dvec3& point : camera.points)
         writer.add("at", point);
     if (camera.projection == Projection::orthographic)

@@ -44,13 +44,15 @@ MemoryGrids::Grid grid_of(const std::string& name, const FloatArray& array, cons
     return {name, make_grid(name, dims, std::span<const glm::vec3>(colors), place)};
 }
 
-std::shared_ptr<MemoryGrids> grids_of(const std::vector<std::pair<std::string, FloatArray>>& arrays, double voxel_size,
-                                      const std::array<double, 3>& origin) {
-    if (!(voxel_size >= 1e-11 && voxel_size <= 1e11))
-        throw InputError("voxel_size: expected 1e-11 to 1e11");
+std::shared_ptr<MemoryGrids> grids_of(const std::vector<std::pair<std::string, FloatArray>>& arrays,
+                                      const std::array<double, 3>& voxel_size, const std::array<double, 3>& origin) {
+    for (const double edge : voxel_size)
+        if (!(edge >= 1e-11 && edge <= 1e11))
+            throw InputError("voxel_size: expected 1e-11 to 1e11");
     const auto grids = std::make_shared<MemoryGrids>();
     for (const auto& [name, array] : arrays)
-        grids->grids.push_back(grid_of(name, array, {voxel_size, {origin[0], origin[1], origin[2]}}));
+        grids->grids.push_back(
+            grid_of(name, array, {{voxel_size[0], voxel_size[1], voxel_size[2]}, {origin[0], origin[1], origin[2]}}));
     return grids;
 }
 

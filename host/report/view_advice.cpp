@@ -12,6 +12,7 @@ ViewAdvice view_advice(const Camera& camera) {
         return {fmt::format("a view {:.3g} high", camera.view_height), frame, "lower viewHeight, or --frame it", out};
     case Projection::equirectangular: // which --frame refuses
     case Projection::fluence:
+    case Projection::absorption:
         return {"a view all around", "", "go nearer", "move the camera out"};
     case Projection::irradiance:
         return {"a view of half of all directions", "", "go nearer", "move the sensor out"};

@@ -74,6 +74,8 @@ const char* projection_name(Projection projection) {
         return "irradiance";
     case Projection::fluence:
         return "fluence";
+    case Projection::absorption:
+        return "absorption";
     default:
         return "perspective";
     }

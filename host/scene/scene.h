@@ -29,11 +29,12 @@ inline constexpr double hottest_kelvin = 1e9;
 // How directions become places in the picture. Equirectangular: longitude across it, latitude down it, the middle of
 // the reference frame straight ahead. Kernels tell more of them apart, SENSOR_... of shaders/shared/constants.h: a
 // perspective one with a lens is one of its own there.
-// The last two read flux in place of radiance. Irradiance: what arrives through a rectangle from the side that the
+// The last three read flux in place of radiance. Irradiance: what arrives through a rectangle from the side that the
 // camera looks to, a pixel being a patch of it: the integral of radiance times cosine over that hemisphere. Fluence:
 // what arrives at points from everywhere, a pixel each: the integral of radiance over all directions. Both include
-// light that comes straight from its source.
-enum class Projection { perspective, orthographic, equirectangular, irradiance, fluence };
+// light that comes straight from its source. Absorption: the power that media absorb in the cells of a box, a pixel
+// each, per volume.
+enum class Projection { perspective, orthographic, equirectangular, irradiance, fluence, absorption };
 
 // The largest radius of a lens, by the distance of what is sharp: single precision has no directions beyond.
 inline constexpr double widest_lens = 1000.0;
@@ -69,10 +70,17 @@ struct Camera {
     glm::dvec2 size{1.0};              // irradiance: world units, of the rectangle that is the reference frame, > 0
     std::vector<glm::dvec3> points;    // fluence: row by row, as many as the picture has pixels
     std::filesystem::path points_file; // where they were read; or empty
+    glm::dvec3 edges{1.0};             // absorption: world units, of the box about `position`, > 0
+    glm::ivec3 cells{1};               // in it, > 0; in the picture x goes across, y up, and z down, slice after slice
+
+    // Of absorption, world.
+    glm::dvec3 cell_size() const { return edges / glm::dvec3(cells); }
+    glm::dvec3 cell_low(glm::ivec3 cell) const { return position - 0.5 * edges + glm::dvec3(cell) * cell_size(); }
+    glm::ivec3 cell_of_pixel(int x, int y) const { return {x, cells.y - 1 - y % cells.y, y / cells.y}; }
 };
 
 inline bool reads_flux(const Camera& camera) {
-    return camera.projection == Projection::irradiance || camera.projection == Projection::fluence;
+    return camera.projection >= Projection::irradiance;
 }
 
 // What a sensor reads where the same radiance comes from everywhere, per unit of that [sr].

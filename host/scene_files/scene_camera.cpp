@@ -162,7 +162,7 @@ std::optional<Exposure> exposure_of(const XmlElement& element) {
 // What the picture is taken by.
 Camera SceneReader::sensor() const {
     XmlElement found(document_, {});
-    for (const char* name : {"camera", "irradiance", "fluence"}) {
+    for (const char* name : {"camera", "irradiance", "fluence", "absorption"}) {
         const XmlElement element = one(name);
         if (!element.exists())
             continue;
@@ -176,6 +176,8 @@ Camera SceneReader::sensor() const {
         return irradiance(found);
     if (found.exists() && found.name() == "fluence")
         return fluence(found);
+    if (found.exists() && found.name() == "absorption")
+        return absorption(found);
     return camera();
 }
 

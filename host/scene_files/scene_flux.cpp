@@ -90,6 +90,44 @@ Camera SceneReader::fluence(const XmlElement& element) const {
     return camera;
 }
 
+// A box, as of a medium, in cells.
+Camera SceneReader::absorption(const XmlElement& element) const {
+    element.allow({"x", "y", "z", "width", "height", "depth", "cells"});
+    Camera camera;
+    camera.projection = Projection::absorption;
+    const char* const places[] = {"x", "y", "z"};
+    const char* const edges[] = {"width", "height", "depth"};
+    for (int axis = 0; axis < 3; ++axis) {
+        camera.position[axis] = element.attribute_number(places[axis], 0.0, coordinate);
+        camera.edges[axis] = element.attribute_number(edges[axis], 1.0, length);
+    }
+    if (!element.has("cells"))
+        return camera;
+    const glm::dvec3 cells = triple(element, "cells", any_number);
+    if (glm::any(glm::lessThan(cells, glm::dvec3(1.0))) || cells != glm::floor(cells) || cells.x > max_edge ||
+        cells.y * cells.z > max_edge)
+        element.fail_attribute("cells",
+                               fmt::format("<absorption> cells: expected three whole numbers from 1 on, along x, y "
+                                           "and z, of which the first, and the product of the others, is at most "
+                                           "{}, e.g. cells=\"64 32 64\"",
+                                           max_edge));
+    camera.cells = cells;
+    return camera;
+}
+
+// Slices across z, one above the other, the first uppermost; in each, y goes up.
+Picture SceneReader::picture_of_cells(const Camera& camera) const {
+    for (const char* name : {"width", "height"})
+        if (const XmlElement element = one(name); element.exists())
+            element.fail(fmt::format("<{}>: <absorption> has a pixel for each of its cells; remove it", name));
+    Picture picture;
+    picture.width = camera.cells.x;
+    picture.height = camera.cells.y * camera.cells.z;
+    picture.reference_width = picture.width;
+    picture.reference_height = picture.height;
+    return picture;
+}
+
 // A pixel each: in rows as wide as <width> says, or in one.
 Picture SceneReader::picture_of_points(const Camera& camera) const {
     const auto count = static_cast<long long>(camera.points.size());

@@ -17,7 +17,7 @@ namespace {
 const std::vector<std::string> vocabulary = {
     "densityField", "sphere", "box", "everywhere", "layers", "models", "volumes", "surfaces", "noise", "sigma_a",
     "sigma_s", "heyneygreenstein_g", "phase", "medium", "emission", "albedo", "densityMap", "transferFunction", "light",
-    "lights", "backgroundColor", "camera", "irradiance", "fluence", "periodic", "width", "height", "film",
+    "lights", "backgroundColor", "camera", "irradiance", "fluence", "absorption", "periodic", "width", "height", "film",
     "rayPerPixelCount", "maxDepth", "integrator", "march", "filter", "russianRoulette", "majorant", "pixelFilter",
     "lightRayDensityMultiplier", "shadowRayDensityMultiplier", "stepSize", "importanceSampling", "fileName",
     "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds", "expected",
@@ -162,6 +162,8 @@ void SceneReader::read_edge(const char* name, int& size, double& start, double& 
 Picture SceneReader::picture(const Camera& camera) const {
     if (camera.projection == Projection::fluence)
         return picture_of_points(camera);
+    if (camera.projection == Projection::absorption)
+        return picture_of_cells(camera);
     Picture picture;
     if (camera.projection == Projection::irradiance) // one reading, unless more are asked for
         picture.width = picture.height = 1;

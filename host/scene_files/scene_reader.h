@@ -47,6 +47,8 @@ private:
     Camera sensor() const;
     Camera camera() const;
     Camera irradiance(const XmlElement& element) const;
+    Camera absorption(const XmlElement& element) const;
+    Picture picture_of_cells(const Camera& camera) const;
     Camera fluence(const XmlElement& element) const;
     Picture picture(const Camera& camera) const;
     Picture picture_of_points(const Camera& camera) const;

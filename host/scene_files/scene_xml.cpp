@@ -89,6 +89,9 @@ void resize_picture(Scene& scene, std::optional<int> width, std::optional<int> h
         throw InputError(
             "--width and --height make another picture of the same view, and <fluence> has a pixel for each "
             "of its points; leave them out");
+    if ((width || height) && scene.camera.projection == Projection::absorption)
+        throw InputError("--width and --height make another picture of the same view, and <absorption> has a pixel for "
+                         "each of its cells; leave them out");
     resize_picture(scene.picture, width, height);
 }
 

@@ -109,7 +109,9 @@ const bool REPEATS = PERIODIC != 0;
 const bool READS_FLUX = SENSOR >= SENSOR_IRRADIANCE; // and no radiance: see flux.glsl
 // (In bits, for the sake of glslang 12: see LOOKS.)
 const bool LOOKS_FROM_SENSOR = (int(READS_FLUX) & int(NEE != NEE_NONE) & int(LIGHTS != LIGHTS_SUN)) != 0;
-const bool COUNTS = (int(READS_FLUX) & int(HAS_PARTICLES)) != 0; // particles that pass the sensor
+const bool COUNTS = (int(READS_FLUX) & int(HAS_PARTICLES)) != 0; // particles, where they pass the sensor, or what they leave
+const bool COUNTS_PASSING = (int(COUNTS) & int(SENSOR == SENSOR_IRRADIANCE)) != 0;
+const bool COUNTS_ABSORBED = (int(COUNTS) & int(SENSOR == SENSOR_ABSORPTION)) != 0;
 const bool LOOKS_ALONG = DISTANCE == DISTANCE_MIXED;
 const int FLIGHT_TRAITS = FREE_FLIGHT_TRAITS(FREE_FLIGHT);
 const int SHADOW_TRAITS = TRANSMITTANCE_TRAITS(TRANSMITTANCE);

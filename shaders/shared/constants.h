@@ -132,6 +132,7 @@
 #define SENSOR_EQUIRECTANGULAR 3
 #define SENSOR_IRRADIANCE 4 // this and what follows read flux: see flux.glsl
 #define SENSOR_FLUENCE 5
+#define SENSOR_ABSORPTION 6
 
 // Where samples lie: evenly in their pixel; evenly in a box about its middle; or as the quantiles of a filter have it, between
 // 0 and its radius.

@@ -23,6 +23,7 @@ struct SensorParams {
     vec2 angle_step;     // per pixel
     uint row;            // points in a row of the picture
     vec3 forward;        // unit
+    ivec3 cells;         // of a box, their size being `corner`
 };
 
 // Where the layers of a path, or a pixel, begin: see aovs.glsl. Those of light are the first.

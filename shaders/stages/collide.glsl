@@ -7,7 +7,7 @@
 #include "lights/light_cache.glsl"
 #include "lights/table.glsl"
 #include "lib/trace.glsl"
-#include "stages/show.glsl"
+#include "stages/count.glsl"
 
 // Of a particle: what it scatters toward the sensor.
 void show_to_sensor(MediumParams v, Scatterer s, vec3 position, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
@@ -102,6 +102,9 @@ void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, i
         if (lane.path.depth == 0u)
             note_collision(lane.record, vec3(lane.beta), lane.path.position, lane.path.direction,
                            flown_before(lane) + lane.walk.start + lane.walk.t, albedo);
+    if (COUNTS_ABSORBED)
+        if (is_particle(lane))
+            count_absorbed(lane.path.position, vec3(lane.beta) * (1.0 - albedo), lane);
     lane.beta *= to_spectrum(albedo);
     bool capped = SCATTERING != SCATTERING_NONE && lane.path.depth >= frame.max_depth;
     tally.depth_caps += capped ? 1u : 0u;

@@ -1,4 +1,4 @@
-// Particles that pass a sensor of flux, from the side that it reads, are counted by it.
+// Particles that pass a sensor of flux, from the side that it reads, are counted by it; or what they leave in its cells.
 #ifndef STAGE_COUNT_GLSL
 #define STAGE_COUNT_GLSL
 #include "stages/show.glsl"
@@ -11,17 +11,19 @@ float before_sensor(vec3 position) {
     return dot(position - frame.sensors[0].position, frame.sensors[0].corner) - apart;
 }
 
-// The sensor's pixel there, and what a particle's power comes to in it, per area. Where a domain repeats so does the sensor, which is in one
-// domain alone: see Method.
+// Where a domain repeats so does the sensor, which is in one of them: see particle_scenes.h.
+vec3 at_sensor(vec3 position) {
+    vec3 size = mix(frame.period.size, vec3(1.0), equal(frame.period.size, vec3(0.0)));
+    return REPEATS ? position - frame.period.size * floor((position - frame.particles.sensor_low) / size) : position;
+}
+
+// The sensor's pixel there, and what a particle's power comes to in it, per area.
 uint pixel_passed(vec3 position, Lane lane, out float weight) {
     SensorParams s = frame.sensors[0];
+    position = at_sensor(position);
     vec2 u = vec2(0.0); // for filters alone
     if (PIXEL_FILTER != PIXEL_EVEN)
         u = to_uniform(pcg4d(uvec4(floatBitsToUint(position), lane.path.place ^ lane.path.sample_index))).xy;
-    if (REPEATS) {
-        vec3 size = mix(frame.period.size, vec3(1.0), equal(frame.period.size, vec3(0.0)));
-        position -= frame.period.size * floor((position - frame.particles.sensor_low) / size);
-    }
     vec3 q = position - s.position;
     uint pixel = pixel_at(vec2(dot(q, s.right) / dot(s.right, s.right), dot(q, s.down) / dot(s.down, s.down)), u, weight);
     weight /= length(cross(s.right, s.down));
@@ -52,6 +54,18 @@ void count_flight(MediumParams v, vec3 from, uint event, Lane lane) {
         lane.beta *= depth_weight(v, lane.beta, lane.walk.depth, false);
     if (collided || event == EVENT_LEFT)
         count_passing(from, collided || t < FAR, collided ? lane.path.position : from + t * lane.path.direction, lane);
+}
+
+// Of a collision what is not scattered, per volume.
+void count_absorbed(vec3 position, vec3 power, Lane lane) {
+    SensorParams s = frame.sensors[0];
+    ivec3 cell = ivec3(floor((at_sensor(position) - s.position) / s.corner));
+    if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, s.cells)))
+        return;
+    float unused;
+    uint pixel = pixel_at(vec2(cell.x, s.cells.y - 1 - cell.y + s.cells.y * cell.z) + 0.5, vec2(0.0), unused);
+    if (pixel != NO_PIXEL)
+        splat_of_particle(lane, pixel, power / (s.corner.x * s.corner.y * s.corner.z));
 }
 
 #endif

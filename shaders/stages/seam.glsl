@@ -9,7 +9,7 @@ void enter_domain(bool looks, inout Lane lane) {
     float before;
     vec3 position = place_in_domain(looks ? looking_from(lane) : lane.path.position,
                                     looks ? looking_along(lane) : lane.path.direction, before);
-    if (COUNTS)
+    if (COUNTS_PASSING)
         if (is_particle(lane))
             count_passing(lane.path.position, true, position, lane);
     lane.position = looks ? position : lane.position;

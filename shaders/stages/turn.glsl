@@ -48,7 +48,7 @@ void turn(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     vec3 from = lane.path.position;
     if (is_under_way(lane.todo))
         event = track(v, lane, rng, deposit, tally);
-    if (COUNTS)
+    if (COUNTS_PASSING)
         if (is_particle(lane))
             count_flight(v, from, event, lane);
     arrive(v, event, deposit, lane, rng, tally);

@@ -21,6 +21,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))  # where
 
 from truth import i3rc, judge, nanodisort_case, page, reading, slabs, voids
 
+FEW = 40  # figures of a case, all of which are printed; else the worst and the mean
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 
@@ -41,7 +42,7 @@ def cases(chosen, folder):
     yield from slabs.cases(pathlib.Path(folder))
     yield from nanodisort_case.cases(chosen.slabs)
     if chosen.figures:
-        yield from i3rc.cases(chosen.figures / "i3rc")
+        yield from i3rc.cases(chosen.figures / "i3rc", pathlib.Path(folder))
         yield from voids.cases(chosen.figures / "kobayashi_problem1.csv")
 
 
@@ -66,7 +67,7 @@ def main():
             found += verdicts
             seconds, figures = groups.get(case.name, (0.0, 0))
             groups[case.name] = seconds + time.time() - start, figures + len(verdicts)
-            for verdict in verdicts:
+            for verdict in verdicts if len(verdicts) <= FEW else [max(verdicts, key=lambda v: abs(v.z)), verdicts[-1]]:
                 print(row(verdict), flush=True)
     if not found:
         raise SystemExit("no group's name contains such a word")

@@ -11,11 +11,14 @@ class Case:
     scene: str  # elements between <options> and </options>; {spp} aside
     labels: list  # of the readings: columns of the picture, whose rows are the same again, for a device has more than one lane
     published: list  # numbers, one a reading
-    slack: list  # of each, one standard deviation of what the print leaves out: rounding, or the scatter of a consensus
+    slack: list  # of each, one standard deviation of what the print leaves out: rounding, or the scatter of a consensus;
+    # none: of neighbours, see judge.py
     scale: float = 1.0  # readings times this are in the figures' unit
     less: list = field(default_factory=list)  # taken from the readings after that: what the figures leave out, known exactly
     mean: tuple = ()  # published mean over the readings and its slack; or nothing
     samples: int = 1 << 10  # of a reading, to begin with
+    least: float = 0.0  # standard errors that do, as a share of the figures' mean
+    is_map: bool = False  # rows of the picture are readings too, in their order
 
 
 def digits(last):

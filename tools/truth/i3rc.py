@@ -3,8 +3,9 @@ the ground is black. R and T are fluxes over mu0 F0, I radiances times pi over m
 
 import math
 import pathlib
+import statistics
 
-from . import scenes
+from . import grids, scenes
 from .case import Case
 
 SOURCE = "I3RC phase 1, consensus"
@@ -16,13 +17,13 @@ def consensus(folder, case, what):
     return [float(word) for word in text.split()]
 
 
-def sensor(what, top, bottom, width, columns):
+def sensor(what, top, bottom, width, columns, depth=1.0, rows=scenes.ROWS):
     if what == "R":
-        return scenes.flux(top, False, width, 1.0, columns)
+        return scenes.flux(top, False, width, depth, columns, rows)
     if what == "T":
-        return scenes.flux(bottom, True, width, 1.0, columns)
+        return scenes.flux(bottom, True, width, depth, columns, rows)
     mu, azimuth = (1.0, 0.0) if what == "Iu" else (0.5, 180.0)
-    return scenes.radiance(top, mu, azimuth, width, columns)
+    return scenes.radiance(top, mu, azimuth, width, columns, rows)
 
 
 def step_cloud_scene(what):
@@ -43,5 +44,55 @@ def step_cloud(folder):
                    mean=(sum(published) / 32, share * sum(published) / 32 / 32**.5))
 
 
-def cases(folder):
+def field(folder, name):
+    return [float(word) for word in (pathlib.Path(folder) / name).read_text().split()]
+
+
+def mean_of(folder, case, what):
+    """And how far it may be off: half of what R and T lack of 1, or, of radiances, as much of them."""
+    means = {each: statistics.mean(consensus(folder, case, each)) for each in {"R", "T", what}}
+    return means[what], .5 * abs(means["R"] + means["T"] - 1.0) * (1.0 if what in "RT" else means[what])
+
+
+def radar_cloud(folder, work):
+    """Case 2, by a radar that looked up (MMCR): 640 columns over 32 km, layers of 45 m, the topmost first in the file, of which 40 have
+    any cloud; infinite along z. T is what leaves the lowest of these."""
+    numpy, _ = grids.module()
+    width, layer = 32.0, .045
+    depths = numpy.array(field(folder, "mmcr_tau_32km_020898")).reshape(54, 640)
+    depths = depths[depths.any(axis=1)]
+    height = len(depths) * layer
+    grid = grids.write(work / "radar.nvdb", (depths[::-1] / layer).T[:, :, None])
+    cloud = grids.volume(grid, (-.5 * width, 0.0, -.5 * width), (width / 640, layer, width), PHASE)
+    for what in ("R", "T", "Iu"):
+        yield Case("radar's cloud", what, SOURCE,
+                   cloud + scenes.periodic(width, width) + scenes.sun(1.0, 1.0) + sensor(what, height, 0.0, width, 640, width),
+                   [f"column {i + 1}" for i in range(640)], consensus(folder, 2, what), [], scale=math.pi if what[0] == "I" else 1.0,
+                   mean=mean_of(folder, 2, what), least=.03 if what == "Iu" else .01, samples=128)
+
+
+def landsat_cloud(folder, work):
+    """Case 3, seen from a satellite (Landsat): 128 x 128 columns of 30 m, each even from .2 km up, to a metre. The first line is at high z."""
+    numpy, _ = grids.module()
+    width, base, metre = 3.84, .2, .001
+    depths = numpy.array(field(folder, "scene43.tau.128x128")).reshape(128, 128)
+    metres = numpy.rint(numpy.array(field(folder, "scene43.dz.128x128")).reshape(128, 128) / metre).astype(int)
+    extinction = depths / (numpy.maximum(metres, 1) * metre)
+    is_cloud = numpy.arange(metres.max())[None, :, None] < metres.T[:, None, :]
+    grid = grids.write(work / "landsat.nvdb", numpy.where(is_cloud, extinction.T[:, None, :], 0.0).astype(numpy.float32))
+    cloud = grids.volume(grid, (-.5 * width, base, -.5 * width), (width / 128, metre, width / 128), PHASE)
+    for what in ("R", "T", "Iu"):
+        top = base + metre * int(metres.max())
+        scene = cloud + scenes.periodic(width, width) + scenes.sun(1.0, 1.0) + sensor(what, top, base, width, 128, width, 128)
+        yield Case("Landsat's cloud", what, SOURCE, scene, [f"column {i % 128 + 1}, line {i // 128 + 1}" for i in range(128 * 128)],
+                   consensus(folder, 3, what), [], scale=math.pi if what[0] == "I" else 1.0, mean=mean_of(folder, 3, what), least=.06 if what == "Iu" else .03,
+                   samples=64, is_map=True)
+
+
+def cases(folder, work):
     yield from step_cloud(folder)
+    if grids.module():
+        yield from radar_cloud(folder, work)
+        yield from landsat_cloud(folder, work)
+    else:
+        print("without vkvol's Python module and numpy (PYTHONPATH=build/python) the clouds of grids are left out")

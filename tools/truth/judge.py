@@ -24,11 +24,21 @@ def limit(count, alpha=0.01):
     return NormalDist().inv_cdf(0.5 + 0.5 * (1.0 - alpha) ** (1.0 / count))
 
 
+def scatter(case, rows):
+    """Of a consensus whose own is not published: by how much neighbouring figures differ at random from the readings. From second
+    differences, so that whatever differs smoothly, or all alike, is no part of it."""
+    apart = [case.scale * mean - published for (mean, _), published in zip(rows, case.published, strict=True)]
+    rough = [a - 2.0 * b + c for a, b, c in zip(apart, apart[1:], apart[2:])]
+    own = sum((case.scale * error) ** 2 for _, error in rows) / len(rows)
+    return math.sqrt(max(0.0, sum(x * x for x in rough) / (6.0 * len(rough)) - own))
+
+
 def judge(case, rows):
     """Of each figure, and of their mean where that is published."""
     less = case.less or [0.0] * len(rows)
+    slacks = case.slack or [scatter(case, rows)] * len(rows)
     found = [Verdict(case, label, case.scale * mean - known, case.scale * error, published, slack)
-             for label, (mean, error), published, slack, known in zip(case.labels, rows, case.published, case.slack, less, strict=True)]
+             for label, (mean, error), published, slack, known in zip(case.labels, rows, case.published, slacks, less, strict=True)]
     if case.mean:
         n = len(found)
         found.append(Verdict(case, "mean", sum(v.reading for v in found) / n, math.sqrt(sum(v.error**2 for v in found)) / n, *case.mean))

@@ -25,23 +25,24 @@ ROWS = 64  # that read the same
 SLAB = 8.0  # how wide a domain of one is
 
 
-def flux(height, down, width=SLAB, depth=SLAB, columns=1):
-    """A sensor of what comes down there, or goes up, in the whole of a domain: columns along x, and rows along z."""
+def flux(height, down, width=SLAB, depth=SLAB, columns=1, rows=ROWS):
+    """A sensor of what comes down there, or goes up, in the whole of a domain: columns along x, and rows along z; the first
+    is at high z, as seen from below, or at low z, as seen from above."""
     look = height + (1.0 if down else -1.0)
     up = "0 0 1" if down else "0 0 -1"  # so that columns go along +x
     return (f'<irradiance y="{height!r}" lookAt="0 {look!r} 0" up="{up}" width="{width!r}" '
-            f'height="{depth!r}"/><width>{columns}</width><height>{ROWS}</height>')
+            f'height="{depth!r}"/><width>{columns}</width><height>{rows}</height>')
 
 
-def radiance(height, mu, azimuth=0.0, width=0.01, columns=1):
+def radiance(height, mu, azimuth=0.0, width=0.01, columns=1, rows=ROWS):
     """A camera of parallel rays that sees what leaves a plane at `height`, upwards by mu, in this azimuth: columns along x, of the
     plane, whatever the slant, and rows along z. More than one column are for azimuths along x."""
     d = toward(mu, azimuth)
     eye = [p + 2.0 * width * q for p, q in zip((0.0, height, 0.0), d)]  # beyond all that slants down from it
     slant = mu if abs(d[2]) < 1e-9 else 1.0
-    high = width * slant / columns * ROWS
+    high = width * slant / columns * rows
     return (f'<camera projection="orthographic" viewHeight="{high!r}" x="{eye[0]!r}" y="{eye[1]!r}" z="{eye[2]!r}" '
-            f'lookAt="0 {height!r} 0" up="0 0 -1"/><width>{columns}</width><height>{ROWS}</height>')
+            f'lookAt="0 {height!r} 0" up="0 0 -1"/><width>{columns}</width><height>{rows}</height>')
 
 
 def periodic(width, depth):

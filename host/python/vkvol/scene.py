@@ -22,19 +22,19 @@ class Grids:
     density, or any other name by which a scene asks for a grid (`temperature`, ...): arrays of shape (nx, ny, nz), the
     first axis along x, as OpenVDB has them; with a fourth axis of 3 for colours. They are kept as float32; 0 takes no
     memory.
-    voxel_size: the edge of a voxel in world units.
+    voxel_size: the edge of a voxel in world units, or its edges along x, y and z.
     origin: where the middle of voxel (0, 0, 0) is, in world units.
 
     Raises InputError for arrays of another shape.
     """
 
-    def __init__(self, density: Optional[npt.ArrayLike] = None, *, voxel_size: float = 1.0,
+    def __init__(self, density: Optional[npt.ArrayLike] = None, *, voxel_size: Union[float, Sequence[float]] = 1.0,
                  origin: Sequence[float] = (0.0, 0.0, 0.0), **others: npt.ArrayLike) -> None:
         arrays = ({} if density is None else {"density": density}) | others
         if not arrays:
             raise _vkvol.InputError("Grids: there is no array; e.g. Grids(density=array)")
         self._grids = _vkvol.Grids([(name, np.asarray(array, np.float32)) for name, array in arrays.items()],
-                                   float(voxel_size), tuple(float(x) for x in origin))
+                                   tuple(float(x) for x in np.broadcast_to(voxel_size, 3)), tuple(float(x) for x in origin))
 
     def write(self, file: StrPath) -> None:
         """Writes them as an .nvdb file, which renders to the same bits."""
