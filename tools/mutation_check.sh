@@ -32,8 +32,8 @@ build=$work/build
 mutations() {
     cat <<'END'
 particles at a surface in the sensor's plane missed ~ shaders/stages/count.glsl ~ HAS_SURFACES ? 2.0 * 3.8147e-6 ~ HAS_SURFACES ? 0.0 * 3.8147e-6 ~ [counted]
-particles counted in one domain alone ~ shaders/stages/count.glsl ~ position -= frame.period.size * floor ~ position -= 0.0 * floor ~ [counted]
-particles not counted on their way into a domain ~ shaders/stages/seam.glsl ~ if (COUNTS) ~ if (false) ~ [counted]
+particles counted in one domain alone ~ shaders/stages/count.glsl ~ position - frame.period.size * floor ~ position - 0.0 * floor ~ [counted]
+particles not counted on their way into a domain ~ shaders/stages/seam.glsl ~ if (COUNTS_PASSING) ~ if (false) ~ [counted]
 channels of counted particles not weighted ~ shaders/stages/count.glsl ~ if (!collided && !NULL_FLIGHT) ~ if (false) ~ [counted]
 what is cut off glows nevertheless ~ shaders/lights/emit.glsl ~ && !is_in_domain(p.position) ~ && false ~ [counted]
 light aslant through a face as if straight ~ shaders/lights/emit.glsl ~ abs(rise) * light ~ light ~ [counted]

@@ -23,15 +23,6 @@ std::vector<std::string> with_colors(std::vector<std::string> attributes) {
     return attributes;
 }
 
-glm::dvec3 direction(const XmlElement& element) {
-    const glm::dvec3 towards = xyz(element, any_number);
-    if (towards == glm::dvec3(0.0))
-        element.fail(fmt::format("<{}> has no direction; x, y, z point from the scene towards the light, e.g. x=\"0\" "
-                                 "y=\"1\" z=\"0\"",
-                                 element.name()));
-    return unit(towards);
-}
-
 RectangleLight rectangle_light(const XmlElement& element, const Rgb& radiance) {
     const Rectangle shape = rectangle(element);
     return {shape.center, shape.edge_u, shape.edge_v, radiance};
@@ -99,12 +90,12 @@ template <class Kind> Light SceneReader::of_power(const XmlElement& element, Kin
 Light SceneReader::light(const XmlElement& element) const {
     const std::string kind = element.name();
     if (kind == "directional") {
-        element.allow(with_colors({"x", "y", "z"}));
-        return DirectionalLight{direction(element), light_color(element)};
+        element.allow(with_colors({"x", "y", "z", "zenith", "azimuth"}));
+        return DirectionalLight{direction_towards(element), light_color(element)};
     }
     if (kind == "sun") {
-        element.allow(with_colors({"x", "y", "z", "angle", "limbDarkening"}));
-        SunLight sun{direction(element), light_color(element)};
+        element.allow(with_colors({"x", "y", "z", "zenith", "azimuth", "angle", "limbDarkening"}));
+        SunLight sun{direction_towards(element), light_color(element)};
         sun.angle = element.attribute_number("angle", sun.angle,
                                              {0.01, 180.0, true, true, "an angle from 0.01 to 180 degrees"});
         sun.limb_darkening = element.attribute_number("limbDarkening", sun.limb_darkening, part);
@@ -156,12 +147,12 @@ Light SceneReader::light(const XmlElement& element) const {
 
 // A sky, and the sun in it.
 void SceneReader::read_daylight(const XmlElement& element, Scene& scene) const {
-    element.allow({"x", "y", "z", "turbidity", "ground", "multiplier", "group"});
+    element.allow({"x", "y", "z", "zenith", "azimuth", "turbidity", "ground", "multiplier", "group"});
     Daylight daylight;
-    daylight.sun = direction(element);
+    daylight.sun = direction_towards(element);
     if (daylight.sun.y <= 0.0)
-        element.fail_attribute("y",
-                               "<daylight> y: the sun is below the horizon; x, y, z point from the scene towards it, "
+        element.fail_attribute(element.has("zenith") ? "zenith" : "y",
+                               "<daylight>: the sun is below the horizon; x, y, z point from the scene towards it, "
                                "and y is up");
     daylight.turbidity = element.attribute_number("turbidity", daylight.turbidity,
                                                   {1.7, 10.0, true, true, "a number from 1.7 (clear) to 10 (hazy)"});

@@ -16,6 +16,27 @@ glm::dvec3 xyz(const XmlElement& element, const Limits& limits) {
             element.attribute_number("z", 0.0, limits)};
 }
 
+glm::dvec3 direction_towards(const XmlElement& element) {
+    if (element.has("zenith") || element.has("azimuth")) {
+        for (const char* name : {"x", "y", "z"})
+            if (element.has(name))
+                element.fail_attribute(name,
+                                       fmt::format("<{}> {}: zenith and azimuth say the direction already; remove "
+                                                   "them, or x, y and z",
+                                                   element.name(), name));
+        const double zenith = glm::radians(
+            element.attribute_number("zenith", 0.0, {0.0, 180.0, true, true, "an angle from 0 to 180 degrees"}));
+        const double azimuth = glm::radians(element.attribute_number("azimuth", 0.0, any_number));
+        return {std::sin(zenith) * std::sin(azimuth), std::cos(zenith), std::sin(zenith) * std::cos(azimuth)};
+    }
+    const glm::dvec3 towards = xyz(element, any_number);
+    if (towards == glm::dvec3(0.0))
+        element.fail(fmt::format("<{}> has no direction; x, y, z point from the scene towards the light, e.g. x=\"0\" "
+                                 "y=\"1\" z=\"0\", or zenith=\"30\" azimuth=\"0\"",
+                                 element.name()));
+    return unit(towards);
+}
+
 glm::dvec3 looking_at(const XmlElement& element, const glm::dvec3& position) {
     const std::vector<double> numbers = element.attribute_numbers("lookAt", coordinate);
     if (numbers.size() != 3)

@@ -11,6 +11,10 @@ glm::dvec3 unit(const glm::dvec3& v);
 // Where it is, or where towards, by x, y and z; 0 where they are missing.
 glm::dvec3 xyz(const XmlElement& element, const Limits& limits);
 
+// Unit, towards what is infinitely far away: by x, y and z, or by zenith and azimuth, degrees: from y, and from z
+// towards x, counter-clockwise as seen from above.
+glm::dvec3 direction_towards(const XmlElement& element);
+
 // Towards lookAt="x y z", unit.
 glm::dvec3 looking_at(const XmlElement& element, const glm::dvec3& position);
 

@@ -9,6 +9,7 @@
 #include "error.h"
 #include "nearest_name.h"
 #include "one_line.h"
+#include "scene_places.h"
 
 namespace vkvol {
 
@@ -216,17 +217,11 @@ std::string SceneReader::group_name(const XmlElement& element) const {
 
 void SceneReader::read_light(Scene& scene) const {
     const XmlElement element = one("light");
-    element.allow({"x", "y", "z", "r", "g", "b", "multiplier", "group"});
-    const auto number = [&](const char* name) { return element.attribute_number(name, 0.0, any_number); };
-    const glm::dvec3 direction(number("x"), number("y"), number("z"));
+    element.allow({"x", "y", "z", "zenith", "azimuth", "r", "g", "b", "multiplier", "group"});
     const Rgb irradiance = color(element);
     if (irradiance == Rgb(0.0))
         return;
-    const double largest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
-    if (largest == 0.0)
-        element.fail(
-            "<light> has no direction; x, y, z point from the scene towards the light, e.g. x=\"0\" y=\"1\" z=\"0\"");
-    scene.lights.push_back(DirectionalLight{glm::normalize(direction / largest), irradiance, group_name(element)});
+    scene.lights.push_back(DirectionalLight{direction_towards(element), irradiance, group_name(element)});
 }
 
 // What asks for something that this renderer does not do, each with what is done in its place.

@@ -90,7 +90,7 @@ inline constexpr Words grammar[] = {
       "referenceTemperature", "brightness"}},
     {"albedo", "", {"grid"}},
     {"densityMap", "", {"gain", "offset", "threshold"}},
-    {"light", "", {"x", "y", "z", "r", "g", "b", "multiplier", "group"}},
+    {"light", "", {"x", "y", "z", "zenith", "azimuth", "r", "g", "b", "multiplier", "group"}},
     {"backgroundColor", "", {"r", "g", "b", "multiplier", "group"}},
     {"camera", "", {"x", "y", "z", "pitch", "yaw", "roll", "fov"}},
     {"camera", "", {"z", "projection", "viewHeight", "lensRadius", "focus", "blades", "bladeRotation"}},
@@ -150,7 +150,7 @@ inline constexpr Words shine_grammar[] = {{"emission", "", {"r", "g", "b", "mult
 // Within <lights>.
 inline constexpr Words light_grammar[] = {
     {"directional", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier"}},
-    {"sun", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier", "angle", "limbDarkening"}},
+    {"sun", "", {"x", "y", "z", "zenith", "azimuth", "r", "g", "b", "kelvin", "multiplier", "angle", "limbDarkening"}},
     {"point", "", {"x", "y", "z", "r", "g", "b", "kelvin", "power", "group"}},
     {"spot", "", {"x", "y", "z", "lookAt", "angle", "blend", "kelvin", "multiplier"}},
     {"sphere", "", {"x", "y", "z", "radius", "kelvin", "multiplier"}},

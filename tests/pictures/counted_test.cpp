@@ -320,6 +320,38 @@ TEST_CASE("what voxels absorb in a furnace, and the grid of it", "[gpu][counted]
     }
 }
 
+// Fluxes out of the top and the ground, and what is absorbed between, each by its own render.
+TEST_CASE("what comes into a domain leaves it, or stays", "[gpu][counted]") {
+    const LightsAbout lights;
+    Scene scene = about_clouds(false, {lights.beam, lights.sun});
+    scene.volumes.front().sigma_s *= Rgb(1.0, 0.9, 0.8); // of an extinction that differs between the channels
+    scene.volumes.push_back(medium(Sphere{{2.0, -1.0, 0.0}, 2.0}, 0.8, 0.5, -0.3));
+    scene.camera.size = {10.0, 10.0};
+    scene.camera.position = {0.0, 6.0, 0.0};
+    scene.settings.spp = 16384;
+    Scene below = scene;
+    look_along(below.camera, up, {0.0, 0.0, 1.0});
+    below.camera.position.y = -6.0;
+    Scene amid = absorption({0.0, 0.0, 0.0}, {10.0, 12.0, 10.0}, {2, 2, 1}, 16384);
+    amid.volumes = scene.volumes;
+    amid.lights = scene.lights;
+    amid.periodic = scene.periodic;
+    glm::dvec3 power(0.0), variance(0.0);
+    for (const auto& [part, of] : {std::pair(scene, 1.0), std::pair(below, 1.0), std::pair(amid, 12.0)}) { // per area
+        const Film film = render_here(by(part, "lightTracing"), 1).film;
+        for (std::size_t i = 0; i < film.mean.size(); ++i) {
+            power += of / 4.0 * glm::dvec3(film.mean[i]);
+            variance += of * of / 16.0 * glm::dvec3(film.variance[i]);
+        }
+    }
+    const Rgb in = lights.beam.irradiance * lights.beam.direction.y + lights.sun.irradiance * lights.sun.direction.y;
+    for (int channel = 0; channel < 3; ++channel) {
+        CAPTURE(channel, power[channel], in[channel], std::sqrt(variance[channel]));
+        CHECK(std::abs(power[channel] - in[channel]) < 4.0 * std::sqrt(variance[channel]));
+        CHECK(std::sqrt(variance[channel]) < 0.01 * in[channel]);
+    }
+}
+
 TEST_CASE("absorption amid several media with surfaces, beneath lights of all kinds", "[gpu][counted]") {
     const LightsAbout lights;
     Scene scene = absorption({0.0, 0.0, 0.0}, glm::dvec3(1.2), {8, 8, 8}, 1024);

@@ -293,6 +293,35 @@ TEST_CASE("domains that repeat in scene files", "[cpu][xml][periodic]") {
     CHECK_THAT(error_of("<periodic w='1 2'/>"), Contains("unknown attribute 'w'"));
 }
 
+// As much of a beam goes from one direction into another as the other way.
+TEST_CASE("radiances of a domain that repeats are reciprocal", "[gpu][image][periodic]") {
+    const glm::dvec3 steep(0.6, 0.8, 0.0), flat(-std::sqrt(0.75), 0.5, 0.0);
+    const auto reflected = [&](glm::dvec3 sun, glm::dvec3 view) {
+        Scene scene = above(cloud());
+        scene.background = Rgb(0.0);
+        scene.lights = {DirectionalLight{sun, Rgb(1.0)}};
+        scene.camera.projection = Projection::orthographic;
+        scene.camera.view_height = 10.0 * view.y; // all of a domain, once
+        scene.camera.position = 30.0 * view;
+        look_along(scene.camera, -view, up);
+        const int high = int(std::lround(20.0 * view.y));
+        scene.picture = {20, high, 0.0, 0.0, 20.0, double(high)};
+        scene.settings.spp = 1024;
+        const Film film = render_here(scene, 1).film;
+        double mean = 0.0, variance = 0.0;
+        const auto pixels = double(film.mean.size());
+        for (std::size_t i = 0; i < film.mean.size(); ++i) {
+            mean += film.mean[i].x / pixels;
+            variance += film.variance[i].x / (pixels * pixels);
+        }
+        return glm::dvec2(mean, std::sqrt(variance)) / sun.y;
+    };
+    const glm::dvec2 there = reflected(steep, flat), back = reflected(flat, steep);
+    CAPTURE(there.x, back.x, there.y, back.y);
+    CHECK(std::abs(there.x - back.x) < 4.0 * std::hypot(there.y, back.y));
+    CHECK(std::hypot(there.y, back.y) < 0.02 * there.x);
+}
+
 TEST_CASE("what a domain that repeats cannot have is said", "[cpu][method][periodic]") {
     Scene scene = above(cloud());
     CHECK(choose_method(scene).nee == NEE_COLLISIONS);

@@ -88,12 +88,29 @@ TEST_CASE("power is what a light sends out in all", "[cpu][xml]") {
     CHECK(parse(R"(<sphere/><lights><point power="0"/></lights>)").lights.empty());
 }
 
+TEST_CASE("directions by zenith and azimuth", "[cpu][xml]") {
+    const auto towards = [](const std::string& angles) {
+        const Scene scene = parse("<sphere/><lights><directional multiplier=\"2\" " + angles + "/></lights>");
+        return std::get<DirectionalLight>(scene.lights.front()).direction;
+    };
+    CHECK(towards("zenith='0'") == glm::dvec3(0.0, 1.0, 0.0));
+    CHECK(glm::distance(towards("zenith='90'"), {0.0, 0.0, 1.0}) < 1e-15);
+    CHECK(glm::distance(towards("zenith='90' azimuth='90'"), {1.0, 0.0, 0.0}) < 1e-15);
+    CHECK(glm::distance(towards("zenith='60' azimuth='-30'"), {-0.5 * std::sqrt(0.75), 0.5, 0.75}) < 1e-15);
+    CHECK(glm::distance(towards("azimuth='40'"), {0.0, 1.0, 0.0}) < 1e-15);
+    const Scene old = parse("<sphere/><light zenith='60' azimuth='90' r='1'/>");
+    CHECK(glm::distance(std::get<DirectionalLight>(old.lights.front()).direction, {std::sqrt(0.75), 0.5, 0.0}) < 1e-15);
+}
+
 TEST_CASE("what is wrong with a light is said at its place", "[cpu][xml]") {
     const auto error = [](const std::string& light) { return error_of("<lights>" + light + "</lights>"); };
     for (const auto& [light, words] : std::vector<std::pair<std::string, std::string>>{
              {"<lamp/>", "2:9"},
              {"<directional/>", "<directional> has no direction"},
              {"<sun r=\"1\"/>", "<sun> has no direction"},
+             {"<sun zenith=\"10\" y=\"1\"/>", "<sun> y: zenith and azimuth say the direction already"},
+             {"<directional zenith=\"-1\"/>", "from 0 to 180"},
+             {"<daylight zenith=\"91\"/>", "below the horizon"},
              {"<sun y=\"1\" angle=\"0\"/>", "from 0.01 to 180"},
              {"<sun y=\"1\" angle=\"0.01\" multiplier=\"1e12\"/>", "widen or dim it"},
              {"<sun y=\"1\" limbDarkening=\"1.5\"/>", "<sun> limbDarkening"},
