@@ -14,6 +14,7 @@
 #include "render_scene.h"
 #include "requested_scene.h"
 #include "session.h"
+#include "spectral_bands.h"
 #include "workshop.h"
 
 namespace vkvol {
@@ -37,19 +38,20 @@ std::vector<Values> combinations(const std::vector<Sweep>& sweeps) {
     return all;
 }
 
-RenderOptions request_of(const MeasureOptions& options, const Values& values) {
+RenderOptions request_of(const MeasureOptions& options, const Values& values, const SpectralBand& band) {
     RenderOptions render;
     static_cast<RenderRequest&>(render) = options.request;
     for (std::size_t i = 0; i < values.size(); ++i)
         render.defines[options.sweeps[i].key] = values[i];
+    render.defines.insert(band.values.begin(), band.values.end());
     return render;
 }
 
-RenderResult measure(const MeasureOptions& options, const Scene& scene, Workshop& workshop) {
+RenderResult measure(const MeasureOptions& options, const Scene& scene, std::uint32_t band, Workshop& workshop) {
     RenderJob job;
     job.workshop = &workshop;
     job.crop = {0, scene.picture.width, 0, scene.picture.height};
-    job.seed = options.request.seed;
+    job.seed = options.request.seed + band;
     job.plan = options.request.plan;
     job.time_limit = options.request.time_limit;
     job.noise_goal = options.request.noise_goal;
@@ -133,10 +135,13 @@ void add(const std::vector<Sweep>& sweeps, const Values& values, const std::stri
 }
 
 // Which of several values it was.
-template <class Work> void of_values(const std::vector<Sweep>& sweeps, const Values& values, const Work& work) {
+template <class Work>
+void of_values(const std::vector<Sweep>& sweeps, const Values& values, const SpectralBand& band, const Work& work) {
     std::string which;
     for (std::size_t i = 0; i < values.size(); ++i)
         which += fmt::format("-D {}={}: ", sweeps[i].key, values[i]);
+    for (const auto& [key, value] : band.values)
+        which += fmt::format("band of {}={}: ", key, value);
     try {
         work();
     } catch (const InputError& error) {
@@ -154,6 +159,8 @@ void check_output(const MeasureOptions& options, const Scene& scene) {
     FileUses uses;
     uses.reads("the scene", options.request.scene);
     uses.reads_files_of(scene);
+    if (options.bands)
+        uses.reads("the bands", *options.bands);
     uses.writes("the table", *options.output, "-o");
     uses.check();
     check_directory_writable(*options.output, "-o");
@@ -169,11 +176,24 @@ void write(const MeasureOptions& options, const std::vector<Values>& rows) {
 }
 
 // Before any time is spent: what is wrong with the last of many values is wrong now.
-void check_all(const MeasureOptions& options, Workshop& workshop) {
+void check_all(const MeasureOptions& options, const std::vector<SpectralBand>& bands, Workshop& workshop) {
     for (const Values& values : combinations(options.sweeps))
-        of_values(options.sweeps, values, [&] {
-            check_output(options, load_render_scene(request_of(options, values), workshop.fields()).scene);
-        });
+        for (const SpectralBand& band : bands)
+            of_values(options.sweeps, values, band, [&] {
+                check_output(options, load_render_scene(request_of(options, values, band), workshop.fields()).scene);
+            });
+}
+
+// One, of weight 1, without a table of them.
+std::vector<SpectralBand> bands_of(const MeasureOptions& options) {
+    if (!options.bands)
+        return {SpectralBand{}};
+    std::vector<SpectralBand> bands = read_bands(*options.bands);
+    for (const Sweep& sweep : options.sweeps)
+        if (bands.front().values.contains(sweep.key))
+            throw InputError(
+                fmt::format("-D {}: is a column of {} too; leave out one of them", sweep.key, options.bands->string()));
+    return bands;
 }
 
 } // namespace
@@ -181,13 +201,14 @@ void check_all(const MeasureOptions& options, Workshop& workshop) {
 int run_measure(const MeasureOptions& options) {
     install_interrupt_handler();
     Workshop workshop(true);
-    check_all(options, workshop);
+    const std::vector<SpectralBand> bands = bands_of(options);
+    check_all(options, bands, workshop);
     std::vector<Values> rows;
     bool was_interrupted = false;
-    const auto measure_one = [&](const Values& values) {
-        of_values(options.sweeps, values, [&] {
-            const RenderScene loaded = load_render_scene(request_of(options, values), workshop.fields());
-            const RenderResult result = measure(options, loaded.scene, workshop);
+    const auto measure_band = [&](const Values& values, std::size_t band, Film& sum) {
+        of_values(options.sweeps, values, bands[band], [&] {
+            const RenderScene loaded = load_render_scene(request_of(options, values, bands[band]), workshop.fields());
+            const RenderResult result = measure(options, loaded.scene, static_cast<std::uint32_t>(band), workshop);
             std::vector<std::string> warnings = loaded.scene.warnings;
             warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
             for (const std::string& warning : workshop.new_warnings(warnings))
@@ -197,8 +218,16 @@ int run_measure(const MeasureOptions& options) {
             if (result.samples == 0 && !was_interrupted)
                 throw RenderError("ended before any sample was done");
             if (result.samples > 0)
-                add(options.sweeps, values, options.means ? mean_table(result.film) : film_table(result.film), rows);
+                add_band(result.film, bands[band].weight, sum);
         });
+    };
+    const auto measure_one = [&](const Values& values) {
+        Film sum;
+        std::size_t band = 0;
+        for (; band < bands.size() && !was_interrupted; ++band)
+            measure_band(values, band, sum);
+        if (band == bands.size() && !sum.mean.empty()) // of some bands alone it would be another reading
+            add(options.sweeps, values, options.means ? mean_table(sum) : film_table(sum), rows);
     };
     try {
         for (const Values& values : combinations(options.sweeps))

@@ -17,7 +17,7 @@ namespace {
 
 struct MeasureTexts {
     std::vector<std::string> defines;
-    std::string output, time, noise, schedule;
+    std::string output, bands, time, noise, schedule;
 };
 
 constexpr std::size_t most_values = 100'000; // of all keys together
@@ -59,13 +59,13 @@ void add_options(CLI::App& app, MeasureOptions& measure, MeasureTexts& texts) {
         ->transform(whole_number(1, 2147483647))
         ->option_text("N [scene]")
         ->group(group);
-    app.add_option("--time", texts.time, "At most this long for each combination of values")
+    app.add_option("--time", texts.time, "At most this long for each combination of values, and band")
         ->option_text("T")
         ->group(group);
     app.add_option("--noise", texts.noise, "Until each picture's noise is no more than this: 1%, or 0.01")
         ->option_text("P%")
         ->group(group);
-    app.add_option("--seed", request.seed, "Of all combinations alike")
+    app.add_option("--seed", request.seed, "Of all combinations alike; each band adds its number")
         ->transform(whole_number(0, max_seed))
         ->option_text("S [0]")
         ->group(group);
@@ -78,6 +78,10 @@ void add_options(CLI::App& app, MeasureOptions& measure, MeasureTexts& texts) {
     add_list(app, "-D,--define", texts.defines,
              "Fills $KEY in the scene, with one value after the other; may be given several times")
         ->option_text("KEY=A,B,...|KEY=A..BxN")
+        ->group(group);
+    app.add_option("--bands", texts.bands,
+                   "Readings are the weighted sum over bands: lines of values, below a line of names, weight and $keys")
+        ->option_text("FILE.csv")
         ->group(group);
     add_device_options(app, request);
     app.add_flag("--no-cache", request.no_cache, "Neither read nor write the pipeline cache")->group("Device");
@@ -120,6 +124,8 @@ void parse_measure(const std::vector<std::string>& arguments, Options& options) 
     }
     if (!texts.output.empty())
         measure.output = texts.output;
+    if (!texts.bands.empty())
+        measure.bands = texts.bands;
     if (!texts.time.empty())
         measure.request.time_limit = parse_duration(texts.time);
     if (!texts.noise.empty())

@@ -8,6 +8,7 @@
 
 #include "error.h"
 #include "measure_options.h"
+#include "spectral_bands.h"
 #include "support/command_folder.h"
 #include "support/shell.h"
 
@@ -44,6 +45,56 @@ TEST_CASE("values one after the other", "[cpu][options]") {
     CHECK_THROWS_WITH(parse_sweep("g=0..1x1"), Contains("whole number from 2"));
     CHECK_THROWS_WITH(parse_sweep("g=0..axb3"), Contains("is not a number"));
     CHECK_THROWS_WITH(parse_sweep("g"), Contains("key=value"));
+}
+
+TEST_CASE("tables of bands", "[cpu][options]") {
+    const Folder folder("");
+    const auto read = [&](const std::string& text) {
+        folder.write("bands.csv", text);
+        return read_bands(folder.file("bands.csv"));
+    };
+    const std::vector<SpectralBand> bands =
+        read("# of two\nweight, sigma,sun\n0.25,1.5, a b # the first\n\n1e-3,2,c\r\n");
+    REQUIRE(bands.size() == 2);
+    CHECK(bands[0].weight == 0.25);
+    CHECK(bands[0].values == std::map<std::string, std::string>{{"sigma", "1.5"}, {"sun", "a b"}});
+    CHECK(bands[1].weight == 1e-3);
+    CHECK_THROWS_WITH(read(""), Contains("has no bands"));
+    CHECK_THROWS_WITH(read("weight,sigma\n"), Contains("has no bands"));
+    CHECK_THROWS_WITH(read("sigma,sun\n1,2\n"), Contains("bands.csv:1: ") && Contains("one is weight"));
+    CHECK_THROWS_WITH(read("weight,sigma,sigma\n"), Contains("a name of its own"));
+    CHECK_THROWS_WITH(read("weight,sigma\n1\n"), Contains("bands.csv:2: 1 values under 2 names"));
+    CHECK_THROWS_WITH(read("weight,sigma\nx,1\n"), Contains("bands.csv:2: the weight is 'x'"));
+    CHECK_THROWS_WITH(read_bands(folder.file("nowhere.csv")), Contains("nowhere.csv"));
+}
+
+// What is known of each band adds up, and so do the squares of errors.
+TEST_CASE("readings are sums over bands", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("glow.xml", ball);
+    folder.write("bands.csv", "weight,sigma,glow\n0.5,0.5,1\n2,2,3\n");
+    const auto reading = [&](const std::string& options) {
+        const Run run = folder.vkvol("measure glow.xml --spp 4096 -o table.csv " + options);
+        CAPTURE(run.text);
+        REQUIRE(run.code == exit_done);
+        return lines_of(folder.text("table.csv"));
+    };
+    const auto sum = reading("--bands bands.csv");
+    const auto first = reading("-D sigma=0.5 -D glow=1"), second = reading("-D sigma=2 -D glow=3 --seed 1");
+    for (std::size_t row = 1; row <= 2; ++row)
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            const auto number = [&](const auto& lines, std::size_t before, std::size_t column) {
+                return std::stod(lines[row][before + column + channel]);
+            };
+            CHECK(number(sum, 0, 5) == Approx(0.5 * number(first, 2, 5) + 2.0 * number(second, 2, 5)).epsilon(1e-6));
+            CHECK(number(sum, 0, 8) ==
+                  Approx(std::hypot(0.5 * number(first, 2, 8), 2.0 * number(second, 2, 8))).epsilon(1e-5));
+        }
+    const Run twice = folder.vkvol("measure glow.xml --bands bands.csv -D glow=1");
+    CHECK(twice.code == exit_bad_input);
+    CHECK_THAT(twice.text, Contains("-D glow: is a column of"));
+    folder.write("bands.csv", "weight,sigma,glow\n0.5,0.5,1\n2,x,3\n");
+    CHECK_THAT(folder.vkvol("measure glow.xml --bands bands.csv").text, Contains("band of glow=3: band of sigma=x: "));
 }
 
 TEST_CASE("readings are a table, a row for each point and combination of values", "[gpu][command]") {
