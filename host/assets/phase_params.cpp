@@ -34,6 +34,14 @@ Mixture fit_to_droplets(double d) {
             std::exp(3.62489 - 8.29288 / (d + 5.52825)), std::exp(-0.599085 / (d - 0.641583) - 0.665888)};
 }
 
+// Of Rayleigh's phase function: it is 3 / (4 (1 + 2 c)) (1 + 3 c + (1 - c) mu^2) / 4 pi with c = d / (2 - d) (Bucholtz,
+// "Rayleigh-scattering calculations for the terrestrial atmosphere", 1995, equation 12), of which this part is not
+// even.
+double directed_share(double depolarization) {
+    const double c = depolarization / (2.0 - depolarization);
+    return (1.0 - c) / (1.0 + 2.0 * c);
+}
+
 double draine_mean_cosine(double g, double alpha) {
     return g * (1.0 + alpha * (3.0 + 2.0 * g * g) / 5.0) / (1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0);
 }
@@ -57,6 +65,8 @@ shared::PhaseParams phase_params(const Volume& volume, std::span<const shared::P
     Mixture mixture{volume.g, details.g2, details.alpha, details.share};
     if (volume.phase == PhaseFunction::droplets)
         mixture = fit_to_droplets(details.diameter);
+    if (volume.phase == PhaseFunction::rayleigh)
+        mixture.share = directed_share(details.depolarization);
     shared::PhaseParams params{};
     params.g = static_cast<float>(mixture.g);
     params.g2 = static_cast<float>(mixture.g2);

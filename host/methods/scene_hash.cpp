@@ -81,6 +81,8 @@ void add_phase(Writer& writer, const Volume& volume) {
     const PhaseDetails& details = volume.phase_details;
     if (volume.phase != PhaseFunction::henyey_greenstein)
         writer.add("phase", static_cast<int>(volume.phase));
+    if (volume.phase == PhaseFunction::rayleigh && details.depolarization > 0.0)
+        writer.add("depolarization", details.depolarization);
     if (volume.phase == PhaseFunction::double_henyey_greenstein)
         writer.add("second", glm::dvec3(details.g2, details.share, 0.0));
     if (volume.phase == PhaseFunction::draine)

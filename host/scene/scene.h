@@ -180,6 +180,8 @@ struct PhaseDetails {
     double share = 0.5;              // double: part of the light that goes by it, in [0, 1]
     double alpha = 1.0;              // Draine: weight of the square of the cosine, in [0, 250]
     double diameter = 10.0;          // droplets: micrometres, in [0.01, 50]
+    double depolarization = 0.0;     // Rayleigh: in [0, 6/7], of unpolarised light scattered by a right angle, the
+                                     // intensities along and across the plane of scattering, one over the other
     std::filesystem::path file = {}; // table
 };
 

@@ -18,8 +18,8 @@ struct Kind {
 
 // As PhaseFunction.
 const std::vector<Kind> kinds = {
-    {"henyeyGreenstein", {}}, {"rayleigh", {}, false},           {"doubleHenyeyGreenstein", {"second", "share"}},
-    {"draine", {"alpha"}},    {"droplets", {"diameter"}, false}, {"table", {"file", "baseDir"}, false}};
+    {"henyeyGreenstein", {}}, {"rayleigh", {"depolarization"}, false}, {"doubleHenyeyGreenstein", {"second", "share"}},
+    {"draine", {"alpha"}},    {"droplets", {"diameter"}, false},       {"table", {"file", "baseDir"}, false}};
 
 constexpr Limits asymmetry{-1, 1, false, false, "a number between -1 and 1, both excluded"};
 constexpr double sharpest = 0.99999; // single precision still has 1 - g to a thousandth
@@ -67,6 +67,8 @@ void SceneReader::read_phase(Volume& volume) const {
     details.alpha = phase.attribute_number("alpha", details.alpha, {0, 250, true, true, "a number from 0 to 250"});
     details.diameter = phase.attribute_number("diameter", details.diameter,
                                               {0.01, 50, true, true, "a diameter from 0.01 to 50 micrometres"});
+    details.depolarization = phase.attribute_number("depolarization", details.depolarization,
+                                                    {0.0, 6.0 / 7.0, true, true, "a number from 0 to 6/7"});
     if (volume.phase == PhaseFunction::table) {
         if (!phase.has("file"))
             phase.fail("<phase> table names no file; write e.g. file=\"droplets.txt\"");

@@ -18,7 +18,7 @@ float phase_eval(MediumParams v, vec3 before, vec3 after) {
     if (kind == PHASE_HENYEY_GREENSTEIN)
         p = hg_eval(v.phase.g, hg_from_peak(v.phase.g, before, after));
     else if (kind == PHASE_RAYLEIGH)
-        p = rayleigh_eval(dot(before, after));
+        p = rayleigh_eval(v.phase.share, dot(before, after));
     else if (kind == PHASE_DOUBLE_HENYEY_GREENSTEIN)
         p = double_hg_eval(v.phase, before, after);
     else if (kind == PHASE_DRAINE)
@@ -40,7 +40,7 @@ float phase_eval_twice(MediumParams v, vec3 before, vec3 after) {
     if (PHASE == PHASE_HENYEY_GREENSTEIN)
         p = hg_eval(v.phase.g * v.phase.g, hg_from_peak(v.phase.g * v.phase.g, before, after));
     else if (PHASE == PHASE_RAYLEIGH)
-        p = rayleigh_eval_twice(dot(before, after));
+        p = rayleigh_eval_twice(v.phase.share, dot(before, after));
     else if (PHASE == PHASE_DOUBLE_HENYEY_GREENSTEIN)
         p = double_hg_eval_twice(v.phase, before, after);
     return p;
@@ -53,7 +53,7 @@ vec3 phase_sample(MediumParams v, vec3 before, vec2 u) {
     if (kind == PHASE_HENYEY_GREENSTEIN)
         after = hg_sample(v.phase.g, before, u);
     else if (kind == PHASE_RAYLEIGH)
-        after = turned(before, 1.0 - rayleigh_sample_cosine(u.x), u.y);
+        after = turned(before, 1.0 - rayleigh_sample_cosine(v.phase.share, u.x), u.y);
     else if (kind == PHASE_DOUBLE_HENYEY_GREENSTEIN)
         after = double_hg_sample(v.phase, before, u);
     else if (kind == PHASE_DRAINE)

@@ -112,7 +112,7 @@ struct MarchParams {
 struct PhaseParams {
     float g;     // Henyey and Greenstein's and Draine's, in (-1, 1)
     float g2;    // likewise of a second function,
-    float share; // by which this part of the light goes
+    float share; // by which this part of the light goes; of Rayleigh's, that which does not go evenly
     float alpha; // of Draine's
     uint nodes;  // of a table, at least 2
     uint first_node;

@@ -64,7 +64,7 @@ inline constexpr const char* element_names[] = {"densityField",
 struct Words {
     const char* element;
     const char* text; // "": none; "n": number; "i": whole number; else alternatives separated by |
-    std::array<const char*, 11> attributes;
+    std::array<const char*, 12> attributes;
 };
 
 inline constexpr Words grammar[] = {
@@ -82,6 +82,7 @@ inline constexpr Words grammar[] = {
     {"phase", "henyeyGreenstein|rayleigh|draine", {"alpha"}},
     {"phase", "doubleHenyeyGreenstein", {"second", "share"}},
     {"phase", "droplets", {"diameter"}},
+    {"phase", "rayleigh", {"depolarization"}},
     {"phase", "table", {"file", "baseDir"}},
     {"medium", "", {"r", "g", "b", "multiplier"}},
     {"emission",

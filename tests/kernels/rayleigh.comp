@@ -4,10 +4,11 @@
 #include "kernel.glsl"
 
 #include "phase/phase.glsl"
-TEST_IO(vec2, vec3)
+TEST_IO(vec3, vec3)
 
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i < push.lanes)
-        outputs[i] = vec3(rayleigh_eval(inputs[i].x), rayleigh_eval_twice(inputs[i].x), rayleigh_sample_cosine(inputs[i].y));
+        outputs[i] = vec3(rayleigh_eval(inputs[i].z, inputs[i].x), rayleigh_eval_twice(inputs[i].z, inputs[i].x),
+                          rayleigh_sample_cosine(inputs[i].z, inputs[i].y));
 }

@@ -35,6 +35,10 @@ void load_phase(const vkvol::Volume& volume, Medium& medium) {
     medium.g2 = volume.phase_details.g2;
     medium.share = volume.phase_details.share;
     medium.alpha = volume.phase_details.alpha;
+    if (volume.phase == vkvol::PhaseFunction::rayleigh) { // as (1 + d) + (1 - d) mu^2
+        const double d = volume.phase_details.depolarization;
+        medium.share = 2.0 * (1.0 - d) / (2.0 + d);
+    }
     if (volume.phase == vkvol::PhaseFunction::table)
         medium.table = load_table(volume.phase_details.file);
     if (volume.phase == vkvol::PhaseFunction::droplets) {
@@ -204,7 +208,7 @@ double phase_eval(const Medium& medium, double mu) {
     using enum vkvol::PhaseFunction;
     switch (medium.phase) {
     case rayleigh:
-        return rayleigh_eval(mu);
+        return rayleigh_eval(medium.share, mu);
     case double_henyey_greenstein:
         return std::lerp(hg_eval(medium.g, mu), hg_eval(medium.g2, mu), medium.share);
     case draine:
@@ -222,7 +226,7 @@ double phase_eval(const Medium& medium, double mu) {
 double phase_eval_twice(const Medium& medium, double mu) {
     using enum vkvol::PhaseFunction;
     if (medium.phase == rayleigh)
-        return rayleigh_eval_twice(mu);
+        return rayleigh_eval_twice(medium.share, mu);
     if (medium.phase != double_henyey_greenstein)
         return hg_eval(medium.g * medium.g, mu);
     const double s = medium.share, r = 1.0 - s;
@@ -242,7 +246,7 @@ double sample_cosine(const Medium& medium, double u) {
     const double rest = second ? u / medium.share : (u - medium.share) / (1.0 - medium.share);
     switch (medium.phase) {
     case rayleigh:
-        return rayleigh_sample_cosine(u);
+        return rayleigh_sample_cosine(medium.share, u);
     case double_henyey_greenstein:
         return hg_sample_cosine(second ? medium.g2 : medium.g, rest);
     case draine:

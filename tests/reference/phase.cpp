@@ -27,20 +27,20 @@ double hg_sample_cosine(double g, double u) {
     return std::clamp(numerator / denominator, -1.0, 1.0);
 }
 
-double rayleigh_eval(double mu) {
-    return 3.0 / (16.0 * pi) * (1.0 + mu * mu);
+double rayleigh_eval(double share, double mu) {
+    return share * 3.0 / (16.0 * pi) * (1.0 + mu * mu) + (1.0 - share) / (4.0 * pi);
 }
 
-// By the addition theorem, Legendre moments multiply: sum of (2l + 1) f_l^2 P_l / 4 pi with f_0 = 1, f_2 = 1 / 10.
-double rayleigh_eval_twice(double mu) {
-    return (1.0 + 5.0 * 0.1 * 0.1 * (3.0 * mu * mu - 1.0) / 2.0) / (4.0 * pi);
+// By the addition theorem, Legendre moments multiply: sum of (2l + 1) f_l^2 P_l / 4 pi with f_0 = 1, f_2 = share / 10.
+double rayleigh_eval_twice(double share, double mu) {
+    return (1.0 + 5.0 * 0.1 * 0.1 * share * share * (3.0 * mu * mu - 1.0) / 2.0) / (4.0 * pi);
 }
 
-double rayleigh_sample_cosine(double u) {
+double rayleigh_sample_cosine(double share, double u) {
     double low = -1.0, high = 1.0;
     for (int i = 0; i < 60; ++i) {
         const double mu = 0.5 * (low + high);
-        ((mu * mu * mu + 3.0 * mu + 4.0) / 8.0 < u ? low : high) = mu;
+        (share * (mu * mu * mu + 3.0 * mu + 4.0) / 8.0 + (1.0 - share) * (mu + 1.0) / 2.0 < u ? low : high) = mu;
     }
     return 0.5 * (low + high);
 }

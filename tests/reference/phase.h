@@ -17,9 +17,9 @@ glm::dvec3 hg_sample(double g, const glm::dvec3& direction, double u, double v);
 
 // Rayleigh's, after one and after two scatterings [1/sr]; and the inverse of its distribution function, found by
 // halving.
-double rayleigh_eval(double mu);
-double rayleigh_eval_twice(double mu);
-double rayleigh_sample_cosine(double u);
+double rayleigh_eval(double share, double mu);
+double rayleigh_eval_twice(double share, double mu);
+double rayleigh_sample_cosine(double share, double u);
 
 // Draine's [1/sr]: Henyey and Greenstein's times 1 + alpha mu^2. Sampled by halving its distribution function, which is
 // known in closed form; of |g| >= 0.01, or 0.
