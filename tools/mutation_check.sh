@@ -193,7 +193,7 @@ staged samples out of order ~ shaders/passes/accumulate.comp ~ film_or_splats(su
 a place taken before it is free ~ shaders/passes/generate.comp ~ tenants != index / push.places) { ~ tenants > 99999u) { ~ the sizes of the machine*
 staged shadow rays leave flights at rest ~ shaders/shared/path_state.h ~ WALK_ROW(flight, seeing && flight_rests) ~ WALK_ROW(flight, false) ~ [agreement]
 a cached transmittance forgotten between passes ~ shaders/shared/path_state.h ~ SPECTRUM_ROW(cached, has_cache) ~ SPECTRUM_ROW(cached, false) ~ [light_cache]
-rayleigh drawn as it is not ~ shaders/phase/rayleigh.glsl ~ float w = 4.0 * u - 2.0; ~ float w = 4.2 * u - 2.1; ~ [phase]
+rayleigh drawn as it is not ~ shaders/phase/rayleigh.glsl ~ float w = (4.0 * u - 2.0) / share; ~ float w = (4.2 * u - 2.1) / share; ~ [phase]
 shadow rays past their lamp ~ shaders/shapes/segment.glsl ~ return LIGHTS == LIGHTS_SUN ? t : min(t, reach); ~ return t; ~ [lights]
 weights of looks and flights off ~ shaders/lights/table.glsl ~ own > 0.0 ? 1.0 / (1.0 + (MIS ~ own > 0.0 ? 1.0 / (0.9 + (MIS ~ [lights]
 sky drawn without its sine ~ shaders/lights/sky.glsl ~ / max(breadth, 1.0e-12)); ~ ); ~ [lights]

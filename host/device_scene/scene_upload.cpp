@@ -306,6 +306,8 @@ shared::SensorParams make_sensor(const Scene& scene, glm::dvec3 origin, double r
     if (rays.projection == Projection::absorption) {
         params.position = scene.camera.cell_low({0, 0, 0}) - origin;
         params.corner = scene.camera.cell_size();
+        params.right = {params.corner.x, 0.0f, 0.0f};
+        params.down = {0.0f, -params.corner.y, 0.0f};
         params.cells = scene.camera.cells;
         return params;
     }
