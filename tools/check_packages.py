@@ -34,6 +34,9 @@ NOT_INSTALLED = {
     "help2man": "tools/package.sh installs it",
     "mitsuba": "a renderer to compare with, of PyPI: tools/peers/README.md",
     "drjit": "comes with mitsuba",
+    "pyoidn": "a denoiser, of PyPI: tools/denoise",
+    "playwright": "drives a browser, of PyPI: tools/view_check.py",
+    "chromium": "the browser that tools/view_check.py drives",
     "nanodisort": "discrete ordinates to compare with, of PyPI: tools/truth --slabs",
 }
 

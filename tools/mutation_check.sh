@@ -380,7 +380,7 @@ keep() { # NAME VERDICT KEY
 mkdir -p "$work"
 touch "$results" "$work/sound"
 git -C "$root" rev-parse >/dev/null
-mutations | cut -d'~' -f1 | grep -qF -- "$only" || { echo "no error's name contains '$only'" >&2; exit 1; }
+mutations | cut -d'~' -f1 | grep -F -- "$only" >/dev/null || { echo "no error's name contains '$only'" >&2; exit 1; }
 refresh_copy
 source=$copy # which stays as it is while rows are made
 mapfile -t selected < <(stale)

@@ -33,11 +33,18 @@ std::string note_of_samples(const CompareOptions& options, const Metadata& a, co
     return error.what();
 }
 
+// A mean that is not exact differs by more than noise does, however many samples there are.
+std::string note_of_bias(const std::filesystem::path& image, const Metadata& metadata) {
+    const std::string why = text_of(metadata, "vkvol/biased");
+    return why.empty() ? "" : fmt::format("{} is biased: {}", image.string(), why);
+}
+
 } // namespace
 
 std::vector<std::string> comparison_notes(const CompareOptions& options, const Metadata& a, const Metadata& b) {
     std::vector<std::string> notes;
-    for (const std::string& note : {note_of_scenes(a, b), note_of_samples(options, a, b)})
+    for (const std::string& note :
+         {note_of_scenes(a, b), note_of_samples(options, a, b), note_of_bias(options.a, a), note_of_bias(options.b, b)})
         if (!note.empty())
             notes.push_back(one_line(note));
     return notes;

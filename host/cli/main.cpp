@@ -24,6 +24,7 @@
 #include "options.h"
 #include "printable.h"
 #include "render_command.h"
+#include "view.h"
 
 namespace {
 
@@ -67,6 +68,8 @@ int run(const vkvol::Options& options) {
         return vkvol::run_convert(options.convert);
     case vkvol::Command::measure:
         return vkvol::run_measure(options.measure);
+    case vkvol::Command::view:
+        return vkvol::run_view(options.view);
     case vkvol::Command::bench:
         return vkvol::run_bench(options.bench);
     case vkvol::Command::print:

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "integrators.h"
 #include "option_groups.h"
 #include "option_values.h"
 #include "options_help.h"
@@ -17,7 +16,8 @@ namespace {
 
 struct MeasureTexts {
     std::vector<std::string> defines;
-    std::string output, bands, time, noise, schedule;
+    std::string output, bands, time;
+    SamplingTexts sampling;
 };
 
 constexpr std::size_t most_values = 100'000; // of all keys together
@@ -54,23 +54,10 @@ void add_options(CLI::App& app, MeasureOptions& measure, MeasureTexts& texts) {
         ->group("Picture");
     add_size_options(app, request);
     app.add_flag("--mean", measure.means, "The mean of the picture in place of all its pixels")->group("Picture");
+    add_sampling_options(app, request, texts.sampling, "");
     const char* group = "Sampling";
-    app.add_option("--spp", request.spp, "Samples per pixel, in place of rayPerPixelCount")
-        ->transform(whole_number(1, 2147483647))
-        ->option_text("N [scene]")
-        ->group(group);
     app.add_option("--time", texts.time, "At most this long for each combination of values, and band")
         ->option_text("T")
-        ->group(group);
-    app.add_option("--noise", texts.noise, "Until each picture's noise is no more than this: 1%, or 0.01")
-        ->option_text("P%")
-        ->group(group);
-    app.add_option("--seed", request.seed, "Of all combinations alike; each band adds its number")
-        ->transform(whole_number(0, max_seed))
-        ->option_text("S [0]")
-        ->group(group);
-    app.add_option("--integrator", request.integrator, "In place of the scene's; see vkvol integrators")
-        ->option_text("NAME[:AXIS=CHOICE...] [scene]")
         ->group(group);
     app.add_option("--grid", request.grid, "A .nvdb or .vdb file in place of the scene's density field")
         ->option_text("FILE [scene]")
@@ -84,8 +71,6 @@ void add_options(CLI::App& app, MeasureOptions& measure, MeasureTexts& texts) {
         ->option_text("FILE.csv")
         ->group(group);
     add_device_options(app, request);
-    app.add_flag("--no-cache", request.no_cache, "Neither read nor write the pipeline cache")->group("Device");
-    app.add_option("--schedule", texts.schedule, "As of a render")->option_text("NAME [auto]")->group("Device");
     app.add_flag("-q,--quiet", measure.quiet, "Print errors and the table only")->group("Output");
     app.footer(measure_footer);
 }
@@ -128,16 +113,7 @@ void parse_measure(const std::vector<std::string>& arguments, Options& options) 
         measure.bands = texts.bands;
     if (!texts.time.empty())
         measure.request.time_limit = parse_duration(texts.time);
-    if (!texts.noise.empty())
-        measure.request.noise_goal = parse_noise(texts.noise);
-    if (!texts.schedule.empty())
-        measure.request.plan = parse_schedule(texts.schedule);
-    if (measure.request.integrator)
-        try {
-            parse_integrator(*measure.request.integrator);
-        } catch (const InputError& error) {
-            fail_command_line(fmt::format("--integrator: {}", error.what()));
-        }
+    finish_sampling(measure.request, texts.sampling);
 }
 
 } // namespace vkvol

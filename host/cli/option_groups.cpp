@@ -4,6 +4,8 @@
 #include <charconv>
 #include <fmt/format.h>
 
+#include "error.h"
+#include "integrators.h"
 #include "nearest_name.h"
 #include "option_values.h"
 
@@ -118,6 +120,43 @@ void add_scene_options(CLI::App& app, RenderRequest& render, std::vector<std::st
     add_list(app, "-D,--define", defines, "Fills $KEY in the scene; may be given several times")
         ->option_text("KEY=VALUE")
         ->group(group);
+}
+
+void add_sampling_options(CLI::App& app, RenderRequest& render, SamplingTexts& texts, const char* usual_noise) {
+    const char* group = "Sampling";
+    app.add_option("--spp", render.spp, "Samples per pixel, in place of rayPerPixelCount")
+        ->transform(whole_number(1, 2147483647))
+        ->option_text("N [scene]")
+        ->group(group);
+    app.add_option("--noise", texts.noise, "Until each picture's noise is no more than this: 1%, or 0.01")
+        ->option_text(fmt::format("P%{}", usual_noise))
+        ->group(group);
+    app.add_option("--seed", render.seed, "Another one gives another, independent noise pattern")
+        ->transform(whole_number(0, max_seed))
+        ->option_text("S [0]")
+        ->group(group);
+    app.add_option("--integrator", render.integrator, "In place of the scene's; see vkvol integrators")
+        ->option_text("NAME[:AXIS=CHOICE...] [scene]")
+        ->group(group);
+    app.add_flag("--no-cache", render.no_cache, "Neither read nor write the pipeline cache")->group("Device");
+    app.add_option("--schedule", texts.schedule, "As of a render")->option_text("NAME [auto]")->group("Device");
+}
+
+void finish_sampling(RenderRequest& render, const SamplingTexts& texts) {
+    if (!texts.noise.empty())
+        render.noise_goal = parse_noise(texts.noise);
+    if (!texts.schedule.empty())
+        render.plan = parse_schedule(texts.schedule);
+    check_integrator_option(render);
+}
+
+void check_integrator_option(const RenderRequest& render) {
+    if (render.integrator)
+        try {
+            parse_integrator(*render.integrator);
+        } catch (const InputError& error) {
+            fail_command_line(fmt::format("--integrator: {}", error.what()));
+        }
 }
 
 void add_device_options(CLI::App& app, RenderRequest& render) {

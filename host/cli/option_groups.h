@@ -34,6 +34,16 @@ void add_size_options(CLI::App& app, RenderRequest& render);
 // --grid and -D.
 void add_scene_options(CLI::App& app, RenderRequest& render, std::vector<std::string>& defines, const char* group);
 
+// --spp, --noise, --seed, --integrator, --schedule and --no-cache, of commands that write no pictures of their own.
+struct SamplingTexts {
+    std::string noise, schedule;
+};
+void add_sampling_options(CLI::App& app, RenderRequest& render, SamplingTexts& texts, const char* usual_noise);
+void finish_sampling(RenderRequest& render, const SamplingTexts& texts);
+
+// Throws InputError for what --integrator cannot be.
+void check_integrator_option(const RenderRequest& render);
+
 // --device, --robust and --validate.
 void add_device_options(CLI::App& app, RenderRequest& render);
 

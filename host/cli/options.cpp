@@ -7,15 +7,16 @@
 #include "demo_scene.h"
 #include "error.h"
 #include "frames.h"
-#include "integrators.h"
 #include "measure_options.h"
 #include "nearest_name.h"
 #include "one_line.h"
 #include "option_groups.h"
 #include "option_values.h"
 #include "options_help.h"
+#include "tev_picture.h"
 #include "tone_options.h"
 #include "version.h"
+#include "view_options.h"
 
 namespace vkvol {
 
@@ -36,7 +37,7 @@ T choose(const char* option, const std::string& name, const std::vector<std::pai
 
 // The options of `render` that need a second look after CLI11 has read them.
 struct RenderTexts {
-    std::string time, noise, crop, checkpoint, pixel, up, schedule, progress = "auto";
+    std::string time, noise, crop, checkpoint, pixel, up, schedule, preview, progress = "auto";
     std::vector<std::string> defines;
     std::vector<std::string> outputs;
     ToneTexts tone;
@@ -127,6 +128,13 @@ void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
     app.add_option("--progress", texts.progress,
                    "On standard error: auto (a bar on a terminal), json (a line each), none")
         ->option_text("STYLE [auto]")
+        ->group("Output");
+    app.add_flag(fmt::format("--tev{{{}}}", tev_address), render.tev,
+                 "Show the picture while it is rendered, with all layers, in the viewer tev, which listens there or at "
+                 "--tev=HOST:PORT")
+        ->group("Output");
+    app.add_flag("--preview{auto}", texts.preview,
+                 "Show it on the terminal: --preview=blocks, sixel or kitty, else as the terminal says")
         ->group("Output");
     app.add_option("--checkpoint", texts.checkpoint,
                    "Keep the state of the render this often, beside the first output as NAME.checkpoint")
@@ -230,6 +238,13 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
     render.progress = choose<ProgressStyle>(
         "--progress", texts.progress,
         {{"auto", ProgressStyle::automatic}, {"json", ProgressStyle::json}, {"none", ProgressStyle::none}});
+    render.preview = !texts.preview.empty();
+    if (render.preview)
+        render.graphics = choose<std::optional<TerminalGraphics>>("--preview", texts.preview,
+                                                                  {{"auto", std::nullopt},
+                                                                   {"blocks", TerminalGraphics::blocks},
+                                                                   {"sixel", TerminalGraphics::sixel},
+                                                                   {"kitty", TerminalGraphics::kitty}});
     if (!texts.up.empty())
         render.up = choose<Up>("--up", texts.up, {{"y", Up::y}, {"z", Up::z}});
     if (!texts.schedule.empty())
@@ -237,12 +252,7 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
     render.tone = texts.tone.request();
     if (std::string wrong; !parse_layers(render.aov, wrong))
         fail_command_line(fmt::format("--aov: unknown layer '{}'{}", one_line(wrong), name_hint(wrong, layer_names())));
-    if (render.integrator)
-        try {
-            parse_integrator(*render.integrator);
-        } catch (const InputError& error) {
-            fail_command_line(fmt::format("--integrator: {}", error.what()));
-        }
+    check_integrator_option(render);
 }
 
 void parse_render(const std::vector<std::string>& arguments, Options& options) {
@@ -398,7 +408,7 @@ Options parse_options(int argc, const char* const* argv) {
         {"compare", {Command::compare, parse_compare}}, {"merge", {Command::merge, parse_merge}},
         {"develop", {Command::develop, parse_develop}}, {"convert", {Command::convert, parse_convert}},
         {"bench", {Command::bench, parse_bench}},       {"demo", {Command::render, parse_demo}},
-        {"measure", {Command::measure, parse_measure}}};
+        {"measure", {Command::measure, parse_measure}}, {"view", {Command::view, parse_view}}};
     Options options;
     Parser parse = parse_render;
     if (!arguments.empty()) {

@@ -11,10 +11,24 @@
 #include "film.h"
 #include "render_request.h"
 #include "scene.h"
+#include "terminal_picture.h"
 
 namespace vkvol {
 
-enum class Command { render, devices, info, integrators, compare, merge, develop, convert, measure, bench, print };
+enum class Command {
+    render,
+    devices,
+    info,
+    integrators,
+    compare,
+    merge,
+    develop,
+    convert,
+    measure,
+    view,
+    bench,
+    print
+};
 enum class ProgressStyle { automatic, json, none };
 
 struct RenderOptions : RenderRequest {
@@ -26,7 +40,10 @@ struct RenderOptions : RenderRequest {
     bool dry_run = false;             // check everything, render and write nothing
     bool trace = false;               // print the path's vertices; crop and sample range hold just one
     ProgressStyle progress = ProgressStyle::automatic;
-    bool quiet = false;  // errors only
+    std::string tev;                          // HOST:PORT of a viewer that shows the picture meanwhile; or empty
+    bool preview = false;                     // on the terminal
+    std::optional<TerminalGraphics> graphics; // of it; else as the terminal says
+    bool quiet = false;                       // errors only
     bool strict = false; // caps hit or non-finite samples: exit code 5; of a pbrt scene all of it has to be rendered
 };
 
@@ -73,6 +90,13 @@ struct MeasureOptions {
     bool quiet = false;
 };
 
+struct ViewOptions {
+    RenderRequest request;
+    int port = 0;        // 0: any that is free
+    bool strict = false; // as of a render
+    bool quiet = false;
+};
+
 struct Options {
     Command command = Command::render;
     RenderOptions render;
@@ -81,6 +105,7 @@ struct Options {
     DevelopOptions develop;
     ConvertOptions convert;
     MeasureOptions measure;
+    ViewOptions view;
     BenchRequest bench;
     std::filesystem::path info_file;
     bool info_json = false;

@@ -15,6 +15,7 @@ inline constexpr const char* render_footer = R"(Other commands (each has its own
   vkvol develop A.exr -o B.png   a PNG of another exposure or tone curve, without rendering
   vkvol convert S.pbrt -o S.xml  a scene of pbrt-v4 as a scene file to go on from
   vkvol measure SCENE.xml     its readings with their standard errors as a table, of many values of $keys
+  vkvol view SCENE.xml        on a page of the browser, to turn, light and change it while it is rendered
   vkvol bench SCENE.xml       error against time of the integrators that suit a scene
   vkvol demo                  a cloud, to see that all is well: cumulus.exr and cumulus.png here
 
@@ -80,6 +81,17 @@ Examples:
   vkvol measure slab.xml                                   one row for each pixel, or point
   vkvol measure slab.xml -D sun=0.1,0.5,1 --noise 0.1% -o fluxes.csv
   vkvol measure slab.xml -D depth=0..10x21 --mean          a row for each depth)";
+
+inline constexpr const char* view_description =
+    "Shows a scene on a page of the browser while it is rendered: turn the camera, change the lights, the medium and "
+    "the integrator, and keep the picture or the scene.";
+
+inline constexpr const char* view_footer =
+    R"(Prints the page's address, which has a key: nobody else can look, and nothing listens but on this machine. The
+scene's file may be edited meanwhile: the page follows. Nothing is written but what the page's reader keeps.
+
+Example:
+  vkvol view scenes/cumulus.xml --width 640)";
 
 inline constexpr const char* develop_footer =
     R"(Without options the picture has the same bytes as the one that the render wrote, or would have. An image

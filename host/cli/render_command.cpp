@@ -12,6 +12,7 @@
 #include "file_uses.h"
 #include "image_io.h"
 #include "interrupt.h"
+#include "live_pictures.h"
 #include "messages.h"
 #include "progress.h"
 #include "reading_grid.h"
@@ -55,7 +56,7 @@ void check_files(const RenderOptions& options, const RenderScene& loaded, const 
 }
 
 RenderResult render_with_progress(const RenderOptions& options, const Scene& scene, Workshop& workshop,
-                                  CheckpointFile& file) {
+                                  CheckpointFile& file, LivePictures& live) {
     RenderJob job;
     job.workshop = &workshop;
     job.dry_run = options.dry_run;
@@ -79,8 +80,11 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
     job.progress = [&](double samples, std::optional<double> noise) {
         progress.update(static_cast<std::uint32_t>(samples), noise);
     };
+    const Device& device = workshop.device(options.device);
+    if (!live.empty())
+        job.look = [&](const RenderResult& result) { live.show(device, result, &progress); };
     try {
-        return render(workshop.device(options.device), scene, job);
+        return render(device, scene, job);
     } catch (const RenderError& error) {
         throw RenderError(error.what() + file.advice());
     }
@@ -109,12 +113,13 @@ void tell_why(const RenderOptions& options, Workshop& workshop, const std::optio
 }
 
 int render_scene(const RenderOptions& options, const Scene& scene, Workshop& workshop, CheckpointFile& checkpoint,
-                 RenderOutputs& outputs) {
+                 RenderOutputs& outputs, LivePictures& live) {
     const std::optional<Explanation> foreseen = options.trace ? std::nullopt : foresee(scene);
     tell_why(options, workshop, foreseen);
     const Device& device = workshop.device(options.device);
     outputs.set_device(device.info());
-    const RenderResult result = render_with_progress(options, scene, workshop, checkpoint);
+    const RenderResult result = render_with_progress(options, scene, workshop, checkpoint, live);
+    live.show(device, result, nullptr);
     if (!options.quiet)
         print_warnings(workshop.new_warnings(result.warnings));
     check_result(device);
@@ -169,10 +174,11 @@ int render_picture(const RenderOptions& options, Workshop& workshop) {
         tell(stderr, "vkvol: note: {}\n", loaded.assumed);
     CheckpointFile checkpoint(options);
     check_files(options, loaded, checkpoint);
+    LivePictures live(options, scene);
     keep_made_scene(options, loaded);
     RenderOutputs outputs(options, scene);
     try {
-        return render_scene(options, scene, workshop, checkpoint, outputs);
+        return render_scene(options, scene, workshop, checkpoint, outputs, live);
     } catch (const std::bad_alloc&) {
         outputs.fail("out of memory");
         throw;

@@ -3,7 +3,6 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <algorithm>
-#include <bit>
 #include <cctype>
 #include <cerrno>
 #include <cstring>
@@ -19,6 +18,7 @@
 #include "error.h"
 #include "exr_check.h"
 #include "file_ending.h"
+#include "film_channels.h"
 #include "film_table.h"
 #include "image_input.h"
 #include "input_file.h"
@@ -29,24 +29,6 @@ namespace vkvol {
 namespace {
 
 using std::filesystem::path;
-
-// What an image has without layers: the picture, the variance of its means, and whole numbers of samples.
-const std::vector<std::string> plain_channels = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "samples"};
-
-// Of a layer: "direct.R"; "variance.direct.R". Alpha is the picture's own, "A".
-std::string channel_name(const std::string& prefix, const FilmLayer& layer, char letter) {
-    return prefix + (layer.name == "alpha" ? "" : layer.name + ".") + letter;
-}
-
-std::vector<std::string> channels_of(const Film& film) {
-    std::vector<std::string> names = plain_channels;
-    for (const FilmLayer& layer : film.layers)
-        for (const char* const prefix : {"", "variance."})
-            if (*prefix == 0 || !layer.variance.empty())
-                for (const char* letter = layer.channels(); *letter != 0; ++letter)
-                    names.push_back(channel_name(prefix, layer, *letter));
-    return names;
-}
 
 const char* remedy_of(int error) {
     switch (error) {
@@ -158,28 +140,6 @@ void check_consistent(const Film& film) {
         throw std::runtime_error(fmt::format("the film of {}x{} pixels holds {} means, {} variances and {} counts",
                                              film.width(), film.height(), film.mean.size(), film.variance.size(),
                                              film.samples.size()));
-}
-
-// As the file has them, of each pixel all channels: floats, but for the number of samples.
-std::vector<std::uint32_t> interleaved(const Film& film, std::size_t channels) {
-    std::vector<std::uint32_t> pixels;
-    pixels.reserve(film.pixel_count() * channels);
-    const auto push = [&pixels](const glm::vec3& value, int count) {
-        for (int c = 0; c < count; ++c)
-            pixels.push_back(std::bit_cast<std::uint32_t>(value[c]));
-    };
-    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
-        push(film.mean[i], 3);
-        push(film.variance[i], 3);
-        pixels.push_back(film.samples[i]);
-        for (const FilmLayer& layer : film.layers) {
-            const auto letters = static_cast<int>(std::strlen(layer.channels()));
-            push(layer.mean[i], letters);
-            if (!layer.variance.empty())
-                push(layer.variance[i], letters);
-        }
-    }
-    return pixels;
 }
 
 int channel_of(const OIIO::ImageSpec& spec, const char* name) {
@@ -303,11 +263,11 @@ void write_images(const std::vector<path>& targets, const Film& film, const Meta
 void write_exr(const path& target, const Film& film, const Metadata& metadata, const char* option) {
     write_atomically(target, option, [&](AtomicFile& file) {
         check_consistent(film);
-        const std::vector<std::string> channels = channels_of(film);
+        const std::vector<std::string> channels = channel_names(film);
         OIIO::ImageSpec spec(film.width(), film.height(), int(channels.size()), OIIO::TypeDesc::FLOAT);
         spec.channelnames = channels;
         spec.channelformats.assign(channels.size(), OIIO::TypeDesc::FLOAT);
-        spec.channelformats[plain_channels.size() - 1] = OIIO::TypeDesc::UINT32;
+        spec.channelformats[samples_channel] = OIIO::TypeDesc::UINT32;
         spec.alpha_channel = spec.channelindex("A");
         spec.x = film.crop.x0;
         spec.y = film.crop.y0;
@@ -321,7 +281,7 @@ void write_exr(const path& target, const Film& film, const Metadata& metadata, c
         if (!film.layers.empty())
             spec.attribute(layers_key, layer_list(film));
         write_pixels(file, "a.exr", spec, OIIO::TypeDesc::UNKNOWN,
-                     interleaved(film, channels.size()).data()); // unknown: its own types
+                     interleaved_channels(film).data()); // unknown: its own types
     });
 }
 

@@ -13,6 +13,9 @@ namespace vkvol {
 namespace {
 
 constexpr double noise_seconds = 3.0;        // between two figures of noise
+constexpr double look_seconds = 0.2;         // between two looks at the film at least
+constexpr double look_share = 1.0 / 50.0;    // of the time, for looks
+constexpr double look_growth = 0.15;         // of the time so far, between two: noise has fallen by a fifteenth then
 constexpr double patience = 5.0;             // seconds, for paths that will not end
 constexpr std::uint32_t first_look = 16;     // at the noise to be reached; samples per pixel
 constexpr std::uint32_t surely_black = 1024; // likewise: a picture without any light by then will have none
@@ -49,6 +52,7 @@ void Session::render(std::uint32_t samples) {
     }
     watch_.lap();
     next_noise_ = noise_seconds;
+    next_look_ = 0.0;
     checkpoint_at_ = 0.0;
     stopped_ = result_.interrupted = false;
     stopped_at_.reset();
@@ -139,6 +143,20 @@ void Session::report_noise() {
     job_.progress(done_, relative_noise(result_.film));
 }
 
+// Amid a batch some pixels have samples that others wait for: long paths come last.
+void Session::offer_look() {
+    if (!job_.look || watch_.seconds() < next_look_)
+        return;
+    const double begun = watch_.seconds();
+    develop_film();
+    result_.samples = done_;
+    result_.render_seconds += begun;
+    job_.look(result_);
+    result_.render_seconds -= begun;
+    const double taken = watch_.seconds() - begun;
+    next_look_ = begun + std::max({look_seconds, taken / look_share, look_growth * begun});
+}
+
 // Where noise is looked at: at powers of two of the samples. The fewer looks, the less often one of them ends a render
 // that by chance looks better than it is, which is a bias, and which it is does not depend on the machine.
 std::uint32_t Session::until_next_look() const {
@@ -197,6 +215,7 @@ void Session::run_band(const Band& band) {
         gather();
         if (job_.progress)
             job_.progress(progress_of(band), std::nullopt);
+        offer_look();
         if (!resting && stopping()) {
             wavefront_->stop_handing_out();
             gave_up_ = resting = out_of_patience();
@@ -224,6 +243,7 @@ void Session::run_particles(const Band& band) {
     if (over) {
         wavefront_->collect(band.rows * width());
         ++band_;
+        offer_look();
     }
 }
 

@@ -20,6 +20,7 @@
 namespace vkvol {
 
 class Workshop;
+struct RenderResult;
 
 struct RenderJob {
     Crop crop; // the part of the picture to render
@@ -33,6 +34,9 @@ struct RenderJob {
     // After each submit: samples per pixel finished, as a real number; and, now and then, the picture's relative
     // standard error.
     std::function<void(double, std::optional<double>)> progress;
+    // With the film as far as it is: soon after the first samples, and then whenever it has become a little better, as
+    // long as that takes no more than a fiftieth of the time.
+    std::function<void(const RenderResult&)> look;
     // Called every so many seconds, and at the end of a render that was ended early.
     double checkpoint_seconds = 0.0;
     std::function<void(const Checkpoint&)> checkpoint;
@@ -109,6 +113,7 @@ private:
     void save_checkpoint();
     bool checkpoint_due() const;
     void report_noise();
+    void offer_look();
     std::uint32_t until_next_look() const;
     bool is_good_enough();
     bool stopping();
@@ -140,6 +145,7 @@ private:
     std::uint32_t most_batch_ = 1;
     Stopwatch watch_;
     double next_noise_ = 0.0;
+    double next_look_ = 0.0;
     double checkpoint_at_ = 0.0; // the last one
     bool stopped_ = false;
     bool gave_up_ = false; // paths were left in flight

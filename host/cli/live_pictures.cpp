@@ -1,0 +1,35 @@
+#include "live_pictures.h"
+
+#include "messages.h"
+#include "report.h"
+#include "tev_picture.h"
+
+namespace vkvol {
+
+LivePictures::LivePictures(const RenderOptions& options, const Scene& scene) : options_(options), scene_(scene) {
+    if (options.dry_run || options.trace)
+        return;
+    if (!options.tev.empty())
+        pictures_.push_back(std::make_unique<TevPicture>(
+            options.tev, (options.outputs.empty() ? options.scene : options.outputs.front()).filename().string()));
+    if (options.preview)
+        pictures_.push_back(std::make_unique<TerminalPicture>(options.graphics));
+}
+
+void LivePictures::show(const Device& device, const RenderResult& result, Progress* progress) {
+    if (pictures_.empty())
+        return;
+    const Tone tone = choose_tone(options_.tone, result.film, make_metadata(options_, scene_, device, result));
+    if (progress)
+        progress->finish();
+    for (const std::unique_ptr<LivePicture>& picture : pictures_)
+        picture->show(result.film, tone.mapping);
+    std::erase_if(pictures_, [](const std::unique_ptr<LivePicture>& picture) {
+        const bool failed = !picture->failure().empty();
+        if (failed)
+            tell(stderr, "vkvol: warning: {}; the render goes on\n", picture->failure());
+        return failed;
+    });
+}
+
+} // namespace vkvol

@@ -1,0 +1,29 @@
+// Where the command line asked to see a picture while it is rendered.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "live_picture.h"
+#include "options.h"
+#include "progress.h"
+#include "session.h"
+
+namespace vkvol {
+
+class LivePictures {
+public:
+    // Throws InputError where one takes no pictures.
+    LivePictures(const RenderOptions& options, const Scene& scene);
+
+    bool empty() const { return pictures_.empty(); }
+    // `progress` leaves its line to them.
+    void show(const Device& device, const RenderResult& result, Progress* progress);
+
+private:
+    const RenderOptions& options_;
+    const Scene& scene_;
+    std::vector<std::unique_ptr<LivePicture>> pictures_;
+};
+
+} // namespace vkvol

@@ -1,0 +1,256 @@
+#include "view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <memory>
+#include <utility>
+
+#include "camera_view.h"
+#include "error.h"
+#include "integrators.h"
+#include "interrupt.h"
+#include "medium_outline.h"
+#include "messages.h"
+#include "report.h"
+#include "requested_scene.h"
+#include "scene_xml.h"
+#include "session.h"
+#include "stopwatch.h"
+#include "view_board.h"
+#include "view_server.h"
+#include "viewed_scene.h"
+#include "workshop.h"
+
+namespace vkvol {
+
+namespace {
+
+constexpr double seconds_between_looks = 0.5; // at the scene's file
+constexpr double longest_unwatched = 10.0;    // seconds; then it waits until somebody looks again
+constexpr int sketch_pixels = 20'000;         // of the first picture of a view
+constexpr std::uint32_t sketch_samples = 2;
+constexpr auto nap = std::chrono::milliseconds(200);
+
+// Renders what the board wishes, one scene after another.
+class Viewing {
+public:
+    Viewing(const ViewOptions& options, ViewBoard& board)
+        : options_(options), board_(board), source_(options), device_(workshop_.device(options.request.device)) {}
+
+    void run() {
+        while (!interrupted()) {
+            bool rendered = false;
+            try {
+                rendered = render_wish();
+                board_.say("");
+            } catch (const InputError& error) {
+                board_.say(error.what());
+            } catch (const RenderError& error) {
+                session_.reset();
+                board_.say(error.what());
+            }
+            if (!rendered)
+                wait_for_news();
+        }
+    }
+
+private:
+    bool is_news() { return board_.wish_number() != wish_number_ || file_changed(); }
+
+    // What cannot be read is told, and the picture stays that of what could.
+    bool file_changed() {
+        if (since_look_.seconds() < seconds_between_looks)
+            return has_new_file_;
+        since_look_.lap();
+        try {
+            has_new_file_ = source_.refresh() || has_new_file_;
+        } catch (const InputError& error) {
+            board_.say(error.what());
+        }
+        return has_new_file_;
+    }
+
+    void wait_for_news() {
+        while (!interrupted() && !is_news())
+            board_.wait_for_wish(wish_number_, nap);
+    }
+
+    // False: there is nothing more to do for this wish.
+    bool render_wish() {
+        const ViewWish wish = board_.wish(&wish_number_);
+        if (has_new_file_)
+            see_file_camera();
+        has_new_file_ = false;
+        if (wish.layer != "picture" && wish.layer != "noise" && layers_.find(wish.layer) == std::string::npos)
+            layers_ += (layers_.empty() ? "" : ",") + wish.layer;
+        SceneSource::Read read = source_.read(board_.wish().edits, layers_, workshop_.fields());
+        const std::string what = read.xml + '\n' + layers_ + asked_text(options_.request, read.scene);
+        if (what != rendering_ || !session_) {
+            begin(std::move(read), what);
+        } else {
+            describe(read.xml);
+            publish(session_->result(), is_done_);
+        }
+        return go_on(wish);
+    }
+
+    // The viewer's camera gives way to one that the file has got meanwhile.
+    void see_file_camera() {
+        const Camera camera = source_.read({}, "", workshop_.fields()).scene.camera;
+        const auto key = [](const Camera& c) {
+            return fmt::format("{} {} {} {} {} {} {} {}", c.position.x, c.position.y, c.position.z, c.pitch, c.yaw,
+                               c.roll, c.fov, c.view_height);
+        };
+        if (key(camera) != key(file_camera_))
+            board_.forget_camera();
+        file_camera_ = camera;
+    }
+
+    void begin(SceneSource::Read read, const std::string& what) {
+        session_.reset();
+        rendering_.clear();
+        ++begun_;
+        scene_ = std::move(read.scene);
+        job_ = {};
+        job_.workshop = &workshop_;
+        job_.crop = {0, scene_.picture.width, 0, scene_.picture.height};
+        job_.seed = options_.request.seed;
+        job_.plan = options_.request.plan;
+        job_.disk_cache = !options_.request.no_cache;
+        job_.noise_goal = options_.request.noise_goal;
+        job_.interrupted = [this] {
+            return interrupted() || is_news() || board_.seconds_unwatched() > longest_unwatched;
+        };
+        describe(read.xml);
+        sketch();
+        if (interrupted() || is_news())
+            return;
+        job_.look = [this](const RenderResult& result) { publish(result, false); };
+        session_.emplace(device_, scene_, job_);
+        rendering_ = what;
+        is_done_ = false;
+    }
+
+    void describe(const std::string& xml) {
+        auto viewed = std::make_shared<ViewedScene>();
+        viewed->name = source_.name();
+        viewed->xml = xml;
+        viewed->camera = scene_.camera;
+        viewed->has_view = !reads_flux(scene_.camera);
+        viewed->lights = what_shines(xml);
+        viewed->device = device_.info().name;
+        viewed->wish = wish_number_;
+        viewed->number = begun_;
+        viewed_ = std::move(viewed);
+    }
+
+    // A small picture at once, where the whole one takes longer.
+    void sketch() {
+        sketch_.reset();
+        const double pixels = double(scene_.picture.width) * scene_.picture.height;
+        if (pixels < 3.0 * sketch_pixels || reads_flux(scene_.camera))
+            return;
+        Scene small = scene_;
+        resize_picture(small.picture, int(std::max(scene_.picture.width * std::sqrt(sketch_pixels / pixels), 1.0)),
+                       std::nullopt);
+        RenderJob job = job_;
+        job.crop = {0, small.picture.width, 0, small.picture.height};
+        Session session(device_, small, job);
+        session.render(sketch_samples);
+        if (session.samples() == 0) // there is news
+            return;
+        is_sketch_ = true;
+        publish(session.result(), false);
+        is_sketch_ = false;
+        sketch_ = std::make_shared<const Film>(session.result().film);
+    }
+
+    // Until there is news, or all is rendered.
+    bool go_on(const ViewWish& wish) {
+        if (!session_ || wish.paused)
+            return false;
+        while (!interrupted() && !is_news()) {
+            if (board_.seconds_unwatched() > longest_unwatched) {
+                board_.wait_for_wish(wish_number_, nap);
+                continue;
+            }
+            session_->render(scene_.settings.spp);
+            if (!session_->result().interrupted)
+                break;
+        }
+        if (interrupted() || is_news())
+            return true;
+        is_done_ = true;
+        publish(session_->result(), true);
+        return false;
+    }
+
+    void publish(const RenderResult& result, bool is_done) {
+        auto viewed = std::make_shared<ViewedScene>(*viewed_);
+        viewed->integrator = result.integrator;
+        viewed->biased = result.biased;
+        viewed->target = target_of(result.outline, viewed->camera);
+        Shot shot;
+        shot.scene = std::move(viewed);
+        shot.film = result.film;
+        shot.metadata = make_metadata(options_.request, scene_, device_, result);
+        shot.samples = result.samples;
+        shot.seconds = result.render_seconds;
+        shot.is_sketch = is_sketch_;
+        if (result.samples == 0)
+            shot.sketch = sketch_;
+        shot.is_done = is_done;
+        board_.publish(std::move(shot));
+    }
+
+    // The middle of the medium, as far as it has one.
+    static glm::dvec3 target_of(const MediumOutline& outline, const Camera& camera) {
+        const glm::dvec3 ahead = camera.position - 10.0 * camera_rotation(camera)[2];
+        if (!outline.exists)
+            return ahead;
+        const WorldBox box = world_box(outline);
+        const bool is_far =
+            glm::length(box.high - box.low) > 1e3 * glm::length(camera.position - 0.5 * (box.low + box.high));
+        return is_far ? ahead : 0.5 * (box.low + box.high);
+    }
+
+    const ViewOptions& options_;
+    ViewBoard& board_;
+    Workshop workshop_{true};
+    SceneSource source_;
+    const Device& device_;
+    std::uint64_t wish_number_ = 0, begun_ = 0;
+    Stopwatch since_look_;
+    bool has_new_file_ = true;
+    Camera file_camera_;
+    std::string layers_; // all that were asked for so far
+    Scene scene_;
+    RenderJob job_;
+    std::shared_ptr<const ViewedScene> viewed_;
+    std::optional<Session> session_;
+    std::string rendering_;              // what the session is of
+    std::shared_ptr<const Film> sketch_; // of the session's view
+    bool is_sketch_ = false, is_done_ = false;
+};
+
+} // namespace
+
+int run_view(const ViewOptions& options) {
+    install_interrupt_handler();
+    ViewBoard board;
+    Viewing viewing(options, board);
+    std::vector<std::string> names;
+    for (const Integrator& integrator : integrators())
+        names.emplace_back(integrator.name);
+    const ViewServer server(board, options.port, names);
+    tell(stdout, "{}\n", server.address());
+    if (!options.quiet)
+        tell(stderr, "{}: open that address in a browser of this machine; Ctrl-C ends it\n",
+             options.request.scene.string());
+    std::fflush(stdout);
+    viewing.run();
+    return exit_done;
+}
+
+} // namespace vkvol

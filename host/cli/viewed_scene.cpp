@@ -1,0 +1,75 @@
+#include "viewed_scene.h"
+
+#include <system_error>
+
+#include "error.h"
+#include "file_ending.h"
+#include "file_scene.h"
+#include "input_file.h"
+#include "requested_scene.h"
+#include "scene_beside.h"
+#include "scene_xml.h"
+
+namespace vkvol {
+
+namespace {
+
+constexpr std::size_t largest_scene = 256u << 20u; // bytes, as scene files may have
+
+std::filesystem::file_time_type time_of(const std::filesystem::path& file) {
+    std::error_code error;
+    return std::filesystem::last_write_time(file, error);
+}
+
+} // namespace
+
+SceneSource::SceneSource(const ViewOptions& options)
+    : options_(options), name_(options.request.scene.filename().string()), file_(options.request.scene) {
+    load();
+}
+
+void SceneSource::load() {
+    const std::filesystem::path& file = options_.request.scene;
+    time_ = time_of(file);
+    if (is_grid_file(file)) {
+        FileSceneOptions made;
+        made.picture = file_picture();
+        resize_picture(made.picture, options_.request.width, options_.request.height);
+        made.up = options_.request.up.value_or(Up::y);
+        file_ = file.parent_path() / (file.stem().string() + ".xml");
+        name_ = file_.filename().string();
+        xml_ = make_file_scene(file, file.parent_path(), made).xml;
+        has_view_ = true;
+    } else if (is_pbrt_file(file)) {
+        const PbrtTranslation translation = translate_pbrt(read_pbrt(file));
+        xml_ = translation.xml;
+        grids_ = translation.grids;
+    } else {
+        load_scene(file, options_.request.defines); // whose errors have places in the file
+        xml_ = read_input_text(file, largest_scene, "name a scene file (.xml)");
+    }
+}
+
+bool SceneSource::refresh() {
+    const std::filesystem::file_time_type now = time_of(options_.request.scene);
+    if (now == time_ || now == std::filesystem::file_time_type::min()) // a file that is replaced is away for a moment
+        return false;
+    load();
+    return true;
+}
+
+SceneSource::Read SceneSource::read(const SceneEdits& edits, const std::string& layers, FieldCache& fields) const {
+    RenderRequest request = options_.request;
+    if (!edits.integrator.empty())
+        request.integrator.reset(); // the viewer's choice comes last
+    if (!layers.empty())
+        request.aov += (request.aov.empty() ? "" : ",") + layers;
+    Read result;
+    result.xml = edited(xml_, edits);
+    result.scene =
+        parse_scene(result.xml, file_, request.defines, {request.grid, request.integrator, options_.strict, grids_});
+    apply_request(request, has_view_ || edits.camera.has_value(), result.scene, fields);
+    return result;
+}
+
+} // namespace vkvol

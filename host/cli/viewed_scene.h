@@ -1,0 +1,43 @@
+// The scene of a viewer: read from its file again and again, with what the viewer changes.
+#pragma once
+
+#include <filesystem>
+
+#include "field_cache.h"
+#include "options.h"
+#include "pbrt_translation.h"
+#include "scene_edits.h"
+
+namespace vkvol {
+
+class SceneSource {
+public:
+    // Throws InputError.
+    explicit SceneSource(const ViewOptions& options);
+
+    // Whether the file has changed since it was read; it is read again then. Throws InputError if it cannot be: what
+    // was read before stays.
+    bool refresh();
+
+    struct Read {
+        std::string xml; // with the edits
+        Scene scene;
+    };
+    // As it is rendered. `layers`: of the picture, besides the request's. Throws InputError.
+    Read read(const SceneEdits& edits, const std::string& layers, FieldCache& fields) const;
+
+    const std::string& name() const { return name_; }
+
+private:
+    void load();
+
+    const ViewOptions& options_;
+    std::string name_;
+    std::filesystem::path file_; // names in the text are beside it
+    std::string xml_;
+    NamedGrids grids_; // of a scene that was translated
+    bool has_view_ = false;
+    std::filesystem::file_time_type time_{};
+};
+
+} // namespace vkvol

@@ -1,0 +1,323 @@
+// The page of `vkvol view`: who gets an answer, and which; and that what it shows is what a render would be.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <fmt/format.h>
+#include <fstream>
+#include <httplib.h>
+#include <nlohmann/json.hpp>
+#include <signal.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+#include "camera_view.h"
+#include "error.h"
+#include "image_io.h"
+#include "session.h"
+#include "shown_layer.h"
+#include "support/command_folder.h"
+#include "support/images.h"
+#include "support/scenes.h"
+#include "support/test_device.h"
+#include "test_paths.h"
+#include "view_json.h"
+#include "view_server.h"
+
+using namespace vkvol;
+using Catch::Contains;
+using Json = nlohmann::json;
+
+namespace {
+
+struct Address {
+    std::string root, key;
+    int port = 0;
+};
+
+Address parts(const std::string& address) {
+    Address result;
+    result.root = address.substr(0, address.find("/?"));
+    result.key = address.substr(address.find("key=") + 4);
+    while (!result.key.empty() && result.key.back() == '\n')
+        result.key.pop_back();
+    result.port = std::stoi(result.root.substr(result.root.rfind(':') + 1));
+    return result;
+}
+
+Film grey_film(int width, int height, float value) {
+    Film film;
+    film.picture_width = width;
+    film.picture_height = height;
+    film.crop = {0, width, 0, height};
+    film.mean.assign(std::size_t(width) * height, glm::vec3(value));
+    film.variance.assign(film.mean.size(), glm::vec3(0.01f));
+    film.samples.assign(film.mean.size(), 16);
+    return film;
+}
+
+Shot shot_of(const Film& film) {
+    auto scene = std::make_shared<ViewedScene>();
+    scene->name = "a \"b\".xml";
+    scene->xml = "<options/>";
+    scene->has_view = true;
+    scene->lights = {{"light", glm::dvec3(0.0, 1.0, 0.0)}};
+    Shot shot;
+    shot.scene = scene;
+    shot.film = film;
+    shot.samples = 16;
+    return shot;
+}
+
+// The state, and behind it the pixels.
+std::pair<Json, std::string> frame_of(const std::string& body) {
+    REQUIRE(body.size() > 4);
+    std::uint32_t length = 0;
+    std::memcpy(&length, body.data(), 4);
+    return {Json::parse(body.substr(4, length)), body.substr(4 + length)};
+}
+
+// `vkvol view`, until it goes.
+class Watched {
+public:
+    Watched(const Folder& folder, const std::string& arguments) {
+        int ends[2];
+        REQUIRE(pipe(ends) == 0);
+        child_ = fork();
+        if (child_ == 0) {
+            dup2(ends[1], STDOUT_FILENO);
+            const char* device = std::getenv("VKVOL_TEST_DEVICE");
+            const std::string command =
+                fmt::format("cd '{}' && exec '{}' view {} -q {}", folder.file(".").string(), VKVOL_BINARY, arguments,
+                            device ? std::string("--device ") + device : "");
+            execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+            _exit(127);
+        }
+        close(ends[1]);
+        char c = 0;
+        std::string line;
+        while (read(ends[0], &c, 1) == 1 && c != '\n')
+            line += c;
+        close(ends[0]);
+        REQUIRE_THAT(line, Contains("?key="));
+        address_ = parts(line);
+    }
+    ~Watched() {
+        if (child_ > 0)
+            end(SIGKILL);
+    }
+    const Address& address() const { return address_; }
+    // The exit code.
+    int end(int signal) {
+        int status = 0;
+        kill(child_, signal);
+        waitpid(child_, &status, 0);
+        child_ = -1;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+
+private:
+    pid_t child_ = -1;
+    Address address_;
+};
+
+// Frames until one is as wanted, or a minute is over.
+Json until(httplib::Client& client, const std::string& key, const std::function<bool(const Json&)>& wanted) {
+    Json state;
+    for (int i = 0; i < 600; ++i) {
+        const auto answer = client.Get(("/frame?since=0&key=" + key).c_str());
+        REQUIRE(answer);
+        REQUIRE(answer->status == 200);
+        state = frame_of(answer->body).first;
+        if (wanted(state))
+            return state;
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    FAIL("it did not come: " << state.dump());
+    return state;
+}
+
+} // namespace
+
+TEST_CASE("nobody without the key gets an answer", "[cpu][live]") {
+    ViewBoard board;
+    board.publish(shot_of(grey_film(4, 3, 0.5f)));
+    const ViewServer server(board, 0, {"ratioTracking"});
+    const auto [root, key, port] = parts(server.address());
+    CHECK(key.size() == 32);
+    httplib::Client client(root);
+    for (const char* path : {"/", "/frame?since=0", "/picture.exr", "/picture.png", "/scene.xml", "/nothing"}) {
+        CAPTURE(path);
+        const std::string joint = std::strchr(path, '?') ? "&" : "?";
+        CHECK(client.Get(path)->status == 403);
+        CHECK(client.Get((path + joint + "key=" + std::string(32, '0')).c_str())->status == 403);
+        CHECK(client.Get((path + joint + "key=" + key.substr(1)).c_str())->status == 403);
+        // By another name of this machine, as pages elsewhere may give it.
+        CHECK(client.Get((path + joint + "key=" + key).c_str(), {{"Host", fmt::format("evil.example:{}", port)}})
+                  ->status == 403);
+        const int good = client.Get((path + joint + "key=" + key).c_str())->status;
+        CHECK(good == (std::string(path) == "/nothing" ? 404 : 200));
+    }
+    CHECK(client.Post("/wish", "{}", "application/json")->status == 403);
+    const auto page = client.Get(("/?key=" + key).c_str());
+    CHECK_THAT(page->get_header_value("Content-Security-Policy"), Contains("default-src 'none'"));
+    CHECK_THAT(page->body, Contains("[\"ratioTracking\"]") && !Contains("{{"));
+    // No address but this machine's own: the kernel's table of who listens where.
+    std::ifstream table("/proc/net/tcp");
+    std::string line, listening;
+    while (std::getline(table, line))
+        if (line.find(fmt::format(":{:04X} 00000000:0000 0A", port)) != std::string::npos)
+            listening += line;
+    CHECK_THAT(listening, Contains("0100007F:"));
+    CHECK_THAT(listening, !Contains("00000000:" + fmt::format("{:04X}", port)));
+    CHECK_THROWS_WITH(ViewServer(board, port, {}), Contains("--port"));
+}
+
+TEST_CASE("frames are the picture and what is known of it", "[cpu][live]") {
+    ViewBoard board;
+    const ViewServer server(board, 0, {});
+    const auto [root, key, port] = parts(server.address());
+    httplib::Client client(root);
+    const auto get = [&, &key = key](const std::string& path) { return client.Get((path + "&key=" + key).c_str()); };
+    CHECK(frame_of(get("/frame?since=0")->body).first["version"] == 0); // nothing yet
+    Film film = grey_film(4, 3, 0.5f);
+    film.samples[5] = 0;
+    Shot first = shot_of(film);
+    first.sketch = std::make_shared<const Film>(grey_film(2, 2, 4.0f));
+    board.publish(first);
+    const auto [state, pixels] = frame_of(get("/frame?since=0")->body);
+    CHECK(state["width"] == 4);
+    CHECK(state["height"] == 3);
+    CHECK(state["samples"] == 16);
+    CHECK(state["noise"].get<double>() == Approx(std::sqrt(0.03 * 11 / (0.75 * 11))));
+    CHECK(state["lights"][0]["direction"] == Json({0.0, 1.0, 0.0}));
+    REQUIRE(pixels.size() == 4 * 12);
+    CHECK(static_cast<unsigned char>(pixels[0]) == 188);     // 0.5 by the sRGB curve
+    CHECK(static_cast<unsigned char>(pixels[4 * 5]) == 255); // the sketch, where there is nothing else
+    const std::uint64_t version = state["version"].get<std::uint64_t>();
+    CHECK(get(fmt::format("/frame?since={}", version))->status == 204);
+    board.say("a word");
+    const auto told = get(fmt::format("/frame?since={}", version));
+    REQUIRE(told->status == 200);
+    CHECK(frame_of(told->body).first["message"] == "a word");
+    CHECK(frame_of(get("/frame?since=0&exposure=-1&curve=srgb")->body).first["exposure"] == -1.0);
+    const auto png = get("/picture.png?x=1");
+    CHECK(png->body.substr(1, 3) == "PNG");
+    CHECK(png->get_header_value("Content-Disposition") == "attachment; filename=\"a _b_.png\"");
+    // Wishes: what they are, and what they are not.
+    const auto wish = [&, &key = key](const std::string& json) {
+        return client.Post(("/wish?key=" + key).c_str(), json, "application/json");
+    };
+    for (const char* bad :
+         {"", "[]", "{\"density\": -1}", "{\"density\": \"x\"}", "{\"layer\": \"nonsense\"}", "{\"camera\": {}}",
+          "{\"integrator\": \"nonsense\"}", "{\"lights\": [{}]}", "{\"lights\": 3}",
+          "{\"lights\": [{\"place\": 0, \"factor\": 1e99}]}", "{\"density\": 1e999}"}) {
+        CAPTURE(bad);
+        CHECK(wish(bad)->status == 400);
+    }
+    const std::uint64_t before = board.wish_number();
+    REQUIRE(wish("{\"layer\": \"noise\", \"density\": 2, \"lights\": [{\"place\": 0, \"factor\": 3}]}")->status == 200);
+    CHECK(board.wish_number() == before + 1);
+    CHECK(board.wish().edits.density == 2.0);
+    CHECK(board.wish().edits.lights.at(0).factor == 3.0);
+    const auto [noisy, noise] = frame_of(get("/frame?since=0")->body);
+    CHECK(noisy["layer"] == "noise");
+    CHECK(static_cast<unsigned char>(noise[0]) == std::lround(255 * 0.1 / 0.5 / whitest_noise));
+}
+
+TEST_CASE("layers are shown as what they are", "[cpu][live]") {
+    Film film = grey_film(2, 1, 0.5f);
+    film.layers = {{"depth", {glm::vec3(10.0f), glm::vec3(0.0f)}, {}},
+                   {"normal", {glm::vec3(-1.0f, 0.0f, 1.0f), glm::vec3(0.0f)}, {}},
+                   {"direct", {glm::vec3(1.0f), glm::vec3(0.0f)}, {}}};
+    CHECK(show_layer(film, nullptr, "albedo", {}, {}).rgba.empty());
+    const ShownLayer depth = show_layer(film, nullptr, "depth", {}, {});
+    CHECK(depth.rgba[0] == 255);
+    CHECK(depth.rgba[4] == 0);
+    CHECK_THAT(depth.scale, Contains("10"));
+    const std::vector<std::uint8_t> normal = show_layer(film, nullptr, "normal", {}, {}).rgba;
+    CHECK(std::vector<std::uint8_t>(normal.begin(), normal.begin() + 4) == std::vector<std::uint8_t>{0, 128, 255, 255});
+    CHECK(show_layer(film, nullptr, "direct", {}, {}).rgba[0] == 255);
+}
+
+TEST_CASE("looks at a render change none of its bits", "[gpu][live]") {
+    Scene scene = scene_of(medium(Sphere{}, 3.0, 0.9), 3.0, 24);
+    scene.lights = {LightsAbout{}.beam};
+    scene.settings.spp = 24;
+    const RenderResult alone = render_here(scene, 1);
+    std::vector<std::uint32_t> seen;
+    RenderJob job;
+    job.crop = {0, scene.picture.width, 0, scene.picture.height};
+    job.seed = 1;
+    job.look = [&](const RenderResult& result) {
+        seen.push_back(result.samples);
+        CHECK(result.film.mean.size() == alone.film.mean.size());
+    };
+    const RenderResult looked = render(test_device(), scene, job);
+    CHECK(!seen.empty());
+    CHECK(std::is_sorted(seen.begin(), seen.end()));
+    CHECK(looked.film.mean == alone.film.mean);
+    CHECK(looked.film.variance == alone.film.variance);
+}
+
+TEST_CASE("a scene is viewed, changed and kept", "[gpu][live]") {
+    const Folder folder("<light x=\"1\" y=\"1\" z=\"0\" r=\"3\" g=\"2\" b=\"1\"/>");
+    Watched watched(folder, "ball.xml --spp 8");
+    const auto [root, key, port] = watched.address();
+    httplib::Client client(root);
+    const auto done = [](const Json& state) {
+        return state.value("done", false) && state["wish"] == state["sceneWish"] && state["message"] == "";
+    };
+    const auto wish = [&, &key = key](const Json& json) {
+        const auto answer = client.Post(("/wish?key=" + key).c_str(), json.dump(), "application/json");
+        REQUIRE(answer->status == 200);
+        const std::uint64_t number = Json::parse(answer->body)["wish"];
+        return until(client, key, [&](const Json& state) { return done(state) && state["wish"] == number; });
+    };
+    const auto kept = [&, &key = key](const std::string& name) {
+        const auto answer = client.Get(("/" + name + "?key=" + key).c_str());
+        REQUIRE(answer->status == 200);
+        folder.write("kept-" + name, answer->body);
+    };
+    // The same picture as a render's, and again once it was changed and kept.
+    const Json state = until(client, key, done);
+    kept("picture.exr");
+    REQUIRE(folder.vkvol("ball.xml --spp 8 -q -o plain.exr").code == exit_done);
+    CHECK(read_exr(folder.file("kept-picture.exr")).mean == read_exr(folder.file("plain.exr")).mean);
+    Json camera = state["camera"];
+    camera["position"] = {2.0, 1.0, 4.0};
+    camera["forward"] = {-0.4, -0.2, -0.8};
+    const Json changed = wish({{"camera", camera},
+                               {"density", 0.5},
+                               {"lights", {{{"place", 0}, {"factor", 2.0}, {"direction", {0.0, 0.0, 1.0}}}}},
+                               {"integrator", "deltaTrackingNEE"}});
+    CHECK(changed["integrator"] == "deltaTrackingNEE");
+    CHECK(std::abs(changed["camera"]["position"][2].get<double>() - 4.0) < 1e-6);
+    kept("picture.exr");
+    kept("scene.xml");
+    REQUIRE(folder.vkvol("kept-scene.xml --spp 8 -q -o changed.exr").code == exit_done);
+    CHECK(read_exr(folder.file("kept-picture.exr")).mean == read_exr(folder.file("changed.exr")).mean);
+    CHECK(read_exr(folder.file("changed.exr")).mean != read_exr(folder.file("plain.exr")).mean);
+    // A layer, of the same samples; the scene as it was.
+    CHECK(wish({{"layer", "depth"}})["width"] == 16);
+    wish(Json::object());
+    kept("picture.exr");
+    CHECK(read_exr(folder.file("kept-picture.exr")).mean == read_exr(folder.file("plain.exr")).mean);
+    // The file, changed, broken and mended.
+    const std::string before = folder.text("ball.xml");
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string text = before;
+        text.replace(text.find(from), from.size(), to);
+        folder.write("ball.xml", text);
+    };
+    with("<width>16</width>", "<width>20</width>");
+    until(client, key, [&](const Json& now) { return done(now) && now["width"] == 20; });
+    with("</options>", "");
+    until(client, key,
+          [](const Json& now) { return now["message"].get<std::string>().find("ball.xml:1") != std::string::npos; });
+    with("<width>16</width>", "<width>24</width>");
+    until(client, key, [&](const Json& now) { return done(now) && now["width"] == 24; });
+    CHECK(watched.end(SIGTERM) == exit_done);
+    CHECK(folder.vkvol("view").code == exit_bad_input);
+    CHECK(folder.vkvol("view nothing.xml").code == exit_bad_input);
+}
