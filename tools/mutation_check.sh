@@ -61,7 +61,6 @@ map's table of another medium ~ host/device_scene/scene_upload.cpp ~ params.firs
 air that thins half as fast ~ shaders/field/layers.glsl ~ exp(-v.layers.decay * height) ~ exp(-0.5 * v.layers.decay * height) ~ [layers]
 layers bounded by their upper face ~ host/fields/layers.cpp ~ layer_density(volume, from) * (1.0 + rounding)} ~ layer_density(volume, to) * (1.0 + rounding)} ~ [layers]
 cells of what is everywhere end ~ shaders/majorants/majorant.glsl ~ vec3(FAR), outward(v, w, block)) ~ t_face, outward(v, w, block)) ~ [layers]
-outermost cells bound what is in them alone ~ host/assets/superposition.cpp ~ k == 0 ? -infinity : low - margin ~ low - margin ~ [layers]
 albedo + 2 % ~ host/device_scene/scene_upload.cpp ~ params.albedo = albedo_of(volume); ~ params.albedo = 1.02 * albedo_of(volume); ~ [image]
 g sign in sampling ~ shaders/phase/phase.glsl ~ hg_sample(v.phase.g, ~ hg_sample(-v.phase.g, ~ [image]
 g sign toward the light ~ shaders/phase/phase.glsl ~ hg_eval(v.phase.g, hg_from_peak(v.phase.g, ~ hg_eval(-v.phase.g, hg_from_peak(-v.phase.g, ~ [image]

@@ -5,12 +5,14 @@
 #   large       a grid of 342 MiB, larger than a storage buffer of Mesa's software driver, against its Fp8 form (1 minute)
 #   tests       tests on the device, of which many take a share of what they could combine, with all of it
 #   python      `pip install .` in a fresh environment: types, tests, the notebook (5 minutes; PyPI has to be there)
+#   view        every control of the page of `vkvol view`, in Debian's Chromium (2 minutes; likewise)
+#   denoise     the test of tools/denoise with the denoiser (1 minute; likewise)
 #   estimators  the tables of all unbiased combinations of estimators, of the bias of marches, and of transmittances alone
 #   pictures    whole scenes with large grids, rendered by vkvol and by the scalar reference with different seeds, judged by
 #               `vkvol compare` (per-pixel z-test, Sidak-corrected, and a test of the means; a significance of 0.001 per
 #               scene, so that a table of this length raises a false alarm once in a hundred runs)
 # All but `tests` takes about an hour on two cores. Each part ends with a table; fails if anything differs.
-#   tools/validate.sh [--driver NAME] [hard|scenes|large|tests|python|estimators|pictures ...] [FILE.nvdb ...]
+#   tools/validate.sh [--driver NAME] [hard|scenes|large|tests|python|view|denoise|estimators|pictures ...] [FILE.nvdb ...]
 #       a driver as in tools/test.sh; further grids for pictures: in the thesis' bunny scenes
 set -eu
 source "$(dirname "$0")/setup.sh"
@@ -24,12 +26,12 @@ if [ "${1:-}" = --driver ]; then
 fi
 for argument in "$@"; do
     case $argument in
-    hard | scenes | large | tests | python | estimators | pictures) parts+=("$argument") ;;
+    hard | scenes | large | tests | python | view | denoise | estimators | pictures) parts+=("$argument") ;;
     *.nvdb) grids+=("$argument") ;;
-    *) die "'$argument' is neither a part (hard, scenes, large, tests, python, estimators, pictures) nor a .nvdb file" ;;
+    *) die "'$argument' is neither a part (hard, scenes, large, tests, python, view, denoise, estimators, pictures) nor a .nvdb file" ;;
     esac
 done
-[ ${#parts[@]} -gt 0 ] || parts=(hard scenes large tests python estimators pictures)
+[ ${#parts[@]} -gt 0 ] || parts=(hard scenes large tests python view denoise estimators pictures)
 
 install_packages
 [ -z "$driver" ] || use_driver "$driver"
@@ -77,6 +79,19 @@ run_python() {
     (cd "$work" && VKVOL_INSTALLED=1 VKVOL_BUILD="$vkvol_root/build" PYTHONDONTWRITEBYTECODE=1 "$python" -W error -m unittest discover \
         -p "*_test.py" -s "$vkvol_root/tests/python") || failed=1
     (cd "$work" && "$work/venv/bin/jupyter-execute" --inplace "$notebook") || failed=1
+}
+
+run_view() {
+    say "The page of vkvol view"
+    command -v chromium >/dev/null || die "view: needs a browser: apt-get install chromium"
+    python3 -m venv "$work/browser" && "$work/browser/bin/pip" install -q playwright || die "view: playwright cannot be installed"
+    "$work/browser/bin/python" "$vkvol_root/tools/view_check.py" --vkvol "$vkvol_root/build/vkvol" -o "$vkvol_root/build/view_check" || failed=1
+}
+
+run_denoise() {
+    say "tools/denoise"
+    /usr/bin/python3 -m venv --system-site-packages "$work/oidn" && "$work/oidn/bin/pip" install -q pyoidn || die "denoise: pyoidn cannot be installed"
+    "$work/oidn/bin/python" "$vkvol_root/tools/denoise" --self-test || failed=1
 }
 
 run_estimators() {

@@ -115,18 +115,16 @@ void take_in(const std::vector<Member>& members, const glm::dvec3& camera, doubl
     }
 }
 
-// Bounds of the extinction between the faces of cells along that axis, outermost ones of which have none beyond.
+// Bounds of the extinction between the faces of cells along that axis. Beyond the outermost there are no layers: see
+// take_in().
 std::vector<double> layers_in_cells(const Volume& volume, const Upright& place, const Superposition& whole,
                                     double sigma_t) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     std::vector<double> bounds;
-    const int count = whole.dims()[place.axis];
-    for (int k = 0; k < count; ++k) {
+    for (int k = 0; k < whole.dims()[place.axis]; ++k) {
         // A point on the device may be as far aside as single precision lets it be.
         const double margin = 1e-3 * whole.edge;
         const double low = whole.origin[place.axis] + whole.edge * (whole.cells.origin[place.axis] + k);
-        const double from = k == 0 ? -infinity : low - margin;
-        const double to = k == count - 1 ? infinity : low + whole.edge + margin;
+        const double from = low - margin, to = low + whole.edge + margin;
         const auto [a, b] = std::minmax({place.factor * from + place.offset, place.factor * to + place.offset});
         bounds.push_back(sigma_t * layer_range(volume, a, b).most);
     }
