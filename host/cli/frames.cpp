@@ -18,7 +18,8 @@ constexpr std::size_t most_frames = 100000;
 constexpr int last_frame = 9999999;
 
 [[noreturn]] void fail_frames(const std::string& text, const std::string& why) {
-    fail_command_line(fmt::format("-f: '{}' {}; expected frames such as 3, 1..8, 1..48x4 or 1,5,9", text, why));
+    fail_command_line(
+        fmt::format("-f: '{}' {}; expected frames such as 3, 1..8, 1..48x4 or 1,5,9, or files", text, why));
 }
 
 // A whole number at the beginning of `rest`, which is taken off; -1: there is none.
@@ -67,6 +68,22 @@ Field field_at(const std::string& text) {
         return {2 + padded + 2 * brace, padded ? text[2 + brace] - '0' : 1};
     }
     return {};
+}
+
+// None if the name has no place for it.
+std::optional<std::string> with_number(const std::string& pattern, int frame) {
+    std::string numbered;
+    bool found = false;
+    for (std::size_t i = 0; i < pattern.size();) {
+        const Field field = field_at(pattern.substr(i));
+        found = found || field.length > 0;
+        if (field.length > 0)
+            numbered += fmt::format("{:0{}}", frame, field.digits);
+        else
+            numbered += pattern[i];
+        i += std::max<std::size_t>(field.length, 1);
+    }
+    return found ? std::optional(numbered) : std::nullopt;
 }
 
 } // namespace
@@ -121,21 +138,33 @@ std::string frames_text(const std::vector<int>& frames) {
 std::filesystem::path frame_file(const std::filesystem::path& name, int frame) {
     if (is_special(name))
         return name;
+    const std::optional<std::string> numbered = with_number(name.filename().string(), frame);
+    return name.parent_path() /
+           numbered.value_or(fmt::format("{}.{:04}{}", name.stem().string(), frame, name.extension().string()));
+}
+
+std::vector<int> frames_with_file(const std::filesystem::path& name) {
     const std::string pattern = name.filename().string();
-    std::string numbered;
-    bool found = false;
-    for (std::size_t i = 0; i < pattern.size();) {
-        const Field field = field_at(pattern.substr(i));
-        found = found || field.length > 0;
-        if (field.length > 0)
-            numbered += fmt::format("{:0{}}", frame, field.digits);
-        else
-            numbered += pattern[i];
-        i += std::max<std::size_t>(field.length, 1);
+    if (!with_number(pattern, 0))
+        fail_command_line(fmt::format("-f files: {} has no place for the number of a frame; write it as ####: "
+                                      "--grid smoke.####.vdb",
+                                      name.string()));
+    std::set<int> frames;
+    std::error_code error;
+    const std::filesystem::path folder = name.has_parent_path() ? name.parent_path() : std::filesystem::path(".");
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        const std::string file = entry.path().filename().string();
+        // Any number in its name may be the frame's; that it is, its name tells.
+        for (std::size_t i = 0; i < file.size(); ++i) {
+            std::string rest = file.substr(i);
+            const int frame = take_number(rest);
+            if (frame >= 0 && with_number(pattern, frame) == file)
+                frames.insert(frame);
+        }
     }
-    if (!found)
-        numbered = fmt::format("{}.{:04}{}", name.stem().string(), frame, name.extension().string());
-    return name.parent_path() / numbered;
+    if (frames.empty())
+        fail_command_line(fmt::format("-f files: there is no file {}", name.string()));
+    return {frames.begin(), frames.end()};
 }
 
 RenderOptions frame_options(const RenderOptions& options, int frame) {
@@ -146,11 +175,18 @@ RenderOptions frame_options(const RenderOptions& options, int frame) {
         output = frame_file(output, frame);
     if (one.report)
         one.report = frame_file(*one.report, frame);
+    if (one.grid)
+        if (const std::optional<std::string> numbered = with_number(one.grid->filename().string(), frame)) {
+            one.grid = one.grid->parent_path() / *numbered;
+            one.grid_has_frame = true;
+        }
     return one;
 }
 
 void set_frames(RenderOptions& options, const std::string& text) {
-    options.frames = parse_frames(text);
+    if (text == "files" && !options.grid)
+        fail_command_line("-f files: are those of --grid; add e.g. --grid smoke.####.vdb");
+    options.frames = text == "files" ? frames_with_file(*options.grid) : parse_frames(text);
     if (options.trace)
         fail_command_line("-f: --trace follows a path of one picture; choose the frame with -D F=3");
     for (const auto& [key, value] : options.defines)

@@ -20,6 +20,10 @@ std::string frames_text(const std::vector<int>& frames);
 // none of these before the extension, in four digits. Devices and pipes keep their name.
 std::filesystem::path frame_file(const std::filesystem::path& name, int frame);
 
+// The frames for which there is a file of that name, which has a place for their numbers, ascending. Throws InputError
+// if it has none, or if there is no such file.
+std::vector<int> frames_with_file(const std::filesystem::path& name);
+
 // What renders this one of options.frames: its key F and its files.
 RenderOptions frame_options(const RenderOptions& options, int frame);
 

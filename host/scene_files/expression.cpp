@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "error.h"
+#include "keyed_values.h"
 #include "nearest_name.h"
 
 namespace vkvol {
@@ -29,6 +30,9 @@ struct Function {
 };
 
 constexpr std::size_t any_number_of = 16;
+constexpr std::size_t most_keys = 256;
+
+constexpr const char* keys_text = "where, and then 1 to 256 keys: a place and its value, places ascending";
 
 const std::array functions = {
     Function{"sin", 1, 1, [](const Arguments& a) { return std::sin(a[0]); }, "radians"},
@@ -50,7 +54,9 @@ const std::array functions = {
     Function{"min", 2, any_number_of, [](const Arguments& a) { return *std::min_element(a.begin(), a.end()); },
              "2 to 16 numbers"},
     Function{"max", 2, any_number_of, [](const Arguments& a) { return *std::max_element(a.begin(), a.end()); },
-             "2 to 16 numbers"}};
+             "2 to 16 numbers"},
+    Function{"linear", 3, 1 + 2 * most_keys, linear_keys, keys_text},
+    Function{"spline", 3, 1 + 2 * most_keys, spline_keys, keys_text}};
 
 bool begins_name(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';

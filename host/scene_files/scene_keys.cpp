@@ -172,13 +172,14 @@ void SceneKeys::count(const std::string& key, std::size_t bytes) {
 
 void SceneKeys::check_all_used() const {
     for (const auto& [key, value] : values_) {
-        if (named_.count(key))
+        if (named_.count(key) || may_be_unused_.count(key))
             continue;
         if (key == frame_key)
-            throw InputError(
-                fmt::format("$F, the number {} of the frame, is used nowhere in the scene: all frames would "
-                            "be the same; write $F where they differ, e.g. yaw=\"${{= 360*F/8}}\"",
-                            value));
+            throw InputError(fmt::format(
+                "$F, the number {} of the frame, is used nowhere in the scene: all frames would "
+                "be the same; write $F where they differ, e.g. yaw=\"${{= 360*F/8}}\", or let --grid have it: "
+                "smoke.####.vdb",
+                value));
         const std::vector<std::string> known(named_.begin(), named_.end());
         const std::string hint = known.empty() ? "; the scene has no $keys" : name_hint(key, known);
         throw InputError(fmt::format("-D {}={} is used nowhere in the scene{}", key, value, hint));

@@ -12,7 +12,9 @@ namespace vkvol {
 
 class SceneKeys {
 public:
-    explicit SceneKeys(std::map<std::string, std::string> values) : values_(std::move(values)) {}
+    // Of what is in `may_be_unused` nobody has to ask.
+    explicit SceneKeys(std::map<std::string, std::string> values, std::set<std::string> may_be_unused = {})
+        : values_(std::move(values)), may_be_unused_(std::move(may_be_unused)) {}
 
     // `raw` with all of it filled in. Throws InputError without a place.
     std::string fill_in(const std::string& raw);
@@ -31,6 +33,7 @@ private:
     void count(const std::string& key, std::size_t bytes);
 
     const std::map<std::string, std::string> values_;
+    const std::set<std::string> may_be_unused_;
     std::set<std::string> named_; // every key the scene names
     std::size_t filled_in_ = 0;   // bytes, of the values of all keys
 

@@ -30,7 +30,7 @@ std::string read_file(const std::filesystem::path& file) {
 
 Scene parse_scene(const std::string& xml, const std::filesystem::path& file, const Defines& defines,
                   const SceneOverrides& overrides) {
-    XmlDocument document(xml, file, defines, "options");
+    XmlDocument document(xml, file, defines, "options", {}, overrides.may_be_unused);
     return SceneReader(document, overrides).read();
 }
 

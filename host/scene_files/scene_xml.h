@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "pbrt_translation.h"
@@ -20,6 +21,7 @@ struct SceneOverrides {
     std::optional<std::string> integrator;     // NAME:axis=choice..., instead of the scene's and of its choices
     bool strict = false;                       // of a scene that is translated nothing may be left out
     NamedGrids grids = {};                     // instead of density fields of these names
+    std::set<std::string> may_be_unused = {};  // of the defines: another one is an error where no $key asks for it
 };
 
 // Throws InputError, "file:line:column: what is wrong; what would be right". What the scene asks for and this

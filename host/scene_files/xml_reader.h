@@ -23,9 +23,9 @@ class XmlDocument {
 public:
     // Throws InputError for malformed XML, a root element other than `root`, an attribute given twice, a $key
     // without a value, and a define that no $key uses; see scene_keys.h. `places`: of elements, where the text was made
-    // of something else.
+    // of something else. `may_be_unused`: defines.
     XmlDocument(const std::string& text, std::filesystem::path file, const std::map<std::string, std::string>& defines,
-                const std::string& root, ElementPlaces places = {});
+                const std::string& root, ElementPlaces places = {}, const std::set<std::string>& may_be_unused = {});
 
     pugi::xml_node root() const { return root_; }
     const std::filesystem::path& file() const { return file_; }

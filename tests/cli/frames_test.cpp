@@ -212,6 +212,58 @@ TEST_CASE("a sequence that is gone on with passes over the frames that are there
     CHECK_THAT(scene.vkvol("ball.xml -f 1..2 -o p.#.png --resume").text, !Contains("is there"));
 }
 
+TEST_CASE("a sequence that is killed again and again has the bits of one that is not", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("turn.xml",
+                 "<options><sphere/><noise octaves='4'/><sigma_s>20</sigma_s><width>32</width><height>32</height>"
+                 "<camera lookAt='0 0 0' distance='5' azimuth='${= 40*F}' fov='30'/><light y='1' r='3' g='3' b='3'/>"
+                 "<rayPerPixelCount>400</rayPerPixelCount></options>");
+    REQUIRE(folder.vkvol("turn.xml -f 1..6 -o whole.#.exr -q").code == exit_done);
+    int kills = 0;
+    for (int k = 0; k < 10; ++k) // after 0.5 to 1.4 s, at random as the machine goes
+        kills += folder
+                     .script(fmt::format("timeout -s KILL {} \"$vkvol\" turn.xml -f 1..6 -o a.#.exr --checkpoint 0.05s "
+                                         "--resume -q",
+                                         0.5 + 0.1 * k))
+                     .code != exit_done;
+    REQUIRE(folder.vkvol("turn.xml -f 1..6 -o a.#.exr --checkpoint 0.05s --resume -q").code == exit_done);
+    CHECK(kills > 0);
+    for (int frame = 1; frame <= 6; ++frame) {
+        const Film whole = read_exr(folder.file(fmt::format("whole.{}.exr", frame))),
+                   parts = read_exr(folder.file(fmt::format("a.{}.exr", frame)));
+        CHECK(whole.mean == parts.mean);
+        CHECK(whole.variance == parts.variance);
+        CHECK(whole.samples == parts.samples);
+    }
+}
+
+TEST_CASE("grids of a sequence go by its frames", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("grid.xml", "<options><densityField>none.nvdb</densityField><sigma_a>0.1</sigma_a><width>8</width>"
+                             "<height>8</height><rayPerPixelCount>2</rayPerPixelCount>"
+                             "<backgroundColor r='1' g='1' b='1'/></options>");
+    const auto field = [&](const char* name, const char* as) {
+        std::filesystem::copy_file(fmt::format("{}/{}.nvdb", VKVOL_TEST_FIELDS, name), folder.file(as));
+    };
+    field("sphere", "smoke.0002.nvdb");
+    field("ramp", "smoke.0010.nvdb");
+    field("ramp", "smoke.10.nvdb"); // as long as this is no name of the pattern's
+    const Run run = folder.vkvol("grid.xml --grid smoke.####.nvdb -f files");
+    INFO(run.text);
+    CHECK(run.code == exit_done);
+    CHECK_THAT(run.text, Contains("2 frames (2,10)"));
+    REQUIRE(folder.vkvol("grid.xml --grid smoke.0002.nvdb -o two.exr -q").code == exit_done);
+    REQUIRE(folder.vkvol("grid.xml --grid smoke.0010.nvdb -o ten.exr -q").code == exit_done);
+    CHECK(read_exr(folder.file("grid.0002.exr")).mean == read_exr(folder.file("two.exr")).mean);
+    CHECK(read_exr(folder.file("grid.0010.exr")).mean == read_exr(folder.file("ten.exr")).mean);
+    CHECK_THAT(folder.vkvol("grid.xml --grid smoke.####.nvdb -f 1..2").text,
+               Contains("frame 1: ") && Contains("smoke.0001.nvdb"));
+    CHECK_THAT(folder.vkvol("grid.xml --grid fog.####.nvdb -f files").text, Contains("there is no file fog.####.nvdb"));
+    CHECK_THAT(folder.vkvol("grid.xml --grid fog.nvdb -f files").text, Contains("has no place for the number"));
+    CHECK_THAT(folder.vkvol("grid.xml -f files").text, Contains("add e.g. --grid"));
+    CHECK_THAT(folder.vkvol("grid.xml --grid smoke.0002.nvdb -f 1..2").text, Contains("all frames would be the same"));
+}
+
 TEST_CASE("errors of a sequence say in which frame, before any is rendered", "[gpu][command]") {
     const Turntable scene("${= 1/(3-F)}");
     const Run run = scene.vkvol("ball.xml -f 1..5");

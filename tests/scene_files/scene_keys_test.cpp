@@ -68,6 +68,16 @@ TEST_CASE("scene values are computed", "[cpu][xml]") {
     CHECK(computed("log(exp(3)) + pow(2, 10)") == Approx(1027.0).epsilon(1e-15));
     CHECK(computed("abs(-1) + floor(-0.5) + ceil(0.5) + round(2.5)") == 4.0);
     CHECK(computed("min(3, 1, 2) + max(3, 5, 4, 1)") == 6.0);
+    CHECK(computed("linear(F, 1,10, 3,20, 7,0)", {{"F", "2"}}) == 15.0);
+    CHECK(computed("linear(6, 1,10, 3,20, 7,0) + linear(0, 1,10, 3,20) + linear(9, 1,10, 3,20)") == 35.0);
+    CHECK(computed("linear(5, 5,2)") == 2.0);
+    // Keys are met, lines and parabolas kept where their keys are as far apart: here t^2 at 2.5 and 3.25, between four.
+    CHECK(computed("spline(3, 1,10, 3,20, 7,0)") == 20.0);
+    CHECK(computed("spline(2.75, 1,1, 2,2, 4,4, 9,9)") == Approx(2.75).epsilon(1e-14));
+    CHECK(computed("spline(2.5, 1,1, 2,4, 3,9, 4,16)") == Approx(6.25).epsilon(1e-14));
+    CHECK(computed("spline(2.25, 1,1, 2,4, 3,9, 4,16)") == Approx(5.0625).epsilon(1e-14));
+    CHECK(computed("spline(0, 1,10, 3,20) + spline(9, 1,10, 3,20)") == 30.0);
+    CHECK(computed("spline(1.5, 1,10, 2,20)") == 15.0);
     CHECK(computed("360*${F:-1}/8") == 45.0);
     CHECK(computed("$a - ${b}", {{"a", "-1"}, {"b", "+2"}}) == -3.0);
     CHECK(computed("a^2", {{"a", "-3"}}) == 9.0); // a value is a number, not a piece of text
@@ -98,6 +108,10 @@ TEST_CASE("arithmetic that cannot be done is an error with its place, the expres
         {"sinn(1)", "there is no function 'sinn'; did you mean sin?"},
         {"sin(1, 2)", "a ) is missing"},
         {"atan2(1)", "too few arguments"},
+        {"linear(1, 2)", "too few arguments; it takes where, and then"},
+        {"linear(1, 2,3, 2,4)", "gives no finite number; expected where, and then 1 to 256 keys"},
+        {"spline(1, 2,3, 4)", "gives no finite number"},
+        {"spline(1, 3,3, 2,4)", "places ascending"},
         {"(1", "a ) is missing"},
         {"1 +", "missing before the }"},
         {"", "missing before the }"},
