@@ -51,30 +51,32 @@ private:
     const std::vector<double>& numbers_;
 };
 
+// By `between(keys, i)` where it is between the keys i and i + 1.
+template <class Between> double keyed(const std::vector<double>& numbers, const Between& between) {
+    const Keys keys(numbers);
+    if (!keys.are_good())
+        return std::numeric_limits<double>::quiet_NaN();
+    if (const std::optional<double> value = keys.beyond())
+        return *value;
+    return between(keys, keys.before());
+}
+
 } // namespace
 
 double linear_keys(const std::vector<double>& numbers) {
-    const Keys keys(numbers);
-    if (!keys.are_good())
-        return std::numeric_limits<double>::quiet_NaN();
-    if (const std::optional<double> value = keys.beyond())
-        return *value;
-    const std::size_t i = keys.before();
-    const double t = (keys.where() - keys.place(i)) / (keys.place(i + 1) - keys.place(i));
-    return (1.0 - t) * keys.value(i) + t * keys.value(i + 1);
+    return keyed(numbers, [](const Keys& keys, std::size_t i) {
+        const double t = (keys.where() - keys.place(i)) / (keys.place(i + 1) - keys.place(i));
+        return (1.0 - t) * keys.value(i) + t * keys.value(i + 1);
+    });
 }
 
 double spline_keys(const std::vector<double>& numbers) {
-    const Keys keys(numbers);
-    if (!keys.are_good())
-        return std::numeric_limits<double>::quiet_NaN();
-    if (const std::optional<double> value = keys.beyond())
-        return *value;
-    const std::size_t i = keys.before();
-    const double span = keys.place(i + 1) - keys.place(i), t = (keys.where() - keys.place(i)) / span, s = 1.0 - t;
-    // Hermite's form.
-    return s * s * ((1.0 + 2.0 * t) * keys.value(i) + t * span * keys.slope(i)) +
-           t * t * ((1.0 + 2.0 * s) * keys.value(i + 1) - s * span * keys.slope(i + 1));
+    return keyed(numbers, [](const Keys& keys, std::size_t i) {
+        const double span = keys.place(i + 1) - keys.place(i), t = (keys.where() - keys.place(i)) / span, s = 1.0 - t;
+        // Hermite's form.
+        return s * s * ((1.0 + 2.0 * t) * keys.value(i) + t * span * keys.slope(i)) +
+               t * t * ((1.0 + 2.0 * s) * keys.value(i + 1) - s * span * keys.slope(i + 1));
+    });
 }
 
 } // namespace vkvol

@@ -222,6 +222,38 @@ TEST_CASE("looks and flights share a map of the sky on surfaces as in matter", "
     CHECK_AGREEMENT(agree_with_means(film, std::vector<Rgb>(film.mean.size(), Rgb(1.0)), "sky on surfaces"));
 }
 
+TEST_CASE("mirrors and glass show lamps as the camera sees them", "[gpu][image][surfaces]") {
+    // Rays straight down turn to +x at a mirror, and there they meet a lamp of radiance L: 0.8 L, sample by sample.
+    Scene scene = from_above(0.1);
+    Surface mirror;
+    mirror.shape = RectangleSurface{{0.0, 0.0, 0.0}, {0.5, -0.5, 0.0}, {0.0, 0.0, -0.5}};
+    mirror.material = {MaterialKind::mirror, Rgb(0.8)};
+    scene.surfaces = {mirror};
+    const Rgb radiance(2.0, 3.0, 4.0);
+    const SphereLight ball{{4.0, 0.0, 0.0}, 1.0, radiance};
+    for (const Light& lamp : {Light(ball), Light(DiskLight{{4.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, 1.0, radiance}),
+                              Light(RectangleLight{{4.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, {0.0, 1.0, 0.0}, radiance})}) {
+        CAPTURE(lamp.index());
+        scene.lights = {lamp};
+        check_everywhere(scene, 0.8 * radiance, 1e-5);
+    }
+    // Through fog in between a part of it.
+    scene.lights = {ball};
+    scene.volumes = {medium(Box{{2.0, 0.0, 0.0}, {1.0, 1.0, 1.0}}, 0.7, 0.0)};
+    check_everywhere(scene, 0.8 * std::exp(-0.7) * radiance, 1e-5);
+    // Through the middle of a ball of glass, what is not thrown back at its faces: (1 - R) / (1 + R), R = 0.04.
+    scene.volumes.clear();
+    Surface glass;
+    glass.shape = BallSurface{{0.0, 1.0, 0.0}, 0.8};
+    glass.material = white(MaterialKind::dielectric);
+    glass.material.ior = 1.5;
+    scene.surfaces = {glass};
+    scene.lights = {SphereLight{{0.0, -3.0, 0.0}, 1.0, radiance}};
+    scene.settings.spp = 4096;
+    const Film film = render_here(scene, 1).film;
+    CHECK_AGREEMENT(agree_with_means(film, std::vector<Rgb>(film.mean.size(), 0.96 / 1.04 * radiance), "glass"));
+}
+
 TEST_CASE("a floor under a lamp has the form factor of a disk", "[gpu][image][surfaces]") {
     // On the axis of a disk of radius r at height h: E = pi L r^2 / (r^2 + h^2). Off it by x it changes by less than
     // 3 (x / h)^2 of itself: the picture is so small that this is 1e-6.
