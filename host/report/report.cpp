@@ -202,6 +202,8 @@ Metadata make_metadata(const RenderRequest& request, const Scene& scene, const D
                       {"vkvol/queueOverflows", metadata_count(result.counts.queue_overflows)},
                       {"vkvol/abandonedPaths", metadata_count(result.counts.abandoned)},
                       {"vkvol/nonFiniteSamples", metadata_count(result.counts.non_finite)}};
+    if (!scene.units.empty())
+        metadata["vkvol/units"] = scene.units;
     if (const std::optional<Exposure>& exposure = scene.camera.exposure) {
         metadata["isoSpeed"] =
             static_cast<float>(exposure->iso); // by OpenEXR's names, which OpenImageIO has others for

@@ -338,6 +338,7 @@ struct Scene {
     unsigned layers = 0;               // Aovs, besides radiance
     bool holds_out = false; // what is behind the media, light that was not scattered, stays out of the picture
     RenderSettings settings;
+    std::string units = {}; // of its readings, if they are parts of what the light brings; or empty
     std::optional<Expected> expected;
     std::vector<BlackElement> black;   // without effect on the picture
     std::vector<std::string> warnings; // "file:line:column: ..." for what was understood but is not honoured

@@ -44,6 +44,7 @@ private:
     void warn_about_light(const Scene& scene, const Method& method) const;
     void warn_about_steps(const Scene& scene, const Method& method) const;
     std::optional<Periodic> periodic() const;
+    void read_units(Scene& scene) const;
     Camera sensor() const;
     Camera camera() const;
     Camera irradiance(const XmlElement& element) const;
