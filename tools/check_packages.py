@@ -32,6 +32,7 @@ NOT_INSTALLED = {
     "git": "for those who change the program: they have cloned it",
     "debootstrap": "tools/newcomer.sh says that it needs it",
     "help2man": "tools/package.sh installs it",
+    "patchelf": "likewise",
     "mitsuba": "a renderer to compare with, of PyPI: tools/peers/README.md",
     "drjit": "comes with mitsuba",
     "pyoidn": "a denoiser, of PyPI: tools/denoise",

@@ -2,9 +2,10 @@
 # The README's two commands on a new machine: in a bare Debian (debootstrap's minbase), on what HEAD holds, as root and as a
 # user with sudo. Prints how each ended and what it took, and keeps that in tools/results/newcomer.txt, a row each.
 #   tools/newcomer.sh                      all: on two cores about an hour and a half
-#   tools/newcomer.sh trixie user demo     words choose: bookworm or trixie, root or user, demo, test or package
+#   tools/newcomer.sh trixie user demo     words choose: bookworm or trixie, root or user, demo, test, package or tar
 #     package: that which tools/package.sh has made on this machine is installed in a bare system of the same release, tried by
 #     `vkvol demo`, and removed without a trace; not among what is done without words
+#     tar: what `tools/package.sh tar` has made is unpacked in one of any release, and tried; likewise
 #   tools/newcomer.sh --cache DIR          where bare systems are kept; default: ~/.cache/vkvol-newcomer
 #   tools/newcomer.sh --mirror URL         default: http://deb.debian.org/debian
 # Every release and user begins with a system of its own; if both commands are chosen, the second finds what the first left.
@@ -21,13 +22,13 @@ while [ $# -gt 0 ]; do
     case $1 in
     bookworm | trixie) releases+=("$1") ;;
     root | user) users+=("$1") ;;
-    demo | test | package) commands+=("$1") ;;
+    demo | test | package | tar) commands+=("$1") ;;
     --cache | --mirror)
         [ $# -gt 1 ] || die "$1 needs a value"
         [ "$1" = --cache ] && cache=$2 || mirror=$2
         shift
         ;;
-    *) die "'$1' is neither a release (bookworm, trixie), a user (root, user), a command (demo, test, package), --cache DIR nor --mirror URL" ;;
+    *) die "'$1' is neither a release (bookworm, trixie), a user (root, user), a command (demo, test, package, tar), --cache DIR nor --mirror URL" ;;
     esac
     shift
 done
@@ -97,10 +98,28 @@ circumstances() {
 
 # What is done there: the README's command, or what a user of the package does.
 steps() {
-    if [ "$1" != package ]; then
-        echo "cd /home/vkvol && ${2:+$2 }tools/$1.sh"
-        return
-    fi
+    case $1 in
+    package) package_steps ;;
+    tar) tar_steps ;;
+    *) echo "cd /home/vkvol && ${2:+$2 }tools/$1.sh" ;;
+    esac
+}
+
+tar_steps() {
+    cat <<'END'
+set -e
+rm -rf /home/vkvol
+apt-get update -qq
+DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends mesa-vulkan-drivers libvulkan1
+mkdir "/opt/some where" && tar -C "/opt/some where" -xf /vkvol.tar.gz
+cd /tmp
+"/opt/some where"/vkvol*/bin/vkvol demo --width 160 --spp 16
+[ -s cumulus.png ] && [ -s cumulus.exr ]
+"/opt/some where"/vkvol*/bin/vkvol-make-field sphere && "/opt/some where"/vkvol*/bin/vkvol sphere.nvdb --width 64 --spp 4 -q
+END
+}
+
+package_steps() {
     cat <<'END'
 set -e
 rm -rf /home/vkvol
@@ -128,6 +147,9 @@ attempt() {
         grep -q "VERSION_CODENAME=$1" /etc/os-release || die "a package made here is for this machine's release, not for $1"
         cp "$(find "$vkvol_root/build/package" -maxdepth 1 -name '*.deb')" "$system/package.deb" ||
             die "there is no package; tools/package.sh makes one"
+    elif [ "$3" = tar ]; then
+        cp "$(find "$vkvol_root/build/package" -maxdepth 1 -name '*.tar.gz')" "$system/vkvol.tar.gz" ||
+            die "there is no such package; tools/package.sh tar makes one"
     fi
     inside "$(steps "$3" "$as")" >"$log" 2>&1 || result=FAILED
     row=$(printf '%-9s %-5s %-14s %-7s %5s  %s' "$1" "$2" "tools/$3.sh" $result $((SECONDS - start)) "$(circumstances "$log" | paste -sd ';' | sed 's/;/, /g')")

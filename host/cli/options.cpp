@@ -37,7 +37,7 @@ T choose(const char* option, const std::string& name, const std::vector<std::pai
 
 // The options of `render` that need a second look after CLI11 has read them.
 struct RenderTexts {
-    std::string time, noise, crop, checkpoint, pixel, up, schedule, preview, progress = "auto";
+    std::string time, noise, crop, checkpoint, pixel, up, schedule, tev, preview, progress = "auto";
     std::vector<std::string> defines;
     std::vector<std::string> outputs;
     ToneTexts tone;
@@ -131,11 +131,12 @@ void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
                    "On standard error: auto (a bar on a terminal), json (a line each), none")
         ->option_text("STYLE [auto]")
         ->group("Output");
-    app.add_flag(fmt::format("--tev{{{}}}", tev_address), render.tev,
-                 "Show the picture while it is rendered, with all layers, in the viewer tev, which listens there or at "
-                 "--tev=HOST:PORT")
+    app.add_flag("--tev", texts.tev,
+                 fmt::format("Show the picture while it is rendered, with all layers, in the viewer tev; it listens at "
+                             "{}, or --tev=HOST:PORT",
+                             tev_address))
         ->group("Output");
-    app.add_flag("--preview{auto}", texts.preview,
+    app.add_flag("--preview", texts.preview,
                  "Show it on the terminal: --preview=blocks, sixel or kitty, else as the terminal says")
         ->group("Output");
     app.add_option("--checkpoint", texts.checkpoint,
@@ -240,13 +241,16 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
     render.progress = choose<ProgressStyle>(
         "--progress", texts.progress,
         {{"auto", ProgressStyle::automatic}, {"json", ProgressStyle::json}, {"none", ProgressStyle::none}});
+    const std::string given = "true"; // CLI11's word for a flag without a value
+    render.tev = texts.tev == given ? tev_address : texts.tev;
     render.preview = !texts.preview.empty();
     if (render.preview)
-        render.graphics = choose<std::optional<TerminalGraphics>>("--preview", texts.preview,
-                                                                  {{"auto", std::nullopt},
-                                                                   {"blocks", TerminalGraphics::blocks},
-                                                                   {"sixel", TerminalGraphics::sixel},
-                                                                   {"kitty", TerminalGraphics::kitty}});
+        render.graphics =
+            choose<std::optional<TerminalGraphics>>("--preview", texts.preview == given ? "auto" : texts.preview,
+                                                    {{"auto", std::nullopt},
+                                                     {"blocks", TerminalGraphics::blocks},
+                                                     {"sixel", TerminalGraphics::sixel},
+                                                     {"kitty", TerminalGraphics::kitty}});
     if (!texts.up.empty())
         render.up = choose<Up>("--up", texts.up, {{"y", Up::y}, {"z", Up::z}});
     if (!texts.schedule.empty())

@@ -104,6 +104,21 @@ bool is_map(const PbrtThing& light) {
     return light.type == "infinite" && light.parameters->has("filename");
 }
 
+// The part of the frame that the film has.
+void write_window(const Pixels& pixels, const Screen& screen, const PbrtPlace& place, XmlText& xml) {
+    const double width = screen.right - screen.left, height = screen.top - screen.bottom;
+    const auto edge = [&](const char* name, long long whole, long long first, long long end, double offset) {
+        xml.element(name,
+                    {{"reference", fmt::format("{}", whole)}, {"startOffset", xml_number(double(first) + offset)}},
+                    fmt::format("{}", end - first), place.text());
+    };
+    // By how much the window's middle is off that of the frame.
+    edge("width", pixels.width, pixels.left, pixels.right,
+         0.5 * (screen.left + screen.right) / width * double(pixels.width));
+    edge("height", pixels.height, pixels.top, pixels.bottom,
+         -0.5 * (screen.bottom + screen.top) / height * double(pixels.height));
+}
+
 } // namespace
 
 PbrtTranslator::PbrtTranslator(const PbrtScene& scene, PbrtTranslationOptions options)
@@ -155,29 +170,10 @@ void PbrtTranslator::choose_world() {
     world_ = glm::dmat4(turn);
 }
 
-void PbrtTranslator::write_camera() {
-    const PbrtThing& camera = thing_or(scene_.camera, usual_camera);
-    const PbrtThing& film = thing_or(scene_.film, usual_film);
+// `height`: of the window of its screen; `scale`: of world units over the camera's.
+void PbrtTranslator::add_projection(const PbrtThing& camera, double height, double scale, XmlAttributes& attributes) {
     const PbrtParameters& p = *camera.parameters;
-    const Pixels pixels = pixels_of(film);
-    const Screen screen = screen_of(camera, double(pixels.width), double(pixels.height));
-    const double width = screen.right - screen.left, height = screen.top - screen.bottom;
-    if (std::abs(width / height / (double(pixels.width) / double(pixels.height)) - 1.0) > 1e-3)
-        note(camera.place, "pixels are not square to this camera; they are here, by its window's height");
-
-    const glm::dmat4 to_world = glm::inverse(camera.transform);
-    double scale = 1.0;
-    if (!turns_alone(glm::dmat3(to_world), scale))
-        note(camera.place, "its transform stretches what it sees; it is turned and moved alone");
-    const bool is_spherical = camera.type == "spherical";
-    const glm::dvec3 eye = point(world_ * to_world, glm::dvec3(0.0));
-    const glm::dmat3 axes(world_ * to_world);
-    const glm::dvec3 forward = glm::normalize(is_spherical ? -axes[0] : axes[2]);
     const double sharp = p.number("focaldistance", 1e6) * scale, lens = p.number("lensradius", 0.0) * scale;
-    XmlAttributes attributes;
-    add_xyz(attributes, eye);
-    attributes.emplace_back("lookAt", xml_numbers(eye + forward * std::max(1.0, glm::length(eye))));
-    attributes.emplace_back("up", xml_numbers(glm::normalize(axes[1])));
     if (camera.type == "perspective") {
         const double fov = p.number("fov", 90.0);
         if (!(fov > 0.0) || !(fov < 180.0))
@@ -194,7 +190,7 @@ void PbrtTranslator::write_camera() {
         if (lens > 0.0)
             note(camera.place, "an orthographic camera has no lens here; all is sharp");
     } else {
-        if (!is_spherical)
+        if (camera.type != "spherical")
             fail_at(camera.place, fmt::format("Camera \"{}\" cannot be rendered; take perspective, orthographic or "
                                               "spherical",
                                               camera.type));
@@ -202,19 +198,34 @@ void PbrtTranslator::write_camera() {
         if (p.text("mapping", "equalarea") != "equirectangular")
             note(camera.place, "its picture is equirectangular, not of equal areas");
     }
+}
+
+void PbrtTranslator::write_camera() {
+    const PbrtThing& camera = thing_or(scene_.camera, usual_camera);
+    const PbrtThing& film = thing_or(scene_.film, usual_film);
+    const Pixels pixels = pixels_of(film);
+    const Screen screen = screen_of(camera, double(pixels.width), double(pixels.height));
+    const double width = screen.right - screen.left, height = screen.top - screen.bottom;
+    if (std::abs(width / height / (double(pixels.width) / double(pixels.height)) - 1.0) > 1e-3)
+        note(camera.place, "pixels are not square to this camera; they are here, by its window's height");
+
+    const glm::dmat4 to_world = glm::inverse(camera.transform);
+    double scale = 1.0;
+    if (!turns_alone(glm::dmat3(to_world), scale))
+        note(camera.place, "its transform stretches what it sees; it is turned and moved alone");
+    const bool is_spherical = camera.type == "spherical";
+    const glm::dvec3 eye = point(world_ * to_world, glm::dvec3(0.0));
+    const glm::dmat3 axes(world_ * to_world);
+    const glm::dvec3 forward = glm::normalize(is_spherical ? -axes[0] : axes[2]);
+    XmlAttributes attributes;
+    add_xyz(attributes, eye);
+    attributes.emplace_back("lookAt", xml_numbers(eye + forward * std::max(1.0, glm::length(eye))));
+    attributes.emplace_back("up", xml_numbers(glm::normalize(axes[1])));
+    add_projection(camera, height, scale, attributes);
     note_unused(camera);
     xml_.element("camera", attributes, "", camera.place.text());
 
-    const auto edge = [&](const char* name, long long whole, long long first, long long end, double offset) {
-        xml_.element(name,
-                     {{"reference", fmt::format("{}", whole)}, {"startOffset", xml_number(double(first) + offset)}},
-                     fmt::format("{}", end - first), film.place.text());
-    };
-    // By how much the window's middle is off that of the frame.
-    edge("width", pixels.width, pixels.left, pixels.right,
-         0.5 * (screen.left + screen.right) / width * double(pixels.width));
-    edge("height", pixels.height, pixels.top, pixels.bottom,
-         -0.5 * (screen.bottom + screen.top) / height * double(pixels.height));
+    write_window(pixels, screen, film.place, xml_);
 }
 
 void PbrtTranslator::write_film() {

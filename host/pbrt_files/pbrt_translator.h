@@ -27,6 +27,7 @@ public:
 private:
     void choose_world();
     void write_camera();
+    void add_projection(const PbrtThing& camera, double height, double scale, XmlAttributes& attributes);
     void write_film();
     void write_settings();
     void write_filter();

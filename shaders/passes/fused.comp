@@ -28,6 +28,15 @@ void turn_of_pixel(MediumParams v, inout Lane lane, inout Rng rng, inout FilmPix
         accumulate(sums, lane, tally);
 }
 
+// The slot's next pixel, from its first sample of the batch.
+void begin_pixel(uint slot, inout Lane lane, inout FilmPixel sums) {
+    lane.path.place = paths[slot].place;
+    lane.path.sample_index = push.sample_begin;
+    lane.record = slot;
+    sums = film[paths[slot].pixel];
+    lane.todo = TODO_BEGIN;
+}
+
 void main() {
     MediumParams v = frame.media[0];
     Tally tally = NOTHING_SEEN;
@@ -46,11 +55,7 @@ void main() {
         if (lane.todo == TODO_TAKE) {
             if (!pop_item(QUEUE_TRACK, slot))
                 break;
-            lane.path.place = paths[slot].place;
-            lane.path.sample_index = push.sample_begin;
-            lane.record = slot;
-            sums = film[paths[slot].pixel];
-            lane.todo = TODO_BEGIN;
+            begin_pixel(slot, lane, sums);
         }
         uint turns = min(BURST, push.budget - i);
         tally.room += turns * uint(STEPS);

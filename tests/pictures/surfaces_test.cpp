@@ -282,6 +282,18 @@ TEST_CASE("a floor under a lamp has the form factor of a disk", "[gpu][image][su
         CHECK_AGREEMENT(agree_with_means(film, std::vector<Rgb>(film.mean.size(), Rgb(expected)), name));
     };
     check("glowing surface");
+    // A black disk in the way takes the middle of it off.
+    const double b = 0.2;
+    Surface blocker;
+    blocker.shape = DiskSurface{{0.0, 0.5 * h, 0.0}, {0.0, -1.0, 0.0}, b};
+    blocker.material = grey(0.0);
+    scene.surfaces.push_back(blocker);
+    scene.camera.position.y = 0.4 * h;
+    const double left = expected - albedo * 4.0 * b * b / (4.0 * b * b + h * h);
+    const Film shadowed = render_here(scene, 5).film;
+    CHECK_AGREEMENT(agree_with_means(shadowed, std::vector<Rgb>(shadowed.mean.size(), Rgb(left)), "behind a disk"));
+    scene.surfaces.pop_back();
+    scene.camera.position.y = 1.0;
     scene.settings.choices.nee = NEE_NONE;
     check("glowing surface, met by chance");
     // What looks are for: by chance p = r^2 / (r^2 + h^2) of the paths find it, and the variance of one is albedo^2 p.
