@@ -33,7 +33,7 @@ is_of_the_machine() {
 }
 
 make_tar() {
-    local name folder file package
+    local name file package
     name=vkvol-$(build/vkvol --version | cut -d ' ' -f 2)-$(dpkg --print-architecture)
     folder=$(mktemp -d)
     trap 'rm -rf "$folder"' EXIT
