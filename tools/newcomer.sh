@@ -138,9 +138,10 @@ END
 
 # attempt RELEASE USER COMMAND: one row.
 attempt() {
-    local start=$SECONDS result=ok log=$vkvol_root/out/newcomer-$1-$2-$3.log load row
+    local start=$SECONDS result=ok log=$vkvol_root/out/newcomer-$1-$2-$3.log load row what=tools/$3.sh
+    [ "$3" != tar ] || what="package.sh tar"
     load=$(cut -d ' ' -f 1 /proc/loadavg)
-    say "$1, $2: tools/$3.sh (output in $log)"
+    say "$1, $2: $what (output in $log)"
     local as=
     [ "$2" = root ] || as="runuser -u newcomer --"
     if [ "$3" = package ]; then
@@ -152,7 +153,7 @@ attempt() {
             die "there is no such package; tools/package.sh tar makes one"
     fi
     inside "$(steps "$3" "$as")" >"$log" 2>&1 || result=FAILED
-    row=$(printf '%-9s %-5s %-14s %-7s %5s  %s' "$1" "$2" "tools/$3.sh" $result $((SECONDS - start)) "$(circumstances "$log" | paste -sd ';' | sed 's/;/, /g')")
+    row=$(printf '%-9s %-5s %-14s %-7s %5s  %s' "$1" "$2" "$what" $result $((SECONDS - start)) "$(circumstances "$log" | paste -sd ';' | sed 's/;/, /g')")
     echo "$row"
     [ $result = ok ] || {
         failed=1
