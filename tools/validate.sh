@@ -7,12 +7,13 @@
 #   python      `pip install .` in a fresh environment: types, tests, the notebook (5 minutes; PyPI has to be there)
 #   view        every control of the page of `vkvol view`, in Debian's Chromium (2 minutes; likewise)
 #   denoise     the test of tools/denoise with the denoiser (1 minute; likewise)
+#   farm        tools/farm by Open Job Description, Snakemake and Slurm, as far as they are installed (2 minutes)
 #   estimators  the tables of all unbiased combinations of estimators, of the bias of marches, and of transmittances alone
 #   pictures    whole scenes with large grids, rendered by vkvol and by the scalar reference with different seeds, judged by
 #               `vkvol compare` (per-pixel z-test, Sidak-corrected, and a test of the means; a significance of 0.001 per
 #               scene, so that a table of this length raises a false alarm once in a hundred runs)
 # All but `tests` takes about an hour on two cores. Each part ends with a table; fails if anything differs.
-#   tools/validate.sh [--driver NAME] [hard|scenes|large|tests|python|view|denoise|estimators|pictures ...] [FILE.nvdb ...]
+#   tools/validate.sh [--driver NAME] [hard|scenes|large|tests|python|view|denoise|farm|estimators|pictures ...] [FILE.nvdb ...]
 #       a driver as in tools/test.sh; further grids for pictures: in the thesis' bunny scenes
 set -eu
 source "$(dirname "$0")/setup.sh"
@@ -26,12 +27,12 @@ if [ "${1:-}" = --driver ]; then
 fi
 for argument in "$@"; do
     case $argument in
-    hard | scenes | large | tests | python | view | denoise | estimators | pictures) parts+=("$argument") ;;
+    hard | scenes | large | tests | python | view | denoise | farm | estimators | pictures) parts+=("$argument") ;;
     *.nvdb) grids+=("$argument") ;;
-    *) die "'$argument' is neither a part (hard, scenes, large, tests, python, view, denoise, estimators, pictures) nor a .nvdb file" ;;
+    *) die "'$argument' is neither a part (hard, scenes, large, tests, python, view, denoise, farm, estimators, pictures) nor a .nvdb file" ;;
     esac
 done
-[ ${#parts[@]} -gt 0 ] || parts=(hard scenes large tests python view denoise estimators pictures)
+[ ${#parts[@]} -gt 0 ] || parts=(hard scenes large tests python view denoise farm estimators pictures)
 
 install_packages
 [ -z "$driver" ] || use_driver "$driver"
@@ -92,6 +93,11 @@ run_denoise() {
     say "tools/denoise"
     /usr/bin/python3 -m venv --system-site-packages "$work/oidn" && "$work/oidn/bin/pip" install -q pyoidn || die "denoise: pyoidn cannot be installed"
     "$work/oidn/bin/python" "$vkvol_root/tools/denoise" --self-test || failed=1
+}
+
+run_farm() {
+    say "tools/farm"
+    "$vkvol_root/tools/farm/test.sh" || failed=1
 }
 
 run_estimators() {

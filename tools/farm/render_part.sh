@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# One task of a farm: a window of a frame, one of PARTS from the top, as NAME.FRAME.PART-of-PARTS.exr.
+#   render_part.sh SCENE FRAME PART PARTS NAME [further arguments of vkvol ...]
+#     FRAME: a number, the scene's key F; or "still" for a scene without one
+#   VKVOL=PROGRAM      in place of vkvol
+#   FARM_LINES=openjd  progress and failures in the words of Open Job Description
+# A part that is there was rendered to its end and is not rendered again; of one that was killed what its last checkpoint has
+# is gone on from. Windows of a picture have the bits that they have in the whole: ranges of samples would not, to the last.
+set -euo pipefail
+
+[ $# -ge 5 ] || { echo "render_part.sh: expected SCENE FRAME PART PARTS NAME" >&2; exit 2; }
+scene=$1 frame=$2 part=$3 parts=$4 name=$5
+shift 5
+output=$name.$frame.$part-of-$parts.exr
+if [ -f "$output" ]; then
+    echo "$output is there"
+    exit
+fi
+define=()
+[ "$frame" = still ] || define=(-D "F=$frame")
+window=$(awk -v part="$part" -v parts="$parts" 'BEGIN { printf "0.0,1.0,%.12f,%.12f", (part - 1) / parts, part / parts }')
+partial=$name.$frame.$part-of-$parts.partial
+
+# vkvol's lines as they are, or as the farm reads them.
+tell() {
+    if [ "${FARM_LINES:-}" != openjd ]; then
+        cat
+        return
+    fi
+    local line last=
+    while IFS= read -r line; do
+        case $line in
+        '{"progress"'*)
+            awk -F '[:,]' '{ printf "openjd_progress: %.1f\n", 100 * $2 }' <<<"$line"
+            continue
+            ;;
+        *error:*) last=$line ;;
+        esac
+        echo "$line"
+    done
+    [ -z "$last" ] || echo "openjd_fail: $last"
+}
+
+style=(--progress none)
+[ "${FARM_LINES:-}" != openjd ] || style=(--progress json)
+echo "rendering $output"
+# What ends early writes what it has, and that is not the part: it gets the part's name when all of it is there.
+"${VKVOL:-vkvol}" "$scene" "${define[@]}" --crop "$window" --checkpoint 30s --resume "${style[@]}" -o "$partial.exr" "$@" 2>&1 | tell
+mv "$partial.exr" "$output"
