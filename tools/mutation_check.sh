@@ -31,6 +31,11 @@ build=$work/build
 # name ~ file ~ text ~ replacement ~ tests (a Catch2 specification). "^" parts several texts and their replacements.
 mutations() {
     cat <<'END'
+viewers' keys not asked for ~ host/live/view_server.cpp ~ return is_local && is_equal ~ return is_local || is_equal ~ [live]
+what is wrong with a viewed file forgotten ~ host/cli/view.cpp ~ rendered = render_wish(); ~ file_trouble_.clear(), rendered = render_wish(); ~ [live]
+channels in tev one after another ~ host/live/tev_picture.cpp ~ packet.add(count); ~ packet.add(std::int64_t{1}); ~ [live]
+radiances as parts without pi ~ host/scene_files/scene_units.cpp ~ : std::numbers::pi) ~ : 1.0) ~ [xml]
+slopes of keys from one side ~ host/scene_files/keyed_values.cpp ~ i == 0 ? 0 : i - 1 ~ i ~ [xml]
 particles at a surface in the sensor's plane missed ~ shaders/stages/count.glsl ~ HAS_SURFACES ? 2.0 * 3.8147e-6 ~ HAS_SURFACES ? 0.0 * 3.8147e-6 ~ [counted]
 particles counted in one domain alone ~ shaders/stages/count.glsl ~ position - frame.period.size * floor ~ position - 0.0 * floor ~ [counted]
 particles not counted on their way into a domain ~ shaders/stages/seam.glsl ~ if (COUNTS_PASSING) ~ if (false) ~ [counted]

@@ -88,7 +88,8 @@ inline constexpr const char* view_description =
 
 inline constexpr const char* view_footer =
     R"(Prints the page's address, which has a key: nobody else can look, and nothing listens but on this machine. The
-scene's file may be edited meanwhile: the page follows. Nothing is written but what the page's reader keeps.
+scene's file may be edited meanwhile: the page follows. Nothing is written but what the page's reader keeps. A
+scene that is kept has what the page changed, and not what -D, --grid, --width and --height did.
 
 Example:
   vkvol view scenes/cumulus.xml --width 640)";

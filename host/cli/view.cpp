@@ -12,6 +12,7 @@
 #include "interrupt.h"
 #include "medium_outline.h"
 #include "messages.h"
+#include "render_notes.h"
 #include "report.h"
 #include "requested_scene.h"
 #include "scene_xml.h"
@@ -19,7 +20,7 @@
 #include "stopwatch.h"
 #include "view_board.h"
 #include "view_server.h"
-#include "viewed_scene.h"
+#include "watched_scene.h"
 #include "workshop.h"
 
 namespace vkvol {
@@ -43,7 +44,7 @@ public:
             bool rendered = false;
             try {
                 rendered = render_wish();
-                board_.say("");
+                board_.say(file_trouble_);
             } catch (const InputError& error) {
                 board_.say(error.what());
             } catch (const RenderError& error) {
@@ -58,15 +59,19 @@ public:
 private:
     bool is_news() { return board_.wish_number() != wish_number_ || file_changed(); }
 
-    // What cannot be read is told, and the picture stays that of what could.
+    // What cannot be read is told until it can be, and the picture stays that of what could.
     bool file_changed() {
         if (since_look_.seconds() < seconds_between_looks)
             return has_new_file_;
         since_look_.lap();
         try {
-            has_new_file_ = source_.refresh() || has_new_file_;
+            if (source_.refresh()) {
+                has_new_file_ = true;
+                file_trouble_.clear();
+            }
         } catch (const InputError& error) {
-            board_.say(error.what());
+            file_trouble_ = error.what();
+            board_.say(file_trouble_);
         }
         return has_new_file_;
     }
@@ -84,7 +89,7 @@ private:
         has_new_file_ = false;
         if (wish.layer != "picture" && wish.layer != "noise" && layers_.find(wish.layer) == std::string::npos)
             layers_ += (layers_.empty() ? "" : ",") + wish.layer;
-        SceneSource::Read read = source_.read(board_.wish().edits, layers_, workshop_.fields());
+        WatchedScene::Read read = source_.read(board_.wish().edits, layers_, workshop_.fields());
         const std::string what = read.xml + '\n' + layers_ + asked_text(options_.request, read.scene);
         if (what != rendering_ || !session_) {
             begin(std::move(read), what);
@@ -107,7 +112,7 @@ private:
         file_camera_ = camera;
     }
 
-    void begin(SceneSource::Read read, const std::string& what) {
+    void begin(WatchedScene::Read read, const std::string& what) {
         session_.reset();
         rendering_.clear();
         ++begun_;
@@ -123,11 +128,15 @@ private:
             return interrupted() || is_news() || board_.seconds_unwatched() > longest_unwatched;
         };
         describe(read.xml);
+        if (!options_.quiet)
+            print_warnings(workshop_.new_warnings(scene_.warnings));
         sketch();
         if (interrupted() || is_news())
             return;
         job_.look = [this](const RenderResult& result) { publish(result, false); };
         session_.emplace(device_, scene_, job_);
+        if (!options_.quiet)
+            print_warnings(workshop_.new_warnings(session_->warnings()));
         rendering_ = what;
         is_done_ = false;
     }
@@ -218,11 +227,12 @@ private:
     const ViewOptions& options_;
     ViewBoard& board_;
     Workshop workshop_{true};
-    SceneSource source_;
+    WatchedScene source_;
     const Device& device_;
     std::uint64_t wish_number_ = 0, begun_ = 0;
     Stopwatch since_look_;
     bool has_new_file_ = true;
+    std::string file_trouble_; // of the file as it is now; or empty
     Camera file_camera_;
     std::string layers_; // all that were asked for so far
     Scene scene_;

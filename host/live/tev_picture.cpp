@@ -21,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "packets are written as they lie in memory");
 
 constexpr timeval patience{5, 0};                  // for a viewer that takes nothing
-constexpr std::size_t largest_packet = 64u << 20u; // bytes of pixels; larger pictures go row by row of tiles
+constexpr std::size_t largest_packet = 64u << 20u; // bytes of pixels; larger pictures go some rows at a time
 
 enum class PacketType : char { create_image = 4, update_image = 6 };
 

@@ -1,6 +1,9 @@
 #include "view_server.h"
 
+#include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
@@ -50,12 +53,12 @@ bool is_equal(const std::string& given, const std::string& key) {
     return different == 0;
 }
 
-double number_of(const Request& request, const char* name, double fallback) {
-    try {
-        return request.has_param(name) ? std::stod(request.get_param_value(name)) : fallback;
-    } catch (const std::exception&) {
-        return fallback;
-    }
+// 0 for what is none.
+template <class Number> Number number_of(const Request& request, const char* name) {
+    const std::string text = request.get_param_value(name);
+    Number value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size() ? value : Number{};
 }
 
 ToneRequest tone_of(const Request& request) {
@@ -64,7 +67,9 @@ ToneRequest tone_of(const Request& request) {
     if (const std::string exposure = request.get_param_value("exposure"); exposure == "auto")
         tone.automatic_exposure = true;
     else if (!exposure.empty())
-        tone.exposure = std::clamp(number_of(request, "exposure", 0.0), -100.0, 100.0);
+        tone.exposure = std::clamp(number_of<double>(request, "exposure"), -100.0, 100.0);
+    if (tone.exposure && std::isnan(*tone.exposure))
+        tone.exposure = 0.0;
     return tone;
 }
 
@@ -204,7 +209,7 @@ void ViewServer::Serving::route() {
     });
     server.Get("/frame", [this](const Request& request, Response& response) {
         answer(request, response, [&] {
-            const auto since = static_cast<std::uint64_t>(std::max(number_of(request, "since", 0.0), 0.0));
+            const auto since = number_of<std::uint64_t>(request, "since");
             const std::shared_ptr<const Shot> shot = board.next_shot(since, longest_wait);
             if (const std::uint64_t version = shot ? shot->version : 0; version == since && since != 0) {
                 response.status = 204; // nothing new

@@ -268,10 +268,13 @@ TEST_CASE("a scene is viewed, changed and kept", "[gpu][live]") {
     const auto done = [](const Json& state) {
         return state.value("done", false) && state["wish"] == state["sceneWish"] && state["message"] == "";
     };
-    const auto wish = [&, &key = key](const Json& json) {
+    const auto wish_only = [&, &key = key](const Json& json) {
         const auto answer = client.Post(("/wish?key=" + key).c_str(), json.dump(), "application/json");
         REQUIRE(answer->status == 200);
-        const std::uint64_t number = Json::parse(answer->body)["wish"];
+        return Json::parse(answer->body)["wish"].get<std::uint64_t>();
+    };
+    const auto wish = [&, &key = key](const Json& json) {
+        const std::uint64_t number = wish_only(json);
         return until(client, key, [&](const Json& state) { return done(state) && state["wish"] == number; });
     };
     const auto kept = [&, &key = key](const std::string& name) {
@@ -315,9 +318,22 @@ TEST_CASE("a scene is viewed, changed and kept", "[gpu][live]") {
     with("</options>", "");
     until(client, key,
           [](const Json& now) { return now["message"].get<std::string>().find("ball.xml:1") != std::string::npos; });
+    // The word stays when what could be read is rendered anew.
+    wish_only({{"density", 0.25}});
+    until(client, key, [](const Json& now) {
+        return now.value("done", false) && now["density"] == 0.25 && now["wish"] == now["sceneWish"];
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    CHECK_THAT(until(client, key, [](const Json&) { return true; })["message"].get<std::string>(),
+               Contains("ball.xml:1"));
+    wish_only(Json::object());
     with("<width>16</width>", "<width>24</width>");
     until(client, key, [&](const Json& now) { return done(now) && now["width"] == 24; });
     CHECK(watched.end(SIGTERM) == exit_done);
     CHECK(folder.vkvol("view").code == exit_bad_input);
     CHECK(folder.vkvol("view nothing.xml").code == exit_bad_input);
+    folder.write("part.pbrt", "Camera \"perspective\"\nWorldBegin\nShape \"cylinder\"\n");
+    const Run strict = folder.vkvol("view part.pbrt --strict", "timeout 20");
+    CHECK(strict.code == exit_bad_input);
+    CHECK_THAT(strict.text, Contains("part.pbrt:3") && Contains("--strict"));
 }

@@ -1,4 +1,4 @@
-#include "viewed_scene.h"
+#include "watched_scene.h"
 
 #include <system_error>
 
@@ -23,12 +23,12 @@ std::filesystem::file_time_type time_of(const std::filesystem::path& file) {
 
 } // namespace
 
-SceneSource::SceneSource(const ViewOptions& options)
+WatchedScene::WatchedScene(const ViewOptions& options)
     : options_(options), name_(options.request.scene.filename().string()), file_(options.request.scene) {
     load();
 }
 
-void SceneSource::load() {
+void WatchedScene::load() {
     const std::filesystem::path& file = options_.request.scene;
     time_ = time_of(file);
     if (is_grid_file(file)) {
@@ -42,15 +42,17 @@ void SceneSource::load() {
         has_view_ = true;
     } else if (is_pbrt_file(file)) {
         const PbrtTranslation translation = translate_pbrt(read_pbrt(file));
+        parse_scene(translation, file, {{}, {}, options_.strict}); // whose errors have places in the file
         xml_ = translation.xml;
         grids_ = translation.grids;
+        notes_ = translation.notes;
     } else {
-        load_scene(file, options_.request.defines); // whose errors have places in the file
+        load_scene(file, options_.request.defines); // likewise
         xml_ = read_input_text(file, largest_scene, "name a scene file (.xml)");
     }
 }
 
-bool SceneSource::refresh() {
+bool WatchedScene::refresh() {
     const std::filesystem::file_time_type now = time_of(options_.request.scene);
     if (now == time_ || now == std::filesystem::file_time_type::min()) // a file that is replaced is away for a moment
         return false;
@@ -58,7 +60,7 @@ bool SceneSource::refresh() {
     return true;
 }
 
-SceneSource::Read SceneSource::read(const SceneEdits& edits, const std::string& layers, FieldCache& fields) const {
+WatchedScene::Read WatchedScene::read(const SceneEdits& edits, const std::string& layers, FieldCache& fields) const {
     RenderRequest request = options_.request;
     if (!edits.integrator.empty())
         request.integrator.reset(); // the viewer's choice comes last
@@ -68,6 +70,7 @@ SceneSource::Read SceneSource::read(const SceneEdits& edits, const std::string& 
     result.xml = edited(xml_, edits);
     result.scene =
         parse_scene(result.xml, file_, request.defines, {request.grid, request.integrator, options_.strict, grids_});
+    result.scene.warnings.insert(result.scene.warnings.begin(), notes_.begin(), notes_.end());
     apply_request(request, has_view_ || edits.camera.has_value(), result.scene, fields);
     return result;
 }

@@ -10,10 +10,10 @@
 
 namespace vkvol {
 
-class SceneSource {
+class WatchedScene {
 public:
     // Throws InputError.
-    explicit SceneSource(const ViewOptions& options);
+    explicit WatchedScene(const ViewOptions& options);
 
     // Whether the file has changed since it was read; it is read again then. Throws InputError if it cannot be: what
     // was read before stays.
@@ -23,7 +23,8 @@ public:
         std::string xml; // with the edits
         Scene scene;
     };
-    // As it is rendered. `layers`: of the picture, besides the request's. Throws InputError.
+    // As it is rendered, with warnings of what of it is not. `layers`: of the picture, besides the request's. Throws
+    // InputError.
     Read read(const SceneEdits& edits, const std::string& layers, FieldCache& fields) const;
 
     const std::string& name() const { return name_; }
@@ -35,7 +36,8 @@ private:
     std::string name_;
     std::filesystem::path file_; // names in the text are beside it
     std::string xml_;
-    NamedGrids grids_; // of a scene that was translated
+    NamedGrids grids_;               // of a scene that was translated
+    std::vector<std::string> notes_; // of what of it was not
     bool has_view_ = false;
     std::filesystem::file_time_type time_{};
 };
