@@ -346,14 +346,23 @@ first_failure() {
         "$work/tests.log"
 }
 
+# The test that caught an error the last time, as a specification: that one is asked first.
+last_caught_by() { # NAME
+    awk -F ' *[|] *' -v name="$1" '$1 == name && $2 !~ /^(NOTHING|NOT |NO TEST)/ { print $2 }' "$results" |
+        sed 's/[][,\\"*]/\\&/g; s/$/*/'
+}
+
 # One row's verdict: the test that caught it, or, in capitals, why none did.
 try_error() { # NAME FILE TEXT REPLACEMENT TESTS
-    local verdict
+    local verdict caught
+    caught=$(last_caught_by "$1")
     cp "$copy/$2" "$work/original"
     if ! replace "$copy/$2" "$3" "$4"; then
         verdict="NOT MADE"
     elif ! build_tests; then
         verdict="NOT BUILT"
+    elif [ -n "$caught" ] && ! run_tests "$caught" && verdict=$(first_failure); then
+        : # nothing else need be asked
     elif run_tests "$5"; then
         verdict="NOTHING: $5 passed"
     else

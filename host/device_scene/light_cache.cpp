@@ -65,7 +65,7 @@ LightCache::LightCache(const Device& device, const BoundBuffers& scene, const sh
       nodes_(static_cast<std::uint32_t>(count(lattice))) {}
 
 void LightCache::compile(const Specialization& specialization, unsigned form, VkPipelineCache cache) {
-    for (const std::span<const std::uint32_t> spirv : {average_forms[form], std::span<const std::uint32_t>(shade_spv)})
+    for (const EmbeddedKernel& spirv : {average_forms[form], shade_spv})
         passes_.push_back(std::make_unique<ComputePass>(device_, bindings_, spirv, specialization, cache));
 }
 

@@ -24,7 +24,7 @@ std::vector<AheadOutput> segments(const TestScene& scene, const std::vector<RayI
                                   int steps_ahead) {
     Specialization specialization = scene.specialization;
     specialization[SPEC_STEPS] = std::max(steps_ahead, 1);
-    const auto spirv = scene.chromatic ? std::span<const std::uint32_t>(ahead_chromatic_spv) : ahead_spv;
+    const EmbeddedKernel& spirv = scene.chromatic ? ahead_chromatic_spv : ahead_spv;
     KernelRunner runner(spirv, specialization, scene.kernel);
     runner.push.step_limit = 20000;
     runner.push.sample_begin = steps_ahead > 0 ? 1 : 0;
