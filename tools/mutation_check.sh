@@ -31,6 +31,9 @@ build=$work/build
 # name ~ file ~ text ~ replacement ~ tests (a Catch2 specification). "^" parts several texts and their replacements.
 mutations() {
     cat <<'END'
+panes of one side ~ shaders/surfaces/bsdf.glsl ~ u * (1.0 + F) < 2.0 * F ~ u < F ~ [surfaces]
+colours of voxels taken for multiples of one ~ host/pbrt_files/pbrt_rgb_media.cpp ~ > 1e-6 * largest_of(each) ~ > 1e6 * largest_of(each) ~ [pbrt]
+foreseen grids kept when their files change ~ host/fields/field_cache.cpp ~ coming.mapped().stamp == stamp ~ true ~ [density]
 viewers' keys not asked for ~ host/live/view_server.cpp ~ return is_local && is_equal ~ return is_local || is_equal ~ [live]
 what is wrong with a viewed file forgotten ~ host/cli/view.cpp ~ rendered = render_wish(); ~ file_trouble_.clear(), rendered = render_wish(); ~ [live]
 channels in tev one after another ~ host/live/tev_picture.cpp ~ packet.add(count); ~ packet.add(std::int64_t{1}); ~ [live]
@@ -108,7 +111,7 @@ an interrupted picture taken for a whole one ~ host/cli/rendered_before.cpp ~ te
 pbrt's usual glow even ~ host/pbrt_files/pbrt_dense_media.cpp ~ std::abs((i + 0.5) / n - 0.5) ~ 0.0 * n * i ~ [pbrt]
 flights counted from where light begins ~ shaders/lights/equiangular.glsl ~ max(t - s.first, 0.0) ~ max(t - s.t.x, 0.0) ~ [lights]
 a spot's cone the wrong way ~ shaders/lights/equiangular.glsl ~ square > 0.0 && b > 0.0 ? ~ square > 0.0 && b < 0.0 ? ~ [lights]
-pbrt's voxels at their corners ~ host/pbrt_files/pbrt_dense_media.cpp ~ bounds.low + 0.5 * voxel ~ bounds.low ~ [pbrt]
+pbrt's voxels at their corners ~ host/pbrt_files/pbrt_voxels.cpp ~ bounds.low + 0.5 * voxel ~ bounds.low ~ [pbrt]
 pbrt's clouds of another noise ~ host/pbrt_files/pbrt_cloud.cpp ~ h < 4 || h == 12 || h == 13 ~ h < 4 || h == 12 || h == 14 ~ [pbrt]
 grids in memory known by their names alone ~ host/fields/field_cache.cpp ~ return {0, {}, file.memory}; ~ return {}; ~ [pbrt]
 lamps of surfaces not looked for by default ~ host/methods/integrators.cpp ~ scene.lights.empty() && !has_lamps_of_surfaces(scene); ~ scene.lights.empty(); ~ [method]

@@ -17,6 +17,7 @@
 #include "error.h"
 #include "file_limit.h"
 #include "info.h"
+#include "init.h"
 #include "integrators_command.h"
 #include "interrupt.h"
 #include "measure.h"
@@ -66,6 +67,8 @@ int run(const vkvol::Options& options) {
         return vkvol::run_develop(options.develop);
     case vkvol::Command::convert:
         return vkvol::run_convert(options.convert);
+    case vkvol::Command::init:
+        return vkvol::run_init(options.init);
     case vkvol::Command::measure:
         return vkvol::run_measure(options.measure);
     case vkvol::Command::view:

@@ -1,16 +1,31 @@
 // Values on the command line that are more than a number or a name.
 #pragma once
 
+#include <fmt/format.h>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "nearest_name.h"
 #include "options.h"
 
 namespace vkvol {
 
 // Throws InputError, "command line: " and the message.
 [[noreturn]] void fail_command_line(const std::string& message);
+
+// The value of that name.
+template <typename T>
+T choose(const char* option, const std::string& name, const std::vector<std::pair<std::string, T>>& choices) {
+    std::vector<std::string> names;
+    for (const auto& [known, value] : choices) {
+        if (known == name)
+            return value;
+        names.push_back(known);
+    }
+    fail_command_line(fmt::format("{}: unknown value '{}'{}", option, name, name_hint(name, names)));
+}
 
 // Finite. `what`: for the message.
 double parse_number(const std::string& text, const std::string& what);

@@ -7,6 +7,7 @@
 #include "demo_scene.h"
 #include "error.h"
 #include "frames.h"
+#include "init_options.h"
 #include "measure_options.h"
 #include "nearest_name.h"
 #include "one_line.h"
@@ -23,17 +24,6 @@ namespace vkvol {
 namespace {
 
 constexpr std::uint32_t max_samples = 2147483647;
-
-template <typename T>
-T choose(const char* option, const std::string& name, const std::vector<std::pair<std::string, T>>& choices) {
-    std::vector<std::string> names;
-    for (const auto& [known, value] : choices) {
-        if (known == name)
-            return value;
-        names.push_back(known);
-    }
-    fail_command_line(fmt::format("{}: unknown value '{}'{}", option, name, name_hint(name, names)));
-}
 
 // The options of `render` that need a second look after CLI11 has read them.
 struct RenderTexts {
@@ -414,7 +404,8 @@ Options parse_options(int argc, const char* const* argv) {
         {"compare", {Command::compare, parse_compare}}, {"merge", {Command::merge, parse_merge}},
         {"develop", {Command::develop, parse_develop}}, {"convert", {Command::convert, parse_convert}},
         {"bench", {Command::bench, parse_bench}},       {"demo", {Command::render, parse_demo}},
-        {"measure", {Command::measure, parse_measure}}, {"view", {Command::view, parse_view}}};
+        {"measure", {Command::measure, parse_measure}}, {"view", {Command::view, parse_view}},
+        {"init", {Command::init, parse_init}}};
     Options options;
     Parser parse = parse_render;
     if (!arguments.empty()) {

@@ -24,6 +24,7 @@ enum class Command {
     merge,
     develop,
     convert,
+    init,
     measure,
     view,
     bench,
@@ -76,6 +77,13 @@ struct ConvertOptions {
     bool quiet = false;
 };
 
+struct InitOptions {
+    std::filesystem::path grid;   // .nvdb or .vdb to begin with; or empty
+    std::filesystem::path output; // .xml; empty: of a name that suits
+    Up up = Up::y;                // of the grid
+    bool quiet = false;
+};
+
 // Values that a $key of the scene has one after the other.
 struct Sweep {
     std::string key;
@@ -105,6 +113,7 @@ struct Options {
     MergeOptions merge;
     DevelopOptions develop;
     ConvertOptions convert;
+    InitOptions init;
     MeasureOptions measure;
     ViewOptions view;
     BenchRequest bench;

@@ -14,6 +14,7 @@ inline constexpr const char* render_footer = R"(Other commands (each has its own
   vkvol merge A.exr B.exr -o OUT.exr   one image of all their samples
   vkvol develop A.exr -o B.png   a PNG of another exposure or tone curve, without rendering
   vkvol convert S.pbrt -o S.xml  a scene of pbrt-v4 as a scene file to go on from
+  vkvol init                  a scene file to start from: scene.xml, or of a density file that is named
   vkvol measure SCENE.xml     its readings with their standard errors as a table, of many values of $keys
   vkvol view SCENE.xml        on a page of the browser, to turn, light and change it while it is rendered
   vkvol bench SCENE.xml       error against time of the integrators that suit a scene
@@ -68,6 +69,16 @@ inline constexpr const char* convert_description =
 inline constexpr const char* convert_footer =
     R"(vkvol SCENE.pbrt renders one without writing it. Names of files are written as the new scene finds
 them; grids, meshes and images stay where they are.)";
+
+inline constexpr const char* init_description =
+    "Writes a scene file to start from: smoke above the ground, with a word on each element; or what suits a density "
+    "file.";
+
+inline constexpr const char* init_footer = R"(A file that is there already is never written over.
+
+Examples:
+  vkvol init                          writes scene.xml
+  vkvol init smoke.vdb --up z         writes smoke.xml: its view, light and coefficients suit the smoke)";
 
 inline constexpr const char* measure_description = "Renders a scene and prints its pixels, or what its sensors of flux "
                                                    "read, with standard errors; for each of many values of its "

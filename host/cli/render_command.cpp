@@ -13,6 +13,7 @@
 #include "image_io.h"
 #include "interrupt.h"
 #include "live_pictures.h"
+#include "loaded_medium.h"
 #include "messages.h"
 #include "progress.h"
 #include "reading_grid.h"
@@ -157,10 +158,11 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
 
 } // namespace
 
-void check_picture(const RenderOptions& options, Workshop& workshop) {
+std::vector<GridFile> check_picture(const RenderOptions& options, Workshop& workshop) {
     const RenderScene loaded = load_render_scene(options, workshop.fields());
     resolve_crop(options.crop, loaded.scene.picture);
     check_files(options, loaded, CheckpointFile(options));
+    return grid_files(loaded.scene);
 }
 
 int render_picture(const RenderOptions& options, Workshop& workshop) {

@@ -66,6 +66,15 @@ void announce(const RenderOptions& options, std::size_t index) {
              options.frames.size());
 }
 
+// The grids of the frame after this one, if that will be rendered.
+std::vector<GridFile> next_grids(const RenderOptions& options, std::size_t index,
+                                 const std::vector<std::vector<GridFile>>& grids) {
+    if (options.dry_run || index + 1 == options.frames.size())
+        return {};
+    const RenderOptions next = frame_options(options, options.frames[index + 1]);
+    return options.resume && std::filesystem::exists(next.outputs.front()) ? std::vector<GridFile>{} : grids[index + 1];
+}
+
 // What was rendered before is not rendered again.
 int render_frame(const RenderOptions& options, int frame, Workshop& workshop) {
     std::optional<int> code;
@@ -104,16 +113,18 @@ int run_sequence(const RenderOptions& options) {
     Workshop workshop(true);
     std::vector<int> done;
     FrameFiles files;
+    std::vector<std::vector<GridFile>> grids; // of each frame
     for (const int frame : options.frames)
         of_frame(frame, done, [&] {
             const RenderOptions one = frame_options(options, frame);
             files.add(frame, one);
-            check_picture(one, workshop);
+            grids.push_back(check_picture(one, workshop));
         });
     int code = exit_done;
     for (std::size_t i = 0; i < options.frames.size() && code != exit_interrupted && code != exit_render_failed; ++i) {
         const int frame = options.frames[i];
         announce(options, i);
+        workshop.set_next(next_grids(options, i, grids));
         const int result = interrupted() ? int(exit_interrupted) : of_frame(frame, done, [&] {
             return render_frame(frame_options(options, frame), frame, workshop);
         });

@@ -145,6 +145,8 @@ std::uint32_t code_of(const Material& material) {
         return material.roughness > 0.0 ? MATERIAL_ROUGH_DIELECTRIC : MATERIAL_DIELECTRIC;
     case MaterialKind::coated:
         return MATERIAL_COATED;
+    case MaterialKind::thin_dielectric:
+        return MATERIAL_THIN_DIELECTRIC;
     case MaterialKind::diffuse:
         break;
     }
@@ -168,7 +170,7 @@ double thrown_back(double ior) {
 
 shared::SurfaceRow row_of(const Surface& surface) {
     const Material& material = surface.material;
-    const bool has_ior = material.kind == MaterialKind::dielectric || material.kind == MaterialKind::coated;
+    const bool has_ior = has_index(material);
     shared::SurfaceRow row{};
     row.material = code_of(material);
     row.roughness = static_cast<float>(material.roughness);

@@ -6,6 +6,14 @@
 
 namespace vkvol {
 
+namespace {
+
+bool is_of(const DensityField& field, GridValues values) {
+    return values == GridValues::numbers_or_colors || field.type != GRID_COLOR;
+}
+
+} // namespace
+
 FieldCache::Stamp FieldCache::stamp_of(const GridFile& file) {
     if (file.memory)
         return {0, {}, file.memory};
@@ -13,18 +21,44 @@ FieldCache::Stamp FieldCache::stamp_of(const GridFile& file) {
     return {std::filesystem::file_size(file.path, ignored), std::filesystem::last_write_time(file.path, ignored), {}};
 }
 
+bool FieldCache::is_here(const GridFile& file) const {
+    const auto found = fields_.find(key_of(file));
+    return found != fields_.end() && found->second.stamp == stamp_of(file);
+}
+
 DensityField FieldCache::take(const GridFile& file, GridValues values) {
-    const Stamp stamp = stamp_of(file);
     const Key key = key_of(file);
-    const auto is_of = [&](const DensityField& field) {
-        return values == GridValues::numbers_or_colors || field.type != GRID_COLOR;
-    };
-    if (const auto found = fields_.find(key);
-        found != fields_.end() && found->second.stamp == stamp && is_of(found->second.value))
-        return found->second.value;
+    if (is_here(file) && is_of(fields_.at(key).value, values))
+        return fields_.at(key).value;
     fields_.erase(key);
-    return fields_.insert_or_assign(key, Stamped<DensityField>{stamp, load_density_field(file, values)})
-        .first->second.value;
+    const Stamp stamp = stamp_of(file);
+    return fields_.insert_or_assign(key, Stamped<DensityField>{stamp, load(file, stamp, values)}).first->second.value;
+}
+
+// As it was foreseen, if that is the same.
+DensityField FieldCache::load(const GridFile& file, const Stamp& stamp, GridValues values) {
+    auto coming = coming_.extract(key_of(file));
+    if (!coming.empty() && coming.mapped().stamp == stamp)
+        if (DensityField field = coming.mapped().value.get(); is_of(field, values))
+            return field;
+    return load_density_field(file, values);
+}
+
+void FieldCache::foresee(const std::vector<GridFile>& files) {
+    std::map<Key, Stamped<std::future<DensityField>>> coming;
+    for (const GridFile& file : files) {
+        if (file.grid.empty() || is_here(file) || coming.count(key_of(file)) > 0)
+            continue;
+        const Stamp stamp = stamp_of(file);
+        auto begun = coming_.extract(key_of(file));
+        if (!begun.empty() && begun.mapped().stamp == stamp)
+            coming.insert(std::move(begun));
+        else
+            coming[key_of(file)] = {stamp, std::async(std::launch::async, [file] {
+                                        return load_density_field(file, GridValues::numbers_or_colors);
+                                    })};
+    }
+    coming_ = std::move(coming);
 }
 
 bool FieldCache::has(const GridFile& file) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <future>
 #include <map>
 #include <memory>
 #include <string>
@@ -18,9 +19,12 @@ public:
     // The grid in memory, with what is large in it shared, if its file has not changed since; else as
     // load_density_field.
     DensityField take(const GridFile& file, GridValues values = GridValues::numbers);
+    // Begins to read those that are not here, beside other work, in place of any that were foreseen before and not
+    // taken since. What is wrong with one is told when it is taken.
+    void foresee(const std::vector<GridFile>& files);
     // As has_grid, whose answer is kept likewise.
     bool has(const GridFile& file);
-    // Lets go of all others. A sequence of files needs one at a time.
+    // Lets go of all others but foreseen ones. A sequence of files needs one at a time, and the next.
     void retain(const std::vector<GridFile>& files);
 
 private:
@@ -38,8 +42,11 @@ private:
 
     static Key key_of(const GridFile& file) { return {file.path.native(), file.grid}; }
     static Stamp stamp_of(const GridFile& file);
+    bool is_here(const GridFile& file) const;
+    DensityField load(const GridFile& file, const Stamp& stamp, GridValues values);
 
     std::map<Key, Stamped<DensityField>> fields_;
+    std::map<Key, Stamped<std::future<DensityField>>> coming_;
     std::map<Key, Stamped<bool>> there_;
 };
 

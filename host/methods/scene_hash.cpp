@@ -231,7 +231,7 @@ void add_surface(Writer& writer, const Surface& surface) {
     const Material& material = surface.material;
     writer.add("material", static_cast<int>(material.kind));
     writer.add("color", material.color);
-    if (material.kind == MaterialKind::dielectric || material.kind == MaterialKind::coated)
+    if (has_index(material))
         writer.add("ior", material.ior);
     if (material.kind == MaterialKind::conductor) {
         writer.add("eta", material.eta);

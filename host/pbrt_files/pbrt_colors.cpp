@@ -21,6 +21,14 @@ bool has_values(const PbrtParameter& parameter, std::size_t count) {
     return parameter.numbers.size() == count && parameter.texts.empty();
 }
 
+// From the colour space of the thing.
+glm::dvec3 to_scene(const PbrtThing& thing, const double* rgb) {
+    const glm::dvec3 own(rgb[0], rgb[1], rgb[2]);
+    if (thing.color_space == "srgb")
+        return own;
+    return glm::max(*to_rec709(thing.color_space) * own, glm::dvec3(0.0));
+}
+
 std::vector<double> numbers_in_file(const std::filesystem::path& file, const PbrtParameter& parameter) {
     std::string text;
     try {
@@ -65,10 +73,7 @@ std::optional<glm::dvec3> PbrtColors::color(const PbrtThing& thing, const PbrtPa
         return std::nullopt;
     if (!has_values(parameter, 3))
         fail(parameter, "red, green and blue");
-    const glm::dvec3 own(parameter.numbers[0], parameter.numbers[1], parameter.numbers[2]);
-    if (thing.color_space == "srgb")
-        return own;
-    return glm::max(*to_rec709(thing.color_space) * own, glm::dvec3(0.0));
+    return to_scene(thing, parameter.numbers.data());
 }
 
 // A "spectrum" of values, or by one of pbrt's names or a file's.
@@ -80,6 +85,18 @@ glm::dvec3 PbrtColors::of_spectrum(const PbrtParameter& parameter, const Named& 
         if (const std::optional<glm::dvec3> known = named(parameter.texts.front()))
             return *known;
     return whole(spectrum(parameter));
+}
+
+std::vector<glm::dvec3> PbrtColors::colors(const PbrtThing& thing, const std::string& name) const {
+    const PbrtParameter* parameter = thing.parameters->find(name);
+    if (!parameter)
+        return {};
+    if ((parameter->type != "rgb" && parameter->type != "color") || parameter->numbers.size() % 3 != 0)
+        fail(*parameter, "red, green and blue of each voxel");
+    std::vector<glm::dvec3> colors;
+    for (std::size_t i = 0; i < parameter->numbers.size(); i += 3)
+        colors.push_back(to_scene(thing, &parameter->numbers[i]));
+    return colors;
 }
 
 std::optional<glm::dvec3> PbrtColors::share(const PbrtThing& thing, const std::string& name) const {

@@ -8,29 +8,11 @@
 
 #include "pbrt_cloud.h"
 #include "pbrt_translator.h"
+#include "pbrt_voxels.h"
 
 namespace vkvol {
 
 namespace {
-
-struct Bounds {
-    glm::dvec3 low, size;
-};
-
-Bounds bounds_of(const PbrtThing& medium) {
-    const glm::dvec3 a = medium.parameters->point("p0", glm::dvec3(0.0));
-    const glm::dvec3 b = medium.parameters->point("p1", glm::dvec3(1.0));
-    const glm::dvec3 size = glm::abs(b - a);
-    if (!(std::min({size.x, size.y, size.z}) > 1e-30 && std::max({size.x, size.y, size.z}) < 1e30))
-        fail_at(medium.place, fmt::format("medium \"{}\": p0 and p1 enclose nothing, or too much", medium.type));
-    return {glm::min(a, b), size};
-}
-
-// From places of voxels, whose values are at their middles, to the medium's space.
-glm::dmat4 to_medium(const Bounds& bounds, glm::ivec3 dims) {
-    const glm::dvec3 voxel = bounds.size / glm::dvec3(dims);
-    return glm::scale(glm::translate(glm::dmat4(1.0), bounds.low + 0.5 * voxel), voxel);
-}
 
 double number_in(const PbrtThing& medium, const char* name, double fallback, double low, double high) {
     const double number = medium.parameters->number(name, fallback);
@@ -45,21 +27,9 @@ PbrtCloud cloud_of(const PbrtThing& medium) {
             number_in(medium, "frequency", 5.0, 0.0, 1e6)};
 }
 
-glm::ivec3 dims_of(const PbrtThing& medium) {
-    constexpr long long most = 4096;
-    glm::ivec3 dims;
-    for (const auto& [axis, name] : {std::pair(0, "nx"), std::pair(1, "ny"), std::pair(2, "nz")}) {
-        const long long n = medium.parameters->integer(name, 1);
-        if (n < 1 || n > most)
-            fail_at(medium.parameters->find(name)->place, fmt::format("{} is {}; expected 1 to {}", name, n, most));
-        dims[axis] = int(n);
-    }
-    return dims;
-}
-
 std::vector<float> values_of(const PbrtThing& medium, const char* name, glm::ivec3 dims) {
     const std::vector<double> numbers = medium.parameters->numbers(name);
-    const std::size_t expected = std::size_t(dims.x) * std::size_t(dims.y) * std::size_t(dims.z);
+    const std::size_t expected = voxel_count(dims);
     if (numbers.size() != expected)
         fail_at(medium.place, fmt::format("medium \"{}\" has {} values of \"{}\"; expected nx ny nz = {}", medium.type,
                                           numbers.size(), name, expected));
@@ -106,22 +76,9 @@ std::vector<float> usual_scales(glm::ivec3 dims) {
     return scales;
 }
 
-// The largest value in the outermost voxels.
-float most_at_edge(glm::ivec3 dims, const std::vector<float>& values) {
-    float most = 0.0f;
-    std::size_t i = 0;
-    for (int z = 0; z < dims.z; ++z)
-        for (int y = 0; y < dims.y; ++y)
-            for (int x = 0; x < dims.x; ++x, ++i)
-                if (glm::any(glm::equal(glm::ivec3(x, y, z), glm::ivec3(0))) ||
-                    glm::any(glm::equal(glm::ivec3(x, y, z), dims - 1)))
-                    most = std::max(most, values[i]);
-    return most;
-}
-
 // Two and a half for a cell of the cloud's finest noise, at least 64 along the longest edge, and no more in all than
 // `most`. `is_coarse`: these are less than two for a cell.
-glm::ivec3 cloud_dims(const PbrtCloud& cloud, const Bounds& bounds, double most, bool& is_coarse) {
+glm::ivec3 cloud_dims(const PbrtCloud& cloud, const PbrtBounds& bounds, double most, bool& is_coarse) {
     constexpr double finest = 1.99 * 1.99 * 1.99 * 1.99;
     const double longest = std::max({bounds.size.x, bounds.size.y, bounds.size.z});
     const double cells = cloud.frequency * finest * longest;
@@ -149,7 +106,7 @@ std::string file_stem(const std::string& medium) {
 } // namespace
 
 bool is_dense(const PbrtThing& medium) {
-    return medium.type == "uniformgrid" || medium.type == "cloud";
+    return medium.type == "uniformgrid" || medium.type == "rgbgrid" || medium.type == "cloud";
 }
 
 // That neither a grid of the scene nor a file of another medium has.
@@ -168,9 +125,11 @@ std::string PbrtTranslator::free_name(const std::string& medium) const {
 }
 
 void PbrtTranslator::write_dense_medium(const std::string& name, const PbrtThing& medium) {
+    if (medium.type == "rgbgrid")
+        return write_rgb_medium(name, medium);
     const PbrtParameters& p = *medium.parameters;
     const bool is_cloud = medium.type == "cloud";
-    const Bounds bounds = bounds_of(medium);
+    const PbrtBounds bounds = bounds_of(medium);
     bool is_coarse = false;
     const glm::ivec3 dims =
         is_cloud ? cloud_dims(cloud_of(medium), bounds, options_.most_cloud_voxels, is_coarse) : dims_of(medium);
@@ -179,7 +138,7 @@ void PbrtTranslator::write_dense_medium(const std::string& name, const PbrtThing
              fmt::format("the cloud's finest noise is finer than its grid of {} x {} x {} voxels, which is "
                          "the largest: that part of it is smoothed",
                          dims.x, dims.y, dims.z));
-    const glm::dmat4 place = to_medium(bounds, dims);
+    const glm::dmat4 place = voxels_to_medium(bounds, dims);
     const auto grids = std::make_shared<MemoryGrids>();
     const auto add = [&](const char* grid, const std::vector<float>& values) {
         grids->grids.push_back({grid, make_grid(grid, dims, values)});
@@ -187,10 +146,8 @@ void PbrtTranslator::write_dense_medium(const std::string& name, const PbrtThing
     const std::vector<float> densities =
         is_cloud ? values_of(cloud_of(medium), place, dims) : values_of(medium, "density", dims);
     add("density", densities);
-    if (!is_cloud && std::max({dims.x, dims.y, dims.z}) < 64 && most_at_edge(dims, densities) > 0.0f)
-        note(medium.place,
-             "the densities at the grid's edge fall to 0 within half a voxel beyond its bounds, and not at "
-             "them; outermost voxels of 0 change nothing and are left as they are");
+    if (!is_cloud && has_soft_edge(dims, densities))
+        note(medium.place, soft_edge_note);
     const bool burns = !is_cloud && p.has("temperature"), has_scales = !is_cloud && p.has("Lescale");
     if (burns && p.has("Le"))
         fail_at(p.find("Le")->place, "both \"Le\" and \"temperature\"; expected one of them");

@@ -72,12 +72,16 @@ void PbrtTranslator::write_coefficients(const PbrtThing& medium) {
         sigma_s = colors_.share(medium, "sigma_s").value_or(sigma_s);
     }
     const double scale = p.number("scale", 1.0);
+    write_coefficients(scale * sigma_a, scale * sigma_s, p.number("g", 0.0));
+}
+
+void PbrtTranslator::write_coefficients(const glm::dvec3& sigma_a, const glm::dvec3& sigma_s, double g) {
     for (const auto& [name, sigma] : {std::pair("sigma_a", sigma_a), std::pair("sigma_s", sigma_s)}) {
         XmlAttributes attributes = {{"unit", "world"}};
-        add_rgb(attributes, scale * sigma);
+        add_rgb(attributes, sigma);
         xml_.element(name, attributes);
     }
-    xml_.element("heyneygreenstein_g", {}, xml_number(p.number("g", 0.0)));
+    xml_.element("heyneygreenstein_g", {}, xml_number(g));
 }
 
 void PbrtTranslator::write_matrix(const glm::dmat4& matrix) {
@@ -167,11 +171,11 @@ void PbrtTranslator::write_media() {
     const auto is_grid = [&](const std::string& name, const PbrtThing& medium) {
         const bool is_file = medium.type == "nanovdb", is_one = is_file || is_dense(medium);
         if (!is_one && medium.type != "homogeneous")
-            fail_at(
-                medium.place,
-                fmt::format("medium \"{}\" cannot be rendered; take homogeneous, uniformgrid, cloud, or nanovdb with a "
-                            "file",
-                            medium.type));
+            fail_at(medium.place,
+                    fmt::format(
+                        "medium \"{}\" cannot be rendered; take homogeneous, uniformgrid, rgbgrid, cloud, or nanovdb "
+                        "with a file",
+                        medium.type));
         if (is_one && grids.insert(name).second) {
             if (is_file)
                 write_grid_medium(name, medium);

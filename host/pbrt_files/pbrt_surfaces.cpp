@@ -124,6 +124,9 @@ XmlAttributes PbrtTranslator::material(const PbrtThing& thing) {
         attributes.emplace_back("material", "dielectric");
         attributes.emplace_back("ior", index("eta"));
         add_roughness(attributes, thing);
+    } else if (thing.type == "thindielectric") {
+        attributes.emplace_back("material", "thinDielectric");
+        attributes.emplace_back("ior", index("eta"));
     } else {
         note(thing.place, fmt::format("Material \"{}\" is left out; what has it is grey and matte", thing.type));
         return {};
@@ -148,10 +151,6 @@ std::optional<XmlAttributes> PbrtTranslator::material_of(const PbrtShape& shape)
     }
     if (is_left_out(thing->type))
         return std::nullopt;
-    if (thing->type == "thindielectric") {
-        note(thing->place, "a thin pane is left out; light goes straight through, as most of it would");
-        return std::nullopt;
-    }
     return material(*thing);
 }
 

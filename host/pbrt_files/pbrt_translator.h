@@ -42,8 +42,10 @@ private:
     void write_grid_medium(const std::string& name, const PbrtThing& medium);
     std::string free_name(const std::string& medium) const;
     void write_dense_medium(const std::string& name, const PbrtThing& medium);
+    void write_rgb_medium(const std::string& name, const PbrtThing& medium);
     void write_black_body(const std::string& grid, double glow, const PbrtThing& medium);
     void write_coefficients(const PbrtThing& medium);
+    void write_coefficients(const glm::dvec3& sigma_a, const glm::dvec3& sigma_s, double g); // per length
     std::optional<Region> region_within(const PbrtShape& shape);
     const PbrtThing* medium_of(const std::string& name, const PbrtPlace& place) const;
 

@@ -134,7 +134,9 @@ void Session::keep(const Assets& assets) {
         result_.outline = make_outline(*assets.superposition, device_scene_->emits());
     else if (!assets.media.empty())
         result_.outline = make_outline(scene_, scene_.volumes.front(), assets.media.front(), device_scene_->emits());
-    if (job_.workshop && !job_.workshop->has_frames())
+    if (job_.workshop && job_.workshop->has_frames())
+        job_.workshop->fields().foresee(job_.workshop->next());
+    else if (job_.workshop)
         job_.workshop->fields().retain({});
 }
 

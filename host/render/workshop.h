@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "device.h"
@@ -32,6 +33,9 @@ public:
         return *pipelines_;
     }
     FieldCache& fields() { return fields_; }
+    // The grids of the next frame, to be read while one renders whose own are on the device.
+    void set_next(std::vector<GridFile> files) { next_ = std::move(files); }
+    const std::vector<GridFile>& next() const { return next_; }
 
     // Those of `warnings` that no frame has given yet.
     std::vector<std::string> new_warnings(const std::vector<std::string>& warnings) {
@@ -47,6 +51,7 @@ private:
     std::optional<Device> device_;
     std::optional<PipelineCache> pipelines_; // goes before its device
     FieldCache fields_;
+    std::vector<GridFile> next_;
     std::set<std::string> warned_;
 };
 

@@ -78,7 +78,7 @@ struct MeshSurface {
 using SurfaceShape =
     std::variant<BallSurface, DiskSurface, RectangleSurface, PlaneSurface, TriangleSurface, MeshSurface>;
 
-enum class MaterialKind { diffuse, mirror, conductor, dielectric, coated };
+enum class MaterialKind { diffuse, mirror, conductor, dielectric, coated, thin_dielectric };
 
 inline constexpr double least_roughness = 1e-3;
 
@@ -92,13 +92,21 @@ struct Material {
     MaterialKind kind = MaterialKind::diffuse;
     Rgb color{0.5};   // share of the light that goes on, in [0, 1]; of a conductor times Fresnel's; of what is
                       // coated, below the coat
-    double ior = 1.5; // of a dielectric: index of refraction of what it encloses over that around it; of a coat; > 0
+    double ior = 1.5; // of a dielectric: index of refraction of what it encloses over that around it; of a coat, and
+                      // of a pane, which is thin; > 0
     Rgb eta{1.0}, k{0.0}; // of a conductor: its complex index, eta + i k
     double roughness = 0; // of a conductor or dielectric: alpha of GGX, in [least_roughness, 1]; 0: smooth
-    std::filesystem::path texture = {}; // an image that multiplies the colour, of all but dielectrics; or empty
+    std::filesystem::path texture =
+        {};                 // an image that multiplies the colour, of all but dielectrics and panes; or empty
     glm::dvec2 repeat{1.0}; // how many times it lies side by side across the shape, of a plane across a unit; > 0
     std::shared_ptr<const Texture> image = {}; // once it is loaded
 };
+
+// One that `ior` tells.
+inline bool has_index(const Material& material) {
+    return material.kind == MaterialKind::dielectric || material.kind == MaterialKind::coated ||
+           material.kind == MaterialKind::thin_dielectric;
+}
 
 struct Surface {
     SurfaceShape shape;

@@ -143,18 +143,17 @@ Material SceneReader::material(const XmlElement& element) const {
         MaterialKind kind;
         double color; // unless another is asked for
     };
-    constexpr Choice choices[] = {{"diffuse", MaterialKind::diffuse, 0.5},
-                                  {"mirror", MaterialKind::mirror, 1.0},
-                                  {"conductor", MaterialKind::conductor, 1.0},
-                                  {"dielectric", MaterialKind::dielectric, 1.0},
-                                  {"coated", MaterialKind::coated, 0.5}};
+    constexpr Choice choices[] = {
+        {"diffuse", MaterialKind::diffuse, 0.5},     {"mirror", MaterialKind::mirror, 1.0},
+        {"conductor", MaterialKind::conductor, 1.0}, {"dielectric", MaterialKind::dielectric, 1.0},
+        {"coated", MaterialKind::coated, 0.5},       {"thinDielectric", MaterialKind::thin_dielectric, 1.0}};
     const std::string name = element.attribute("material", "diffuse");
     const auto* choice =
         std::find_if(std::begin(choices), std::end(choices), [&](const Choice& each) { return name == each.name; });
     if (choice == std::end(choices))
-        element.fail_attribute(
-            "material", fmt::format("<{}> material: '{}' is unknown{}", element.name(), name,
-                                    name_hint(name, {"diffuse", "mirror", "conductor", "dielectric", "coated"})));
+        element.fail_attribute("material", fmt::format("<{}> material: '{}' is unknown{}", element.name(), name,
+                                                       name_hint(name, {"diffuse", "mirror", "conductor", "dielectric",
+                                                                        "coated", "thinDielectric"})));
     Material material;
     material.kind = choice->kind;
     const bool colored = element.has("r") || element.has("g") || element.has("b");
@@ -171,7 +170,8 @@ Material SceneReader::material(const XmlElement& element) const {
             element.fail_attribute(attribute, fmt::format("<{}> {}: has a meaning with material=\"{}\" only",
                                                           element.name(), attribute, names));
     };
-    only("ior", {MaterialKind::dielectric, MaterialKind::coated}, "dielectric\" or \"coated");
+    only("ior", {MaterialKind::dielectric, MaterialKind::coated, MaterialKind::thin_dielectric},
+         "dielectric\", \"coated\" or \"thinDielectric");
     for (const char* attribute : {"metal", "eta", "k"})
         only(attribute, {MaterialKind::conductor}, "conductor");
     only("roughness", {MaterialKind::conductor, MaterialKind::dielectric}, "conductor\" or \"dielectric");
@@ -332,7 +332,9 @@ void SceneReader::read_surfaces(Scene& scene) {
         scene.surfaces.push_back(surface(element));
         scopes_ = {root};
         const Material& material = scene.surfaces.back().material;
-        if (has_points && !warned && material.kind == MaterialKind::dielectric && material.roughness == 0.0) {
+        const bool is_clear = material.kind == MaterialKind::thin_dielectric ||
+                              (material.kind == MaterialKind::dielectric && material.roughness == 0.0);
+        if (has_points && !warned && is_clear) {
             element.warn(fmt::format("<{}> is of glass: no path finds what directional lights, points and spots send "
                                      "through it, and they cast its shadow; a sun, sphere, disk or rectangle shines "
                                      "through",

@@ -225,6 +225,7 @@
 #define MATERIAL_COATED 4 // diffuse, below a smooth dielectric
 #define MATERIAL_ROUGH_CONDUCTOR 5
 #define MATERIAL_ROUGH_DIELECTRIC 6
+#define MATERIAL_THIN_DIELECTRIC 7 // both sides of a pane at once
 // No materials, but further bits of SPEC_MATERIALS.
 #define SMOOTH_FACES 7 // some triangles have normals of their own
 #define TEXTURED 8     // some surfaces have a texture

@@ -140,6 +140,14 @@ BsdfSample sample_dielectric(Bsdf b, vec3 wo, float u) {
     return BsdfSample(direction, reflects ? b.color : b.color / (eta * eta), 0.0);
 }
 
+// Light goes to and fro between the two sides, F F + (1 - F)^2 F (1 + F^2 + ...) of it back in all, and what passes goes on as it came.
+BsdfSample sample_pane(Bsdf b, vec3 wo, float u) {
+    float cosine = min(dot(b.normal, wo), 1.0);
+    float F = fresnel_dielectric(cosine, b.eta.x);
+    bool reflects = u * (1.0 + F) < 2.0 * F;
+    return BsdfSample(reflects ? normalize(2.0 * cosine * b.normal - wo) : -wo, b.color, 0.0);
+}
+
 // The coat mirrors with chance F.
 BsdfSample sample_coated(Bsdf b, vec3 wo, vec3 u) {
     float cosine = min(dot(b.normal, wo), 1.0);
@@ -178,6 +186,9 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec3 u) {
     if (has_material(MATERIAL_DIELECTRIC))
         if (b.material == MATERIAL_DIELECTRIC)
             drawn = sample_dielectric(b, wo, u.z);
+    if (has_material(MATERIAL_THIN_DIELECTRIC))
+        if (b.material == MATERIAL_THIN_DIELECTRIC)
+            drawn = sample_pane(b, wo, u.z);
     if (has_material(MATERIAL_COATED))
         if (b.material == MATERIAL_COATED)
             drawn = sample_coated(b, wo, u);

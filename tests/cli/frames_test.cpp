@@ -38,6 +38,11 @@ std::string options_error(std::vector<const char*> arguments) {
     return "no error";
 }
 
+void copy_field(const char* field, const std::filesystem::path& to) {
+    std::filesystem::copy_file(std::filesystem::path(VKVOL_TEST_FIELDS) / field, to,
+                               std::filesystem::copy_options::overwrite_existing);
+}
+
 // A ball that glows as brightly as its frame says.
 class Turntable {
 public:
@@ -116,11 +121,7 @@ TEST_CASE("what does not go together with frames is refused", "[cpu][options]") 
 TEST_CASE("a kept grid is the file's, and read again once that changes", "[cpu][density]") {
     const std::filesystem::path copy =
         std::filesystem::temp_directory_path() / fmt::format("vkvol-kept-{}.nvdb", getpid());
-    const auto replace = [&](const char* field) {
-        std::filesystem::copy_file(std::filesystem::path(VKVOL_TEST_FIELDS) / field, copy,
-                                   std::filesystem::copy_options::overwrite_existing);
-    };
-    replace("ramp.nvdb");
+    copy_field("ramp.nvdb", copy);
     FieldCache cache;
     const GridFile file{copy, "density"};
     DensityField field = cache.take(file);
@@ -137,8 +138,31 @@ TEST_CASE("a kept grid is the file's, and read again once that changes", "[cpu][
     CHECK(cache.take(file).bytes.data() == again.bytes.data());
     cache.retain({});
     CHECK(cache.take(file).bytes.data() != again.bytes.data());
-    replace("sphere.nvdb");
+    copy_field("sphere.nvdb", copy);
     CHECK(cache.take(file).active_voxels == 14328);
+    std::filesystem::remove(copy);
+    CHECK_THROWS_AS(cache.take(file), InputError);
+}
+
+TEST_CASE("a foreseen grid is the file's as it is when it is taken", "[cpu][density]") {
+    const std::filesystem::path copy =
+        std::filesystem::temp_directory_path() / fmt::format("vkvol-foreseen-{}.nvdb", getpid());
+    copy_field("ramp.nvdb", copy);
+    FieldCache cache;
+    const GridFile file{copy, "density"}, missing{copy, "temperature"};
+    cache.foresee({file, missing, {copy, ""}});
+    cache.retain({});
+    const DensityField field = cache.take(file);
+    CHECK(field.max_value() == 1.0f);
+    CHECK_THROWS_AS(cache.take(missing), InputError);
+    cache.foresee({file}); // which is here
+    CHECK(cache.take(file).bytes.data() == field.bytes.data());
+    cache.retain({});
+    cache.foresee({file});
+    copy_field("sphere.nvdb", copy); // meanwhile
+    CHECK(cache.take(file).active_voxels == 14328);
+    cache.foresee({file});
+    cache.foresee({});
     std::filesystem::remove(copy);
     CHECK_THROWS_AS(cache.take(file), InputError);
 }

@@ -79,7 +79,7 @@ std::string attribute_value(std::string_view name, Source& random) {
     if (name == "kelvin")
         return one_of("|2000|6500", random);
     if (name == "material")
-        return one_of("diffuse|mirror|conductor|dielectric|coated", random);
+        return one_of("diffuse|mirror|conductor|dielectric|coated|thinDielectric", random);
     if (name == "normals")
         return one_of("file|flat|smooth", random);
     if (name == "metal")

@@ -126,7 +126,7 @@ Scene still_life() {
     return scene;
 }
 
-// The same with facets, and varnish.
+// The same with facets, varnish, and a tinted pane.
 Scene rough_still_life() {
     Scene scene = still_life();
     scene.surfaces[0].material.kind = MaterialKind::coated;
@@ -134,6 +134,10 @@ Scene rough_still_life() {
     scene.surfaces[2].material.roughness = 0.5;
     scene.surfaces[3].material = scene.surfaces[2].material;
     scene.surfaces[3].material.roughness = 0.1;
+    Surface pane;
+    pane.shape = DiskSurface{{0.2, 0.1, 1.6}, glm::normalize(glm::dvec3(0.5, 0.2, 1.0)), 0.6};
+    pane.material = {MaterialKind::thin_dielectric, {0.9, 0.8, 0.7}};
+    scene.surfaces.push_back(pane);
     return scene;
 }
 
@@ -153,7 +157,7 @@ TEST_CASE("whatever scatters all light vanishes in an even sky, in fog too", "[g
          {white(MaterialKind::diffuse), white(MaterialKind::mirror), white(MaterialKind::dielectric),
           frosted(MaterialKind::conductor, 1.0), frosted(MaterialKind::conductor, least_roughness),
           frosted(MaterialKind::dielectric, 0.3), frosted(MaterialKind::dielectric, 1.0),
-          frosted(MaterialKind::dielectric, least_roughness)})
+          frosted(MaterialKind::dielectric, least_roughness), white(MaterialKind::thin_dielectric)})
         for (const bool in_fog : {false, true}) {
             CAPTURE(static_cast<int>(material.kind), material.roughness, in_fog);
             Scene scene = empty_scene();
@@ -350,9 +354,14 @@ TEST_CASE("a pane of glass and a metal reflect what Fresnel says", "[gpu][image]
         const double c = std::cos(tilt * pi / 180.0), beyond = std::sqrt(1.0 - (1.0 - c * c) / 2.25);
         const double across = (c - 1.5 * beyond) / (c + 1.5 * beyond), along = (1.5 * c - beyond) / (1.5 * c + beyond);
         const double F = 0.5 * (across * across + along * along);
-        const Film film = render_here(scene, 1).film;
-        CHECK_AGREEMENT(agree_with_escapes(film, std::vector<double>(film.mean.size(), (1.0 - F) / (1.0 + F)), Rgb(1.0),
-                                           Rgb(0.0), "pane"));
+        Scene thin = scene;
+        thin.surfaces.front().shape = PlaneSurface{};
+        thin.surfaces.front().material = white(MaterialKind::thin_dielectric);
+        for (const Scene& each : {scene, thin}) {
+            const Film film = render_here(each, 1).film;
+            CHECK_AGREEMENT(agree_with_escapes(film, std::vector<double>(film.mean.size(), (1.0 - F) / (1.0 + F)),
+                                               Rgb(1.0), Rgb(0.0), "pane"));
+        }
     }
     // Within the glass what shines is as bright as it says, and outside by 1 / n^2 of that.
     std::get<PlaneSurface>(scene.surfaces.back().shape).point.y = 0.0;
@@ -495,8 +504,9 @@ TEST_CASE("surfaces are read, moved and refused by name", "[xml][surfaces]") {
   <disk lookAt="0 0 1" material="conductor" metal="gold"/>
   <sphere material="coated" r=".1" g=".2" b="1"/>
   <sphere material="conductor" roughness=".3"/>
+  <plane material="thinDielectric" ior="1.4"/>
 </surfaces>)");
-    REQUIRE(scene.surfaces.size() == 7);
+    REQUIRE(scene.surfaces.size() == 8);
     CHECK(scene.surfaces[0].material.ior == 1.33);
     CHECK(scene.surfaces[1].material.color == Rgb(0.1, 0.2, 0.3));
     CHECK(scene.surfaces[2].emission == Rgb(3.0));
@@ -507,6 +517,8 @@ TEST_CASE("surfaces are read, moved and refused by name", "[xml][surfaces]") {
     CHECK(scene.surfaces[4].material.k.x == 3.983);
     CHECK(scene.surfaces[5].material.kind == MaterialKind::coated);
     CHECK(scene.surfaces[6].material.roughness == 0.3);
+    CHECK(scene.surfaces[7].material.kind == MaterialKind::thin_dielectric);
+    CHECK(scene.surfaces[7].material.ior == 1.4);
 
     const std::string glass = "<surfaces><box material=\"dielectric\"/></surfaces>";
     CHECK(warns(parse(glass + "<lights><point/><sphere/></lights>"), "no path finds what directional lights"));
@@ -517,7 +529,7 @@ TEST_CASE("surfaces are read, moved and refused by name", "[xml][surfaces]") {
     const auto refused = [](const std::string& surface) { return error_of("<surfaces>" + surface + "</surfaces>"); };
     CHECK_THAT(refused("<sphere material=\"gold\"/>"), Contains("2:19") && Contains("'gold' is unknown"));
     CHECK_THAT(refused("<sphere ior=\"2\"/>"),
-               Contains("has a meaning with material=\"dielectric\" or \"coated\" only"));
+               Contains("has a meaning with material=\"dielectric\", \"coated\" or \"thinDielectric\" only"));
     CHECK_THAT(refused("<sphere roughness=\".2\"/>"), Contains("\"conductor\" or \"dielectric\" only"));
     CHECK_THAT(refused("<sphere material=\"conductor\" roughness=\"1e-4\"/>"), Contains("0.001 at least"));
     CHECK_THAT(refused("<sphere material=\"dielectric\" ior=\"1\" roughness=\".1\"/>"), Contains("shows nothing"));

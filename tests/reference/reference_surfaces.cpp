@@ -161,6 +161,18 @@ Scattered through_glass(const vkvol::Material& material, bool inside, const glm:
     return {beyond, material.color * ((1.0 - F) / (1.0 - chance) / (eta * eta)), true};
 }
 
+// By the two sides of a pane, one after the other, until light leaves it on one of them.
+Scattered through_pane(const vkvol::Material& material, const glm::dvec3& normal, const glm::dvec3& travel, Rng& rng) {
+    const double F = reflected(std::min(-glm::dot(travel, normal), 1.0), material.ior);
+    bool inside = rng.next().x() >= F, at_far_side = true, passed = false;
+    for (; inside; at_far_side = !at_far_side)
+        if (rng.next().x() >= F) {
+            inside = false;
+            passed = at_far_side;
+        }
+    return {passed ? travel : glm::reflect(travel, normal), material.color, true};
+}
+
 // On the side where light travels to: the face, and what it stands for, unless that would be seen from behind.
 struct Sides {
     bool behind;
@@ -224,6 +236,8 @@ Scattered drawn(const vkvol::Material& material, const Sides& sides, const glm::
         return through_glass(material, sides.behind, front, travel, draw.x());
     case vkvol::MaterialKind::coated:
         return through_coat(material, front, travel, draw.x(), rng);
+    case vkvol::MaterialKind::thin_dielectric:
+        return through_pane(material, front, travel, rng);
     }
     throw std::runtime_error("the reference knows no such material");
 }

@@ -177,6 +177,26 @@ TEST_CASE("a made scene finds its file through links, and is framed as it says",
     CHECK_FALSE(std::filesystem::exists(folder.file("cloud.xml")));
 }
 
+TEST_CASE("init writes a scene to start from, and over nothing", "[gpu][command]") {
+    const Folder folder;
+    CHECK_THAT(folder.vkvol("init").text, Contains("scene.xml: vkvol scene.xml renders it"));
+    const std::string first = text_of(folder.file("scene.xml"));
+    REQUIRE(folder.vkvol("scene.xml --width 32 --spp 1 -q").code == exit_done);
+    CHECK(folder.has("scene.png"));
+    const Run again = folder.vkvol("init");
+    CHECK(again.code == exit_bad_input);
+    CHECK_THAT(again.text, Contains("scene.xml: is there already"));
+    CHECK(text_of(folder.file("scene.xml")) == first);
+
+    REQUIRE(folder.vkvol("init 'fields & $more/a.nvdb' -q").text.empty());
+    REQUIRE(folder.vkvol("a.xml -q --width 32 --spp 1").code == exit_done);
+    REQUIRE(folder.vkvol("'fields & $more/a.nvdb' -q --width 32 --spp 1 -o b.exr").code == exit_done);
+    CHECK(same_pixels(folder.file("a.exr"), folder.file("b.exr")));
+    CHECK_THAT(folder.vkvol("init cloud.pbrt").text, Contains("vkvol convert"));
+    CHECK_THAT(folder.vkvol("init cloud.nvdb -o cloud.exr").text, Contains("expected .xml"));
+    CHECK_THAT(folder.vkvol("init none.nvdb").text, Contains("none.nvdb"));
+}
+
 TEST_CASE("a scene that its user has changed is never overwritten", "[gpu][command]") {
     const Folder folder;
     const std::string render = "cloud.nvdb --spp 1 --width 16 -q";

@@ -12,7 +12,7 @@ from pathlib import Path
 
 FILES = {"image": "exr", "scene": "xml pbrt nvdb vdb", "grid": "nvdb vdb"}  # endings, by what a command takes
 COMMANDS = {"render": "scene", "devices": "", "info": "grid", "integrators": "", "compare": "image", "merge": "image",
-            "develop": "image", "convert": "scene", "measure": "scene", "view": "scene", "bench": "scene", "demo": ""}
+            "develop": "image", "convert": "scene", "init": "grid", "measure": "scene", "view": "scene", "bench": "scene", "demo": ""}
 CHOICES = {"--tonemap": "srgb aces agx reinhard", "--progress": "auto json none", "--schedule": "auto fused staged",
            "--up": "y z", "--exposure": "auto", "--device": "auto cpu"}
 VALUES = {"--integrator": "integrators"}  # words that the program itself lists

@@ -4,8 +4,8 @@ from mitsuba_lights import rgb
 
 def bsdf(surface):
     kind = surface.material
-    if kind == "dielectric":
-        return {"type": "dielectric", "int_ior": surface.ior, "ext_ior": 1.0, "specular_reflectance": rgb(surface.color),
+    if kind in ("dielectric", "thinDielectric"):
+        return {"type": kind.lower(), "int_ior": surface.ior, "ext_ior": 1.0, "specular_reflectance": rgb(surface.color),
                 "specular_transmittance": rgb(surface.color)}
     if kind == "coated":
         one_sided = {"type": "plastic", "diffuse_reflectance": rgb(surface.color), "int_ior": surface.ior, "ext_ior": 1.0,
