@@ -404,7 +404,7 @@ mapfile -t selected < <(stale)
 changed=$(git -C "$root" status --porcelain -- CMakeLists.txt host scenes shaders tests tools/make_field | wc -l)
 commit=$(git -C "$root" rev-parse --short HEAD)$([ "$changed" = 0 ] || echo "+")
 # An error may leave something unused, which is no error of its own.
-cmake -S "$copy" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+cmake -S "$copy" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DVKVOL_UNITY=OFF \
     -DCMAKE_CXX_FLAGS="-Wno-unused-parameter -Wno-unused-variable -Wno-unused-function" >"$work/build.log"
 
 # Whether tests fail by themselves is asked once of a commit.

@@ -11,7 +11,7 @@ namespace vkvol {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr int map_width = 512, map_height = 256;
 
 using Perez = std::array<double, 5>;

@@ -13,7 +13,7 @@ namespace vkvol {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // A map as its texels lie: which is next to which, and what part of the sky each takes.
 struct Layout {

@@ -11,11 +11,7 @@ namespace vkvol {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
-double mean(const glm::dvec3& color) {
-    return (color.x + color.y + color.z) / 3.0;
-}
+using std::numbers::pi;
 
 // From medium space to render space.
 glm::dmat4 to_render(const shared::MediumParams& medium) {
@@ -27,7 +23,7 @@ glm::dmat4 to_render(const shared::MediumParams& medium) {
 
 // Per unit of extinction, of what is constant. What grids and maps hold is not known here.
 double glow_of(const shared::MediumParams& medium) {
-    return mean(medium.emission.constant) + mean(medium.emission.color);
+    return channel_mean(medium.emission.constant) + channel_mean(medium.emission.color);
 }
 
 class Emitters {
@@ -48,7 +44,7 @@ public:
                                 ? 0.5 * glm::length(glm::cross(glm::dvec3(piece.b) - glm::dvec3(piece.a),
                                                                glm::dvec3(piece.c) - glm::dvec3(piece.a)))
                                 : (piece.shape == SURFACE_SPHERE ? 4.0 : 1.0) * pi * radius * radius;
-        add(AT_SURFACE | i, surface.sides * pi * area * mean(surface.emission));
+        add(AT_SURFACE | i, surface.sides * pi * area * channel_mean(surface.emission));
     }
 
     double across() const { return across_; }
@@ -123,7 +119,7 @@ double place_sensor(const Scene& scene, glm::dvec3 origin, shared::ParticleParam
 double unit_of_splats(double power, double across, const LightTable& lights) {
     double usual = power / across;
     for (const shared::LightRow& light : lights.rows)
-        usual = std::max(usual, mean(light.radiance) / double(1 << 20));
+        usual = std::max(usual, channel_mean(light.radiance) / double(1 << 20));
     return std::exp2(std::floor(std::log2(usual)) - 34.0);
 }
 
@@ -144,7 +140,7 @@ EmitterTable make_emitter_table(const Scene& scene, const Method& method, const 
         emitters.add(static_cast<std::uint32_t>(i),
                      lights.powers[i] * (i < lights.lamp_first ? emitters.across() : 1.0));
     if (method.paths == PATHS_LIGHT) { // else paths from the camera find these
-        emitters.add(SOURCE_BACKGROUND, 4.0 * pi * mean(scene.background) * emitters.across());
+        emitters.add(SOURCE_BACKGROUND, 4.0 * pi * channel_mean(scene.background) * emitters.across());
         for (std::size_t i = 0; i < surfaces.primitives.size(); ++i)
             if (const auto& piece = surfaces.primitives[i]; i < surfaces.met)
                 emitters.add_primitive(piece, surfaces.rows[piece.surface], static_cast<std::uint32_t>(i));

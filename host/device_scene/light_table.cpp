@@ -14,11 +14,7 @@ namespace vkvol {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
-double mean(const Rgb& color) {
-    return (color.x + color.y + color.z) / 3.0;
-}
+using std::numbers::pi;
 
 double radians(double degrees) {
     return degrees * pi / 180.0;
@@ -51,7 +47,7 @@ public:
     Entry operator()(const DirectionalLight& light) const {
         Entry entry = begin(LIGHT_DIRECTIONAL, light.irradiance);
         entry.row.direction = light.direction;
-        entry.fluence = mean(light.irradiance);
+        entry.fluence = channel_mean(light.irradiance);
         return entry;
     }
 
@@ -60,7 +56,7 @@ public:
         entry.row.direction = light.direction;
         entry.row.extent = static_cast<float>(versine(radians(0.5 * light.angle)));
         entry.row.darkening = static_cast<float>(light.limb_darkening);
-        entry.fluence = mean(light.irradiance);
+        entry.fluence = channel_mean(light.irradiance);
         entry.place = Entry::Place::sky;
         return entry;
     }
@@ -68,7 +64,7 @@ public:
     Entry operator()(const PointLight& light) const {
         Entry entry = begin(LIGHT_POINT, light.intensity);
         entry.row.position = light.position - origin_;
-        entry.fluence = mean(light.intensity) / square_distance(light.position);
+        entry.fluence = channel_mean(light.intensity) / square_distance(light.position);
         entry.place = Entry::Place::point;
         return entry;
     }
@@ -80,7 +76,7 @@ public:
         entry.row.direction = light.direction;
         entry.row.full_within = static_cast<float>(versine(half * (1.0 - light.blend)));
         entry.row.none_beyond = static_cast<float>(versine(half));
-        entry.fluence = mean(light.intensity) / square_distance(light.position);
+        entry.fluence = channel_mean(light.intensity) / square_distance(light.position);
         entry.place = Entry::Place::point;
         return entry;
     }
@@ -117,7 +113,7 @@ public:
 
     Entry operator()(const SkyLight&) const {
         Entry entry = begin(LIGHT_MAP, Rgb(0.0));
-        entry.fluence = mean(assets_.sky->fluence);
+        entry.fluence = channel_mean(assets_.sky->fluence);
         entry.place = Entry::Place::sky;
         return entry;
     }
@@ -132,7 +128,8 @@ private:
 
     Entry lamp(Entry entry, const Rgb& radiance, const glm::dvec3& center, double area, float reach) const {
         entry.row.area = static_cast<float>(area);
-        entry.fluence = std::min(mean(radiance) * area / square_distance(center), 2.0 * pi * mean(radiance));
+        entry.fluence =
+            std::min(channel_mean(radiance) * area / square_distance(center), 2.0 * pi * channel_mean(radiance));
         entry.place = Entry::Place::lamp;
         entry.reach = reach;
         return entry;
@@ -154,7 +151,7 @@ double power_of(const Light& light, const Entry& entry) {
     return std::visit(
         [&](const auto& kind) {
             if constexpr (requires { power_per_unit(kind); })
-                return mean(entry.row.radiance) * power_per_unit(kind);
+                return channel_mean(entry.row.radiance) * power_per_unit(kind);
             else
                 return entry.fluence;
         },

@@ -9,6 +9,10 @@
 
 namespace vkvol {
 
+inline double channel_mean(const Rgb& color) {
+    return (color.x + color.y + color.z) / 3.0;
+}
+
 struct LightTable {
     std::vector<shared::LightRow> rows;
     std::vector<shared::LightNode> tree; // over those that are somewhere, if there are several

@@ -1,6 +1,7 @@
 #include "tone_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace vkvol {
@@ -26,6 +27,38 @@ double srgb_encode(double v) {
 Vec3 srgb_encode(const Vec3& v) {
     return {srgb_encode(v.x), srgb_encode(v.y), srgb_encode(v.z)};
 }
+
+// 255 srgb_encode(v), to the nearest, for v in [0, 1], without its powers: where each byte begins is found once.
+// Pictures that are watched while they are rendered are turned into bytes again and again.
+class SrgbBytes {
+public:
+    SrgbBytes() {
+        for (int byte = 1; byte < 256; ++byte) {
+            double below = 0.0, above = 1.0;
+            while (true) {
+                const double middle = 0.5 * (below + above);
+                if (middle <= below || middle >= above)
+                    break;
+                (encoded(middle) >= byte ? above : below) = middle;
+            }
+            begins_[std::size_t(byte)] = above;
+        }
+        for (int i = 0; i <= buckets; ++i)
+            first_[std::size_t(i)] = static_cast<std::uint8_t>(encoded(double(i) / buckets));
+    }
+    std::uint8_t operator()(double v) const {
+        std::uint8_t byte = first_[static_cast<std::size_t>(v * buckets)];
+        while (byte < 255 && v >= begins_[std::size_t(byte) + 1])
+            ++byte;
+        return byte;
+    }
+
+private:
+    static constexpr int buckets = 4096; // hardly ever two bytes begin in one
+    static int encoded(double v) { return static_cast<int>(255.0 * srgb_encode(v) + 0.5); }
+    std::array<double, 256> begins_{};
+    std::array<std::uint8_t, buckets + 1> first_{};
+};
 
 // Narkowicz, "ACES Filmic Tone Mapping Curve", 2016.
 Vec3 aces(const Vec3& v) {
@@ -65,18 +98,22 @@ Vec3 reinhard(const Vec3& v, double white) {
     return v * (1.0 + v / (white * white)) / (1.0 + v);
 }
 
+// Of the curves that srgb_encode follows: what it is given.
+Vec3 linear_value(const Vec3& radiance, ToneCurve curve) {
+    return clamped(curve == ToneCurve::aces ? aces(radiance) : radiance);
+}
+
 Vec3 display_value(const Vec3& radiance, ToneCurve curve, double white) {
     switch (curve) {
-    case ToneCurve::aces:
-        return srgb_encode(clamped(aces(radiance)));
     case ToneCurve::agx:
         return clamped(agx(radiance));
     case ToneCurve::reinhard:
         return white > 0.0 ? clamped(reinhard(radiance, white)) : Vec3(0.0);
+    case ToneCurve::aces:
     case ToneCurve::srgb:
         break;
     }
-    return srgb_encode(clamped(radiance));
+    return srgb_encode(linear_value(radiance, curve));
 }
 
 // Beyond what the curve tells apart. Reinhard's, which ends at the brightest value, has nothing beyond.
@@ -122,10 +159,17 @@ std::vector<std::uint8_t> to_bytes(const Film& film, const ToneMapping& mapping,
     double white = 0.0;
     for (const glm::vec3& mean : film.mean)
         white = std::max(white, brightest_channel(exposed(mean, gain)));
+    static const SrgbBytes srgb_bytes;
+    const bool is_srgb = !alpha && (mapping.curve == ToneCurve::srgb || mapping.curve == ToneCurve::aces);
     const double rounding = rounding_of(mapping.curve);
     std::vector<std::uint8_t> bytes;
     bytes.reserve(film.mean.size() * (alpha ? 4 : 3));
     for (std::size_t i = 0; i < film.mean.size(); ++i) {
+        if (is_srgb) {
+            const Vec3 linear = linear_value(exposed(film.mean[i], gain), mapping.curve);
+            bytes.insert(bytes.end(), {srgb_bytes(linear.x), srgb_bytes(linear.y), srgb_bytes(linear.z)});
+            continue;
+        }
         Vec3 v = display_value(exposed(film.mean[i], gain), mapping.curve, white);
         const double a = alpha ? std::clamp(double(alpha->mean[i].x), 0.0, 1.0) : 1.0;
         if (alpha)

@@ -9,7 +9,7 @@ namespace vkvol {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 glm::dvec3 moved(const glm::dmat4& map, const glm::dvec3& p) {
     return glm::dvec3(map * glm::dvec4(p, 1.0));

@@ -10,7 +10,7 @@ namespace vkvol {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double least_alpha = 1e-3; // of facets; what is smoother is a mirror to pbrt, too
 
 double size_of(const glm::dmat4& map) {

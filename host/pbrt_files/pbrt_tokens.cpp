@@ -56,7 +56,11 @@ void PbrtTokens::open(std::string text, const std::string& name, const std::file
         throw InputError(one_line(name + ": is compressed; unpack it with gunzip"));
     if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
         throw InputError(one_line(name + ": is UTF-16; save it as UTF-8"));
-    sources_.push_back({std::move(text), 0, {std::make_shared<const std::string>(name)}, file});
+    Source source;
+    source.text = std::move(text);
+    source.place.file = std::make_shared<const std::string>(name);
+    source.file = file;
+    sources_.push_back(std::move(source));
 }
 
 void PbrtTokens::include(const std::filesystem::path& file, const PbrtPlace& by) {

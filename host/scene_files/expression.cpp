@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>
+#include <numbers>
 #include <vector>
 
 #include "error.h"
@@ -18,7 +19,7 @@ namespace vkvol {
 namespace {
 
 constexpr int deepest = 64; // parentheses, signs and powers within each other
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 using Arguments = std::vector<double>;
 

@@ -12,8 +12,8 @@ namespace vkvol {
 
 namespace {
 
-const std::vector<std::string> kinds = {"directional", "sun",       "point", "spot",    "sphere",
-                                        "disk",        "rectangle", "sky",   "daylight"};
+const std::vector<std::string> light_kinds = {"directional", "sun",       "point", "spot",    "sphere",
+                                              "disk",        "rectangle", "sky",   "daylight"};
 const std::vector<std::string> light_colors = {"r", "g", "b", "kelvin", "multiplier", "group"};
 constexpr Limits part{0.0, 1.0, true, true, "a number from 0 to 1"};
 constexpr Limits flame{500.0, 40000.0, true, true, "a temperature from 500 to 40000 kelvin"};
@@ -175,7 +175,7 @@ void SceneReader::read_daylight(const XmlElement& element, Scene& scene) const {
 
 void SceneReader::read_lights(Scene& scene) const {
     const XmlElement group = one("lights");
-    group.allow({}, false, kinds);
+    group.allow({}, false, light_kinds);
     pugi::xml_node sky;
     for (const pugi::xml_node node : document_.root().child("lights").children()) {
         if (node.type() != pugi::node_element)

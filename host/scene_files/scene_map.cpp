@@ -15,7 +15,7 @@ constexpr std::size_t most_points = 256;
 constexpr Limits grid_value{
     0.0, no_limit, true, true,
     "a number >= 0, as grids' values below 0 count as 0 (add 1000 to Hounsfield units where the grid is written)"};
-constexpr Limits part{0.0, 1.0, true, true, "numbers from 0 to 1"};
+constexpr Limits share_of_one{0.0, 1.0, true, true, "numbers from 0 to 1"};
 constexpr Limits radiance{0.0, brightest_light, true, true, "numbers from 0 to 1e12"};
 
 } // namespace
@@ -55,7 +55,7 @@ MapPoint SceneReader::map_point(const XmlElement& element, const char* value, co
     MapPoint point;
     point.value = element.attribute_number(value, 0.0, limits);
     point.density = element.attribute_number(amount, 0.0, not_negative);
-    point.albedo = channels(element, "albedo", part, point.albedo);
+    point.albedo = channels(element, "albedo", share_of_one, point.albedo);
     point.emission = channels(element, "emission", radiance, point.emission);
     return point;
 }

@@ -10,14 +10,14 @@ namespace vkvol {
 
 namespace {
 
-struct Kind {
+struct PhaseKind {
     std::string name;
     std::vector<std::string> attributes;
     bool has_g = true;
 };
 
 // As PhaseFunction.
-const std::vector<Kind> kinds = {
+const std::vector<PhaseKind> phase_kinds = {
     {"henyeyGreenstein", {}}, {"rayleigh", {"depolarization"}, false}, {"doubleHenyeyGreenstein", {"second", "share"}},
     {"draine", {"alpha"}},    {"droplets", {"diameter"}, false},       {"table", {"file", "baseDir"}, false}};
 
@@ -28,15 +28,16 @@ std::string too_sharp(const std::string& name, double g) {
     return fmt::format("{} {} is too near 1 for single precision; expected at most {} in magnitude", name, g, sharpest);
 }
 
-const Kind& kind_of(const XmlElement& phase) {
+const PhaseKind& kind_of(const XmlElement& phase) {
     if (!phase.exists())
-        return kinds.front();
+        return phase_kinds.front();
     const std::string text = phase.text();
-    const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& kind) { return kind.name == text; });
-    if (found != kinds.end())
+    const auto found =
+        std::find_if(phase_kinds.begin(), phase_kinds.end(), [&](const PhaseKind& kind) { return kind.name == text; });
+    if (found != phase_kinds.end())
         return *found;
     std::vector<std::string> names;
-    for (const Kind& kind : kinds)
+    for (const PhaseKind& kind : phase_kinds)
         names.push_back(kind.name);
     phase.fail_text(fmt::format("unknown phase function '{}'{}", text, name_hint(text, names)));
 }
@@ -45,9 +46,9 @@ const Kind& kind_of(const XmlElement& phase) {
 
 void SceneReader::read_phase(Volume& volume) const {
     const XmlElement phase = one("phase");
-    const Kind& kind = kind_of(phase);
+    const PhaseKind& kind = kind_of(phase);
     phase.allow(kind.attributes, true);
-    volume.phase = static_cast<PhaseFunction>(&kind - kinds.data());
+    volume.phase = static_cast<PhaseFunction>(&kind - phase_kinds.data());
     const XmlElement g = one({"heyneygreenstein_g", "heynegreenstein_g"});
     g.allow({}, true);
     volume.g = g.number(volume.g, asymmetry);

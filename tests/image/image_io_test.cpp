@@ -145,6 +145,14 @@ TEST_CASE("tone curves", "[cpu][image_io]") {
     for (const ToneCurve curve : {ToneCurve::srgb, ToneCurve::aces, ToneCurve::agx})
         for (float v = 0.01f; v < 50.0f; v *= 1.3f)
             CHECK(byte(v, curve) <= byte(v * 1.3f, curve));
+    // IEC 61966-2-1, to the nearest byte.
+    int differ = 0;
+    for (int i = 0; i <= 100000; ++i) {
+        const float v = float(i) / 100000.0f;
+        const double encoded = v <= 0.0031308 ? 12.92 * double(v) : 1.055 * std::pow(double(v), 1.0 / 2.4) - 0.055;
+        differ += byte(v, ToneCurve::srgb) != int(255.0 * encoded + 0.5) ? 1 : 0;
+    }
+    CHECK(differ == 0);
     // The original's curve: the brightest value is white, a 1 in a bright picture is near one half.
     Film film = constant(1, 1, 1);
     film.mean[3] = glm::vec3(1000.0f);
