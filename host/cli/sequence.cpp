@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "atomic_file.h"
 #include "error.h"
 #include "file_uses.h"
 #include "frames.h"
 #include "interrupt.h"
+#include "memory_left.h"
 #include "messages.h"
 #include "render_command.h"
 #include "render_scene.h"
@@ -66,13 +68,26 @@ void announce(const RenderOptions& options, std::size_t index) {
              options.frames.size());
 }
 
+// Beside those that are in memory. What is packed in a file may be some times as large.
+bool fits_in_memory(const std::vector<GridFile>& grids) {
+    constexpr std::uintmax_t room = 16;
+    std::uintmax_t bytes = 0;
+    std::error_code ignored;
+    std::set<std::filesystem::path> files;
+    for (const GridFile& grid : grids)
+        if (!grid.memory && files.insert(grid.path).second)
+            bytes += std::filesystem::file_size(grid.path, ignored);
+    return bytes < memory_left() / room;
+}
+
 // The grids of the frame after this one, if that will be rendered.
 std::vector<GridFile> next_grids(const RenderOptions& options, std::size_t index,
                                  const std::vector<std::vector<GridFile>>& grids) {
     if (options.dry_run || index + 1 == options.frames.size())
         return {};
     const RenderOptions next = frame_options(options, options.frames[index + 1]);
-    return options.resume && std::filesystem::exists(next.outputs.front()) ? std::vector<GridFile>{} : grids[index + 1];
+    const bool is_there = options.resume && std::filesystem::exists(next.outputs.front());
+    return is_there || !fits_in_memory(grids[index + 1]) ? std::vector<GridFile>{} : grids[index + 1];
 }
 
 // What was rendered before is not rendered again.
