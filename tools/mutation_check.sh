@@ -31,6 +31,15 @@ build=$work/build
 # name ~ file ~ text ~ replacement ~ tests (a Catch2 specification). "^" parts several texts and their replacements.
 mutations() {
     cat <<'END'
+moments at the same times for all seeds ~ host/scene/motion_blur.cpp ~ + turn_of(seed); ~ + turn_of(0); ~ [motion]
+moments that last twice as long ~ host/scene/motion_blur.cpp ~ together *= 2; ~ together *= 4; ~ [motion]
+what moves as at its first moment ~ host/render/session.cpp ~ enter_moment(); ~ ; ~ [motion]
+later moments not what identifies a render ~ host/render/session_setup.cpp ~ identity_.kernel += scene_hash(*moving_); ~ ; ~ [motion]
+frames of files not whole while something moves ~ host/scene_files/scene_keys.cpp ~ *number + (is_time ? later_ : 0.0); ~ *number; ~ [motion]
+grids drift backwards ~ host/fields/drift.cpp ~ glm::dvec3(voxel) - way(voxel) ~ glm::dvec3(voxel) + way(voxel) ~ [motion]
+what drifts into empty blocks lost ~ host/fields/drift.cpp ~ widen(axis, (reach_[axis] + 7) / 8); ~ widen(axis, 0); ~ [motion]
+velocities cleaned as colours ~ host/fields/grid_tree.cpp ~ if (!field_.is_signed || ~ if (true || ~ [motion]
+velocities on faces taken for middles ~ host/fields/drift.cpp ~ from[axis] += 0.5; ~ from[axis] += 0.0; ~ [motion]
 panes of one side ~ shaders/surfaces/bsdf.glsl ~ u * (1.0 + F) < 2.0 * F ~ u < F ~ [surfaces]
 colours of voxels taken for multiples of one ~ host/pbrt_files/pbrt_rgb_media.cpp ~ > 1e-6 * largest_of(each) ~ > 1e6 * largest_of(each) ~ [pbrt]
 foreseen grids kept when their files change ~ host/fields/field_cache.cpp ~ coming.mapped().stamp == stamp ~ true ~ [density]
@@ -105,7 +114,7 @@ points on surfaces weighed as collisions are ~ shaders/stages/collide.glsl ~ if 
 looks from along what lies behind surfaces ~ shaders/lights/equiangular.glsl ~ s.t.y = max(min(s.t.y, reach), s.t.x); ~ ; ~ [surfaces]
 no looks from along flights that surfaces end ~ shaders/stages/seek.glsl ~ goes_to_look = look_along(v, lane, rng, tally); ~ ; ~ [surfaces]
 a render that stops at twice its noise ~ host/render/session.cpp ~ *noise <= *job_.noise_goal ~ *noise <= 2.0 * *job_.noise_goal ~ [determinism]
-noise looked at whenever a batch is done ~ host/render/session.cpp ~ std::min({next_, wanted_ - done_, until_next_look()}) ~ std::min(next_, wanted_ - done_) ~ [determinism]
+noise looked at whenever a batch is done ~ host/render/session.cpp ~ std::min({next_, wanted_ - done_, until_next_look(), until_next_moment()}) ~ std::min(next_, wanted_ - done_) ~ [determinism]
 a picture of other samples taken for this one ~ host/cli/rendered_before.cpp ~ text_of(metadata, "vkvol/asked") == asked_text(options, scene) ~ true ~ [command]
 an interrupted picture taken for a whole one ~ host/cli/rendered_before.cpp ~ text_of(metadata, "vkvol/interrupted") == "0" ~ true ~ [command]
 pbrt's usual glow even ~ host/pbrt_files/pbrt_dense_media.cpp ~ std::abs((i + 0.5) / n - 0.5) ~ 0.0 * n * i ~ [pbrt]

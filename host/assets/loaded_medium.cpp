@@ -5,8 +5,10 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <tuple>
 
 #include "blackbody.h"
+#include "drift.h"
 #include "error.h"
 #include "layers.h"
 #include "phase_params.h"
@@ -96,6 +98,7 @@ public:
 
 private:
     DensityField field_of(const Volume& volume, const GridFile& file, GridValues values = GridValues::numbers);
+    DensityField drifted(const Drift& drift, const GridFile& file, const DensityField& field);
     float largest_value(const DensityField& field);
     void load_phase_nodes(const Volume& volume, LoadedMedium& loaded);
     void load_grid(const Volume& volume, const GridFile& file, LoadedMedium& loaded);
@@ -121,6 +124,8 @@ private:
     std::map<std::vector<double>, SharedArray<shared::MapKnot>> maps_;
     std::size_t knots_ = 0;                     // of the scene's longest map: one search serves all
     std::map<const std::byte*, float> largest_; // likewise
+    // By the bytes of grid and velocities, and seconds.
+    std::map<std::tuple<const std::byte*, const std::byte*, double>, DensityField> drifted_;
     std::map<std::pair<double, double>, SharedArray<glm::vec3>> blackbodies_;
     std::map<std::string, SharedArray<shared::PhaseNode>> phases_; // by their file
     std::set<std::string> said_;
@@ -128,8 +133,23 @@ private:
 
 DensityField Loader::field_of(const Volume& volume, const GridFile& file, GridValues values) {
     DensityField field = fields_.take(file, values);
+    if (volume.drift.exists())
+        field = drifted(volume.drift, file, field);
     field.place(volume.transform);
     return field;
+}
+
+// Once for all that have the grid at that time.
+DensityField Loader::drifted(const Drift& drift, const GridFile& file, const DensityField& field) {
+    const DensityField velocity = fields_.take(file.beside(drift.grid), GridValues::vectors);
+    const auto [found, is_new] = drifted_.try_emplace({field.bytes.data(), velocity.bytes.data(), drift.seconds});
+    if (!is_new)
+        return found->second;
+    try {
+        return found->second = vkvol::drifted(field, velocity, drift.seconds);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: \"{}\": {}", file.path.string(), drift.grid, error.what()));
+    }
 }
 
 float Loader::largest_value(const DensityField& field) {
@@ -344,7 +364,11 @@ Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
     check_supported(scene);
     FieldCache own;
     FieldCache& fields = kept ? *kept : own;
-    fields.retain(grid_files(scene));
+    std::vector<GridFile> files = grid_files(scene);
+    for (const Volume& volume : scene.volumes)
+        if (const auto* file = std::get_if<GridFile>(&volume.shape); file && volume.drift.exists())
+            files.push_back(file->beside(volume.drift.grid));
+    fields.retain(files);
     Loader loader(scene, method, fields);
     Assets assets;
     assets.media.reserve(scene.volumes.size());

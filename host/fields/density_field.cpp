@@ -23,6 +23,8 @@ namespace vkvol {
 namespace {
 
 std::optional<int> lookup_type(nanovdb::GridType type, GridValues values) {
+    if (values == GridValues::vectors)
+        return type == nanovdb::GridType::Vec3f ? std::optional(GRID_COLOR) : std::nullopt;
     switch (type) {
     case nanovdb::GridType::Vec3f:
         return values == GridValues::numbers ? std::nullopt : std::optional(GRID_COLOR);
@@ -147,6 +149,10 @@ DensityField make_density_field(GridBytes bytes, const std::string& place, GridV
     nanovdb::GridData header;
     std::memcpy(static_cast<void*>(&header), field.bytes.data(), sizeof header);
     const std::optional<int> type = lookup_type(header.mGridType, values);
+    if (!type && values == GridValues::vectors)
+        throw InputError(fmt::format("{}: the grid's type is {}, but velocities are vectors (Vec3f); name another grid "
+                                     "(vkvol info lists them)",
+                                     place, grid_type_name(static_cast<std::uint32_t>(header.mGridType))));
     if (!type && header.mGridType == nanovdb::GridType::Vec3f)
         throw InputError(
             fmt::format("{}: the grid's values are colours (Vec3f), and not numbers; <albedo> and <emission "
@@ -162,6 +168,8 @@ DensityField make_density_field(GridBytes bytes, const std::string& place, GridV
                                      "to a fog volume (vdb_tool -fog, or sdfToFogVolume in OpenVDB)",
                                      place));
     field.type = *type;
+    field.is_signed = values == GridValues::vectors;
+    field.is_staggered = field.is_signed && header.mGridClass == nanovdb::GridClass::Staggered;
     read_tree(field, place);
     return field;
 }

@@ -1,5 +1,5 @@
-// A grid of densities, temperatures or colours ready for lookup: NanoVDB bytes, checked and cleaned, with a table of
-// its leaves.
+// A grid of densities, temperatures, colours or velocities ready for lookup: NanoVDB bytes, checked and cleaned, with a
+// table of its leaves.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -26,11 +26,13 @@ struct DensityField {
     glm::ivec3 leaf_dims{0};
     SharedArray<std::uint32_t> leaf_table;
     float background = 0.0f;   // what voxels have that the file gives no value: it counts in the box, as all others do
+    bool is_signed = false;    // vectors
+    bool is_staggered = false; // whose components are in the middle of the lower faces of voxels
     std::uint64_t cleaned = 0; // values that were NaN, infinite or negative and count as 0
 
     // Decoded value of a voxel, >= 0; 0 outside the box of active voxels. Of a colour its largest channel.
     float value(glm::ivec3 ijk) const;
-    glm::vec3 color(glm::ivec3 ijk) const; // of a grid of numbers: grey
+    glm::vec3 color(glm::ivec3 ijk) const; // of a grid of numbers: grey; of vectors: the vector
     // The largest voxel value.
     float max_value() const;
     // Part of the box that the 8^3 block has, and its value if it is one constant, else none. `block`: from leaf_min.

@@ -9,7 +9,8 @@ namespace vkvol {
 namespace {
 
 bool is_of(const DensityField& field, GridValues values) {
-    return values == GridValues::numbers_or_colors || field.type != GRID_COLOR;
+    return field.is_signed == (values == GridValues::vectors) &&
+           (values != GridValues::numbers || field.type != GRID_COLOR);
 }
 
 } // namespace

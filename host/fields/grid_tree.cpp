@@ -254,7 +254,8 @@ private:
     }
     void clean(nanovdb::Vec3f& color) {
         for (int i = 0; i < 3; ++i)
-            clean(color[i]);
+            if (!field_.is_signed || !std::isfinite(color[i]))
+                clean(color[i]);
     }
 
     std::uint32_t word_offset(const void* p) const {

@@ -3,6 +3,7 @@
 
 namespace vkvol {
 
-enum class GridValues { numbers, numbers_or_colors };
+// Vectors may be negative, as colours may not.
+enum class GridValues { numbers, numbers_or_colors, vectors };
 
 } // namespace vkvol

@@ -125,7 +125,7 @@ private:
     // The grid that OpenVDB will read, and the one that holds its tree.
     void check(const std::vector<Descriptor>& grids, const Descriptor& grid, GridValues allowed) {
         value_bytes_ = value_bytes(grid.type);
-        const bool colors = allowed == GridValues::numbers_or_colors;
+        const bool colors = allowed != GridValues::numbers;
         if (value_bytes_ == 0 || (value_bytes_ > sizeof(float) && !colors))
             throw InputError(fmt::format("{}: grid \"{}\" is not a grid of floats{}; {}", file_.string(),
                                          one_line(shown_name(grid.name)), colors ? " or colours (vec3s)" : "",

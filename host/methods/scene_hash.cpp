@@ -58,6 +58,10 @@ void add_shape(Writer& writer, const Volume& volume) {
         else
             add_file(writer, grid->path);
         writer.add("grid", grid->grid);
+        if (volume.drift.exists()) {
+            writer.add("velocity", volume.drift.grid);
+            writer.add("seconds", volume.drift.seconds);
+        }
         writer.add("unit", volume.unit == CoefficientUnit::world ? 1 : 0);
     } else if (is_everywhere(volume)) {
         writer.add("everywhere", 1.0);
@@ -305,6 +309,17 @@ void add_method(Writer& writer, const RenderSettings& settings, const Method& me
     }
 }
 
+// By where it is at the beginning, in the middle and at the end.
+void add_motion(Writer& writer, const Scene& scene) {
+    const MotionBlur& blur = *scene.motion_blur;
+    writer.add("motion", glm::dvec3(blur.open, blur.close, 0.0));
+    for (const double time : {blur.open, 0.5 * (blur.open + blur.close), blur.close}) {
+        Scene then = scene_of_time(scene, time);
+        then.motion_blur.reset();
+        writer.add("then", scene_hash(then));
+    }
+}
+
 } // namespace
 
 std::string scene_hash(const Scene& authored) {
@@ -337,6 +352,8 @@ std::string scene_hash(const Scene& authored) {
     if (scene.holds_out)
         writer.add("holdout", 1);
     add_method(writer, scene.settings, method);
+    if (scene.motion_blur)
+        add_motion(writer, scene);
     return writer.hash();
 }
 

@@ -57,8 +57,9 @@ void Session::render(std::uint32_t samples) {
     stopped_ = result_.interrupted = false;
     stopped_at_.reset();
     while (done_ < wanted_ && !is_good_enough() && !stopping()) {
+        enter_moment();
         if (batch_ == 0)
-            batch_ = std::min({next_, wanted_ - done_, until_next_look()});
+            batch_ = std::min({next_, wanted_ - done_, until_next_look(), until_next_moment()});
         const double begun = watch_.seconds();
         while (band_ < bands_.size() && !stopped_)
             run_band(bands_[band_]);

@@ -79,12 +79,12 @@ struct RenderResult {
 
 class Session {
 public:
-    // Reads the scene's files, uploads them and compiles the kernels. `job` outlives the session. Throws InputError for
-    // what cannot be rendered, and RenderError where the device fails.
+    // Reads the scene's files, uploads them and compiles the kernels. `device` and `job` outlive the session. Throws
+    // InputError for what cannot be rendered, and RenderError where the device fails.
     Session(const Device& device, const Scene& scene, const RenderJob& job);
 
     // Until every pixel has `samples` in all, or the job ends it before. May be called again, for more; time limits
-    // count from each call.
+    // count from each call. A scene that moves is made ready for each moment, in the time of rendering.
     void render(std::uint32_t samples);
     std::uint32_t samples() const { return done_; } // per pixel, finished for every pixel
 
@@ -96,25 +96,30 @@ public:
 
 private:
     std::uint32_t width() const { return static_cast<std::uint32_t>(job_.crop.x1 - job_.crop.x0); }
-    void load(const Device& device, const std::vector<std::string>& authored_warnings);
+    void load();
+    void take_warnings(const Assets& assets);
+    Scene scene_now() const;
     void find_wish(const Assets& assets, const Specialization& specialization);
-    Plan plan_by(const Device& device, Schedule schedule) const;
+    Plan plan_by(Schedule schedule) const;
     void keep(const Assets& assets);
-    void compile(const Device& device);
-    std::unique_ptr<Wavefront> make_wavefront(const Device& device, const Plan& plan, const PipelineCache& cache,
+    void compile();
+    std::unique_ptr<Wavefront> make_wavefront(const Plan& plan, const PipelineCache& cache,
                                               const std::function<void()>& meanwhile);
-    void choose_schedule(const Device& device, const PipelineCache& cache);
+    void choose_schedule(const PipelineCache& cache);
     double paths_per_second(Wavefront& wavefront, const Plan& plan);
     std::uint32_t first_batch() const;
     std::uint32_t next_batch(std::uint32_t batch, double seconds) const;
-    std::vector<std::uint32_t> make_film(const Device& device);
-    void begin_identity(const Device& device, const Assets& assets, std::vector<std::uint32_t> rows);
+    void make_film();
+    void begin_identity(const Assets& assets);
     void resume(const Checkpoint& from);
     void save_checkpoint();
     bool checkpoint_due() const;
     void report_noise();
     void offer_look();
     std::uint32_t until_next_look() const;
+    std::uint64_t next_sample() const { return std::uint64_t{job_.sample_offset} + done_; }
+    void enter_moment();
+    std::uint32_t until_next_moment() const;
     bool is_good_enough();
     bool stopping();
     bool out_of_patience();
@@ -125,14 +130,19 @@ private:
     void gather();
     void develop_film();
 
-    const Scene scene_; // as its integrator sees it
+    const Device& device_;
     const RenderJob& job_;
-    const Method method_;
+    const std::optional<Scene> moving_; // as authored, where something moves
+    std::optional<Moment> moment_;      // then: of the samples under way
+    Scene scene_;                       // of that moment, as its integrator sees it
+    Method method_;
     Plan wish_; // of the job, completed by what suits the scene
     LoopSizes loops_;
     Commands commands_;
     std::optional<DeviceScene> device_scene_;
+    FieldCache own_fields_; // of what moves, without a workshop's
     std::vector<Band> bands_;
+    std::uint32_t records_ = 0; // of paths, in them
     std::optional<TraceBuffer> trace_;
     std::unique_ptr<Wavefront> wavefront_;
     RenderIdentity identity_; // only for checkpoints

@@ -8,6 +8,7 @@
 #include "estimator_traits.h"
 #include "phase_params.h"
 #include "pilot_paths.h"
+#include "scene_hash.h"
 #include "scene_upload.h"
 #include "schedule_memory.h"
 #include "session.h"
@@ -48,46 +49,96 @@ MediaFigures figures_of(const Assets& assets) {
 } // namespace
 
 Session::Session(const Device& device, const Scene& scene, const RenderJob& job)
-    : scene_(with_surface_files(with_preset(scene))), job_(job), method_(choose_method(scene_)), commands_(device) {
-    load(device, scene.warnings);
-    compile(device);
+    : device_(device), job_(job), moving_(scene.motion_blur ? std::optional(scene) : std::nullopt),
+      moment_(moving_ ? std::optional(moment_of_sample(job.sample_offset)) : std::nullopt),
+      scene_(with_surface_files(with_preset(moving_ ? scene_now() : scene))), method_(choose_method(scene_)),
+      commands_(device) {
+    scene_.warnings.erase(scene_.warnings.begin(), scene_.warnings.begin() + std::ptrdiff_t(scene.warnings.size()));
+    load();
+    compile();
     watch_.lap();
 }
 
-// Files, and all of them on the device.
-void Session::load(const Device& device, const std::vector<std::string>& authored_warnings) {
-    Stopwatch watch;
-    Assets assets = load_assets(scene_, method_, job_.workshop ? &job_.workshop->fields() : nullptr);
-    result_.load_seconds = watch.lap();
-    result_.warnings.assign(scene_.warnings.begin() + std::ptrdiff_t(authored_warnings.size()), scene_.warnings.end());
+Scene Session::scene_now() const {
+    return scene_of_time(*moving_, time_of(*moving_->motion_blur, *moment_, job_.seed));
+}
+
+// Of the sample that comes next: all before it are finished. What it was compiled for, the device keeps.
+void Session::enter_moment() {
+    if (!moving_ || next_sample() < moment_->end)
+        return;
+    moment_ = moment_of_sample(next_sample());
+    const std::uint32_t layers = device_scene_->layers().params.count;
+    wavefront_.reset();
+    device_scene_.reset();
+    scene_ = with_surface_files(with_preset(scene_now()));
+    Method method = choose_method(scene_);
+    if (method.paths != method_.paths || plan_layers(scene_).params.count != layers)
+        throw InputError("<motionBlur>: what moves needs other paths, or has other layers, at some times than at "
+                         "others; name the paths, or leave the layers out");
+    method_ = std::move(method);
+    load();
+    compile();
+}
+
+std::uint32_t Session::until_next_moment() const {
+    return moment_ ? static_cast<std::uint32_t>(moment_->end - next_sample()) : most_batch_;
+}
+
+// What the first moment's files have to be warned of.
+void Session::take_warnings(const Assets& assets) {
+    result_.warnings = scene_.warnings;
     result_.warnings.insert(result_.warnings.end(), method_.warnings.begin(), method_.warnings.end());
     result_.warnings.insert(result_.warnings.end(), assets.warnings.begin(), assets.warnings.end());
-    bool has_colour = false; // fog, not fire
-    for (const LoadedMedium& medium : assets.media) {
+    for (const LoadedMedium& medium : assets.media)
         result_.warnings.insert(result_.warnings.end(), medium.warnings.begin(), medium.warnings.end());
-        has_colour = has_colour || (method_.material_colour && medium.mesh && medium.mesh->diffuse);
-    }
     for (const DensityField* grid : distinct_grids(assets.media))
         result_.counts.cleaned_voxels += grid->cleaned;
+}
+
+// Files, and all of them on the device.
+void Session::load() {
+    Stopwatch watch;
+    const bool is_first = bands_.empty();
+    FieldCache* const own = moving_ ? &own_fields_ : nullptr;
+    Assets assets = load_assets(scene_, method_, job_.workshop ? &job_.workshop->fields() : own);
+    if (is_first) {
+        result_.load_seconds = watch.lap();
+        take_warnings(assets);
+    }
+    const auto has_colour = [&](const LoadedMedium& medium) { // fog, not fire
+        return method_.material_colour && medium.mesh && medium.mesh->diffuse;
+    };
     result_.media = figures_of(assets);
     const Specialization specialization = specialize(scene_, assets.media, method_, whole_of(assets));
     find_wish(assets, specialization);
-    result_.plan = plan_by(device, wish_.schedule);
-    device_scene_.emplace(device, commands_, scene_, method_, assets, job_.crop, job_.seed,
+    result_.plan = plan_by(wish_.schedule);
+    device_scene_.emplace(device_, commands_, scene_, method_, assets, job_.crop, job_.seed,
                           result_.plan.most_grid_bytes, result_.plan.most_texel_bytes);
-    begin_identity(device, assets, make_film(device));
-    result_.glows = device_scene_->emits() && !has_colour;
+    if (is_first)
+        make_film();
+    device_scene_->set_records(records_);
+    if (is_first)
+        begin_identity(assets);
+    result_.glows = device_scene_->emits() && std::none_of(assets.media.begin(), assets.media.end(), has_colour);
     result_.integrator = method_.integrator;
     result_.biased = method_.biased;
     result_.by_chance = method_.by_chance;
     result_.specialization = device_scene_->text();
     result_.trace_origin = device_scene_->origin();
     keep(assets);
-    result_.upload_seconds = watch.lap();
+    if (is_first)
+        result_.upload_seconds = watch.lap();
 }
 
 void Session::find_wish(const Assets& assets, const Specialization& specialization) {
     wish_ = job_.plan;
+    if (!bands_.empty()) { // a later moment, of the same paths and records
+        wish_.schedule = result_.plan.schedule;
+        wish_.slots = result_.plan.slots;
+        wish_.waiting = result_.plan.waiting;
+    }
+    loops_ = {};
     loops_.lights = loop_iterations(scene_);
     loops_.surfaces = !scene_.surfaces.empty();
     loops_.halvings = static_cast<std::uint32_t>(specialization[SPEC_MAP_HALVINGS]);
@@ -118,12 +169,12 @@ void Session::find_wish(const Assets& assets, const Specialization& specializati
     wish_.waiting = std::max(wish_.waiting, job_.resume->batch);
 }
 
-Plan Session::plan_by(const Device& device, Schedule schedule) const {
+Plan Session::plan_by(Schedule schedule) const {
     Plan wish = wish_;
     wish.schedule = schedule;
-    Plan plan = make_plan(device, loops_, wish);
+    Plan plan = make_plan(device_, loops_, wish);
     if (method_.paths != PATHS_CAMERA)
-        fit_splats(device, std::uint64_t{width()} * std::uint64_t(job_.crop.y1 - job_.crop.y0),
+        fit_splats(device_, std::uint64_t{width()} * std::uint64_t(job_.crop.y1 - job_.crop.y0),
                    job_.resume ? job_.resume->batch : 0, plan);
     return plan;
 }
@@ -136,26 +187,25 @@ void Session::keep(const Assets& assets) {
         result_.outline = make_outline(scene_, scene_.volumes.front(), assets.media.front(), device_scene_->emits());
     if (job_.workshop && job_.workshop->has_frames())
         job_.workshop->fields().foresee(job_.workshop->next());
-    else if (job_.workshop)
+    else if (job_.workshop && !moving_)
         job_.workshop->fields().retain({});
 }
 
-void Session::compile(const Device& device) {
+void Session::compile() {
     Stopwatch watch;
     std::optional<PipelineCache> own_cache;
     const PipelineCache& cache =
-        job_.workshop ? job_.workshop->pipelines(job_.disk_cache) : own_cache.emplace(device, job_.disk_cache);
+        job_.workshop ? job_.workshop->pipelines(job_.disk_cache) : own_cache.emplace(device_, job_.disk_cache);
     device_scene_->make_light_cache();
-    if (job_.trace)
-        trace_.emplace(device, commands_);
-    wavefront_ =
-        make_wavefront(device, result_.plan, cache, [&] { device_scene_->compile_light_cache(cache.handle()); });
+    if (job_.trace && !trace_)
+        trace_.emplace(device_, commands_);
+    wavefront_ = make_wavefront(result_.plan, cache, [&] { device_scene_->compile_light_cache(cache.handle()); });
     device_scene_->fill_light_cache();
     // Software drivers are 1.7 to 3.1 times as fast with one pass (tools/results): no trial is worth its time.
-    const bool is_known = device.is_cpu() && !job_.plan.tries;
+    const bool is_known = device_.is_cpu() && !job_.plan.tries;
     const bool has_paths = device_scene_->specialization()[SPEC_SHAPE] != SHAPE_NONE || !scene_.surfaces.empty();
     if (wish_.schedule == Schedule::automatic && !is_known && has_paths && !job_.trace && !job_.dry_run)
-        choose_schedule(device, cache);
+        choose_schedule(cache);
     cache.save();
     device_scene_->set_queues(result_.plan.slots, queue_capacity(result_.plan));
     // Counters of the sky, which are read once a batch, have 32 bits.
@@ -164,10 +214,11 @@ void Session::compile(const Device& device) {
     result_.device_bytes = device_scene_->bytes() + wavefront_->bytes();
     for (const Band& band : bands_)
         result_.device_bytes += band.film.bytes() + (band.layers ? band.layers->bytes() : 0);
-    result_.pipeline_seconds = watch.lap();
+    if (result_.pipeline_seconds == 0.0) // of the first moment
+        result_.pipeline_seconds = watch.lap();
 }
 
-std::unique_ptr<Wavefront> Session::make_wavefront(const Device& device, const Plan& plan, const PipelineCache& cache,
+std::unique_ptr<Wavefront> Session::make_wavefront(const Plan& plan, const PipelineCache& cache,
                                                    const std::function<void()>& meanwhile) {
     BoundBuffers bound = device_scene_->bound();
     Specialization specialization = device_scene_->specialization();
@@ -175,23 +226,23 @@ std::unique_ptr<Wavefront> Session::make_wavefront(const Device& device, const P
         specialization[SPEC_TRACE] = 1;
         bound[BINDING_TRACE] = &trace_->buffer();
     }
-    return std::make_unique<Wavefront>(device, bound, bands_.front().rows * width(), specialization,
+    return std::make_unique<Wavefront>(device_, bound, bands_.front().rows * width(), specialization,
                                        device_scene_->form(), plan, cache.handle(), meanwhile);
 }
 
 // Fused or staged, by a moment of each, unless that was done before with such a scene at such a size.
-void Session::choose_schedule(const Device& device, const PipelineCache& cache) {
-    const Plan plan = plan_by(device, Schedule::staged);
+void Session::choose_schedule(const PipelineCache& cache) {
+    const Plan plan = plan_by(Schedule::staged);
     const std::uint64_t pixels = std::uint64_t{bands_.front().rows} * width();
     const std::string kind =
-        fmt::format("{} {}: {}, {}, {}, 2^{} pixels", device.info().uuid, device.info().driver, result_.specialization,
-                    describe(result_.plan), describe(plan), std::bit_width(pixels));
+        fmt::format("{} {}: {}, {}, {}, 2^{} pixels", device_.info().uuid, device_.info().driver,
+                    result_.specialization, describe(result_.plan), describe(plan), std::bit_width(pixels));
     std::optional<Schedule> known = recall_schedule(kind, job_.disk_cache);
     if (known == Schedule::fused)
         return;
     std::unique_ptr<Wavefront> staged;
     try {
-        staged = make_wavefront(device, plan, cache, [] {});
+        staged = make_wavefront(plan, cache, [] {});
     } catch (const RenderError&) { // no room for both
         return;
     }
@@ -233,30 +284,31 @@ double Session::paths_per_second(Wavefront& wavefront, const Plan& plan) {
     return static_cast<double>(paths) / seconds;
 }
 
-// Rows of its bands. Where either schedule may be taken there is room for the paths of both.
-std::vector<std::uint32_t> Session::make_film(const Device& device) {
+// Where either schedule may be taken there is room for the paths of both.
+void Session::make_film() {
     shared::AovParams layers = device_scene_->frame().layers;
     for (const Schedule schedule : {Schedule::fused, Schedule::staged})
         if (layers.count > 0 && (wish_.schedule == schedule || wish_.schedule == Schedule::automatic)) {
-            const Plan plan = plan_by(device, schedule);
+            const Plan plan = plan_by(schedule);
             layers.records = std::max({layers.records, plan.slots, plan.waiting});
         }
-    bands_ = make_bands(device, commands_, job_.crop, result_.plan.most_film_bytes, layers);
-    device_scene_->set_records(layers.records);
+    bands_ = make_bands(device_, commands_, job_.crop, result_.plan.most_film_bytes, layers);
+    records_ = layers.records;
+}
+
+void Session::begin_identity(const Assets& assets) {
+    if (!job_.checkpoint && !job_.resume)
+        return;
     std::vector<std::uint32_t> rows;
     for (const Band& band : bands_)
         rows.push_back(band.rows);
-    return rows;
-}
-
-void Session::begin_identity(const Device& device, const Assets& assets, std::vector<std::uint32_t> rows) {
-    if (!job_.checkpoint && !job_.resume)
-        return;
     shared::FrameParams frame = device_scene_->frame();
     frame.layers.records = 0; // how it is carried out
     identity_ = identify(frame, device_scene_->specialization(), assets, device_scene_->lights(),
                          device_scene_->media(), device_scene_->surfaces(), device_scene_->points(), job_.sample_offset,
-                         fmt::format("{}, {}", device.info().name, device.info().driver), std::move(rows));
+                         fmt::format("{}, {}", device_.info().name, device_.info().driver), std::move(rows));
+    if (moving_) // of which the device has but a moment
+        identity_.kernel += scene_hash(*moving_);
     if (job_.resume)
         check_identity(job_.resume->identity, identity_);
 }

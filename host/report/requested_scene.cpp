@@ -12,6 +12,23 @@
 
 namespace vkvol {
 
+namespace {
+
+// While it takes its picture: at other times its file would have it where it was authored.
+void hold_camera(Scene& scene) {
+    if (!scene.motion_blur)
+        return;
+    MotionBlur blur = *scene.motion_blur;
+    blur.scene_at = [scene_at = blur.scene_at, camera = scene.camera](double time) {
+        Scene then = scene_at(time);
+        then.camera = camera;
+        return then;
+    };
+    scene.motion_blur = std::make_shared<const MotionBlur>(std::move(blur));
+}
+
+} // namespace
+
 std::string apply_request(const RenderRequest& request, bool has_view, Scene& scene, FieldCache& fields) {
     if (request.spp)
         scene.settings.spp = *request.spp;
@@ -31,6 +48,8 @@ std::string apply_request(const RenderRequest& request, bool has_view, Scene& sc
     }
     if (request.frame && !has_view)
         frame_medium(scene, fields);
+    if (!given.empty() || (request.frame && !has_view))
+        hold_camera(scene);
     return given;
 }
 

@@ -24,6 +24,8 @@ std::vector<std::string> light_groups(const Scene& scene) {
 }
 
 std::string trouble_with_layers(const Scene& scene) {
+    if (scene.motion_blur && (scene.layers & layer_position))
+        return "position: what moves has many; leave the layer out, or <motionBlur>";
     if (!reads_flux(scene.camera) || (scene.layers & layers_of_rays) == 0)
         return "";
     std::string names;

@@ -16,6 +16,7 @@
 
 #include "aovs.h"
 #include "lights.h"
+#include "motion_blur.h"
 #include "surfaces.h"
 
 namespace vkvol {
@@ -133,6 +134,14 @@ struct GridFile {
     GridFile beside(const std::string& other) const { return {path, other, memory}; } // another grid of it
 };
 
+// Velocities of what is in a grid, beside it in its file, and how much later than the file it is seen.
+struct Drift {
+    std::string grid;     // of vectors, world units per second; or none
+    double seconds = 0.0; // may be negative
+
+    bool exists() const { return !grid.empty() && seconds != 0.0; }
+};
+
 // What "per length" in sigma_a and sigma_s means: per index-space unit of the grid, or per world unit.
 // For a grid whose transform is M (index -> world) one voxel is |det M|^(1/3) world units long.
 enum class CoefficientUnit { voxel, world };
@@ -210,6 +219,7 @@ struct Volume {
     std::string name = {};        // of its layer; or empty
     glm::dmat4 transform{1.0};    // of the shape with all that is in it, in world space; affine, with an inverse
     std::string place;            // of the shape, "file:line:column", for messages; or empty
+    Drift drift = {};             // of a grid, and of all that is in its file
     std::optional<Noise> noise;   // not for grids, nor everywhere
     std::optional<Layers> layers; // for boxes and everywhere
     ValueMap map;                 // for grids and layers
@@ -333,9 +343,10 @@ struct Scene {
     std::vector<Light> lights;
     std::vector<Surface> surfaces;
     std::optional<Periodic> periodic;
-    Rgb background{0.0};               // constant radiance from every direction
-    std::string background_group = {}; // as of lights
-    unsigned layers = 0;               // Aovs, besides radiance
+    std::shared_ptr<const MotionBlur> motion_blur = {}; // none: nothing moves
+    Rgb background{0.0};                                // constant radiance from every direction
+    std::string background_group = {};                  // as of lights
+    unsigned layers = 0;                                // Aovs, besides radiance
     bool holds_out = false; // what is behind the media, light that was not scattered, stays out of the picture
     RenderSettings settings;
     std::string units = {}; // of its readings, if they are parts of what the light brings; or empty

@@ -152,14 +152,24 @@ std::optional<std::string> SceneKeys::find(const std::string& key) {
     return fmt::format("{:0>{}}", frame->second, digits);
 }
 
+// F, $F, ${F} or ${F:-1}, within an expression.
+bool SceneKeys::is_time_here() const {
+    std::size_t at = at_;
+    for (const char c : {'$', '{'})
+        at += at < raw_.size() && raw_[at] == c ? 1 : 0;
+    return raw_.compare(at, 1, frame_key) == 0 && (at + 1 == raw_.size() || !in_key(raw_[at + 1]));
+}
+
 // A key within an expression, with or without $.
 double SceneKeys::key_number(bool live) {
     const std::size_t first = at_;
+    const bool is_time = live && is_time_here();
     const std::string value = raw_[at_] == '$' ? reference(live) : value_of(key_here(), live);
     if (!live)
         return 1.0;
+    moves_ = moves_ || is_time;
     if (const std::optional<double> number = as_number(value))
-        return *number;
+        return *number + (is_time ? later_ : 0.0);
     throw InputError(fmt::format("{} is '{}', no number; give one to compute with it", raw_.substr(first, at_ - first),
                                  value.substr(0, 60)));
 }

@@ -12,6 +12,7 @@ std::optional<Volume> SceneReader::volume(const std::string& integrator) const {
     const std::optional<Shape> authored = shape(integrator, volume.place);
     if (authored)
         volume.shape = *authored;
+    volume.drift = drift(integrator);
     volume.noise = noise(volume);
     read_coefficients(volume);
     if (authored)

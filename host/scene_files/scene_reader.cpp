@@ -18,10 +18,10 @@ namespace {
 const std::vector<std::string> vocabulary = {
     "densityField", "sphere", "box", "everywhere", "layers", "models", "volumes", "surfaces", "noise", "sigma_a",
     "sigma_s", "heyneygreenstein_g", "phase", "medium", "emission", "albedo", "densityMap", "transferFunction", "light",
-    "lights", "backgroundColor", "camera", "irradiance", "fluence", "absorption", "units", "periodic", "width",
-    "height", "film", "rayPerPixelCount", "maxDepth", "integrator", "march", "filter", "russianRoulette", "majorant",
-    "pixelFilter", "lightRayDensityMultiplier", "shadowRayDensityMultiplier", "stepSize", "importanceSampling",
-    "fileName", "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds", "expected",
+    "lights", "backgroundColor", "camera", "irradiance", "fluence", "absorption", "units", "periodic", "motionBlur",
+    "width", "height", "film", "rayPerPixelCount", "maxDepth", "integrator", "march", "filter", "russianRoulette",
+    "majorant", "pixelFilter", "lightRayDensityMultiplier", "shadowRayDensityMultiplier", "stepSize",
+    "importanceSampling", "fileName", "multiThreaded", "multiThreadedChunkSize", "diffuseRebounds", "expected",
     // Names that are read for old files' sake: a misspelling in the original's report, and the old name of integrator.
     "heynegreenstein_g", "intersectionHandler"};
 
@@ -38,11 +38,13 @@ Scene SceneReader::read() {
     background.allow({"r", "g", "b", "multiplier", "group"});
     scene.background = color(background);
     scene.background_group = group_name(background);
+    scene.motion_blur = motion_blur();
     read_film(scene);
     read_light(scene);
     read_lights(scene);
     read_volumes(scene);
     read_surfaces(scene);
+    check_motion(scene);
     scene.periodic = periodic();
     read_units(scene);
     if (!any_medium(scene, [](const Volume& each) { return std::holds_alternative<GridFile>(each.shape); }))

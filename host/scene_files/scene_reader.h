@@ -3,6 +3,7 @@
 
 #include <initializer_list>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,6 +45,8 @@ private:
     void warn_about_light(const Scene& scene, const Method& method) const;
     void warn_about_steps(const Scene& scene, const Method& method) const;
     std::optional<Periodic> periodic() const;
+    std::shared_ptr<const MotionBlur> motion_blur() const;
+    void check_motion(Scene& scene) const;
     void read_units(Scene& scene) const;
     Camera sensor() const;
     Camera camera() const;
@@ -83,6 +86,7 @@ private:
     std::filesystem::path file_path(const XmlElement& element, const char* example) const;
     std::filesystem::path file_path(const XmlElement& element, const std::string& name) const;
     GridFile grid_file(const XmlElement& element) const;
+    Drift drift(const std::string& integrator) const;
     MeshFiles mesh_files() const;
     std::optional<Noise> noise(const Volume& volume) const;
     void read_layers(Volume& volume) const;

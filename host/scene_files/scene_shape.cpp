@@ -53,7 +53,7 @@ XmlElement SceneReader::shape_element(pugi::xml_node scope, const std::string& i
         if (!element.exists())
             continue;
         if (element.name() == "densityField") {
-            element.allow({"baseDir", "grid"}, true);
+            element.allow({"baseDir", "grid", "velocity", "framesPerSecond"}, true);
             if (element.text().empty() && element.attribute("baseDir").empty())
                 continue;
         }
@@ -132,6 +132,22 @@ GridFile SceneReader::grid_file(const XmlElement& element) const {
     if (file.grid.empty())
         element.fail_attribute("grid", "<densityField> grid: is empty; expected the name of a grid in the file");
     return file;
+}
+
+// Of the shape that is a density field, in its file or in that of --grid.
+Drift SceneReader::drift(const std::string& integrator) const {
+    const XmlElement element = shape_element(integrator);
+    if (!element.exists() || element.name() != "densityField")
+        return {};
+    Drift drift;
+    drift.grid = element.attribute("velocity");
+    const double rate =
+        element.attribute_number("framesPerSecond", 24.0, {1e-3, 1e6, true, true, "a number from 0.001 to 1000000"});
+    if (drift.grid.empty() && element.has("framesPerSecond"))
+        element.fail_attribute("framesPerSecond", "<densityField> framesPerSecond: of which velocities? Add "
+                                                  "velocity=\"v\", the name of a grid in the file, or remove it");
+    drift.seconds = document_.later() / rate;
+    return drift;
 }
 
 // All models; the original kept the last one alone.

@@ -26,12 +26,34 @@ std::string read_file(const std::filesystem::path& file) {
     return text;
 }
 
+struct SceneText {
+    std::string xml;
+    std::filesystem::path file;
+    Defines defines;
+    SceneOverrides overrides;
+};
+
+// What is wrong while the shutter opens or closes is told before anything is rendered.
+void add_times(Scene& scene, SceneText text) {
+    MotionBlur blur = *scene.motion_blur;
+    blur.scene_at = [text = std::make_shared<const SceneText>(std::move(text))](double later) {
+        XmlDocument document(text->xml, text->file, text->defines, "options", {}, text->overrides.may_be_unused, later);
+        return SceneReader(document, text->overrides).read();
+    };
+    scene.motion_blur = std::make_shared<const MotionBlur>(std::move(blur));
+    scene_of_time(scene, scene.motion_blur->open);
+    scene_of_time(scene, scene.motion_blur->close);
+}
+
 } // namespace
 
 Scene parse_scene(const std::string& xml, const std::filesystem::path& file, const Defines& defines,
                   const SceneOverrides& overrides) {
     XmlDocument document(xml, file, defines, "options", {}, overrides.may_be_unused);
-    return SceneReader(document, overrides).read();
+    Scene scene = SceneReader(document, overrides).read();
+    if (scene.motion_blur)
+        add_times(scene, {xml, file, defines, overrides});
+    return scene;
 }
 
 Scene parse_scene(const PbrtTranslation& translation, const std::filesystem::path& file,

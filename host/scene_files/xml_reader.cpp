@@ -109,9 +109,9 @@ void XmlDocument::warn(const std::string& place, const std::string& message) {
 
 XmlDocument::XmlDocument(const std::string& text, std::filesystem::path file,
                          const std::map<std::string, std::string>& defines, const std::string& root,
-                         ElementPlaces places, const std::set<std::string>& may_be_unused)
+                         ElementPlaces places, const std::set<std::string>& may_be_unused, double later)
     : places_(std::move(places)), text_(text), buffer_(text.begin(), text.end()), file_(std::move(file)),
-      keys_(defines, may_be_unused) {
+      keys_(defines, may_be_unused, later) {
     for (std::size_t i = 0; i < text_.size(); ++i)
         if (text_[i] == '\n')
             line_starts_.push_back(std::ptrdiff_t(i + 1));

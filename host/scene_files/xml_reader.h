@@ -23,11 +23,14 @@ class XmlDocument {
 public:
     // Throws InputError for malformed XML, a root element other than `root`, an attribute given twice, a $key
     // without a value, and a define that no $key uses; see scene_keys.h. `places`: of elements, where the text was made
-    // of something else. `may_be_unused`: defines.
+    // of something else. `may_be_unused`: defines. `later`: frames after F.
     XmlDocument(const std::string& text, std::filesystem::path file, const std::map<std::string, std::string>& defines,
-                const std::string& root, ElementPlaces places = {}, const std::set<std::string>& may_be_unused = {});
+                const std::string& root, ElementPlaces places = {}, const std::set<std::string>& may_be_unused = {},
+                double later = 0.0);
 
     pugi::xml_node root() const { return root_; }
+    bool moves() const { return keys_.moves(); } // with F
+    double later() const { return keys_.later(); }
     const std::filesystem::path& file() const { return file_; }
 
     // "file:line:column", both counted from 1, columns in characters.

@@ -37,6 +37,7 @@ inline constexpr const char* element_names[] = {"densityField",
                                                 "fluence",
                                                 "absorption",
                                                 "units",
+                                                "motionBlur",
                                                 "pixelFilter",
                                                 "width",
                                                 "height",
@@ -69,7 +70,7 @@ struct Words {
 };
 
 inline constexpr Words grammar[] = {
-    {"densityField", "cloud.nvdb|cloud.vdb|fire.nvdb|none.nvdb", {"baseDir", "grid"}},
+    {"densityField", "cloud.nvdb|cloud.vdb|fire.nvdb|none.nvdb", {"baseDir", "grid", "velocity", "framesPerSecond"}},
     {"sphere", "", {"x", "y", "z", "radius"}},
     {"box", "", {"x", "y", "z", "width", "height", "depth"}},
     {"everywhere", "", {}},
@@ -100,6 +101,7 @@ inline constexpr Words grammar[] = {
     {"irradiance", "", {"x", "y", "z", "lookAt", "up", "width", "height"}},
     {"fluence", "0 1 0|0 1 0 2 3 4|", {"file", "baseDir"}},
     {"units", "radiance|reflectance|transmittance", {}},
+    {"motionBlur", "", {"open", "close"}},
     {"absorption", "", {"x", "y", "z", "width", "height", "depth", "cells"}},
     {"camera", "", {"z", "shutter", "fNumber", "iso", "luminanceUnit"}},
     {"pixelFilter", "box|tent|gaussian|blackmanHarris", {"radius"}},
@@ -180,7 +182,8 @@ inline constexpr const char* ordinary_numbers[] = {"0.5",
                                                    "0",
                                                    "${b:-0.5}",
                                                    "${= 1/2}",
-                                                   "${= 0.3*${b:-1}}"};
+                                                   "${= 0.3*${b:-1}}",
+                                                   "${= 0.5 + 0.1*${F:-1}}"};
 
 inline constexpr const char* edge_values[] = {"NaN",
                                               "nan",
