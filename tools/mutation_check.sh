@@ -31,6 +31,7 @@ build=$work/build
 # name ~ file ~ text ~ replacement ~ tests (a Catch2 specification). "^" parts several texts and their replacements.
 mutations() {
     cat <<'END'
+kernels that hang on the frame alone ~ shaders/lib/buffers.glsl ~ return number + (gl_GlobalInvocationID.x >> 31u); ~ return number; ~ [command]
 moments at the same times for all seeds ~ host/scene/motion_blur.cpp ~ + turn_of(seed); ~ + turn_of(0); ~ [motion]
 moments that last twice as long ~ host/scene/motion_blur.cpp ~ together *= 2; ~ together *= 4; ~ [motion]
 what moves as at its first moment ~ host/render/session.cpp ~ enter_moment(); ~ ; ~ [motion]

@@ -128,9 +128,35 @@ bool goes_through() {
 }
 
 layout(scalar, binding = BINDING_FRAME) uniform FrameBlock { FrameParams frame_block; };
+// The same number, though nobody but us knows that it is the same for all lanes. Where a branch or the end of a loop hangs on
+// numbers of the frame or push constants alone, Mesa's lavapipe compiles the kernel anew for these numbers, with every submit.
+uint by_lane(uint number) {
+    return number + (gl_GlobalInvocationID.x >> 31u); // no dispatch has so many
+}
+float by_lane(float number) {
+    return uintBitsToFloat(by_lane(floatBitsToUint(number)));
+}
+
 // A copy, read once before any branch or loop: within one, llvmpipe gathers even constants lane by lane, and a quarter of
 // all time went by at it. Tables within, looked up by index, are read from the block all the same.
-FrameParams frame = frame_block;
+FrameParams read_frame() {
+    FrameParams copy = frame_block;
+    copy.sensors[0].blades = by_lane(copy.sensors[0].blades);
+    copy.media[0].bvh_nodes = by_lane(copy.media[0].bvh_nodes);
+    copy.media[0].noise.octaves = by_lane(copy.media[0].noise.octaves);
+    copy.sky_count = by_lane(copy.sky_count);
+    copy.lamp_first = by_lane(copy.lamp_first);
+    copy.lamp_count = by_lane(copy.lamp_count);
+    copy.surface_nodes = by_lane(copy.surface_nodes);
+    copy.planes = by_lane(copy.planes);
+    copy.layers.count = by_lane(copy.layers.count);
+    copy.march.jitter = by_lane(copy.march.jitter);
+    copy.particles.radius = by_lane(copy.particles.radius);
+    copy.particles.unit = by_lane(copy.particles.unit);
+    copy.lights[LIGHT_BACKGROUND].radiance.x = by_lane(copy.lights[LIGHT_BACKGROUND].radiance.x);
+    return copy;
+}
+FrameParams frame = read_frame();
 layout(scalar, binding = BINDING_GRID) readonly buffer GridBlock { uint grid_words[]; };
 layout(scalar, binding = BINDING_LEAF_TABLE) readonly buffer LeafTableBlock { uint leaf_table[]; };
 layout(scalar, binding = BINDING_MAJORANTS) readonly buffer MajorantBlock { float majorants[]; };
