@@ -97,8 +97,9 @@ public:
     LoadedMedium load(const Volume& volume);
 
 private:
-    DensityField field_of(const Volume& volume, const GridFile& file, GridValues values = GridValues::numbers);
-    DensityField drifted(const Drift& drift, const GridFile& file, const DensityField& field);
+    DensityField field_of(const Volume& volume, const GridFile& file, GridValues values = GridValues::numbers,
+                          bool goes_on = false);
+    DensityField drifted(const Drift& drift, const GridFile& file, const DensityField& field, bool goes_on);
     float largest_value(const DensityField& field);
     void load_phase_nodes(const Volume& volume, LoadedMedium& loaded);
     void load_grid(const Volume& volume, const GridFile& file, LoadedMedium& loaded);
@@ -124,29 +125,30 @@ private:
     std::map<std::vector<double>, SharedArray<shared::MapKnot>> maps_;
     std::size_t knots_ = 0;                     // of the scene's longest map: one search serves all
     std::map<const std::byte*, float> largest_; // likewise
-    // By the bytes of grid and velocities, and seconds.
-    std::map<std::tuple<const std::byte*, const std::byte*, double>, DensityField> drifted_;
+    // By the bytes of grid and velocities, seconds, and whether it goes on.
+    std::map<std::tuple<const std::byte*, const std::byte*, double, bool>, DensityField> drifted_;
     std::map<std::pair<double, double>, SharedArray<glm::vec3>> blackbodies_;
     std::map<std::string, SharedArray<shared::PhaseNode>> phases_; // by their file
     std::set<std::string> said_;
 };
 
-DensityField Loader::field_of(const Volume& volume, const GridFile& file, GridValues values) {
+DensityField Loader::field_of(const Volume& volume, const GridFile& file, GridValues values, bool goes_on) {
     DensityField field = fields_.take(file, values);
     if (volume.drift.exists())
-        field = drifted(volume.drift, file, field);
+        field = drifted(volume.drift, file, field, goes_on);
     field.place(volume.transform);
     return field;
 }
 
 // Once for all that have the grid at that time.
-DensityField Loader::drifted(const Drift& drift, const GridFile& file, const DensityField& field) {
+DensityField Loader::drifted(const Drift& drift, const GridFile& file, const DensityField& field, bool goes_on) {
     const DensityField velocity = fields_.take(file.beside(drift.grid), GridValues::vectors);
-    const auto [found, is_new] = drifted_.try_emplace({field.bytes.data(), velocity.bytes.data(), drift.seconds});
+    const auto [found, is_new] =
+        drifted_.try_emplace({field.bytes.data(), velocity.bytes.data(), drift.seconds, goes_on});
     if (!is_new)
         return found->second;
     try {
-        return found->second = vkvol::drifted(field, velocity, drift.seconds);
+        return found->second = vkvol::drifted(field, velocity, drift.seconds, goes_on);
     } catch (const InputError& error) {
         throw InputError(fmt::format("{}: \"{}\": {}", file.path.string(), drift.grid, error.what()));
     }
@@ -162,7 +164,7 @@ float Loader::largest_value(const DensityField& field) {
 void Loader::load_albedo(const Volume& volume, const GridFile& file, LoadedMedium& loaded) {
     if (volume.albedo_grid.empty())
         return;
-    DensityField field = field_of(volume, file.beside(volume.albedo_grid), GridValues::numbers_or_colors);
+    DensityField field = field_of(volume, file.beside(volume.albedo_grid), GridValues::numbers_or_colors, true);
     if (field.active_voxels == 0)
         throw InputError(
             fmt::format("{}: \"{}\" has no active voxel, and would make the medium black; leave <albedo> out",
@@ -298,6 +300,10 @@ void Loader::load_map(const Volume& volume, const GridFile& file, const DensityF
 }
 
 void Loader::load_grid(const Volume& volume, const GridFile& file, LoadedMedium& loaded) {
+    if (volume.drift.exists() && volume.map.exists() && mapped_density(volume.map, 0.0) > 0.0)
+        throw InputError(fmt::format("{}: \"{}\" moves the medium, which its map leaves no end: it gives density where "
+                                     "the grid has 0; let it give none there, or leave velocity out",
+                                     file.path.string(), volume.drift.grid));
     DensityField field = field_of(volume, file);
     if (field.active_voxels == 0)
         return;

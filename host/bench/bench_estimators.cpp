@@ -30,6 +30,15 @@ Estimator load_estimator(const RenderRequest& request, const std::optional<std::
 Estimator with_request(const Estimator& of, const IntegratorRequest& request) {
     Estimator estimator;
     estimator.scene = with_preset(of.scene);
+    if (of.scene.motion_blur) { // at all times
+        MotionBlur blur = *of.scene.motion_blur;
+        blur.scene_at = [scene_at = blur.scene_at, settings = of.scene.settings](double time) {
+            Scene then = scene_at(time);
+            then.settings = settings;
+            return with_preset(then);
+        };
+        estimator.scene.motion_blur = std::make_shared<const MotionBlur>(std::move(blur));
+    }
     estimator.scene.settings.integrator = request.name;
     estimator.scene.settings.choices = request.choices;
     estimator.method = choose_method(with_preset(estimator.scene));

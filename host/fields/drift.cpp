@@ -15,7 +15,8 @@ namespace vkvol {
 
 namespace {
 
-constexpr double farthest = 4096.0; // voxels
+constexpr double farthest = 4096.0;               // voxels
+constexpr double most_blocks = double(1u << 22u); // of 8^3 voxels, for which a moment takes minutes
 
 glm::dvec3 to_vector(glm::vec3 value) {
     return value;
@@ -50,10 +51,11 @@ glm::ivec3 blocks_of(const VoxelBox& box) {
 
 class Drifting {
 public:
-    Drifting(const DensityField& field, const DensityField& velocity, double seconds)
-        : field_(field), velocity_(velocity), to_velocity_(glm::inverse(velocity.as_authored) * field.as_authored),
-          to_voxels_(glm::inverse(glm::dmat3(field.as_authored)) * seconds), reach_(longest_way()), box_(box()),
-          blocks_(blocks_of(box_)) {
+    Drifting(const DensityField& field, const DensityField& velocity, double seconds, bool goes_on)
+        : field_(field), velocity_(velocity), goes_on_(goes_on),
+          to_velocity_(glm::inverse(velocity.as_authored) * field.as_authored),
+          to_voxels_(glm::inverse(glm::dmat3(field.as_authored)) * seconds), reach_(longest_way()), windy_(windy()),
+          box_(box()), blocks_(blocks_of(box_)) {
         find_blocks();
     }
 
@@ -95,14 +97,49 @@ private:
             reach += glm::abs(to_voxels_[axis]) * longest[axis];
         const double most = std::max({reach.x, reach.y, reach.z});
         if (!(most <= farthest))
-            throw InputError(fmt::format("its velocities move by {:.3g} voxels in the time that light is taken in, and "
-                                         "{:g} are the most; are they per frame? Then framesPerSecond is 1",
+            throw InputError(fmt::format("moves by {:.3g} voxels in the time that light is taken in, and {:g} are the "
+                                         "most; velocities are world units per second: raise framesPerSecond, or let "
+                                         "<motionBlur> close sooner",
                                          most, farthest));
         return glm::ivec3(glm::ceil(reach)) + 1;
     }
 
-    // What is within reach of the grid's voxels.
-    VoxelBox box() const { return {field_.voxel_min - reach_, field_.voxel_max + reach_}; }
+    // Where there are velocities within reach of the grid's voxels; empty if they are all elsewhere.
+    VoxelBox windy() const {
+        const glm::dmat4 to_voxels = glm::inverse(to_velocity_);
+        glm::dvec3 low(1e9), high(-1e9);
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::bvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
+            const glm::dvec3 at =
+                glm::mix(glm::dvec3(velocity_.voxel_min - 2), glm::dvec3(velocity_.voxel_max + 2), side);
+            const glm::dvec3 voxel = to_voxels * glm::dvec4(at, 1.0);
+            low = glm::min(low, voxel);
+            high = glm::max(high, voxel);
+        }
+        const glm::dvec3 first = field_.voxel_min - reach_, last = field_.voxel_max + reach_;
+        return {glm::ivec3(glm::floor(glm::clamp(low, first, last + 1.0))),
+                glm::ivec3(glm::ceil(glm::clamp(high, first - 1.0, last)))};
+    }
+
+    // The grid's voxels, and those.
+    VoxelBox box() const {
+        VoxelBox box{field_.voxel_min, field_.voxel_max};
+        if (!goes_on_ && glm::all(glm::lessThanEqual(windy_.low, windy_.high))) {
+            box.low = glm::min(box.low, windy_.low);
+            box.high = glm::max(box.high, windy_.high);
+        }
+        const glm::dvec3 blocks = glm::dvec3(blocks_of(box));
+        check_blocks(blocks.x * blocks.y * blocks.z, 64.0 * most_blocks);
+        return box;
+    }
+
+    static void check_blocks(double blocks, double most) {
+        if (blocks > most)
+            throw InputError(
+                fmt::format("moves things within {:.3g} voxels, and {:.3g} are the most; crop the grids, or "
+                            "raise framesPerSecond, if velocities are stray",
+                            512.0 * blocks, 512.0 * most));
+    }
 
     std::size_t place_of(glm::ivec3 block) const {
         return (std::size_t(block.x) * blocks_.y + block.y) * blocks_.z + block.z;
@@ -117,8 +154,20 @@ private:
             for (b.y = 0; b.y < field_.leaf_dims.y; ++b.y)
                 for (b.z = 0; b.z < field_.leaf_dims.z; ++b.z)
                     wanted_[place_of(first + b)] = field_.block(b).constant.value_or(1.0f) > 0.0f;
+        const std::vector<char> holds = wanted_;
         for (int axis = 0; axis < 3; ++axis)
             widen(axis, (reach_[axis] + 7) / 8);
+        for (b.x = 0; b.x < blocks_.x; ++b.x)
+            for (b.y = 0; b.y < blocks_.y; ++b.y)
+                for (b.z = 0; b.z < blocks_.z; ++b.z)
+                    wanted_[place_of(b)] &= holds[place_of(b)] || meets_wind(b);
+        check_blocks(double(std::count(wanted_.begin(), wanted_.end(), 1)), most_blocks);
+    }
+
+    bool meets_wind(glm::ivec3 block) const {
+        const glm::ivec3 first = ((box_.low >> 3) + block) * 8;
+        return glm::all(glm::lessThanEqual(first, windy_.high)) &&
+               glm::all(glm::greaterThanEqual(first + 7, windy_.low));
     }
 
     void widen(int axis, int reach) {
@@ -147,7 +196,9 @@ private:
     }
 
     template <class Value> Value value_at(glm::ivec3 voxel) const {
-        const glm::dvec3 from = glm::dvec3(voxel) - way(voxel);
+        glm::dvec3 from = glm::dvec3(voxel) - way(voxel);
+        if (goes_on_)
+            from = glm::clamp(from, glm::dvec3(field_.voxel_min), glm::dvec3(field_.voxel_max));
         if constexpr (std::is_same_v<Value, float>) {
             return static_cast<float>(trilinear(from, [&](glm::ivec3 ijk) { return to_number(field_.value(ijk)); }));
         } else {
@@ -158,9 +209,11 @@ private:
 
     const DensityField& field_;
     const DensityField& velocity_;
+    const bool goes_on_;           // beyond its box as it is at its faces
     const glm::dmat4 to_velocity_; // from voxels of the grid to those of the velocities
     const glm::dmat3 to_voxels_;   // from velocities to ways
     const glm::ivec3 reach_;       // voxels
+    const VoxelBox windy_;
     const VoxelBox box_;
     const glm::ivec3 blocks_;
     std::vector<char> wanted_; // of each block of the box, z fastest
@@ -181,10 +234,14 @@ template <class Value> GridBytes Drifting::build() const {
                 const glm::ivec3 first = ((box_.low >> 3) + b) * 8;
                 for (int n = 0; n < 512; ++n) {
                     const glm::ivec3 voxel = first + glm::ivec3(n >> 6, n >> 3 & 7, n & 7);
+                    if (voxel != glm::clamp(voxel, box_.low, box_.high))
+                        continue;
                     if (const Value value = value_at<Value>(voxel); value != nothing)
                         accessor.setValue({voxel.x, voxel.y, voxel.z}, value);
                 }
             }
+    for (const glm::ivec3& corner : {field_.voxel_min, field_.voxel_max}) // of the box, which does not shrink
+        accessor.setValue({corner.x, corner.y, corner.z}, value_at<Value>(corner));
     const glm::dmat4& m = field_.as_authored;
     const glm::dmat3 linear(m), inverse = glm::inverse(linear);
     double to_world[3][3], to_index[3][3];
@@ -203,10 +260,10 @@ template <class Value> GridBytes Drifting::build() const {
 
 } // namespace
 
-DensityField drifted(const DensityField& field, const DensityField& velocity, double seconds) {
+DensityField drifted(const DensityField& field, const DensityField& velocity, double seconds, bool goes_on) {
     if (field.active_voxels == 0 || velocity.active_voxels == 0 || seconds == 0.0)
         return field;
-    const Drifting drifting(field, velocity, seconds);
+    const Drifting drifting(field, velocity, seconds, goes_on);
     const bool is_color = field.type == GRID_COLOR;
     DensityField result =
         make_density_field(is_color ? drifting.build<nanovdb::Vec3f>() : drifting.build<float>(), "what drifted",

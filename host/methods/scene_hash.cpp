@@ -309,11 +309,10 @@ void add_method(Writer& writer, const RenderSettings& settings, const Method& me
     }
 }
 
-// By where it is at the beginning, in the middle and at the end.
 void add_motion(Writer& writer, const Scene& scene) {
     const MotionBlur& blur = *scene.motion_blur;
     writer.add("motion", glm::dvec3(blur.open, blur.close, 0.0));
-    for (const double time : {blur.open, 0.5 * (blur.open + blur.close), blur.close}) {
+    for (const double time : telling_times(blur)) {
         Scene then = scene_of_time(scene, time);
         then.motion_blur.reset();
         writer.add("then", scene_hash(then));

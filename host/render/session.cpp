@@ -44,6 +44,7 @@ void Session::render(std::uint32_t samples) {
         throw RenderError(
             "paths of this render did not end and were abandoned; what they are part of is missing, and it "
             "cannot be gone on with");
+    check_ready();
     wanted_ = samples;
     if (next_ == 0) { // nothing was rendered yet
         if (job_.resume)
@@ -57,7 +58,13 @@ void Session::render(std::uint32_t samples) {
     stopped_ = result_.interrupted = false;
     stopped_at_.reset();
     while (done_ < wanted_ && !is_good_enough() && !stopping()) {
-        enter_moment();
+        try {
+            enter_moment();
+        } catch (const std::exception&) {
+            if (job_.checkpoint && device_scene_)
+                save_checkpoint();
+            throw;
+        }
         if (batch_ == 0)
             batch_ = std::min({next_, wanted_ - done_, until_next_look(), until_next_moment()});
         const double begun = watch_.seconds();
@@ -77,6 +84,7 @@ void Session::render(std::uint32_t samples) {
 }
 
 RenderResult& Session::result() {
+    check_ready();
     if (!job_.dry_run)
         develop_film();
     if (trace_)
@@ -280,7 +288,7 @@ void Session::develop_film() {
     film.picture_width = scene_.picture.width;
     film.picture_height = scene_.picture.height;
     film.crop = job_.crop;
-    film.places = reading_places(scene_.camera, scene_.picture, job_.crop);
+    film.places = reading_places(moving_ ? moving_->camera : scene_.camera, scene_.picture, job_.crop);
     const std::vector<shared::FilmPixel> pixels = read_bands(commands_, bands_, width());
     develop(pixels, film);
     film.layers =

@@ -98,7 +98,8 @@ private:
     std::uint32_t width() const { return static_cast<std::uint32_t>(job_.crop.x1 - job_.crop.x0); }
     void load();
     void take_warnings(const Assets& assets);
-    Scene scene_now() const;
+    Scene scene_at(const Moment& moment) const;
+    void check_ready() const;
     void find_wish(const Assets& assets, const Specialization& specialization);
     Plan plan_by(Schedule schedule) const;
     void keep(const Assets& assets);
@@ -140,7 +141,8 @@ private:
     LoopSizes loops_;
     Commands commands_;
     std::optional<DeviceScene> device_scene_;
-    FieldCache own_fields_; // of what moves, without a workshop's
+    FieldCache own_fields_;                  // of what moves, without a workshop's
+    std::optional<PipelineCache> own_cache_; // without a workshop's
     std::vector<Band> bands_;
     std::uint32_t records_ = 0; // of paths, in them
     std::optional<TraceBuffer> trace_;

@@ -51,7 +51,7 @@ MediaFigures figures_of(const Assets& assets) {
 Session::Session(const Device& device, const Scene& scene, const RenderJob& job)
     : device_(device), job_(job), moving_(scene.motion_blur ? std::optional(scene) : std::nullopt),
       moment_(moving_ ? std::optional(moment_of_sample(job.sample_offset)) : std::nullopt),
-      scene_(with_surface_files(with_preset(moving_ ? scene_now() : scene))), method_(choose_method(scene_)),
+      scene_(with_surface_files(with_preset(moving_ ? scene_at(*moment_) : scene))), method_(choose_method(scene_)),
       commands_(device) {
     scene_.warnings.erase(scene_.warnings.begin(), scene_.warnings.begin() + std::ptrdiff_t(scene.warnings.size()));
     load();
@@ -59,26 +59,33 @@ Session::Session(const Device& device, const Scene& scene, const RenderJob& job)
     watch_.lap();
 }
 
-Scene Session::scene_now() const {
-    return scene_of_time(*moving_, time_of(*moving_->motion_blur, *moment_, job_.seed));
+Scene Session::scene_at(const Moment& moment) const {
+    return scene_of_time(*moving_, time_of(*moving_->motion_blur, moment, job_.seed));
 }
 
 // Of the sample that comes next: all before it are finished. What it was compiled for, the device keeps.
 void Session::enter_moment() {
     if (!moving_ || next_sample() < moment_->end)
         return;
-    moment_ = moment_of_sample(next_sample());
-    const std::uint32_t layers = device_scene_->layers().params.count;
-    wavefront_.reset();
-    device_scene_.reset();
-    scene_ = with_surface_files(with_preset(scene_now()));
-    Method method = choose_method(scene_);
-    if (method.paths != method_.paths || plan_layers(scene_).params.count != layers)
+    const Moment moment = moment_of_sample(next_sample());
+    Scene scene = with_surface_files(with_preset(scene_at(moment)));
+    Method method = choose_method(scene);
+    if (method.paths != method_.paths || plan_layers(scene).params.count != device_scene_->layers().params.count)
         throw InputError("<motionBlur>: what moves needs other paths, or has other layers, at some times than at "
                          "others; name the paths, or leave the layers out");
+    moment_ = moment;
+    scene_ = std::move(scene);
     method_ = std::move(method);
+    wavefront_.reset();
+    device_scene_.reset();
     load();
     compile();
+}
+
+// Files may be gone since, and memory used up.
+void Session::check_ready() const {
+    if (!device_scene_ || !wavefront_)
+        throw RenderError("a moment of what moves could not be made ready, and the render cannot be gone on with");
 }
 
 std::uint32_t Session::until_next_moment() const {
@@ -121,9 +128,12 @@ void Session::load() {
     if (is_first)
         begin_identity(assets);
     result_.glows = device_scene_->emits() && std::none_of(assets.media.begin(), assets.media.end(), has_colour);
-    result_.integrator = method_.integrator;
-    result_.biased = method_.biased;
-    result_.by_chance = method_.by_chance;
+    if (is_first)
+        result_.integrator = method_.integrator;
+    if (result_.biased.empty())
+        result_.biased = method_.biased;
+    if (result_.by_chance.empty())
+        result_.by_chance = method_.by_chance;
     result_.specialization = device_scene_->text();
     result_.trace_origin = device_scene_->origin();
     keep(assets);
@@ -193,9 +203,9 @@ void Session::keep(const Assets& assets) {
 
 void Session::compile() {
     Stopwatch watch;
-    std::optional<PipelineCache> own_cache;
-    const PipelineCache& cache =
-        job_.workshop ? job_.workshop->pipelines(job_.disk_cache) : own_cache.emplace(device_, job_.disk_cache);
+    if (!job_.workshop && !own_cache_)
+        own_cache_.emplace(device_, job_.disk_cache);
+    const PipelineCache& cache = job_.workshop ? job_.workshop->pipelines(job_.disk_cache) : *own_cache_;
     device_scene_->make_light_cache();
     if (job_.trace && !trace_)
         trace_.emplace(device_, commands_);

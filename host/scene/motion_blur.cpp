@@ -52,6 +52,14 @@ double time_of(const MotionBlur& blur, const Moment& moment, std::uint32_t seed)
     return blur.open + (blur.close - blur.open) * (part - std::floor(part));
 }
 
+// Its ends, its middle, and two that no simple motion goes through like these.
+std::vector<double> telling_times(const MotionBlur& blur) {
+    std::vector<double> times;
+    for (const double part : {0.0, 0.2360679775, 0.5, 0.7360679775, 1.0})
+        times.push_back(blur.open + (blur.close - blur.open) * part);
+    return times;
+}
+
 Scene scene_of_time(const Scene& scene, double time) {
     const auto fail = [&](const std::string& message) {
         throw InputError(
@@ -75,6 +83,8 @@ Scene scene_of_time(const Scene& scene, double time) {
     then.layers = scene.layers;
     then.holds_out = scene.holds_out;
     then.has_camera = scene.has_camera;
+    if (!scene.has_camera) // which it has got since
+        then.camera = scene.camera;
     then.expected = scene.expected;
     then.motion_blur = scene.motion_blur;
     then.warnings = scene.warnings; // those of that time are the same, or come too late

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 namespace vkvol {
 
@@ -28,6 +29,9 @@ Moment moment_of_sample(std::uint64_t sample);
 // Its time: evenly distributed over seeds, and spread evenly for one (van der Corput 1935, turned at random after
 // Cranley and Patterson 1976), so that the mean of many samples is that over the time without bias.
 double time_of(const MotionBlur& blur, const Moment& moment, std::uint32_t seed);
+
+// By which two scenes that move are told apart, and what is wrong with one is found before it is rendered.
+std::vector<double> telling_times(const MotionBlur& blur);
 
 // As it is then: the camera, media, lights and surfaces of that time; samples, size, layers and how light is found are
 // the scene's. Throws InputError, with the time, for what cannot be, and where sensors would have other pixels then.

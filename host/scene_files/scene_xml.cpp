@@ -33,7 +33,6 @@ struct SceneText {
     SceneOverrides overrides;
 };
 
-// What is wrong while the shutter opens or closes is told before anything is rendered.
 void add_times(Scene& scene, SceneText text) {
     MotionBlur blur = *scene.motion_blur;
     blur.scene_at = [text = std::make_shared<const SceneText>(std::move(text))](double later) {
@@ -41,8 +40,8 @@ void add_times(Scene& scene, SceneText text) {
         return SceneReader(document, text->overrides).read();
     };
     scene.motion_blur = std::make_shared<const MotionBlur>(std::move(blur));
-    scene_of_time(scene, scene.motion_blur->open);
-    scene_of_time(scene, scene.motion_blur->close);
+    for (const double time : telling_times(*scene.motion_blur))
+        scene_of_time(scene, time);
 }
 
 } // namespace

@@ -143,6 +143,28 @@ TEST_CASE("colours drift as densities do", "[cpu][motion][grid]") {
     REQUIRE(moved.type == GRID_COLOR);
     for (int x = -20; x < 30; ++x)
         CHECK(moved.color({x, 4, 7}) == field.color({x + 6, 1, 7}));
+    // An albedo goes on beyond its box as it is at its faces, and keeps it.
+    const DensityField tint = drifted(field, wind, 3.0, true);
+    CHECK(tint.voxel_min == field.voxel_min);
+    CHECK(tint.voxel_max == field.voxel_max);
+    for (int x = field.voxel_min.x; x <= field.voxel_max.x; ++x)
+        CHECK(tint.color({x, 4, 7}) == field.color({std::min(x + 6, field.voxel_max.x), 1, 7}));
+    const DensityField barely = drifted(field, wind, 1e-4, true); // not a thousandth of the colour beyond it
+    CHECK(barely.color(field.voxel_max).x == Approx(field.color(field.voxel_max).x).margin(1e-3));
+}
+
+// Where a grid's values are mapped, its box is where the medium is.
+TEST_CASE("the box of what drifts does not shrink", "[cpu][motion][grid]") {
+    GridRecipe recipe = smoke();
+    recipe.background = -1.0f; // so that zeros are active
+    recipe.value = [](glm::ivec3 v) { return v.x > 3 && v.x < 8 ? 1.0f : 0.0f; };
+    DensityField field = field_of(recipe);
+    const DensityField wind = field_of(
+        velocities(wide_low, wide_high, [](glm::ivec3) { return glm::vec3(0.5f, 0.0f, 0.0f); }), GridValues::vectors);
+    const DensityField moved = drifted(field, wind, 1.0);
+    CHECK(moved.voxel_min == field.voxel_min);
+    CHECK(moved.voxel_max == field.voxel_max);
+    CHECK(moved.value({8, 0, 5}) == Approx(1.0));
 }
 
 TEST_CASE("what is said of velocities that are none", "[cpu][motion][grid]") {
@@ -150,5 +172,11 @@ TEST_CASE("what is said of velocities that are none", "[cpu][motion][grid]") {
     CHECK_THROWS_WITH(field_of(smoke(), GridValues::vectors), Contains("velocities are vectors (Vec3f)"));
     const DensityField storm = field_of(
         velocities(wide_low, wide_high, [](glm::ivec3) { return glm::vec3(1e5f, 0.0f, 0.0f); }), GridValues::vectors);
-    CHECK_THROWS_WITH(drifted(field, storm, 1.0), Contains("2e+05 voxels") && Contains("framesPerSecond is 1"));
+    CHECK_THROWS_WITH(drifted(field, storm, 1.0), Contains("2e+05 voxels") && Contains("raise framesPerSecond"));
+    // Far from it.
+    const DensityField near = field_of(smoke());
+    const DensityField gale =
+        field_of(velocities({-700, -700, -700}, {-700, -700, -700}, [](glm::ivec3) { return glm::vec3(1900.0f); }),
+                 GridValues::vectors);
+    CHECK(drifted(near, gale, 1.0).voxel_max == near.voxel_max); // nothing blows near it
 }

@@ -199,9 +199,9 @@ TEST_CASE("a sample sees grids drifted", "[motion]") {
         const double seconds = time_of(*scene.motion_blur, moment_of_sample(sample), 8) / 2.0;
         const auto grids = std::make_shared<MemoryGrids>();
         for (const char* name : {"density", "temperature", "tint"})
-            grids->grids.push_back(
-                {name,
-                 drifted(field(name, GridValues::numbers_or_colors), field("v", GridValues::vectors), seconds).bytes});
+            grids->grids.push_back({name, drifted(field(name, GridValues::numbers_or_colors),
+                                                  field("v", GridValues::vectors), seconds, name == std::string("tint"))
+                                              .bytes});
         Scene then = parse(body);
         std::get<GridFile>(then.volumes.front().shape).memory = grids;
         CHECK(same_bits(film, render_here(then, 8, job).film));
@@ -246,6 +246,26 @@ TEST_CASE("what moves is the same however it is carried out", "[motion]") {
         0);
     other.settings = scene.settings;
     CHECK_THROWS_AS(Session(test_device(), other, job), InputError);
+}
+
+// A lamp that is below 0 for a fiftieth of the time on either side of 0.62, where nobody looks before.
+TEST_CASE("a moment that cannot be leaves what was rendered", "[motion]") {
+    Scene scene = parse_at(R"(<width>8</width><height>8</height><camera z="5"/><sphere/>
+        <lights><point y="3" r="${= abs(F - 0.62) - 0.02}" g="1"/></lights>)",
+                           0);
+    RenderJob job;
+    job.crop = {0, 8, 0, 8};
+    std::optional<Checkpoint> kept;
+    job.checkpoint_seconds = 1e9;
+    job.checkpoint = [&](const Checkpoint& checkpoint) { kept = checkpoint; };
+    Session session(test_device(), scene, job);
+    CHECK_THROWS_WITH(session.render(256), Contains("frames from the picture's, which its <motionBlur> includes"));
+    REQUIRE(session.samples() > 0);
+    CHECK(session.result().film.samples.front() == session.samples());
+    REQUIRE(kept);
+    CHECK(kept->done == session.samples());
+    CHECK_THROWS_AS(session.render(256), InputError);
+    CHECK(session.result().film.samples.front() == session.samples());
 }
 
 // The reference at times that are drawn one by one.
