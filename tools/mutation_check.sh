@@ -32,10 +32,10 @@ build=$work/build
 mutations() {
     cat <<'END'
 kernels that hang on the frame alone ~ shaders/lib/buffers.glsl ~ return number + (gl_GlobalInvocationID.x >> 31u); ~ return number; ~ [command]
-moments at the same times for all seeds ~ host/scene/motion_blur.cpp ~ + turn_of(seed); ~ + turn_of(0); ~ [motion]
+moments at the same times for all seeds ~ host/scene/motion_blur.cpp ~ + turn_of(seed); ~ + turn_of(0u * seed); ~ [motion]
 moments that last twice as long ~ host/scene/motion_blur.cpp ~ together *= 2; ~ together *= 4; ~ [motion]
 what moves as at its first moment ~ host/render/session.cpp ~ enter_moment(); ~ ; ~ [motion]
-later moments not what identifies a render ~ host/render/session_setup.cpp ~ identity_.kernel += scene_hash(*moving_); ~ ; ~ [motion]
+later moments not what identifies a render ~ host/render/session_setup.cpp ~ identity_.kernel += scene_hash(*moving_); ~ identity_.kernel += ""; ~ [motion]
 frames of files not whole while something moves ~ host/scene_files/scene_keys.cpp ~ *number + (is_time ? later_ : 0.0); ~ *number; ~ [motion]
 grids drift backwards ~ host/fields/drift.cpp ~ glm::dvec3(voxel) - way(voxel) ~ glm::dvec3(voxel) + way(voxel) ~ [motion]
 what drifts into empty blocks lost ~ host/fields/drift.cpp ~ widen(axis, (reach_[axis] + 7) / 8); ~ widen(axis, 0); ~ [motion]

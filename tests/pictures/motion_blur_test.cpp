@@ -87,12 +87,17 @@ TEST_CASE("samples have moments by their numbers alone", "[cpu][motion]") {
     std::sort(first.begin(), first.end());
     for (std::size_t i = 1; i < first.size(); ++i)
         CHECK(first[i] - first[i - 1] == Approx(1.0 / 16.0));
-    // Over seeds the time of one moment is even: the mean of n has a standard error of 1 / sqrt(12 n).
-    double sum = 0.0;
+    // Over seeds the time of one moment is even: of n the mean has a standard error of 1 / sqrt(12 n), and that of its
+    // square about the middle one of 1 / sqrt(180 n).
+    double sum = 0.0, square = 0.0;
     constexpr int seeds = 20000;
-    for (std::uint32_t seed = 0; seed < seeds; ++seed)
-        sum += time_of({0.0, 1.0, {}}, moment_of_sample(5), seed);
-    CHECK(std::abs(sum / seeds - 0.5) < 5.0 / std::sqrt(12.0 * seeds));
+    for (std::uint32_t seed = 0; seed < seeds; ++seed) {
+        const double off = time_of({0.0, 1.0, {}}, moment_of_sample(5), seed) - 0.5;
+        sum += off;
+        square += off * off;
+    }
+    CHECK(std::abs(sum / seeds) < 5.0 / std::sqrt(12.0 * seeds));
+    CHECK(std::abs(square / seeds - 1.0 / 12.0) < 5.0 / std::sqrt(180.0 * seeds));
 }
 
 TEST_CASE("the frame's number is a time in arithmetic alone", "[cpu][motion][xml]") {
