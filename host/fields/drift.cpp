@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <fmt/format.h>
-#include <nanovdb/util/GridBuilder.h>
 #include <type_traits>
 #include <vector>
 
 #include "error.h"
+#include "finish_grid.h"
 #include "shared/constants.h"
 
 namespace vkvol {
@@ -19,10 +18,6 @@ constexpr double farthest = 4096.0;               // voxels
 constexpr double most_blocks = double(1u << 22u); // of 8^3 voxels, for which a moment takes minutes
 
 glm::dvec3 to_vector(glm::vec3 value) {
-    return value;
-}
-
-double to_number(float value) {
     return value;
 }
 
@@ -200,7 +195,7 @@ private:
         if (goes_on_)
             from = glm::clamp(from, glm::dvec3(field_.voxel_min), glm::dvec3(field_.voxel_max));
         if constexpr (std::is_same_v<Value, float>) {
-            return static_cast<float>(trilinear(from, [&](glm::ivec3 ijk) { return to_number(field_.value(ijk)); }));
+            return static_cast<float>(trilinear(from, [&](glm::ivec3 ijk) { return double(field_.value(ijk)); }));
         } else {
             const glm::dvec3 color = trilinear(from, [&](glm::ivec3 ijk) { return to_vector(field_.color(ijk)); });
             return {float(color.x), float(color.y), float(color.z)};
@@ -242,20 +237,7 @@ template <class Value> GridBytes Drifting::build() const {
             }
     for (const glm::ivec3& corner : {field_.voxel_min, field_.voxel_max}) // of the box, which does not shrink
         accessor.setValue({corner.x, corner.y, corner.z}, value_at<Value>(corner));
-    const glm::dmat4& m = field_.as_authored;
-    const glm::dmat3 linear(m), inverse = glm::inverse(linear);
-    double to_world[3][3], to_index[3][3];
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) {
-            to_world[row][column] = linear[column][row];
-            to_index[row][column] = inverse[column][row];
-        }
-    nanovdb::Map map;
-    map.set(to_world, to_index, nanovdb::Vec3d(m[3].x, m[3].y, m[3].z), 1.0);
-    const auto handle = builder.getHandle(map, "drifted");
-    GridBytes bytes(handle.size());
-    std::memcpy(bytes.edit(), handle.data(), handle.size());
-    return bytes;
+    return finish_grid(builder, field_.as_authored, "drifted");
 }
 
 } // namespace

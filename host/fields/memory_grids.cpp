@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cstring>
-#include <nanovdb/util/GridBuilder.h>
 #include <nanovdb/util/IO.h>
 #include <sstream>
 #include <type_traits>
 
 #include "error.h"
+#include "finish_grid.h"
 
 namespace vkvol {
 
@@ -26,15 +26,11 @@ GridBytes build(const std::string& name, glm::ivec3 dims, const GridPlace& place
             for (int x = 0; x < dims.x; ++x, ++i)
                 if (const Value value = value_at(i); value != nothing)
                     accessor.setValue({x, y, z}, value);
-    const glm::dvec3 size = place.voxel_size;
-    const double to_world[3][3] = {{size.x, 0.0, 0.0}, {0.0, size.y, 0.0}, {0.0, 0.0, size.z}};
-    const double to_index[3][3] = {{1.0 / size.x, 0.0, 0.0}, {0.0, 1.0 / size.y, 0.0}, {0.0, 0.0, 1.0 / size.z}};
-    nanovdb::Map map;
-    map.set(to_world, to_index, nanovdb::Vec3d(place.origin.x, place.origin.y, place.origin.z), 1.0);
-    const auto handle = builder.getHandle(map, name);
-    GridBytes bytes(handle.size());
-    std::memcpy(bytes.edit(), handle.data(), handle.size());
-    return bytes;
+    glm::dmat4 to_world(1.0);
+    for (int axis = 0; axis < 3; ++axis)
+        to_world[axis][axis] = place.voxel_size[axis];
+    to_world[3] = glm::dvec4(place.origin, 1.0);
+    return finish_grid(builder, to_world, name);
 }
 
 } // namespace

@@ -33,25 +33,24 @@ struct SceneText {
     SceneOverrides overrides;
 };
 
-void add_times(Scene& scene, SceneText text) {
-    MotionBlur blur = *scene.motion_blur;
-    blur.scene_at = [text = std::make_shared<const SceneText>(std::move(text))](double later) {
-        XmlDocument document(text->xml, text->file, text->defines, "options", {}, text->overrides.may_be_unused, later);
-        return SceneReader(document, text->overrides).read();
-    };
-    scene.motion_blur = std::make_shared<const MotionBlur>(std::move(blur));
-    for (const double time : telling_times(*scene.motion_blur))
-        scene_of_time(scene, time);
+Scene read(const SceneText& text, double later) {
+    XmlDocument document(text.xml, text.file, text.defines, "options", {}, text.overrides.may_be_unused, later);
+    return SceneReader(document, text.overrides).read();
 }
 
 } // namespace
 
 Scene parse_scene(const std::string& xml, const std::filesystem::path& file, const Defines& defines,
                   const SceneOverrides& overrides) {
-    XmlDocument document(xml, file, defines, "options", {}, overrides.may_be_unused);
-    Scene scene = SceneReader(document, overrides).read();
-    if (scene.motion_blur)
-        add_times(scene, {xml, file, defines, overrides});
+    const auto text = std::make_shared<const SceneText>(SceneText{xml, file, defines, overrides});
+    Scene scene = read(*text, 0.0);
+    if (!scene.motion_blur)
+        return scene;
+    MotionBlur blur = *scene.motion_blur;
+    blur.scene_at = [text](double later) { return read(*text, later); };
+    scene.motion_blur = std::make_shared<const MotionBlur>(std::move(blur));
+    for (const double time : telling_times(*scene.motion_blur))
+        scene_of_time(scene, time);
     return scene;
 }
 
