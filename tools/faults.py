@@ -290,7 +290,7 @@ def main():
     root = pathlib.Path(__file__).resolve().parent.parent
     start = time.monotonic()
     with tempfile.TemporaryDirectory(prefix="vkvol-faults-") as work:
-        lab = Lab(options.build.resolve(), root, work)
+        lab = Lab(options.build.resolve(), root, work, 0.2 if options.quick else 0.4)
         print(f"tools/faults.sh{' --quick' if options.quick else ''} --seed {options.seed}; {lab.device}")
         print(f"Each run is of scenes/cumulus.xml, {lab.size}, {lab.seconds:.1f} s undisturbed.\n")
         table = Table(options.only)

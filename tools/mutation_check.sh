@@ -5,6 +5,7 @@
 #
 #   tools/mutation_check.sh [WORD]       WORD: only the errors whose name contains it
 #   tools/mutation_check.sh --minutes N  begins no further error after so long
+#   tools/mutation_check.sh --share K/N  every Nth of the errors, from the Kth on: N runs at a time, each in a DIR of its own
 #   tools/mutation_check.sh --dry-run    only whether every text to be replaced is there, and how many rows are of now
 #   MUTATION_DIR=DIR                     where the copy and its build are kept
 #
@@ -13,11 +14,12 @@
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
-dry_run= only= minutes=1000000
+dry_run= only= minutes=1000000 share=1/1
 while [ $# -gt 0 ]; do
     case $1 in
     --dry-run) dry_run=yes ;;
     --minutes) minutes=${2:?--minutes needs a number}; shift ;;
+    --share) share=${2:?--share needs K/N}; shift ;;
     *) only=$1 ;;
     esac
     shift
@@ -385,9 +387,11 @@ try_error() { # NAME FILE TEXT REPLACEMENT TESTS
     echo "$verdict"
 }
 
-# In the order of the table; lines of errors that are no longer made go.
+# In the order of the table; lines of errors that are no longer made go. One run at a time writes.
 keep() { # NAME VERDICT KEY
-    local line name fresh=$work/results
+    local line name fresh=$work/results lock
+    exec {lock}<"$results"
+    flock "$lock"
     {
         echo "Each error alone, in a copy of the sources of that commit; what it rests on has the key: tools/mutation_check.sh."
         echo
@@ -401,6 +405,7 @@ keep() { # NAME VERDICT KEY
         done < <(mutations)
     } >"$fresh"
     cp "$fresh" "$results"
+    exec {lock}<&-
 }
 
 mkdir -p "$work"
@@ -409,7 +414,7 @@ git -C "$root" rev-parse >/dev/null
 mutations | cut -d'~' -f1 | grep -F -- "$only" >/dev/null || { echo "no error's name contains '$only'" >&2; exit 1; }
 refresh_copy
 source=$copy # which stays as it is while rows are made
-mapfile -t selected < <(stale)
+mapfile -t selected < <(stale | awk -v first="${share%/*}" -v of="${share#*/}" 'NR % of == first % of')
 [ ${#selected[@]} -gt 0 ] || { echo "every such error was caught, and nothing that it rests on has changed since"; exit; }
 changed=$(git -C "$root" status --porcelain -- CMakeLists.txt host scenes shaders tests tools/make_field | wc -l)
 commit=$(git -C "$root" rev-parse --short HEAD)$([ "$changed" = 0 ] || echo "+")
