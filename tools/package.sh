@@ -39,7 +39,7 @@ make_tar() {
     trap 'rm -rf "$folder"' EXIT
     cmake --install build --prefix "$folder/$name" --component program --strip >/dev/null || die "cmake --install failed"
     mkdir -p "$folder/$name/lib" "$folder/$name/share/doc/libraries"
-    ldd "$folder/$name"/bin/* | awk '$2 == "=>" && $3 ~ "^/" { print $3 }' | sort -u | while read -r file; do
+    ldd "$folder/$name"/bin/* "$folder/$name"/lib/vkvol/* | awk '$2 == "=>" && $3 ~ "^/" { print $3 }' | sort -u | while read -r file; do
         is_of_the_machine "$(basename "$file")" && continue
         cp -L "$file" "$folder/$name/lib/"
         # Whose it is, and on which terms.
@@ -47,9 +47,9 @@ make_tar() {
         [ ! -f "/usr/share/doc/$package/copyright" ] || cp -L "/usr/share/doc/$package/copyright" "$folder/$name/share/doc/libraries/$package"
     done
     # RPATH and not RUNPATH, which libraries do not hand on to those that they load in turn.
-    for file in "$folder/$name"/bin/*; do
+    for file in "$folder/$name"/bin/* "$folder/$name"/lib/vkvol/*; do
         # shellcheck disable=SC2016
-        patchelf --force-rpath --set-rpath '$ORIGIN/../lib' "$file"
+        patchelf --force-rpath --set-rpath '$ORIGIN/../lib/vkvol:$ORIGIN/../lib:$ORIGIN/..' "$file"
     done
     rm -f build/package/*.tar.gz
     tar -C "$folder" --owner 0 --group 0 --sort name -czf "build/package/$name.tar.gz" "$name"

@@ -15,6 +15,7 @@
 #include "live_pictures.h"
 #include "loaded_medium.h"
 #include "messages.h"
+#include "picture_codec.h"
 #include "progress.h"
 #include "reading_grid.h"
 #include "render_notes.h"
@@ -119,6 +120,9 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
     tell_why(options, workshop, foreseen);
     const Device& device = workshop.device(options.device);
     outputs.set_device(device.info());
+    // After the driver, which is a library, too; kernels are compiled on one core.
+    const std::future<void> codec =
+        options.outputs.empty() || options.dry_run ? std::future<void>() : picture_codec_ahead();
     const RenderResult result = render_with_progress(options, scene, workshop, checkpoint, live);
     live.show(device, result, nullptr);
     if (!options.quiet)

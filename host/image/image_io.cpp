@@ -1,7 +1,5 @@
 #include "image_io.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
@@ -22,7 +20,9 @@
 #include "film_table.h"
 #include "image_input.h"
 #include "input_file.h"
+#include "metadata.h"
 #include "one_line.h"
+#include "picture_codec.h"
 
 namespace vkvol {
 
@@ -72,39 +72,21 @@ void write_atomically(const path& target, const char* option, const std::functio
                                   reason, remedy, option));
 }
 
-// Lets OpenImageIO write into a file of ours: it would not see every failure itself.
-class FileProxy : public OIIO::Filesystem::IOProxy {
+class FileSink : public PictureSink {
 public:
-    explicit FileProxy(AtomicFile& file) : IOProxy("", Write), file_(file) {}
-    const char* proxytype() const override { return "file"; }
-    std::size_t write(const void* data, std::size_t size) override {
-        const std::size_t written = pwrite(data, size, m_pos);
-        m_pos += static_cast<std::int64_t>(written);
-        return written;
-    }
-    std::size_t pwrite(const void* data, std::size_t size, std::int64_t at) override {
-        return file_.write(data, size, at) ? size : 0;
-    }
+    explicit FileSink(AtomicFile& file) : file_(file) {}
+    bool write(const void* data, std::size_t size, std::int64_t at) override { return file_.write(data, size, at); }
 
 private:
     AtomicFile& file_;
 };
 
-void write_pixels(AtomicFile& file, const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
-                  const void* pixels) {
-    FileProxy proxy(file);
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format, &proxy);
-    if (!output)
-        throw std::runtime_error(reason_of(OIIO::geterror()));
-    const bool done = output->open(format, spec) && output->write_image(type, pixels) && output->close();
+void write_pixels(AtomicFile& file, PictureFormat format, const PictureHeader& header, const void* pixels) {
+    FileSink sink(file);
+    const std::string reason = picture_codec().write(format, header, pixels, sink);
     file.check(); // the disk's own word comes first
-    if (!done)
-        throw std::runtime_error(reason_of(output->geterror()));
-}
-
-void set_attributes(OIIO::ImageSpec& spec, const Metadata& metadata) {
-    for (const auto& [key, value] : metadata)
-        std::visit([&spec, &key = key](const auto& held) { spec.attribute(key, held); }, value);
+    if (!reason.empty())
+        throw std::runtime_error(one_line(reason));
 }
 
 // What we or the pixels themselves say already; the rest of a file's attributes is its metadata.
@@ -115,18 +97,23 @@ bool is_structural(const std::string& key) {
                        [&key](const char* prefix) { return key.compare(0, std::strlen(prefix), prefix) == 0; });
 }
 
-void get_attributes(const OIIO::ImageSpec& spec, Metadata& metadata) {
-    for (const OIIO::ParamValue& value : spec.extra_attribs) {
-        const std::string key = value.name().string();
-        if (is_structural(key))
-            continue;
-        if (value.type() == OIIO::TypeInt)
-            metadata[key] = value.get_int();
-        else if (value.type() == OIIO::TypeFloat)
-            metadata[key] = value.get_float();
-        else if (value.type() == OIIO::TypeString)
-            metadata[key] = value.get_string();
-    }
+Metadata metadata_of(const PictureHeader& header) {
+    Metadata metadata = header.attributes;
+    std::erase_if(metadata, [](const auto& attribute) { return is_structural(attribute.first); });
+    return metadata;
+}
+
+PictureHeader header_of(const Film& film, std::vector<std::string> channels) {
+    PictureHeader header;
+    header.width = film.width();
+    header.height = film.height();
+    header.x = film.crop.x0;
+    header.y = film.crop.y0;
+    header.full_width = film.picture_width;
+    header.full_height = film.picture_height;
+    header.counts.assign(channels.size(), false);
+    header.channels = std::move(channels);
+    return header;
 }
 
 void check_consistent(const Film& film) {
@@ -142,25 +129,25 @@ void check_consistent(const Film& film) {
                                              film.samples.size()));
 }
 
-int channel_of(const OIIO::ImageSpec& spec, const char* name) {
-    const auto found = std::find(spec.channelnames.begin(), spec.channelnames.end(), name);
-    return found == spec.channelnames.end() ? -1 : int(found - spec.channelnames.begin());
+int channel_of(const PictureHeader& header, const char* name) {
+    const auto found = std::find(header.channels.begin(), header.channels.end(), name);
+    return found == header.channels.end() ? -1 : int(found - header.channels.begin());
 }
 
 // By the names in the image's metadata: other channels are no concern of ours.
-void read_layers(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, Film& film) {
-    std::istringstream names{std::string(spec.get_string_attribute(layers_key))};
+void read_layers(const PictureHeader& header, const std::vector<float>& pixels, Film& film) {
+    std::istringstream names{text_of(header.attributes, layers_key)};
     for (std::string name; names >> name;) {
         FilmLayer layer{name, {}, {}};
         for (const char* const prefix : {"", "variance."}) {
             std::vector<int> channels;
             for (const char* letter = layer.channels(); *letter != 0; ++letter)
-                channels.push_back(channel_of(spec, channel_name(prefix, layer, *letter).c_str()));
+                channels.push_back(channel_of(header, channel_name(prefix, layer, *letter).c_str()));
             if (*std::min_element(channels.begin(), channels.end()) < 0)
                 continue;
             std::vector<glm::vec3>& values = *prefix == 0 ? layer.mean : layer.variance;
             for (std::size_t i = 0; i < film.pixel_count(); ++i) {
-                const float* pixel = &pixels[i * std::size_t(spec.nchannels)];
+                const float* pixel = &pixels[i * header.channels.size()];
                 const auto value = [&](std::size_t c) { return pixel[channels[std::min(c, channels.size() - 1)]]; };
                 values.emplace_back(value(0), value(1), value(2));
             }
@@ -170,27 +157,27 @@ void read_layers(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, 
     }
 }
 
-Film film_of(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, const path& file) {
-    const auto channel = [&spec](const char* name) { return channel_of(spec, name); };
+Film film_of(const PictureHeader& header, const std::vector<float>& pixels, const path& file) {
+    const auto channel = [&header](const char* name) { return channel_of(header, name); };
     const int color[3] = {channel("R"), channel("G"), channel("B")};
     const int variance[3] = {channel("variance.R"), channel("variance.G"), channel("variance.B")};
     const int samples = channel("samples");
     if (*std::min_element(color, color + 3) < 0)
         throw InputError(one_line(fmt::format("{}: has channels {}; R, G and B are needed", file.string(),
-                                              fmt::join(spec.channelnames, ", "))));
+                                              fmt::join(header.channels, ", "))));
     Film film;
-    film.picture_width = spec.full_width;
-    film.picture_height = spec.full_height;
-    film.crop.x0 = spec.x - spec.full_x;
-    film.crop.y0 = spec.y - spec.full_y;
-    film.crop.x1 = film.crop.x0 + spec.width;
-    film.crop.y1 = film.crop.y0 + spec.height;
-    const std::size_t count = std::size_t(spec.width) * spec.height;
+    film.picture_width = header.full_width;
+    film.picture_height = header.full_height;
+    film.crop.x0 = header.x - header.full_x;
+    film.crop.y0 = header.y - header.full_y;
+    film.crop.x1 = film.crop.x0 + header.width;
+    film.crop.y1 = film.crop.y0 + header.height;
+    const std::size_t count = std::size_t(header.width) * header.height;
     film.mean.resize(count);
     film.variance.resize(count, glm::vec3(0));
     film.samples.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
-        const float* pixel = &pixels[i * spec.nchannels];
+        const float* pixel = &pixels[i * header.channels.size()];
         for (int c = 0; c < 3; ++c) {
             film.mean[i][c] = pixel[color[c]];
             if (variance[c] >= 0)
@@ -199,7 +186,7 @@ Film film_of(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, cons
         if (samples >= 0 && pixel[samples] > 0.0f && pixel[samples] < 4294967296.0f)
             film.samples[i] = static_cast<std::uint32_t>(pixel[samples]);
     }
-    read_layers(spec, pixels, film);
+    read_layers(header, pixels, film);
     return film;
 }
 
@@ -263,25 +250,12 @@ void write_images(const std::vector<path>& targets, const Film& film, const Meta
 void write_exr(const path& target, const Film& film, const Metadata& metadata, const char* option) {
     write_atomically(target, option, [&](AtomicFile& file) {
         check_consistent(film);
-        const std::vector<std::string> channels = channel_names(film);
-        OIIO::ImageSpec spec(film.width(), film.height(), int(channels.size()), OIIO::TypeDesc::FLOAT);
-        spec.channelnames = channels;
-        spec.channelformats.assign(channels.size(), OIIO::TypeDesc::FLOAT);
-        spec.channelformats[samples_channel] = OIIO::TypeDesc::UINT32;
-        spec.alpha_channel = spec.channelindex("A");
-        spec.x = film.crop.x0;
-        spec.y = film.crop.y0;
-        spec.full_width = film.picture_width;
-        spec.full_height = film.picture_height;
-        spec.attribute("compression", "zip");
-        spec.attribute("oiio:ColorSpace", "Linear"); // Rec.709 primaries, D65
-        const float chromaticities[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
-        spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
-        set_attributes(spec, metadata);
+        PictureHeader header = header_of(film, channel_names(film));
+        header.counts[samples_channel] = true;
+        header.attributes = metadata;
         if (!film.layers.empty())
-            spec.attribute(layers_key, layer_list(film));
-        write_pixels(file, "a.exr", spec, OIIO::TypeDesc::UNKNOWN,
-                     interleaved_channels(film).data()); // unknown: its own types
+            header.attributes[layers_key] = layer_list(film);
+        write_pixels(file, PictureFormat::exr, header, interleaved_channels(film).data());
     });
 }
 
@@ -289,12 +263,11 @@ void write_display(const path& target, const Film& film, const ToneMapping& mapp
     write_atomically(target, "-o", [&](AtomicFile& file) {
         check_consistent(film);
         const FilmLayer* alpha = film.layer("alpha");
-        OIIO::ImageSpec spec(film.width(), film.height(), alpha ? 4 : 3, OIIO::TypeDesc::UINT8);
-        spec.attribute("oiio:ColorSpace", "sRGB");
-        if (alpha)
-            spec.attribute("oiio:UnassociatedAlpha", 1); // the division by alpha is done, without its rounding twice
         const std::vector<std::uint8_t> pixels = alpha ? tone_map(film, mapping, *alpha) : tone_map(film, mapping);
-        write_pixels(file, "a.png", spec, OIIO::TypeDesc::UINT8, pixels.data());
+        std::vector<std::string> channels = {"R", "G", "B"};
+        if (alpha)
+            channels.push_back("A");
+        write_pixels(file, PictureFormat::png, header_of(film, std::move(channels)), pixels.data());
     });
 }
 
@@ -302,19 +275,18 @@ Film read_exr(const path& file, Metadata* metadata) {
     check_input_file(file, "");
     if (file_ending(file) != ".exr")
         throw InputError(fmt::format("{}: expected an .exr file", file.string()));
-    const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
-    const OIIO::ImageSpec& spec = input->spec();
-    std::vector<float> pixels(std::size_t(spec.width) * spec.height * spec.nchannels);
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()))
-        fail_to_read(file, *input);
+    const std::unique_ptr<PictureReader> reader = open_image(file);
+    const PictureHeader& header = reader->header();
+    std::vector<float> pixels(std::size_t(header.width) * header.height * header.channels.size());
+    if (!reader->read(pixels.data()))
+        fail_to_read(file, *reader);
     if (metadata)
-        get_attributes(spec, *metadata);
-    Film film = film_of(spec, pixels, file);
+        *metadata = metadata_of(header);
+    Film film = film_of(header, pixels, file);
     // Read as floats, whole numbers would be parts of the largest there is.
-    if (const int samples = channel_of(spec, "samples");
-        samples >= 0 && spec.channelformat(samples) == OIIO::TypeUInt32 &&
-        !input->read_image(0, 0, samples, samples + 1, OIIO::TypeDesc::UINT32, film.samples.data()))
-        fail_to_read(file, *input);
+    if (const int samples = channel_of(header, "samples");
+        samples >= 0 && header.counts[std::size_t(samples)] && !reader->read(samples, film.samples.data()))
+        fail_to_read(file, *reader);
     return film;
 }
 

@@ -19,10 +19,6 @@ float from_srgb(float x) {
     return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
 }
 
-bool is_whole_numbers(const OIIO::ImageSpec& spec) {
-    return !spec.format.is_floating_point();
-}
-
 } // namespace
 
 RadianceMap read_radiance_map(const std::filesystem::path& file) {
@@ -32,21 +28,21 @@ RadianceMap read_radiance_map(const std::filesystem::path& file) {
     if (std::find(known.begin(), known.end(), ending) == known.end())
         throw InputError(
             fmt::format("{}: unknown kind of map '{}'; expected .exr, .hdr or .png", file.string(), ending));
-    const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
-    const OIIO::ImageSpec& spec = input->spec();
-    const int channels = spec.nchannels;
-    std::vector<float> values(std::size_t(spec.width) * spec.height * channels);
-    if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data()))
-        fail_to_read(file, *input);
-    RadianceMap map{spec.width, spec.height, {}, 0};
-    map.texels.reserve(std::size_t(spec.width) * spec.height);
+    const std::unique_ptr<PictureReader> reader = open_image(file);
+    const PictureHeader& header = reader->header();
+    const std::size_t channels = header.channels.size();
+    std::vector<float> values(std::size_t(header.width) * header.height * channels);
+    if (!reader->read(values.data()))
+        fail_to_read(file, *reader);
+    RadianceMap map{header.width, header.height, {}, 0};
+    map.texels.reserve(std::size_t(header.width) * header.height);
     for (std::size_t i = 0; i < values.size(); i += channels) {
         glm::vec3 texel = channels < 3 ? glm::vec3(values[i]) : glm::vec3(values[i], values[i + 1], values[i + 2]);
         bool fine = true;
         for (int c = 0; c < 3; ++c) {
             const bool good = std::isfinite(texel[c]) && texel[c] >= 0.0f;
             fine = fine && good;
-            texel[c] = !good ? 0.0f : is_whole_numbers(spec) ? from_srgb(texel[c]) : texel[c];
+            texel[c] = !good ? 0.0f : header.is_whole_numbers ? from_srgb(texel[c]) : texel[c];
         }
         map.mended += fine ? 0 : 1;
         map.texels.push_back(texel);

@@ -1,0 +1,141 @@
+// Loaded by picture_codec.cpp, and by nothing else.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <cctype>
+
+#include "picture_codec.h"
+
+namespace vkvol {
+
+namespace {
+
+std::string reason_of(std::string message) {
+    while (!message.empty() && std::isspace(static_cast<unsigned char>(message.back())))
+        message.pop_back();
+    return message.empty() ? "unknown reason" : message;
+}
+
+Metadata attributes_of(const OIIO::ImageSpec& spec) {
+    Metadata attributes;
+    for (const OIIO::ParamValue& value : spec.extra_attribs) {
+        const std::string key = value.name().string();
+        if (value.type() == OIIO::TypeInt)
+            attributes[key] = value.get_int();
+        else if (value.type() == OIIO::TypeFloat)
+            attributes[key] = value.get_float();
+        else if (value.type() == OIIO::TypeString)
+            attributes[key] = value.get_string();
+    }
+    return attributes;
+}
+
+PictureHeader header_of(const OIIO::ImageSpec& spec) {
+    PictureHeader header{spec.width,      spec.height,      spec.depth, spec.x, spec.y, spec.full_x, spec.full_y,
+                         spec.full_width, spec.full_height, {},         {},     false,  {}};
+    for (int c = 0; c < spec.nchannels; ++c) {
+        header.channels.push_back(spec.channelnames[std::size_t(c)]);
+        header.counts.push_back(spec.channelformat(c) == OIIO::TypeUInt32);
+    }
+    header.is_whole_numbers = !spec.format.is_floating_point();
+    header.attributes = attributes_of(spec);
+    return header;
+}
+
+class OiioReader : public PictureReader {
+public:
+    explicit OiioReader(std::unique_ptr<OIIO::ImageInput> input)
+        : input_(std::move(input)), header_(header_of(input_->spec())) {}
+    const PictureHeader& header() const override { return header_; }
+    bool read(float* pixels) override {
+        return input_->read_image(0, 0, 0, int(header_.channels.size()), OIIO::TypeDesc::FLOAT, pixels);
+    }
+    bool read(int channel, std::uint32_t* counts) override {
+        return input_->read_image(0, 0, channel, channel + 1, OIIO::TypeDesc::UINT32, counts);
+    }
+    std::string error() const override { return reason_of(input_->geterror()); }
+
+private:
+    std::unique_ptr<OIIO::ImageInput> input_;
+    PictureHeader header_;
+};
+
+// Lets OpenImageIO write into a file of ours: it would not see every failure itself.
+class SinkProxy : public OIIO::Filesystem::IOProxy {
+public:
+    explicit SinkProxy(PictureSink& sink) : IOProxy("", Write), sink_(sink) {}
+    const char* proxytype() const override { return "file"; }
+    std::size_t write(const void* data, std::size_t size) override {
+        const std::size_t written = pwrite(data, size, m_pos);
+        m_pos += static_cast<std::int64_t>(written);
+        return written;
+    }
+    std::size_t pwrite(const void* data, std::size_t size, std::int64_t at) override {
+        return sink_.write(data, size, at) ? size : 0;
+    }
+
+private:
+    PictureSink& sink_;
+};
+
+OIIO::ImageSpec exr_spec(const PictureHeader& header) {
+    OIIO::ImageSpec spec(header.width, header.height, int(header.channels.size()), OIIO::TypeDesc::FLOAT);
+    spec.channelnames = header.channels;
+    for (const bool is_count : header.counts)
+        spec.channelformats.push_back(is_count ? OIIO::TypeDesc::UINT32 : OIIO::TypeDesc::FLOAT);
+    spec.alpha_channel = spec.channelindex("A");
+    spec.x = header.x;
+    spec.y = header.y;
+    spec.full_x = header.full_x;
+    spec.full_y = header.full_y;
+    spec.full_width = header.full_width;
+    spec.full_height = header.full_height;
+    spec.attribute("compression", "zip");
+    spec.attribute("oiio:ColorSpace", "Linear"); // Rec.709 primaries, D65
+    const float chromaticities[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
+    spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
+    for (const auto& [key, value] : header.attributes)
+        std::visit([&spec, &key = key](const auto& held) { spec.attribute(key, held); }, value);
+    return spec;
+}
+
+OIIO::ImageSpec png_spec(const PictureHeader& header) {
+    OIIO::ImageSpec spec(header.width, header.height, int(header.channels.size()), OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    if (header.channels.size() == 4)
+        spec.attribute("oiio:UnassociatedAlpha", 1); // the division by alpha is done, without its rounding twice
+    return spec;
+}
+
+class OiioCodec : public PictureCodec {
+public:
+    std::unique_ptr<PictureReader> open(const std::filesystem::path& file, std::string& reason) const override {
+        std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
+        if (input)
+            return std::make_unique<OiioReader>(std::move(input));
+        reason = reason_of(OIIO::geterror());
+        return nullptr;
+    }
+
+    std::string write(PictureFormat format, const PictureHeader& header, const void* pixels,
+                      PictureSink& sink) const override {
+        const bool is_exr = format == PictureFormat::exr;
+        const char* const name = is_exr ? "a.exr" : "a.png";
+        SinkProxy proxy(sink);
+        const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name, &proxy);
+        if (!output)
+            return reason_of(OIIO::geterror());
+        const OIIO::TypeDesc type = is_exr ? OIIO::TypeDesc::UNKNOWN : OIIO::TypeDesc::UINT8; // unknown: its own types
+        const bool done = output->open(name, is_exr ? exr_spec(header) : png_spec(header)) &&
+                          output->write_image(type, pixels) && output->close();
+        return done ? "" : reason_of(output->geterror());
+    }
+};
+
+} // namespace
+
+} // namespace vkvol
+
+const vkvol::PictureCodec* vkvol_picture_codec() {
+    static const vkvol::OiioCodec codec;
+    return &codec;
+}
