@@ -213,6 +213,14 @@ TEST_CASE("faces that stand for something round equal the reference", "[gpu][ima
         for (glm::dvec3& vertex : std::get<TriangleSurface>(surface.shape).vertices)
             vertex += place;
     }
+    // A face alone, aslant to what it stands for: what would go through it would come to the sky.
+    TriangleSurface leaf;
+    leaf.vertices = {{-1.0, 0.3, 1.3}, {0.6, 0.3, 1.3}, {-0.3, 1.5, 0.9}};
+    leaf.triangles = {{0, 1, 2}};
+    leaf.normals = {glm::mat3(glm::normalize(glm::vec3(0.9, 0.2, 0.5)), glm::normalize(glm::vec3(0.8, 0.6, 0.4)),
+                              glm::normalize(glm::vec3(-0.9, 0.3, 0.5)))};
+    scene.surfaces.emplace_back(ball(grey(0.8))).shape = leaf;
+    scene.background = {1.0, 1.5, 2.5};
     check_by_both_schedules(scene, "smooth faces");
 }
 
@@ -433,7 +441,8 @@ TEST_CASE("looks from along flights find the same light beside surfaces", "[gpu]
     several.volumes.push_back(fog(0.3, 0.8));
     Scene steps = several;
     steps.settings.choices.nee = NEE_TENTATIVE;
-    scene.volumes = {fog(0.25, 0.9)}; // through which lamps are seen to light surfaces, as beside sun and sky they are not
+    scene.volumes = {
+        fog(0.25, 0.9)}; // through which lamps are seen to light surfaces, as beside sun and sky they are not
     scene.background = Rgb(0.0);
     std::erase_if(scene.lights, [](const Light& light) { return std::holds_alternative<DirectionalLight>(light); });
     const std::vector<std::pair<std::string, Scene>> scenes = {{"fog, from along flights", scene},
