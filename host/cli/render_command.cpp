@@ -79,10 +79,15 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
     job.interrupted = interrupted;
     Progress progress(options.progress, options.quiet || options.trace || options.dry_run, scene.settings.spp,
                       options.time_limit, options.noise_goal);
+    std::future<void> codec;
     job.progress = [&](double samples, std::optional<double> noise) {
+        if (codec.valid())
+            codec.get(); // before more is rendered than can be kept
         progress.update(static_cast<std::uint32_t>(samples), noise);
     };
     const Device& device = workshop.device(options.device);
+    if (!options.outputs.empty() && !options.dry_run)
+        codec = picture_codec_ahead(); // after the driver, which is a library, too; kernels are compiled on one core
     if (!live.empty())
         job.look = [&](const RenderResult& result) { live.show(device, result, &progress); };
     try {
@@ -120,9 +125,6 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
     tell_why(options, workshop, foreseen);
     const Device& device = workshop.device(options.device);
     outputs.set_device(device.info());
-    // After the driver, which is a library, too; kernels are compiled on one core.
-    const std::future<void> codec =
-        options.outputs.empty() || options.dry_run ? std::future<void>() : picture_codec_ahead();
     const RenderResult result = render_with_progress(options, scene, workshop, checkpoint, live);
     live.show(device, result, nullptr);
     if (!options.quiet)

@@ -49,6 +49,18 @@ TEST_CASE("one file by any name", "[cpu][command]") {
     CHECK_FALSE(is_same_file("/dev/null", "/dev/null"));
 }
 
+TEST_CASE("what cannot be written as a picture is not rendered to the end", "[gpu][command]") {
+    // A copy of the program, without the library that writes pictures.
+    const Folder folder("");
+    const Run run = folder.script("cp \"$vkvol\" alone && ./alone ball.xml -o ball.exr -q --spp 1000000000");
+    INFO(run.text);
+    CHECK(run.code == exit_render_failed);
+    CHECK_THAT(run.text, Contains("pictures can be neither read nor written: libvkvol_codec.so") &&
+                             Contains("install vkvol again"));
+    CHECK_FALSE(fs::exists(folder.file("ball.exr")));
+    CHECK(folder.script("./alone integrators").code == exit_done);
+}
+
 TEST_CASE("no output is an input or another output", "[gpu][command]") {
     const Folder folder("");
     const std::string scene = folder.text("ball.xml");
