@@ -14,7 +14,7 @@ case $kind in
 deb | tar) ;;
 *) die "'$kind' is neither deb nor tar" ;;
 esac
-packages+=(help2man dpkg-dev patchelf)
+packages+=(help2man dpkg-dev file patchelf)
 install_packages
 build release vkvol make_field
 cmake --build --preset release --target package_files || die "man pages, completions or the demo's field could not be made"
