@@ -55,7 +55,7 @@ TEST_CASE("what cannot be written as a picture is not rendered to the end", "[gp
     const Run run = folder.script("cp \"$vkvol\" alone && ./alone ball.xml -o ball.exr -q --spp 1000000000");
     INFO(run.text);
     CHECK(run.code == exit_render_failed);
-    CHECK_THAT(run.text, Contains("pictures can be neither read nor written: libvkvol_codec.so") &&
+    CHECK_THAT(run.text, Contains("pictures can be neither read nor written") && Contains("libvkvol_codec.so") &&
                              Contains("install vkvol again"));
     CHECK_FALSE(fs::exists(folder.file("ball.exr")));
     CHECK(folder.script("./alone integrators").code == exit_done);
