@@ -441,8 +441,8 @@ TEST_CASE("looks from along flights find the same light beside surfaces", "[gpu]
     several.volumes.push_back(fog(0.3, 0.8));
     Scene steps = several;
     steps.settings.choices.nee = NEE_TENTATIVE;
-    scene.volumes = {
-        fog(0.25, 0.9)}; // through which lamps are seen to light surfaces, as beside sun and sky they are not
+    // Thin, and without sun and sky: else what lamps bring to surfaces would hardly be seen.
+    scene.volumes = {fog(0.25, 0.9)};
     scene.background = Rgb(0.0);
     std::erase_if(scene.lights, [](const Light& light) { return std::holds_alternative<DirectionalLight>(light); });
     const std::vector<std::pair<std::string, Scene>> scenes = {{"fog, from along flights", scene},
