@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "messages.h"
+#include "render_notes.h"
 #include "requested_scene.h"
 
 namespace vkvol {
@@ -37,8 +38,8 @@ void print_dry_run(const RenderOptions& options, const Scene& scene, const Devic
          picture_text(options, scene.picture), samples_text(options, scene.settings.spp), result.integrator,
          result.biased.empty() ? "unbiased" : "biased: " + result.biased);
     tell(stdout, "  {}\n", result.specialization);
-    tell(stdout, "  on {}{}, {:.1f} MiB of its memory\n", device.info().name, device.is_cpu() ? " (software)" : "",
-         double(result.device_bytes) / 1048576.0);
+    tell(stdout, "  on {}{}, {:.1f} MiB of its memory\n", of_all_devices(device, result, &DeviceInfo::name),
+         device.is_cpu() ? " (software)" : "", double(result.device_bytes) / 1048576.0);
     std::string files;
     for (const std::filesystem::path& output : options.outputs)
         files += (files.empty() ? "" : ", ") + output.string();

@@ -159,9 +159,10 @@ void check_integrator_option(const RenderRequest& render) {
         }
 }
 
-void add_device_options(CLI::App& app, RenderRequest& render) {
+void add_device_options(CLI::App& app, RenderRequest& render, bool several) {
     app.add_option("--device", render.device.choice,
-                   "auto, a number from vkvol devices, part of a name, a UUID, or cpu")
+                   std::string("auto, a number from vkvol devices, part of a name, a UUID, or cpu") +
+                       (several ? "; or several numbers, as 0,1, which share the picture's rows by their speed" : ""))
         ->option_text("DEVICE [auto]")
         ->group("Device");
     app.add_flag("--robust", render.device.robust, "Robust buffer access: out-of-range reads give zero")

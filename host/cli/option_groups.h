@@ -45,6 +45,7 @@ void finish_sampling(RenderRequest& render, const SamplingTexts& texts);
 void check_integrator_option(const RenderRequest& render);
 
 // --device, --robust and --validate.
-void add_device_options(CLI::App& app, RenderRequest& render);
+// `several`: devices may share the work.
+void add_device_options(CLI::App& app, RenderRequest& render, bool several = false);
 
 } // namespace vkvol

@@ -105,7 +105,7 @@ void add_sampling_options(CLI::App& app, RenderOptions& render, RenderTexts& tex
 }
 
 void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
-    add_device_options(app, render);
+    add_device_options(app, render, true);
     app.add_flag("--no-cache", render.no_cache, "Neither read nor write the pipeline cache")->group("Device");
     app.add_option("--schedule", texts.schedule,
                    "fused: one pass takes pixels through all stages; staged: passes of their own over queues of paths; "

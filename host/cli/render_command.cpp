@@ -85,7 +85,9 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
             codec.get(); // before more is rendered than can be kept
         progress.update(static_cast<std::uint32_t>(samples), noise);
     };
-    const Device& device = workshop.device(options.device);
+    const std::vector<const Device*> devices = workshop.devices(options.device);
+    const Device& device = *devices.front();
+    job.others.assign(devices.begin() + 1, devices.end());
     if (!options.outputs.empty() && !options.dry_run)
         codec = picture_codec_ahead(); // after the driver, which is a library, too; kernels are compiled on one core
     if (!live.empty())
@@ -123,13 +125,15 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
                  RenderOutputs& outputs, LivePictures& live) {
     const std::optional<Explanation> foreseen = options.trace ? std::nullopt : foresee(scene);
     tell_why(options, workshop, foreseen);
-    const Device& device = workshop.device(options.device);
+    const std::vector<const Device*> devices = workshop.devices(options.device);
+    const Device& device = *devices.front();
     outputs.set_device(device.info());
     const RenderResult result = render_with_progress(options, scene, workshop, checkpoint, live);
     live.show(device, result, nullptr);
     if (!options.quiet)
         print_warnings(workshop.new_warnings(result.warnings));
-    check_result(device);
+    for (const Device* one : devices)
+        check_result(*one);
     if (options.dry_run) {
         if (!options.quiet)
             print_dry_run(options, scene, device, result);

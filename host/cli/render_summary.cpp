@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "messages.h"
+#include "render_notes.h"
 
 namespace vkvol {
 
@@ -39,7 +40,7 @@ void print_summary(const RenderOptions& options, const Device& device, const Ren
         outputs += (outputs.empty() ? "" : ", ") + output.string();
     const std::string told = tone_text(tone);
     tell(stdout, "{}: {} per pixel, {:.2f} s{}{}, on {}{}\n", outputs, samples_text(result.film), result.render_seconds,
-         noise_text(result.film), told.empty() ? "" : ", " + told, device.info().name,
+         noise_text(result.film), told.empty() ? "" : ", " + told, of_all_devices(device, result, &DeviceInfo::name),
          device.is_cpu() ? " (software)" : "");
 }
 

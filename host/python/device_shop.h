@@ -13,10 +13,11 @@
 namespace vkvol::python {
 
 struct DeviceShop {
-    explicit DeviceShop(const DeviceOptions& options) : device(workshop.device(options)) {}
+    explicit DeviceShop(const DeviceOptions& options) : devices(workshop.devices(options)) {}
 
     Workshop workshop{false};
-    const Device& device;
+    const std::vector<const Device*> devices; // at least one, which leads
+    const Device& device = *devices.front();
 
 private:
     friend class Turn;

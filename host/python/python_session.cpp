@@ -26,6 +26,7 @@ PythonSession::PythonSession(const SceneSource& source, const RenderRequest& req
     job.noise_goal = request_.noise_goal;
     job.disk_cache = !request_.no_cache;
     job.plan = request_.plan;
+    job.others.assign(shop_->devices.begin() + 1, shop_->devices.end());
     job.progress = std::move(callbacks.progress);
     job.interrupted = std::move(callbacks.interrupted);
     work_->session = std::make_unique<Session>(shop_->device, work_->scene, job);
@@ -41,9 +42,10 @@ PythonSession::~PythonSession() {
 void PythonSession::render(std::optional<std::uint32_t> samples) {
     const Turn turn(*shop_, work_->job.interrupted);
     work_->session->render(samples.value_or(work_->scene.settings.spp));
-    if (const auto& objections = shop_->device.validation_messages(); !objections.empty())
-        throw RenderError(fmt::format("the validation layer has {} objections, the first: {}", objections.size(),
-                                      objections.front()));
+    for (const Device* device : shop_->devices)
+        if (const auto& objections = device->validation_messages(); !objections.empty())
+            throw RenderError(fmt::format("the validation layer has {} objections, the first: {}", objections.size(),
+                                          objections.front()));
 }
 
 PythonPicture PythonSession::picture() {

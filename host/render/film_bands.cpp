@@ -116,6 +116,19 @@ void write_layers(Commands& commands, const std::vector<Band>& bands, std::uint3
         }
 }
 
+void copy_rows(const BandOn& from, const BandOn& to, Rows rows, std::uint32_t width) {
+    const std::size_t first = std::size_t(rows.begin) * width, count = std::size_t(rows.end - rows.begin) * width;
+    std::vector<std::byte> bytes(count * sizeof(shared::FilmPixel));
+    from.commands.download(from.band.film, bytes, first * sizeof(shared::FilmPixel));
+    to.commands.upload(to.band.film, bytes, first * sizeof(shared::FilmPixel));
+    if (!from.band.layers)
+        return;
+    const std::size_t each = from.layers.count * std::size_t(layer_bytes);
+    bytes.resize(count * each);
+    from.commands.download(*from.band.layers, bytes, record_bytes(from.layers) + first * each);
+    to.commands.upload(*to.band.layers, bytes, record_bytes(to.layers) + first * each);
+}
+
 void develop(std::span<const shared::FilmPixel> pixels, Film& film) {
     film.mean.clear();
     film.variance.clear();

@@ -18,6 +18,12 @@ struct Band {
     std::optional<Buffer> layers; // records of paths, then sums of pixels; where layers are asked for
 };
 
+// Of a band: [begin, end).
+struct Rows {
+    std::uint32_t begin = 0, end = 0;
+    bool empty() const { return begin >= end; }
+};
+
 // Bands without samples. `most_bytes`: of one buffer of them. `layers`: how many, and of how many paths they have
 // records. Throws InputError if the film is too large.
 std::vector<Band> make_bands(const Device& device, Commands& commands, const Crop& crop, std::uint64_t most_bytes,
@@ -28,6 +34,14 @@ void clear(Commands& commands, const Band& band);
 std::vector<shared::FilmPixel> read_bands(Commands& commands, const std::vector<Band>& bands, std::uint32_t width);
 void write_bands(Commands& commands, const std::vector<Band>& bands, std::uint32_t width,
                  std::span<const shared::FilmPixel> pixels);
+
+// Rows of a band, with its layers, of one device to the same band of another. The layers' records may differ in number.
+struct BandOn {
+    Commands& commands;
+    const Band& band;
+    const shared::AovParams& layers;
+};
+void copy_rows(const BandOn& from, const BandOn& to, Rows rows, std::uint32_t width);
 
 // Likewise the sums of layers, four for each of each pixel.
 std::vector<glm::vec3> read_layers(Commands& commands, const std::vector<Band>& bands, std::uint32_t width,

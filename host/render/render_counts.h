@@ -1,6 +1,7 @@
 // What a render counts.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace vkvol {
@@ -22,6 +23,7 @@ struct RenderCounts {
     }
 };
 
+constexpr std::size_t most_examples = 16; // of them that are named
 struct NonFiniteSample {
     int x, y; // of the picture
     std::uint32_t sample;

@@ -59,7 +59,7 @@ void Session::render(std::uint32_t samples) {
     stopped_at_.reset();
     while (done_ < wanted_ && !is_good_enough() && !stopping()) {
         try {
-            enter_moment();
+            enter_moments();
         } catch (const std::exception&) {
             if (job_.checkpoint && device_scene_)
                 save_checkpoint();
@@ -124,6 +124,7 @@ void Session::resume(const Checkpoint& from) {
 }
 
 void Session::save_checkpoint() {
+    bring_home();
     Checkpoint checkpoint{identity_,
                           done_,
                           batch_,
@@ -152,7 +153,8 @@ void Session::report_noise() {
     job_.progress(done_, relative_noise(result_.film));
 }
 
-// Amid a batch some pixels have samples that others wait for: long paths come last.
+// Amid a batch some pixels have samples that others wait for: long paths come last. What other devices have then is not
+// seen before the batch's end.
 void Session::offer_look() {
     if (!job_.look || watch_.seconds() < next_look_)
         return;
@@ -199,14 +201,26 @@ bool Session::out_of_patience() {
     return now - *stopped_at_ >= patience;
 }
 
-void Session::begin_band(const Band& band) {
+void Session::begin_band(const Band& band, Rows rows) {
     device_scene_->set_rows(static_cast<std::uint32_t>(job_.crop.y0) + band.first_row, band.rows);
     wavefront_->bind_film(band);
     const std::uint32_t begin = job_.sample_offset + done_;
     if (pixels_)
         wavefront_->begin_batch(begin, begin + batch_, *pixels_);
     else
-        wavefront_->begin_batch(begin, begin + batch_, band.rows * width());
+        wavefront_->begin_batch(begin, begin + batch_, rows.begin * width(), rows.end * width());
+}
+
+// A submit, if anything is in flight here. True when nothing is any more, on any device.
+bool Session::advance() {
+    if (!rests_) {
+        rests_ = wavefront_->advance();
+        gather();
+        share_seconds_ = share_watch_.seconds();
+    } else {
+        wait_for_followers();
+    }
+    return rests_ && followers_rest();
 }
 
 // The batch under way in one band, or what is left of it. Ends early if the render does, with what is then left in
@@ -216,24 +230,28 @@ void Session::run_band(const Band& band) {
         return;
     if (checkpoint_due())
         save_checkpoint();
-    begin_band(band);
     if (method_.paths != PATHS_CAMERA)
         return run_particles(band);
+    divide(band);
+    const Following following = start_followers();
+    share_watch_.lap();
+    begin_band(band, rows_of(0));
+    rests_ = false;
     for (bool resting = false; !resting;) {
-        resting = wavefront_->advance();
-        gather();
+        resting = advance();
         if (job_.progress)
             job_.progress(progress_of(band), std::nullopt);
         offer_look();
         if (!resting && stopping()) {
-            wavefront_->stop_handing_out();
+            give_order(Order::rest);
             gave_up_ = resting = out_of_patience();
             result_.counts.abandoned += gave_up_ ? wavefront_->in_flight() : 0;
         } else if (!resting && checkpoint_due()) {
-            wavefront_->stop_handing_out();
+            give_order(Order::rest);
         }
     }
     pixels_ = wavefront_->pixels_left();
+    join_followers();
     if (pixels_->empty() && !gave_up_) {
         pixels_.reset();
         ++band_;
@@ -242,6 +260,7 @@ void Session::run_band(const Band& band) {
 
 // Likewise where every pixel waits for all particles: a batch is done, or it was not.
 void Session::run_particles(const Band& band) {
+    begin_band(band, {0, band.rows});
     bool over = false;
     while (!over && !(stopping() && out_of_patience())) {
         over = wavefront_->advance();
@@ -277,13 +296,14 @@ void Session::gather() {
     result_.rounds += wavefront_->rounds();
     for (std::uint32_t i = 0; i < std::min<std::uint32_t>(counters.non_finite_records, NON_FINITE_RECORDS); ++i) {
         const std::uint32_t place = counters.non_finite_place[i];
-        if (result_.non_finite.size() < 16)
+        if (result_.non_finite.size() < most_examples)
             result_.non_finite.push_back(
                 {static_cast<int>(place & 0xffffu), static_cast<int>(place >> 16u), counters.non_finite_sample[i]});
     }
 }
 
 void Session::develop_film() {
+    bring_home();
     Film& film = result_.film;
     film.picture_width = scene_.picture.width;
     film.picture_height = scene_.picture.height;

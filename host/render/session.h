@@ -2,7 +2,10 @@
 // and the tests want all of a scene's samples at once, by render().
 #pragma once
 
+#include <atomic>
 #include <functional>
+#include <future>
+#include <memory>
 #include <optional>
 
 #include "checkpoint.h"
@@ -44,6 +47,15 @@ struct RenderJob {
     bool trace = false;                 // record the vertices of the path; crop and samples leave just one
     Workshop* workshop = nullptr;       // whose grids and pipelines are used, and kept for further frames
     bool dry_run = false;               // set up everything, and render nothing
+    // Devices that render rows of each batch beside the session's own, more or fewer as they turn out to be fast. Every
+    // pixel is one device's at a time, so where devices compute alike, the bits are those of one device.
+    std::vector<const Device*> others;
+};
+
+// What another device than the session's own had of a render.
+struct OtherDevice {
+    DeviceInfo info;
+    std::uint64_t paths = 0;
 };
 
 // What there is of media, and how much of it they share.
@@ -64,8 +76,9 @@ struct RenderResult {
     std::string by_chance;      // which light nothing but chance finds; empty: none
     std::string specialization; // in words: what the kernels were compiled for
     Plan plan;
-    std::vector<PassFigures> passes;
-    std::uint64_t rounds = 0; // of all passes but the sky
+    std::vector<PassFigures> passes; // of the session's own device, as is the plan
+    std::uint64_t rounds = 0;        // of all passes but the sky
+    std::vector<OtherDevice> others;
     double load_seconds = 0, upload_seconds = 0, pipeline_seconds = 0, render_seconds = 0;
     std::uint64_t device_bytes = 0; // of all buffers
     MediaFigures media;
@@ -79,8 +92,8 @@ struct RenderResult {
 
 class Session {
 public:
-    // Reads the scene's files, uploads them and compiles the kernels. `device` and `job` outlive the session. Throws
-    // InputError for what cannot be rendered, and RenderError where the device fails.
+    // Reads the scene's files, uploads them and compiles the kernels. `device`, others and `job` outlive the session.
+    // Throws InputError for what cannot be rendered, and RenderError where a device fails.
     Session(const Device& device, const Scene& scene, const RenderJob& job);
 
     // Until every pixel has `samples` in all, or the job ends it before. May be called again, for more; time limits
@@ -95,6 +108,19 @@ public:
     RenderResult& result();
 
 private:
+    struct Follower { // another device's session, and the thread in which it renders its share of a band
+        RenderJob job;
+        std::unique_ptr<Session> session;
+        std::future<void> work;
+    };
+    enum class Order { go_on, rest, abandon };
+    struct Following { // as long as they render
+        Session& leader;
+        ~Following();
+    };
+
+    Session(const Device& device, const Scene& scene, const RenderJob& job, bool leads);
+
     std::uint32_t width() const { return static_cast<std::uint32_t>(job_.crop.x1 - job_.crop.x0); }
     void load();
     void take_warnings(const Assets& assets);
@@ -103,6 +129,7 @@ private:
     void find_wish(const Assets& assets, const Specialization& specialization);
     Plan plan_by(Schedule schedule) const;
     void keep(const Assets& assets);
+    void release_grids();
     void compile();
     std::unique_ptr<Wavefront> make_wavefront(const Plan& plan, const PipelineCache& cache,
                                               const std::function<void()>& meanwhile);
@@ -111,6 +138,7 @@ private:
     std::uint32_t first_batch() const;
     std::uint32_t next_batch(std::uint32_t batch, double seconds) const;
     void make_film();
+    std::string devices_text() const;
     void begin_identity(const Assets& assets);
     void resume(const Checkpoint& from);
     void save_checkpoint();
@@ -124,12 +152,33 @@ private:
     bool is_good_enough();
     bool stopping();
     bool out_of_patience();
-    void begin_band(const Band& band);
+    void begin_band(const Band& band, Rows rows);
+    bool advance();
     void run_band(const Band& band);
     void run_particles(const Band& band);
     double progress_of(const Band& band) const;
     void gather();
     void develop_film();
+
+    // Several devices: session_devices.cpp.
+    void make_followers(const Scene& scene);
+    void compile_all();
+    void enter_moments();
+    void agree_on_batches();
+    Session& member(std::size_t i);
+    Rows rows_of(std::size_t i) const;
+    void divide(const Band& band);
+    void move_rows(Session& from, Session& to, std::size_t band, Rows rows);
+    void split_pixels();
+    [[nodiscard]] Following start_followers();
+    void follow(Rows rows, const std::atomic<Order>& order);
+    void give_order(Order order);
+    bool followers_rest() const;
+    void wait_for_followers() const;
+    void join_followers();
+    void take_from(Session& follower, OtherDevice& other);
+    void measure_speeds();
+    void bring_home();
 
     const Device& device_;
     const RenderJob& job_;
@@ -145,6 +194,7 @@ private:
     std::optional<PipelineCache> own_cache_; // without a workshop's
     std::vector<Band> bands_;
     std::uint32_t records_ = 0; // of paths, in them
+    shared::AovParams film_layers_{};
     std::optional<TraceBuffer> trace_;
     std::unique_ptr<Wavefront> wavefront_;
     RenderIdentity identity_; // only for checkpoints
@@ -162,6 +212,18 @@ private:
     bool stopped_ = false;
     bool gave_up_ = false; // paths were left in flight
     std::optional<double> stopped_at_;
+
+    // Where there are several devices. The session's own is the first member, and those of its followers come after.
+    const bool leads_;
+    std::vector<std::unique_ptr<Follower>> followers_;
+    // Of each band: from which row on each member has what was rendered of it, and the band's end.
+    std::vector<std::vector<std::uint32_t>> edges_;
+    std::vector<double> speeds_;             // of each member, in samples per second; 0: not known
+    std::atomic<Order> order_{Order::go_on}; // to all followers
+    Stopwatch share_watch_;
+    double share_seconds_ = 0.0; // of what the session's own device had of the last band
+    bool rests_ = false;         // nothing is in flight there
+    bool divided_ = false;       // the band under way has whole rows to render
 };
 
 // All of the scene's samples.

@@ -48,15 +48,19 @@ MediaFigures figures_of(const Assets& assets) {
 
 } // namespace
 
-Session::Session(const Device& device, const Scene& scene, const RenderJob& job)
+Session::Session(const Device& device, const Scene& scene, const RenderJob& job) : Session(device, scene, job, true) {
+    make_followers(scene);
+    compile_all();
+    watch_.lap();
+}
+
+Session::Session(const Device& device, const Scene& scene, const RenderJob& job, bool leads)
     : device_(device), job_(job), moving_(scene.motion_blur ? std::optional(scene) : std::nullopt),
       moment_(moving_ ? std::optional(moment_of_sample(job.sample_offset)) : std::nullopt),
       scene_(with_surface_files(with_preset(moving_ ? scene_at(*moment_) : scene))), method_(choose_method(scene_)),
-      commands_(device) {
+      commands_(device), leads_(leads) {
     scene_.warnings.erase(scene_.warnings.begin(), scene_.warnings.begin() + std::ptrdiff_t(scene.warnings.size()));
     load();
-    compile();
-    watch_.lap();
 }
 
 Scene Session::scene_at(const Moment& moment) const {
@@ -195,6 +199,11 @@ void Session::keep(const Assets& assets) {
         result_.outline = make_outline(*assets.superposition, device_scene_->emits());
     else if (!assets.media.empty())
         result_.outline = make_outline(scene_, scene_.volumes.front(), assets.media.front(), device_scene_->emits());
+    if (leads_ && job_.others.empty())
+        release_grids();
+}
+
+void Session::release_grids() {
     if (job_.workshop && job_.workshop->has_frames())
         job_.workshop->fields().foresee(job_.workshop->next());
     else if (job_.workshop && !moving_)
@@ -205,7 +214,7 @@ void Session::compile() {
     Stopwatch watch;
     if (!job_.workshop && !own_cache_)
         own_cache_.emplace(device_, job_.disk_cache);
-    const PipelineCache& cache = job_.workshop ? job_.workshop->pipelines(job_.disk_cache) : *own_cache_;
+    const PipelineCache& cache = job_.workshop ? job_.workshop->pipelines(device_, job_.disk_cache) : *own_cache_;
     device_scene_->make_light_cache();
     if (job_.trace && !trace_)
         trace_.emplace(device_, commands_);
@@ -277,7 +286,7 @@ double Session::paths_per_second(Wavefront& wavefront, const Plan& plan) {
     device_scene_->set_queues(plan.slots, queue_capacity(plan));
     device_scene_->set_rows(static_cast<std::uint32_t>(job_.crop.y0) + band.first_row, band.rows);
     wavefront.bind_film(band);
-    wavefront.begin_batch(0, samples, pixels);
+    wavefront.begin_batch(0, samples, 0, pixels);
     Stopwatch watch;
     double counted_from = 0.0;
     std::uint64_t paths = 0;
@@ -304,6 +313,14 @@ void Session::make_film() {
         }
     bands_ = make_bands(device_, commands_, job_.crop, result_.plan.most_film_bytes, layers);
     records_ = layers.records;
+    film_layers_ = layers;
+}
+
+std::string Session::devices_text() const {
+    std::string text = fmt::format("{}, {}", device_.info().name, device_.info().driver);
+    for (const Device* other : job_.others)
+        text += fmt::format("; {}, {}", other->info().name, other->info().driver);
+    return text;
 }
 
 void Session::begin_identity(const Assets& assets) {
@@ -316,7 +333,7 @@ void Session::begin_identity(const Assets& assets) {
     frame.layers.records = 0; // how it is carried out
     identity_ = identify(frame, device_scene_->specialization(), assets, device_scene_->lights(),
                          device_scene_->media(), device_scene_->surfaces(), device_scene_->points(), job_.sample_offset,
-                         fmt::format("{}, {}", device_.info().name, device_.info().driver), std::move(rows));
+                         devices_text(), std::move(rows));
     if (moving_) // of which the device has but a moment
         identity_.kernel += scene_hash(*moving_);
     if (job_.resume)

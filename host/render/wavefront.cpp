@@ -157,12 +157,12 @@ void Wavefront::bind_film(const Band& band) {
         bindings_->bind(BINDING_LAYERS, *band.layers);
 }
 
-void Wavefront::begin_batch(std::uint32_t begin, std::uint32_t end, std::uint32_t pixels) {
+void Wavefront::begin_batch(std::uint32_t begin, std::uint32_t end, std::uint32_t first, std::uint32_t last) {
     free_slots(begin, end);
     const auto start = std::chrono::steady_clock::now();
-    sort_pixels(pixels);
+    over_pixels(*sky_, first, last);
     sky_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    sorted_ = pixels;
+    sorted_ = last - first;
 }
 
 void Wavefront::begin_batch(std::uint32_t begin, std::uint32_t end, std::span<const std::uint32_t> pixels) {
@@ -224,22 +224,18 @@ void Wavefront::free_slots(std::uint32_t begin, std::uint32_t end) {
 }
 
 void Wavefront::collect(std::uint32_t pixels) {
-    over_pixels(*collect_, pixels);
-}
-
-void Wavefront::sort_pixels(std::uint32_t pixels) {
-    over_pixels(*sky_, pixels);
+    over_pixels(*collect_, 0, pixels);
 }
 
 // Each lane loops over the batch's samples.
-void Wavefront::over_pixels(ComputePass& pass, std::uint32_t pixels) {
+void Wavefront::over_pixels(ComputePass& pass, std::uint32_t begin, std::uint32_t end) {
     const std::uint32_t samples = push_.sample_end - push_.sample_begin;
     const std::uint64_t most = std::uint64_t{device_.limits().maxComputeWorkGroupCount[0]} * WORKGROUP_SIZE;
     const auto chunk = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
         sky_samples / samples, WORKGROUP_SIZE, std::max<std::uint64_t>(most, WORKGROUP_SIZE)));
-    for (std::uint32_t first = 0; first < pixels; first += chunk) {
+    for (std::uint32_t first = begin; first < end; first += chunk) {
         push_.pixel_begin = first;
-        push_.pixel_end = std::min(pixels, first + chunk);
+        push_.pixel_end = std::min(end, first + chunk);
         commands_.run([&](VkCommandBuffer commands) {
             pass.record(commands, push_, push_.pixel_end - push_.pixel_begin);
             record_barrier(commands);

@@ -37,8 +37,8 @@ public:
 
     void bind_film(const Band& band);
 
-    // Samples [begin, end) of pixels [0, pixels) of the bound film. Then call advance() until it returns true.
-    void begin_batch(std::uint32_t begin, std::uint32_t end, std::uint32_t pixels);
+    // Samples [begin, end) of pixels [first, last) of the bound film. Then call advance() until it returns true.
+    void begin_batch(std::uint32_t begin, std::uint32_t end, std::uint32_t first, std::uint32_t last);
     // The same for these pixels alone.
     void begin_batch(std::uint32_t begin, std::uint32_t end, std::span<const std::uint32_t> pixels);
     // Particles: once advance() has returned true, what they brought becomes the batch's samples. A batch that is not
@@ -81,8 +81,7 @@ private:
     std::uint64_t items_handed_out() const;
     void record_round(VkCommandBuffer commands, std::uint32_t round);
     void free_slots(std::uint32_t begin, std::uint32_t end);
-    void sort_pixels(std::uint32_t pixels);
-    void over_pixels(ComputePass& pass, std::uint32_t pixels);
+    void over_pixels(ComputePass& pass, std::uint32_t begin, std::uint32_t end);
     void record_step(VkCommandBuffer commands, const Step& step);
     void record_prepare(VkCommandBuffer commands, std::uint32_t queue, std::uint32_t before, std::uint32_t lanes);
     void record_timestamp(VkCommandBuffer commands, std::uint32_t round, std::size_t mark);

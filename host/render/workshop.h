@@ -2,7 +2,9 @@
 // picture is a sequence without further frames.
 #pragma once
 
-#include <optional>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <set>
 #include <string>
 #include <utility>
@@ -21,16 +23,13 @@ public:
     // Whether what is read is worth its memory once a frame has it on the device.
     bool has_frames() const { return has_frames_; }
     // Opened when it is first asked for.
-    const Device& device(const DeviceOptions& options) {
-        if (!device_)
-            device_.emplace(options);
-        return *device_;
-    }
-    // Of that device.
-    const PipelineCache& pipelines(bool use_disk) {
-        if (!pipelines_)
-            pipelines_.emplace(*device_, use_disk);
-        return *pipelines_;
+    const Device& device(const DeviceOptions& options) { return *open({options}).front(); }
+    // Likewise each of several, of which the first leads.
+    std::vector<const Device*> devices(const DeviceOptions& options) { return open(each_device(options)); }
+    // Of one of them. From any thread.
+    const PipelineCache& pipelines(const Device& device, bool use_disk) {
+        const std::scoped_lock lock(mutex_);
+        return pipelines_.try_emplace(&device, device, use_disk).first->second;
     }
     FieldCache& fields() { return fields_; }
     // The grids of the next frame, to be read while one renders whose own are on the device.
@@ -47,9 +46,20 @@ public:
     }
 
 private:
+    std::vector<const Device*> open(const std::vector<DeviceOptions>& wanted) {
+        if (devices_.empty())
+            for (const DeviceOptions& options : wanted)
+                devices_.push_back(std::make_unique<Device>(options));
+        std::vector<const Device*> opened;
+        for (const auto& device : devices_)
+            opened.push_back(device.get());
+        return opened;
+    }
+
     bool has_frames_;
-    std::optional<Device> device_;
-    std::optional<PipelineCache> pipelines_; // goes before its device
+    std::vector<std::unique_ptr<Device>> devices_;
+    std::mutex mutex_;
+    std::map<const Device*, PipelineCache> pipelines_; // go before their devices
     FieldCache fields_;
     std::vector<GridFile> next_;
     std::set<std::string> warned_;

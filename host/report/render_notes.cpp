@@ -71,6 +71,13 @@ void print_caps(const RenderRequest& request, const RenderResult& result) {
              request.seed, replay_command(request, s));
 }
 
+std::string of_all_devices(const Device& first, const RenderResult& result, std::string DeviceInfo::*text) {
+    std::string all = first.info().*text;
+    for (const OtherDevice& other : result.others)
+        all += " + " + other.info.*text;
+    return all;
+}
+
 std::string no_samples_text(const RenderResult& result) {
     return result.interrupted             ? "interrupted before the first sample"
            : result.counts.non_finite > 0 ? "no sample was finite"

@@ -16,6 +16,9 @@ void print_explanation(const Explanation& explanation);
 // also the command that follows their path.
 void print_caps(const RenderRequest& request, const RenderResult& result);
 
+// What is said of devices, where several rendered: "A + B".
+std::string of_all_devices(const Device& first, const RenderResult& result, std::string DeviceInfo::*text);
+
 // Why there is no sample, and so no picture.
 std::string no_samples_text(const RenderResult& result);
 

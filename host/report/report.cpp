@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 
 #include "camera_view.h"
+#include "render_notes.h"
 #include "requested_scene.h"
 #include "scene_hash.h"
 #include "version.h"
@@ -84,6 +85,16 @@ Json caps_json(const RenderResult& r) {
 
 Json device_json(const DeviceInfo& device) {
     return {{"name", device.name}, {"type", device.type}, {"driver", device.driver}, {"vulkan", device.api}};
+}
+
+// Beside the first, which has the rest of the samples.
+Json others_json(const RenderResult& result) {
+    Json others = Json::array();
+    for (const OtherDevice& other : result.others) {
+        others.push_back(device_json(other.info));
+        others.back()["part"] = double(other.paths) / double(std::max<std::uint64_t>(result.counts.paths, 1));
+    }
+    return others;
 }
 
 // Names of files need not be UTF-8, as JSON must be.
@@ -192,8 +203,8 @@ Metadata make_metadata(const RenderRequest& request, const Scene& scene, const D
                       {"vkvol/sampleOffset", static_cast<int>(request.sample_offset)},
                       {"vkvol/interrupted", result.interrupted ? 1 : 0},
                       {"vkvol/asked", asked_text(request, scene)},
-                      {"vkvol/device", device.info().name},
-                      {"vkvol/driver", device.info().driver},
+                      {"vkvol/device", of_all_devices(device, result, &DeviceInfo::name)},
+                      {"vkvol/driver", of_all_devices(device, result, &DeviceInfo::driver)},
                       {"vkvol/capsHit", result.counts.any_cap() ? 1 : 0},
                       {"vkvol/depthCaps", metadata_count(result.counts.depth_caps)},
                       {"vkvol/stepCaps", metadata_count(result.counts.step_caps)},
@@ -230,6 +241,7 @@ std::string make_report(const RenderRequest& request, const Scene& scene, const 
     report["foundByChance"] = result.by_chance;
     report["specialization"] = result.specialization;
     report["device"] = device_json(device.info());
+    report["otherDevices"] = others_json(result);
     report["picture"] = {
         {"width", scene.picture.width},
         {"height", scene.picture.height},

@@ -202,7 +202,28 @@ std::vector<DeviceInfo> list_devices() {
     return infos;
 }
 
+std::vector<DeviceOptions> each_device(const DeviceOptions& options) {
+    const std::string& list = options.choice;
+    const bool is_list =
+        list.find(',') != std::string::npos &&
+        std::all_of(list.begin(), list.end(), [](unsigned char c) { return std::isdigit(c) || c == ','; });
+    if (!is_list)
+        return {options};
+    std::vector<DeviceOptions> each;
+    for (std::size_t begin = 0; begin <= list.size();) {
+        const std::size_t end = std::min(list.find(',', begin), list.size());
+        if (begin == end)
+            throw DeviceError(fmt::format("--device {}: a number is missing; two devices are 0,1", list));
+        each.push_back({list.substr(begin, end - begin), options.validate, options.robust});
+        begin = end + 1;
+    }
+    return each;
+}
+
 Device::Device(const DeviceOptions& options) {
+    if (each_device(options).size() > 1)
+        throw DeviceError(
+            fmt::format("--device {}: several devices share renders to files alone; name one", options.choice));
     forgo_driver_cache_on_full_disk();
     try {
         create_instance(options);

@@ -18,6 +18,9 @@ struct DeviceOptions {
     bool robust = false;         // robustBufferAccess
 };
 
+// Each of several, whose numbers are the choice: "0,1". Any other choice is one.
+std::vector<DeviceOptions> each_device(const DeviceOptions& options);
+
 // One physical device as `vkvol devices` lists it. `rejection` is empty if it can be used.
 struct DeviceInfo {
     int index = 0;
