@@ -6,6 +6,7 @@
 #     package: that which tools/package.sh has made on this machine is installed in a bare system of the same release, tried by
 #     `vkvol demo`, and removed without a trace; not among what is done without words
 #     tar: what `tools/package.sh tar` has made is unpacked in one of any release, and tried; likewise
+#     python: `pip install .` in an environment of its own, and a picture from Python; likewise. PyPI has to be there
 #   tools/newcomer.sh --cache DIR          where bare systems are kept; default: ~/.cache/vkvol-newcomer
 #   tools/newcomer.sh --mirror URL         default: http://deb.debian.org/debian
 # Every release and user begins with a system of its own; if both commands are chosen, the second finds what the first left.
@@ -22,13 +23,13 @@ while [ $# -gt 0 ]; do
     case $1 in
     bookworm | trixie) releases+=("$1") ;;
     root | user) users+=("$1") ;;
-    demo | test | package | tar) commands+=("$1") ;;
+    demo | test | package | tar | python) commands+=("$1") ;;
     --cache | --mirror)
         [ $# -gt 1 ] || die "$1 needs a value"
         [ "$1" = --cache ] && cache=$2 || mirror=$2
         shift
         ;;
-    *) die "'$1' is neither a release (bookworm, trixie), a user (root, user), a command (demo, test, package, tar), --cache DIR nor --mirror URL" ;;
+    *) die "'$1' is neither a release (bookworm, trixie), a user (root, user), a command (demo, test, package, tar, python), --cache DIR nor --mirror URL" ;;
     esac
     shift
 done
@@ -101,6 +102,7 @@ steps() {
     case $1 in
     package) package_steps ;;
     tar) tar_steps ;;
+    python) python_steps | sed "s/AS_USER/$2/" ;;
     *) echo "cd /home/vkvol && ${2:+$2 }tools/$1.sh" ;;
     esac
 }
@@ -116,6 +118,31 @@ cd /tmp
 "/opt/some where"/vkvol*/bin/vkvol demo --width 160 --spp 16
 [ -s cumulus.png ] && [ -s cumulus.exr ]
 "/opt/some where"/vkvol*/bin/vkvol-make-field sphere && "/opt/some where"/vkvol*/bin/vkvol sphere.nvdb --width 64 --spp 4 -q
+END
+}
+
+# A proxy that signs for PyPI has this machine's trust.
+python_steps() {
+    cat <<'END'
+set -e
+export DEBIAN_FRONTEND=noninteractive PIP_CERT=/certificates.crt
+cd /home/vkvol
+AS_USER tools/setup.sh
+apt-get install -y -qq --no-install-recommends python3-venv
+AS_USER python3 -m venv /tmp/venv
+AS_USER env PIP_CERT=/certificates.crt /tmp/venv/bin/pip install -q . numpy
+cd /tmp
+AS_USER /tmp/venv/bin/python - <<'PYTHON'
+import numpy, vkvol
+
+smoke = vkvol.Grids(density=numpy.random.rand(32, 32, 32), voxel_size=1 / 32)
+scene = vkvol.Scene.from_dict({"densityField": smoke, "sigma_s": {"unit": "world", "text": 20},
+                               "light": {"x": 1, "y": 2, "z": 1, "r": 1, "g": 1, "b": 1}})
+picture = vkvol.render(scene, spp=4)
+assert picture.mean.max() > 0
+picture.write("smoke.exr")
+PYTHON
+[ -s smoke.exr ]
 END
 }
 
@@ -140,6 +167,7 @@ END
 attempt() {
     local start=$SECONDS result=ok log=$vkvol_root/out/newcomer-$1-$2-$3.log load row what=tools/$3.sh
     [ "$3" != tar ] || what="package.sh tar"
+    [ "$3" != python ] || what="pip install ."
     load=$(cut -d ' ' -f 1 /proc/loadavg)
     say "$1, $2: $what (output in $log)"
     local as=
@@ -151,6 +179,8 @@ attempt() {
     elif [ "$3" = tar ]; then
         cp "$(find "$vkvol_root/build/package" -maxdepth 1 -name '*.tar.gz')" "$system/vkvol.tar.gz" ||
             die "there is no such package; tools/package.sh tar makes one"
+    elif [ "$3" = python ]; then
+        cp /etc/ssl/certs/ca-certificates.crt "$system/certificates.crt"
     fi
     inside "$(steps "$3" "$as")" >"$log" 2>&1 || result=FAILED
     row=$(printf '%-9s %-5s %-14s %-7s %5s  %s' "$1" "$2" "$what" $result $((SECONDS - start)) "$(circumstances "$log" | paste -sd ';' | sed 's/;/, /g')")

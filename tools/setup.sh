@@ -1,5 +1,6 @@
+#!/usr/bin/env bash
 # Sourced by the other scripts: brings a machine with Debian 12 or 13 to where vkvol can be built, and builds it.
-# Every function is quick when there is nothing left to do.
+# Every function is quick when there is nothing left to do. Run by itself, it installs what a build needs.
 
 vkvol_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
@@ -113,3 +114,8 @@ unpack_swiftshader() (
     rm chromium-common_*.deb
     mv "$temporary" "$1"
 )
+
+if [ "${BASH_SOURCE[0]}" = "$0" ]; then
+    set -eu
+    install_packages
+fi
