@@ -102,6 +102,7 @@ rows left on the device that had them ~ host/render/session_devices.cpp ~ {from.
 layers of moved rows among the records ~ host/render/film_bands.cpp ~ record_bytes(to.layers) + first ~ first ~ [devices]
 what other devices left over forgotten ~ host/render/session_devices.cpp ~ pixels_->insert(pixels_->end(), left.begin(), left.end()); ~ ; ~ [devices]
 pixels left over given to several devices ~ host/render/session_devices.cpp ~ pixel >= rows.begin * width() && pixel ~ pixel ~ [devices]
+looks before other devices rest ~ host/render/session.cpp ~ if (followers_.empty()) ~ if (true) ~ [devices]
 paths of other devices not counted ~ host/render/session_devices.cpp ~ add_counts(result_.counts, counts); ~ add_counts(result_.counts, RenderCounts{}); ~ [devices]
 later moments on the first device alone ~ host/render/session_devices.cpp ~ follower->session->enter_moment(); ~ ; ~ [devices]
 film variance / n for / (n - 1) ~ host/render/film_bands.cpp ~ / (n - 1.0) ~ / n ~ [determinism]

@@ -19,10 +19,11 @@ std::uint64_t record_bytes(const shared::AovParams& layers) {
 }
 
 // What is too much would not fail: the system would end the program later, without a word.
-void check_memory(const Device& device, const Crop& crop, std::uint32_t layers) {
-    // As sums, in memory of this machine if that is the device; the same read back; mean, variance and samples.
+void check_memory(const Crop& crop, std::uint32_t layers, int films) {
+    // As sums, in memory of this machine for devices that are its processor; the same read back; mean, variance and
+    // samples.
     const double sums = sizeof(shared::FilmPixel) + layers * layer_bytes;
-    const double bytes = sums * (device.is_cpu() ? 2.0 : 1.0) + (1.0 + layers) * 2.0 * sizeof(glm::vec3) + 4.0;
+    const double bytes = sums * (films + 1.0) + (1.0 + layers) * 2.0 * sizeof(glm::vec3) + 4.0;
     const double width = crop.x1 - crop.x0, height = crop.y1 - crop.y0;
     const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
     if (width * height * bytes > memory)
@@ -34,8 +35,8 @@ void check_memory(const Device& device, const Crop& crop, std::uint32_t layers) 
 } // namespace
 
 std::vector<Band> make_bands(const Device& device, Commands& commands, const Crop& crop, std::uint64_t most_bytes,
-                             const shared::AovParams& layers) {
-    check_memory(device, crop, layers.count);
+                             const shared::AovParams& layers, int films) {
+    check_memory(crop, layers.count, films);
     const std::uint64_t width = static_cast<std::uint64_t>(crop.x1 - crop.x0);
     const std::uint64_t row_bytes = width * sizeof(shared::FilmPixel);
     const std::uint64_t records = record_bytes(layers), layer_row = width * layers.count * std::uint64_t(layer_bytes);

@@ -25,9 +25,9 @@ struct Rows {
 };
 
 // Bands without samples. `most_bytes`: of one buffer of them. `layers`: how many, and of how many paths they have
-// records. Throws InputError if the film is too large.
+// records. `films`: such as lie in this machine's memory, of all devices. Throws InputError if the film is too large.
 std::vector<Band> make_bands(const Device& device, Commands& commands, const Crop& crop, std::uint64_t most_bytes,
-                             const shared::AovParams& layers);
+                             const shared::AovParams& layers, int films);
 void clear(Commands& commands, const Band& band);
 
 // All bands' pixels, row by row.

@@ -45,10 +45,8 @@ std::optional<Schedule> recall_schedule(const std::string& kind, bool use_disk) 
 }
 
 void remember_schedule(const std::string& kind, Schedule schedule, bool use_disk) {
-    {
-        const std::scoped_lock lock(mutex);
-        of_this_process[kind] = schedule;
-    }
+    const std::scoped_lock lock(mutex);
+    of_this_process[kind] = schedule;
     const std::filesystem::path name = memory_file();
     if (name.empty() || !use_disk)
         return;

@@ -42,9 +42,11 @@ void add_counts(RenderCounts& total, const shared::Counters& c) {
 void Session::render(std::uint32_t samples) {
     if (gave_up_)
         throw RenderError(
-            "paths of this render did not end and were abandoned; what they are part of is missing, and it "
-            "cannot be gone on with");
+            "paths of this render were abandoned, since they would not end or a device failed; what they are part of "
+            "is missing, and it cannot be gone on with");
     check_ready();
+    for (const auto& follower : followers_)
+        follower->session->check_ready();
     wanted_ = samples;
     if (next_ == 0) { // nothing was rendered yet
         if (job_.resume)
@@ -119,6 +121,7 @@ void Session::resume(const Checkpoint& from) {
     band_ = from.band;
     pixels_ = from.pixels;
     result_.counts = from.counts;
+    paths_before_ = from.counts.paths;
     result_.non_finite = from.non_finite;
     result_.render_seconds = from.seconds;
 }
@@ -153,8 +156,8 @@ void Session::report_noise() {
     job_.progress(done_, relative_noise(result_.film));
 }
 
-// Amid a batch some pixels have samples that others wait for: long paths come last. What other devices have then is not
-// seen before the batch's end.
+// Amid a batch some pixels have samples that others wait for: long paths come last. Of several devices the film is only
+// whole once all rest.
 void Session::offer_look() {
     if (!job_.look || watch_.seconds() < next_look_)
         return;
@@ -241,7 +244,8 @@ void Session::run_band(const Band& band) {
         resting = advance();
         if (job_.progress)
             job_.progress(progress_of(band), std::nullopt);
-        offer_look();
+        if (followers_.empty())
+            offer_look();
         if (!resting && stopping()) {
             give_order(Order::rest);
             gave_up_ = resting = out_of_patience();
@@ -251,7 +255,10 @@ void Session::run_band(const Band& band) {
         }
     }
     pixels_ = wavefront_->pixels_left();
-    join_followers();
+    if (!followers_.empty()) {
+        join_followers();
+        offer_look();
+    }
     if (pixels_->empty() && !gave_up_) {
         pixels_.reset();
         ++band_;

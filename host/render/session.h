@@ -55,7 +55,7 @@ struct RenderJob {
 // What another device than the session's own had of a render.
 struct OtherDevice {
     DeviceInfo info;
-    std::uint64_t paths = 0;
+    double part = 0.0; // of the paths since the render began, or was gone on with
 };
 
 // What there is of media, and how much of it they share.
@@ -112,6 +112,7 @@ private:
         RenderJob job;
         std::unique_ptr<Session> session;
         std::future<void> work;
+        std::uint64_t paths = 0;
     };
     enum class Order { go_on, rest, abandon };
     struct Following { // as long as they render
@@ -164,7 +165,7 @@ private:
     void make_followers(const Scene& scene);
     void compile_all();
     void enter_moments();
-    void agree_on_batches();
+    void agree();
     Session& member(std::size_t i);
     Rows rows_of(std::size_t i) const;
     void divide(const Band& band);
@@ -176,7 +177,7 @@ private:
     bool followers_rest() const;
     void wait_for_followers() const;
     void join_followers();
-    void take_from(Session& follower, OtherDevice& other);
+    void take_from(Follower& follower);
     void measure_speeds();
     void bring_home();
 
@@ -221,9 +222,11 @@ private:
     std::vector<double> speeds_;             // of each member, in samples per second; 0: not known
     std::atomic<Order> order_{Order::go_on}; // to all followers
     Stopwatch share_watch_;
-    double share_seconds_ = 0.0; // of what the session's own device had of the last band
-    bool rests_ = false;         // nothing is in flight there
-    bool divided_ = false;       // the band under way has whole rows to render
+    double share_seconds_ = 0.0;     // of what the session's own device had of the last band
+    std::uint64_t device_bytes_ = 0; // there
+    std::uint64_t paths_before_ = 0; // of the checkpoint that the render goes on from
+    bool rests_ = false;             // nothing is in flight there
+    bool divided_ = false;           // the band under way has whole rows to render
 };
 
 // All of the scene's samples.

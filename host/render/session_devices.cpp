@@ -34,8 +34,8 @@ std::vector<std::uint32_t> rows_of_bands(const std::vector<Band>& bands) {
     return rows;
 }
 
-// From which row on each of several members has its share of `rows`, by their speeds, and the end. The first, which
-// waits for the others, always has something to do.
+// From which row on each of several members has its share of `rows`, by their speeds, and the end. All have something
+// to do, so that their speeds are known, as far as there are rows enough.
 std::vector<std::uint32_t> edges_by(const std::vector<double>& speeds, std::uint32_t rows) {
     const double total = std::accumulate(speeds.begin(), speeds.end(), 0.0);
     const bool is_known = std::all_of(speeds.begin(), speeds.end(), [](double speed) { return speed > 0.0; });
@@ -43,7 +43,10 @@ std::vector<std::uint32_t> edges_by(const std::vector<double>& speeds, std::uint
     double sum = 0.0;
     for (std::size_t i = 0; i < speeds.size(); ++i) {
         sum += is_known ? speeds[i] / total : 1.0 / double(speeds.size());
-        edges.push_back(std::max(static_cast<std::uint32_t>(std::lround(rows * std::min(sum, 1.0))), 1u));
+        const std::size_t after = speeds.size() - 1 - i;
+        const auto edge = static_cast<std::uint32_t>(std::lround(rows * std::min(sum, 1.0)));
+        const auto most = static_cast<std::uint32_t>(rows > after ? rows - after : 1);
+        edges.push_back(std::min(std::max(std::min(edge, most), edges.back() + 1), rows));
     }
     edges.back() = rows;
     return edges;
@@ -70,6 +73,7 @@ void Session::make_followers(const Scene& scene) {
         job.plan.most_film_bytes =
             std::min<std::uint64_t>(result_.plan.most_film_bytes, device->limits().maxStorageBufferRange);
         job.plan.waiting = std::max(job.plan.waiting, job_.resume ? job_.resume->batch : 0);
+        job.plan.schedule = wish_.schedule;
         follower->session.reset(new Session(*device, scene, job, false));
         if (rows_of_bands(follower->session->bands_) != rows_of_bands(bands_))
             throw InputError(
@@ -77,7 +81,7 @@ void Session::make_followers(const Scene& scene) {
                             "--crop windows",
                             device->info().name, device_.info().name));
         follower->session->result_.counts = {};
-        result_.others.push_back({device->info(), 0});
+        result_.others.push_back({device->info(), 0.0});
         followers_.push_back(std::move(follower));
     }
     release_grids();
@@ -88,17 +92,21 @@ void Session::make_followers(const Scene& scene) {
     }
 }
 
-// Each device's kernels beside those of the others.
+// Devices of the first one's kind have its schedule, whose bits another one may not have there, and so wait for it.
 void Session::compile_all() {
-    std::vector<std::future<void>> compiling;
-    for (const auto& follower : followers_)
-        compiling.push_back(std::async(std::launch::async, [&] { follower->session->compile(); }));
     compile();
+    std::vector<std::future<void>> compiling;
+    for (const auto& follower : followers_) {
+        Session& session = *follower->session;
+        if (session.devices_text() == fmt::format("{}, {}", device_.info().name, device_.info().driver)) {
+            session.wish_.schedule = result_.plan.schedule;
+            session.result_.plan = session.plan_by(result_.plan.schedule);
+        }
+        compiling.push_back(std::async(std::launch::async, [&session] { session.compile(); }));
+    }
     for (std::future<void>& kernels : compiling)
         kernels.get();
-    for (const auto& follower : followers_)
-        result_.device_bytes += follower->session->result_.device_bytes;
-    agree_on_batches();
+    agree();
 }
 
 void Session::enter_moments() {
@@ -107,12 +115,15 @@ void Session::enter_moments() {
         follower->session->done_ = done_;
         follower->session->enter_moment();
     }
-    agree_on_batches();
+    agree();
 }
 
-void Session::agree_on_batches() {
-    for (const auto& follower : followers_)
+void Session::agree() {
+    result_.device_bytes = device_bytes_;
+    for (const auto& follower : followers_) {
         most_batch_ = std::min(most_batch_, follower->session->most_batch_);
+        result_.device_bytes += follower->session->device_bytes_;
+    }
 }
 
 Session& Session::member(std::size_t i) {
@@ -127,15 +138,17 @@ Rows Session::rows_of(std::size_t i) const {
 // By the speeds of the batches before. Pixels left over stay where their rows are.
 void Session::divide(const Band& band) {
     divided_ = !pixels_;
-    if (followers_.empty() || pixels_)
+    const bool is_shared = !followers_.empty() && edges_[band_][1] < band.rows;
+    if (followers_.empty() || (pixels_ && is_shared))
         return;
-    const std::vector<std::uint32_t> before = std::exchange(edges_[band_], edges_by(speeds_, band.rows));
-    const std::vector<std::uint32_t>& now = edges_[band_];
+    const std::vector<std::uint32_t>& before = edges_[band_];
+    const std::vector<std::uint32_t> now = edges_by(speeds_, band.rows);
     for (std::size_t from = 0; from + 1 < before.size(); ++from)
         for (std::size_t to = 0; to + 1 < now.size(); ++to)
             if (from != to)
                 move_rows(member(from), member(to), band_,
                           {std::max(before[from], now[to]), std::min(before[from + 1], now[to + 1])});
+    edges_[band_] = now;
 }
 
 void Session::move_rows(Session& from, Session& to, std::size_t band, Rows rows) {
@@ -156,6 +169,7 @@ void Session::split_pixels() {
 
 Session::Following Session::start_followers() {
     order_ = Order::go_on;
+    Following following{*this};
     if (!divided_ && !followers_.empty())
         split_pixels();
     for (std::size_t i = 0; i < followers_.size(); ++i) {
@@ -171,7 +185,7 @@ Session::Following Session::start_followers() {
             followers_[i]->work =
                 std::async(std::launch::async, [this, &session, rows] { session.follow(rows, order_); });
     }
-    return {*this};
+    return following;
 }
 
 // All that they still do comes to nothing if it was not joined.
@@ -223,30 +237,34 @@ void Session::wait_for_followers() const {
 
 // What they came to. An error of one is thrown once all have ended.
 void Session::join_followers() {
-    if (followers_.empty())
-        return;
     if (gave_up_)
         give_order(Order::abandon);
+    const bool gave_up = std::exchange(gave_up_, true); // unless none has failed
     for (const auto& follower : followers_)
         if (follower->work.valid())
             follower->work.wait();
     for (std::size_t i = 0; i < followers_.size(); ++i)
         if (followers_[i]->work.valid()) {
             followers_[i]->work.get();
-            take_from(*followers_[i]->session, result_.others[i]);
+            take_from(*followers_[i]);
         }
+    gave_up_ = gave_up;
+    const std::uint64_t paths = std::max<std::uint64_t>(result_.counts.paths - paths_before_, 1);
+    for (std::size_t i = 0; i < followers_.size(); ++i)
+        result_.others[i].part = double(followers_[i]->paths) / double(paths);
     measure_speeds();
 }
 
-void Session::take_from(Session& follower, OtherDevice& other) {
-    const RenderCounts counts = std::exchange(follower.result_.counts, {});
+void Session::take_from(Follower& follower) {
+    Session& session = *follower.session;
+    const RenderCounts counts = std::exchange(session.result_.counts, {});
     add_counts(result_.counts, counts);
-    other.paths += counts.paths;
-    std::vector<NonFiniteSample>& examples = follower.result_.non_finite;
+    follower.paths += counts.paths;
+    std::vector<NonFiniteSample>& examples = session.result_.non_finite;
     result_.non_finite.insert(result_.non_finite.end(), examples.begin(), examples.end());
     result_.non_finite.resize(std::min(result_.non_finite.size(), most_examples));
     examples.clear();
-    const std::vector<std::uint32_t> left = *std::exchange(follower.pixels_, std::nullopt);
+    const std::vector<std::uint32_t> left = *std::exchange(session.pixels_, std::nullopt);
     pixels_->insert(pixels_->end(), left.begin(), left.end());
 }
 

@@ -230,9 +230,9 @@ void Session::compile() {
     // Counters of the sky, which are read once a batch, have 32 bits.
     const std::uint64_t pixels = std::uint64_t{bands_.front().rows} * width();
     most_batch_ = std::min<std::uint32_t>(result_.plan.most_batch, std::max<std::uint64_t>((1ull << 31) / pixels, 1));
-    result_.device_bytes = device_scene_->bytes() + wavefront_->bytes();
+    device_bytes_ = device_scene_->bytes() + wavefront_->bytes();
     for (const Band& band : bands_)
-        result_.device_bytes += band.film.bytes() + (band.layers ? band.layers->bytes() : 0);
+        device_bytes_ += band.film.bytes() + (band.layers ? band.layers->bytes() : 0);
     if (result_.pipeline_seconds == 0.0) // of the first moment
         result_.pipeline_seconds = watch.lap();
 }
@@ -311,15 +311,23 @@ void Session::make_film() {
             const Plan plan = plan_by(schedule);
             layers.records = std::max({layers.records, plan.slots, plan.waiting});
         }
-    bands_ = make_bands(device_, commands_, job_.crop, result_.plan.most_film_bytes, layers);
+    const auto films =
+        std::count_if(job_.others.begin(), job_.others.end(), [](const Device* d) { return d->is_cpu(); }) +
+        (device_.is_cpu() ? 1 : 0);
+    bands_ = make_bands(device_, commands_, job_.crop, result_.plan.most_film_bytes, layers, int(films));
     records_ = layers.records;
     film_layers_ = layers;
 }
 
+// Of each kind once: those of one kind compute alike.
 std::string Session::devices_text() const {
-    std::string text = fmt::format("{}, {}", device_.info().name, device_.info().driver);
+    const auto text_of = [](const Device& device) {
+        return fmt::format("{}, {}", device.info().name, device.info().driver);
+    };
+    std::string text = text_of(device_);
     for (const Device* other : job_.others)
-        text += fmt::format("; {}, {}", other->info().name, other->info().driver);
+        if (text.find(text_of(*other)) == std::string::npos)
+            text += "; " + text_of(*other);
     return text;
 }
 

@@ -92,7 +92,7 @@ Json others_json(const RenderResult& result) {
     Json others = Json::array();
     for (const OtherDevice& other : result.others) {
         others.push_back(device_json(other.info));
-        others.back()["part"] = double(other.paths) / double(std::max<std::uint64_t>(result.counts.paths, 1));
+        others.back()["part"] = other.part;
     }
     return others;
 }

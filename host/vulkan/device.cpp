@@ -203,7 +203,8 @@ std::vector<DeviceInfo> list_devices() {
 }
 
 std::vector<DeviceOptions> each_device(const DeviceOptions& options) {
-    const std::string& list = options.choice;
+    std::string list = options.choice;
+    list.erase(std::remove(list.begin(), list.end(), ' '), list.end());
     const bool is_list =
         list.find(',') != std::string::npos &&
         std::all_of(list.begin(), list.end(), [](unsigned char c) { return std::isdigit(c) || c == ','; });

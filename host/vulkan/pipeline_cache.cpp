@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <fstream>
+#include <mutex>
 #include <system_error>
 
 #include "atomic_file.h"
@@ -83,6 +84,8 @@ void PipelineCache::save() const {
     std::vector<char> data(size);
     if (vkGetPipelineCacheData(device_.handle(), cache_, &size, data.data()) != VK_SUCCESS)
         return;
+    static std::mutex mutex; // of devices of one kind, whose file is the same
+    const std::scoped_lock lock(mutex);
     try {
         std::filesystem::create_directories(path_.parent_path());
         AtomicFile file(path_);

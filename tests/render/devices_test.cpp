@@ -46,10 +46,10 @@ RenderJob alone(RenderJob job) {
 }
 
 double part_of_first(const RenderResult& result) {
-    double others = 0.0;
+    double part = 1.0;
     for (const OtherDevice& other : result.others)
-        others += double(other.paths);
-    return 1.0 - others / double(result.counts.paths);
+        part -= other.part;
+    return part;
 }
 
 } // namespace
@@ -103,7 +103,12 @@ TEST_CASE("a shared render is looked at, stopped and gone on with", "[gpu][devic
     std::vector<Checkpoint> kept;
     job.interrupted = [&] { return ++asked > 9; };
     job.checkpoint = [&](const Checkpoint& checkpoint) { kept.push_back(checkpoint); };
-    job.look = [&](const RenderResult& result) { looks += result.film.pixel_count() == 1600; };
+    job.look = [&](const RenderResult& result) {
+        const std::vector<std::uint32_t>& samples = result.film.samples;
+        ++looks;
+        REQUIRE(samples.size() == 1600);
+        CHECK(*std::min_element(samples.begin(), samples.end()) >= result.samples); // of all devices
+    };
     const RenderResult begun = render(test_device(), scene, job);
     REQUIRE(begun.interrupted);
     CHECK(looks > 0);
@@ -112,7 +117,11 @@ TEST_CASE("a shared render is looked at, stopped and gone on with", "[gpu][devic
     for (const std::size_t i : {kept.size() / 2, kept.size() - 1}) {
         RenderJob rest = shared_job(scene, job.plan.schedule, second);
         rest.resume = &kept[i];
-        CHECK((same_bits(render(test_device(), scene, rest).film, whole) || !test_device().is_cpu()));
+        const RenderResult gone_on = render(test_device(), scene, rest);
+        CHECK((same_bits(gone_on.film, whole) || !test_device().is_cpu()));
+        CHECK(part_of_first(gone_on) > 0.0);
+        CHECK(part_of_first(gone_on) < 1.0);
+        CHECK((same_bits(render(test_device(), scene, alone(rest)).film, whole) || !test_device().is_cpu()));
     }
 }
 
