@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <thread>
 
+#include "blackbody.h"
 #include "pbrt_cloud.h"
 #include "pbrt_translator.h"
 #include "pbrt_voxels.h"
@@ -13,6 +14,9 @@
 namespace vkvol {
 
 namespace {
+
+constexpr double most_glow_voxels = 4e6;
+constexpr int black_bodies = 4096; // in a table of their colours
 
 double number_in(const PbrtThing& medium, const char* name, double fallback, double low, double high) {
     const double number = medium.parameters->number(name, fallback);
@@ -65,15 +69,36 @@ std::vector<float> values_of(const PbrtCloud& cloud, const glm::dmat4& to_medium
 }
 
 // Where a scene says nothing of Le's scale pbrt takes a grid of one value, 1 in the middle of the box, which falls to 0
-// at the middles of its neighbours: to half at the faces.
-std::vector<float> usual_scales(glm::ivec3 dims) {
-    std::vector<float> scales;
-    const auto at = [](int i, int n) { return 1.0 - std::abs((i + 0.5) / n - 0.5); };
+// at the middles of its neighbours: to half at the faces. `at`: in voxels, from the middle of the first one.
+double usual_scale(const glm::dvec3& at, glm::ivec3 dims) {
+    const glm::dvec3 along = 1.0 - glm::abs((at + 0.5) / glm::dvec3(dims) - 0.5);
+    return along.x * along.y * along.z;
+}
+
+// `value(x, y, z)` of each voxel, x fastest.
+template <class Value> auto of_voxels(glm::ivec3 dims, const Value& value) {
+    std::vector<decltype(value(0, 0, 0))> values;
+    values.reserve(voxel_count(dims));
     for (int z = 0; z < dims.z; ++z)
         for (int y = 0; y < dims.y; ++y)
             for (int x = 0; x < dims.x; ++x)
-                scales.push_back(static_cast<float>(at(x, dims.x) * at(y, dims.y) * at(z, dims.z)));
-    return scales;
+                values.push_back(value(x, y, z));
+    return values;
+}
+
+// Linear between the middles of voxels, and 0 beyond their neighbours, as pbrt's grids are.
+double between_voxels(const std::vector<float>& values, glm::ivec3 dims, const glm::dvec3& at) {
+    const glm::ivec3 first(glm::floor(at));
+    double sum = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2), voxel = first + step;
+        if (glm::any(glm::lessThan(voxel, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(voxel, dims)))
+            continue;
+        const glm::dvec3 part = 1.0 - glm::abs(at - glm::dvec3(voxel));
+        const std::size_t place = (std::size_t(voxel.z) * dims.y + voxel.y) * dims.x + voxel.x;
+        sum += part.x * part.y * part.z * double(values[place]);
+    }
+    return sum;
 }
 
 // Two and a half for a cell of the cloud's finest noise, at least 64 along the longest edge, and no more in all than
@@ -124,6 +149,35 @@ std::string PbrtTranslator::free_name(const std::string& medium) const {
     return name;
 }
 
+// pbrt looks up the temperature and Le's scale apart, and multiplies the black body by the scale. Here that is a grid
+// of colours, of finer voxels, since it bends between those of the two; it has one more about the box, where they fall
+// to 0.
+MemoryGrids::Grid PbrtTranslator::glow_of(const PbrtThing& medium, glm::ivec3 dims) {
+    const PbrtParameters& p = *medium.parameters;
+    const std::vector<float> temperatures = values_of(medium, "temperature", dims);
+    const std::vector<float> scales = p.has("Lescale") ? values_of(medium, "Lescale", dims) : std::vector<float>{};
+    const glm::dvec2 kelvin = kelvins(medium);
+    const auto [coldest, hottest] = std::minmax_element(temperatures.begin(), temperatures.end());
+    const double most = std::max({kelvin.x * *coldest + kelvin.y, kelvin.x * *hottest + kelvin.y, 2.0 * least_kelvin});
+    const std::vector<glm::vec3> colors = make_blackbody_table(least_kelvin, most, 0.0, black_bodies);
+    const int finer = std::clamp(int(std::cbrt(most_glow_voxels / double(voxel_count(dims)))), 1, 12);
+    const glm::ivec3 fine = dims * finer + 2;
+    const GridPlace place{glm::dvec3(1.0 / finer), glm::dvec3(0.5 / finer - 0.5 - 1.0 / finer)};
+    const std::vector<glm::vec3> glow = of_voxels(fine, [&](int x, int y, int z) {
+        const glm::dvec3 at = place.origin + glm::dvec3(x, y, z) * place.voxel_size;
+        const double scale = scales.empty() ? usual_scale(at, dims) : between_voxels(scales, dims, at);
+        const double here = kelvin.x * between_voxels(temperatures, dims, at) + kelvin.y;
+        if (!(here > least_kelvin && scale > 0.0))
+            return glm::vec3(0.0f);
+        const double along = (here - least_kelvin) / (most - least_kelvin) * (black_bodies - 1);
+        const int node = std::min(int(along), black_bodies - 2);
+        return float(scale) * glm::mix(colors[node], colors[node + 1], float(along - node));
+    });
+    note(p.find("temperature")->place,
+         fmt::format("what glows by its temperature is a grid of {} x {} x {} colours here", fine.x, fine.y, fine.z));
+    return {"glow", make_grid("glow", fine, glow, place)};
+}
+
 void PbrtTranslator::write_dense_medium(const std::string& name, const PbrtThing& medium) {
     if (medium.type == "rgbgrid")
         return write_rgb_medium(name, medium);
@@ -152,25 +206,25 @@ void PbrtTranslator::write_dense_medium(const std::string& name, const PbrtThing
     if (burns && p.has("Le"))
         fail_at(p.find("Le")->place, "both \"Le\" and \"temperature\"; expected one of them");
     if (burns)
-        add("temperature", values_of(medium, "temperature", dims));
+        grids->grids.push_back(glow_of(medium, dims));
     else if (has_scales)
         add("Lescale", values_of(medium, "Lescale", dims));
     else if (!is_cloud && p.has("Le"))
-        add("Lescale", usual_scales(dims));
+        add("Lescale", of_voxels(dims, [&](int x, int y, int z) { return float(usual_scale({x, y, z}, dims)); }));
     const std::string file = free_name(name);
     xml_.open("volume", {{"name", name}}, medium.place.text());
     xml_.element("densityField", {}, file);
     write_matrix(world_ * medium.transform * place);
     write_coefficients(medium);
-    if (burns)
-        write_black_body("temperature", 1.0, medium);
-    else if (const std::optional<glm::dvec3> glow = is_cloud ? std::nullopt : colors_.light(medium, "Le")) {
+    if (burns) {
+        XmlAttributes attributes = {{"grid", "glow"}, {"model", "color"}};
+        add_rgb(attributes, glm::dvec3(exposure_));
+        xml_.element("emission", attributes);
+    } else if (const std::optional<glm::dvec3> glow = is_cloud ? std::nullopt : colors_.light(medium, "Le")) {
         XmlAttributes attributes = {{"grid", "Lescale"}, {"model", "color"}};
         add_rgb(attributes, *glow * exposure_);
         xml_.element("emission", attributes);
     }
-    if (burns && has_scales)
-        note(p.find("Lescale")->place, "\"Lescale\" beside a temperature is left out");
     note_unused(medium, {"type"});
     xml_.close();
     grids_.emplace(file, grids);

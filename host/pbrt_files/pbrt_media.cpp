@@ -133,17 +133,21 @@ void PbrtTranslator::write_grid_medium(const std::string& name, const PbrtThing&
     xml_.close();
 }
 
-// Of temperatures, scaled and offset as the medium says.
-void PbrtTranslator::write_black_body(const std::string& grid, double glow, const PbrtThing& medium) {
+// A value v of the temperatures stands for x * v + y kelvin.
+glm::dvec2 PbrtTranslator::kelvins(const PbrtThing& medium) {
     const PbrtParameters& p = *medium.parameters;
     const double scale = p.number("temperaturescale", 1.0);
-    const double offset = p.number("temperatureoffset", p.number("temperaturecutoff", 0.0));
+    return {scale, -scale * p.number("temperatureoffset", p.number("temperaturecutoff", 0.0))};
+}
+
+void PbrtTranslator::write_black_body(const std::string& grid, double glow, const PbrtThing& medium) {
+    const glm::dvec2 kelvin = kelvins(medium);
     XmlAttributes attributes = {{"grid", grid},
                                 {"model", "blackbody"},
                                 {"brightness", "peak"},
-                                {"temperatureScale", xml_number(scale)},
-                                {"temperatureOffset", xml_number(-offset * scale)},
-                                {"temperatureCutoff", "100"}};
+                                {"temperatureScale", xml_number(kelvin.x)},
+                                {"temperatureOffset", xml_number(kelvin.y)},
+                                {"temperatureCutoff", xml_number(least_kelvin)}};
     add_rgb(attributes, glm::dvec3(glow * exposure_));
     xml_.element("emission", attributes);
 }

@@ -67,6 +67,19 @@ glm::dvec3 white(double x, double y) {
     return rec709_of({x / y, 1.0, (1.0 - x - y) / y});
 }
 
+// Chromaticities for the observer of 1931 of the spectra that pbrt has by these names: its D50 is bluer than CIE's, the
+// fluorescent lamps are those of CIE 15:2004, and D60 is ACES' white.
+struct NamedWhite {
+    const char* name;
+    double x, y;
+};
+constexpr NamedWhite illuminants[] = {
+    {"stdillum-D50", 0.33681, 0.35798}, {"stdillum-F1", 0.31310, 0.33727},  {"stdillum-F2", 0.37208, 0.37529},
+    {"stdillum-F3", 0.40910, 0.39430},  {"stdillum-F4", 0.44018, 0.40329},  {"stdillum-F5", 0.31379, 0.34531},
+    {"stdillum-F6", 0.37790, 0.38835},  {"stdillum-F7", 0.31292, 0.32933},  {"stdillum-F8", 0.34588, 0.35875},
+    {"stdillum-F9", 0.37417, 0.37281},  {"stdillum-F10", 0.34609, 0.35896}, {"stdillum-F11", 0.38052, 0.37713},
+    {"stdillum-F12", 0.43695, 0.40441}, {"illum-acesD60", 0.32168, 0.33767}};
+
 struct NamedShare {
     const char* name;
     glm::dvec3 value;
@@ -120,10 +133,11 @@ std::optional<glm::dvec3> named_share(const std::string& name) {
 std::optional<glm::dvec3> named_light(const std::string& name) {
     if (name == "stdillum-D65")
         return glm::dvec3(1.0);
-    if (name == "stdillum-D50" || name == "illum-D50")
-        return white(0.3457, 0.3585);
     if (name == "stdillum-A")
         return blackbody_rgb(2856.0, 2856.0);
+    for (const NamedWhite& illuminant : illuminants)
+        if (name == illuminant.name)
+            return white(illuminant.x, illuminant.y);
     return std::nullopt;
 }
 

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "nearest_name.h"
+#include "pbrt_quadrics.h"
 #include "pbrt_translator.h"
 
 namespace vkvol {
@@ -183,10 +184,6 @@ void PbrtTranslator::write_ball(const PbrtShape& shape, const XmlAttributes& mat
     const double radius = p.number("radius", 1.0);
     XmlAttributes attributes = {{"radius", xml_number(radius)}};
     attributes.insert(attributes.end(), material.begin(), material.end());
-    if (p.has("zmin") || p.has("zmax") || p.has("phimax"))
-        note(shape.thing.place, "a part of a sphere is whole here");
-    if (shape.is_reversed && shape.light)
-        note(shape.thing.place, "a sphere that shines inwards shines outwards here");
     xml_.open("sphere", attributes, shape.thing.place.text());
     write_matrix(world_ * shape.thing.transform * as_globe);
     const double size = size_of(shape.thing.transform) * radius;
@@ -197,8 +194,6 @@ void PbrtTranslator::write_ball(const PbrtShape& shape, const XmlAttributes& mat
 void PbrtTranslator::write_disk(const PbrtShape& shape, const XmlAttributes& material) {
     const PbrtParameters& p = *shape.thing.parameters;
     const double radius = p.number("radius", 1.0), height = p.number("height", 0.0);
-    if (p.has("innerradius") || p.has("phimax"))
-        note(shape.thing.place, "a part of a disk is whole here");
     const double side = shape.is_reversed ? -1.0 : 1.0;
     XmlAttributes attributes = {
         {"z", xml_number(height)}, {"lookAt", xml_numbers({0.0, 0.0, height + side})}, {"radius", xml_number(radius)}};
@@ -221,8 +216,9 @@ void PbrtTranslator::write_file_mesh(const PbrtShape& shape, const XmlAttributes
     xml_.close();
 }
 
-void PbrtTranslator::write_triangles(const PbrtShape& shape, const XmlAttributes& material) {
-    const PbrtTriangles mesh = moved(world_ * shape.thing.transform, read_triangles(shape.thing), shape.is_reversed);
+// `own`: in the shape's own space.
+void PbrtTranslator::write_triangles(const PbrtShape& shape, const PbrtTriangles& own, const XmlAttributes& material) {
+    const PbrtTriangles mesh = moved(world_ * shape.thing.transform, own, shape.is_reversed);
     const std::string place = shape.thing.place.text();
     const std::optional<PbrtRectangle> rectangle = mesh.places.empty() ? as_rectangle(mesh) : std::nullopt;
     if (rectangle) {
@@ -266,17 +262,22 @@ void PbrtTranslator::write_surface(const PbrtShape& shape) {
     const PbrtThing& thing = shape.thing;
     if (thing.parameters->has("alpha"))
         note(thing.place, "\"alpha\" is left out; it is opaque");
-    if (thing.type == "sphere")
-        write_ball(shape, *material);
-    else if (thing.type == "disk")
-        write_disk(shape, *material);
-    else if (thing.type == "plymesh")
+    const bool shines_inwards = thing.type == "sphere" && shape.is_reversed && shape.light;
+    const bool is_quadric = thing.type == "sphere" || thing.type == "disk" || thing.type == "cylinder";
+    if (thing.type == "plymesh") {
         write_file_mesh(shape, *material);
-    else if (thing.type == "trianglemesh" || thing.type == "bilinearmesh")
-        write_triangles(shape, *material);
-    else
+    } else if (thing.type == "trianglemesh" || thing.type == "bilinearmesh") {
+        write_triangles(shape, read_triangles(thing), *material);
+    } else if (is_quadric && (shines_inwards || !is_whole_ball_or_disk(thing, thing.transform))) {
+        const PbrtTriangles mesh = quadric_triangles(thing);
+        note(thing.place, fmt::format("this {} is {} triangles here", thing.type, mesh.triangles.size()));
+        write_triangles(shape, mesh, *material);
+    } else if (is_quadric) {
+        thing.type == "sphere" ? write_ball(shape, *material) : write_disk(shape, *material);
+    } else {
         note(thing.place, fmt::format("Shape \"{}\" is left out", thing.type));
-    note_unused(thing, {"S", "faceIndices", "shadowalpha"});
+    }
+    note_unused(thing, {"S", "faceIndices", "shadowalpha", "zmin", "zmax", "phimax", "innerradius"});
 }
 
 void PbrtTranslator::write_surfaces() {

@@ -19,6 +19,8 @@ namespace vkvol {
 // A medium whose densities stand in the scene, or are made up.
 bool is_dense(const PbrtThing& medium);
 
+constexpr double least_kelvin = 100.0; // of what glows
+
 class PbrtTranslator {
 public:
     PbrtTranslator(const PbrtScene& scene, PbrtTranslationOptions options);
@@ -43,7 +45,9 @@ private:
     std::string free_name(const std::string& medium) const;
     void write_dense_medium(const std::string& name, const PbrtThing& medium);
     void write_rgb_medium(const std::string& name, const PbrtThing& medium);
+    MemoryGrids::Grid glow_of(const PbrtThing& medium, glm::ivec3 dims);
     void write_black_body(const std::string& grid, double glow, const PbrtThing& medium);
+    static glm::dvec2 kelvins(const PbrtThing& medium);
     void write_coefficients(const PbrtThing& medium);
     void write_coefficients(const glm::dvec3& sigma_a, const glm::dvec3& sigma_s, double g); // per length
     std::optional<Region> region_within(const PbrtShape& shape);
@@ -59,7 +63,7 @@ private:
     void write_ball(const PbrtShape& shape, const XmlAttributes& material);
     void write_disk(const PbrtShape& shape, const XmlAttributes& material);
     void write_file_mesh(const PbrtShape& shape, const XmlAttributes& material);
-    void write_triangles(const PbrtShape& shape, const XmlAttributes& material);
+    void write_triangles(const PbrtShape& shape, const PbrtTriangles& own, const XmlAttributes& material);
     void write_emission(const PbrtShape& shape, std::optional<double> area);
     void write_matrix(const glm::dmat4& matrix);
     std::optional<XmlAttributes> material_of(const PbrtShape& shape); // nothing: it is not seen

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <numeric>
 
+#include "blackbody.h"
 #include "density_field.h"
 #include "error.h"
 #include "loaded_medium.h"
@@ -86,9 +87,6 @@ TEST_CASE("pbrt's grids within scenes glow", "[cpu][pbrt]") {
     const Volume even = only_medium(world_of(grid_medium(eight + "\"rgb Le\" [ 2 2 2 ]")));
     const Volume varied =
         only_medium(world_of(grid_medium(eight + "\"rgb Le\" [ 2 2 2 ] \"float Lescale\" [ 0 1 2 3 4 5 6 7 ]")));
-    const Volume hot = only_medium(world_of(grid_medium(
-        eight + "\"float temperature\" [ 0 100 200 300 400 500 600 700 ] \"float temperaturescale\" 3 \"float "
-                "temperatureoffset\" 50")));
     CHECK(near(varied.temperature.color, even.temperature.color));
     CHECK((even.temperature.color.x > 0.0 && even.temperature.model == TemperatureEmission::Model::color));
     // pbrt's usual scale is a grid of one voxel: 1 - |x - 1/2| along each axis, here at 1/4 and 3/4.
@@ -97,9 +95,37 @@ TEST_CASE("pbrt's grids within scenes glow", "[cpu][pbrt]") {
         CHECK(scales.value(voxel) == 0.75f * 0.75f * 0.75f);
     CHECK(varied.temperature.grid == "Lescale");
     CHECK(has_grid(std::get<GridFile>(varied.shape).beside("Lescale")));
-    CHECK(hot.temperature.model == TemperatureEmission::Model::blackbody);
-    CHECK((hot.temperature.scale == 3.0 && hot.temperature.offset == -150.0 && hot.temperature.cutoff == 100.0));
-    CHECK(load_density_field(std::get<GridFile>(hot.shape).beside("temperature")).value({1, 1, 1}) == 700.0f);
+}
+
+// pbrt's (temperature - offset) * scale, linear between the middles of voxels, is a black body divided by its maximum,
+// from 100 kelvin on, and that times the scale of Le, which is linear likewise.
+TEST_CASE("what burns in pbrt's grids glows as its black body times the scale of Le", "[cpu][pbrt]") {
+    const std::string hot = "\"integer nx\" 2 \"integer ny\" 2 \"integer nz\" 2 \"float density\" [ 1 1 1 1 1 1 1 1 ] "
+                            "\"float temperature\" [ 0 100 200 300 400 500 600 700 ] \"float temperaturescale\" 3 "
+                            "\"float temperatureoffset\" 50 ";
+    const Volume usual = only_medium(world_of(grid_medium(hot)));
+    const Volume scaled = only_medium(world_of(grid_medium(hot + "\"float Lescale\" [ 0 1 2 3 4 5 6 7 ]")));
+    CHECK((usual.temperature.model == TemperatureEmission::Model::color && usual.temperature.grid == "glow"));
+    // Twelve voxels for each of the density's: middles 1/24 of one beside what is half-way between these. The values
+    // grow along x + 2 y + 4 z.
+    for (const double along : {0.5 - 1.0 / 24.0, 0.5 + 1.0 / 24.0, 1.0 / 24.0}) {
+        const auto glow_there = [&](const Volume& volume) {
+            const GridFile file = std::get<GridFile>(volume.shape);
+            const DensityField density = load_density_field(file);
+            const DensityField glow = load_density_field(file.beside("glow"), GridValues::vectors);
+            const glm::dvec3 fine(glm::inverse(glow.index_to_world) * density.index_to_world *
+                                  glm::dvec4(glm::dvec3(along), 1.0));
+            CHECK(glm::length(fine - glm::round(fine)) < 1e-5);
+            return volume.temperature.color * glm::dvec3(glow.color(glm::ivec3(glm::round(fine))));
+        };
+        const double value = 7.0 * along, kelvin = 3.0 * (100.0 * value - 50.0),
+                     side = 1.0 - std::abs(along / 2.0 - 0.25);
+        const glm::dvec3 black_body = kelvin > 100.0 ? blackbody_rgb(kelvin, 0.0) : glm::dvec3(0.0);
+        CAPTURE(along, kelvin);
+        // pbrt's usual scale: 1 - |x - 1/2| along each axis. The table of colours has 0.5 kelvin for a step.
+        CHECK(near(glow_there(usual), usual.temperature.color * black_body * side * side * side, 1e-3));
+        CHECK(near(glow_there(scaled), scaled.temperature.color * black_body * value, 1e-3));
+    }
 }
 
 TEST_CASE("pbrt's clouds have pbrt's densities", "[cpu][pbrt]") {

@@ -2,6 +2,7 @@
 // manual (Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th edition; pbrt.org/fileformat-v4).
 #include <cmath>
 #include <fmt/format.h>
+#include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 #include <random>
@@ -12,9 +13,9 @@
 
 using namespace vkvol;
 using Catch::Contains;
+using std::numbers::pi;
 
 TEST_CASE("pbrt's lights shine as pbrt's do", "[cpu][pbrt]") {
-    constexpr double pi = std::numbers::pi;
     CHECK(near(only_light<PointLight>(world_of(R"(LightSource "point" "rgb I" [ 1 2 3 ] "float scale" 2)")).intensity,
                {2, 4, 6}));
     CHECK(near(only_light<PointLight>(world_of(R"(LightSource "point" "float power" 100)")).intensity,
@@ -82,11 +83,11 @@ TEST_CASE("what shines in pbrt's scenes", "[cpu][pbrt]") {
 
     const auto power = [&](const char* shape, double area) {
         const Surface surface = lamp(std::string("Scale 2 2 2 ") + shape);
-        CHECK(surface.emission.x * area * std::numbers::pi == Approx(10.0));
+        CHECK(surface.emission.x * area * pi == Approx(10.0));
     };
     const std::string watts = R"(AreaLightSource "diffuse" "float power" 10 )";
-    power((watts + R"(Shape "sphere" "float radius" 0.5)").c_str(), 4.0 * std::numbers::pi);
-    power((watts + R"(Shape "disk" "float radius" 0.5)").c_str(), std::numbers::pi);
+    power((watts + R"(Shape "sphere" "float radius" 0.5)").c_str(), 4.0 * pi);
+    power((watts + R"(Shape "disk" "float radius" 0.5)").c_str(), pi);
     power((watts + "Shape \"trianglemesh\" " + quad).c_str(), 24.0);
     CHECK(lamp("AreaLightSource \"diffuse\" \"bool twosided\" true Shape \"sphere\"").shines_both_ways);
     CHECK_FALSE(lamp("Shape \"sphere\"").shines_both_ways);
@@ -233,6 +234,81 @@ TEST_CASE("pbrt's triangles", "[cpu][pbrt]") {
     CHECK_FALSE(as_box(kite));
 }
 
+// Parts of quadrics, stretched ones and cylinders: on their surface, whole, with their front and their places on
+// textures where pbrt has them.
+TEST_CASE("pbrt's quadrics that are none here are triangles", "[cpu][pbrt]") {
+    const auto mesh_of = [](const std::string& text) {
+        const Scene scene = world_of(text);
+        REQUIRE(scene.surfaces.size() == 1);
+        return std::get<TriangleSurface>(scene.surfaces[0].shape);
+    };
+    const auto area_of = [](const TriangleSurface& mesh) {
+        double sum = 0.0;
+        for (const glm::uvec3& t : mesh.triangles)
+            sum += 0.5 * glm::length(glm::cross(mesh.vertices[t.y] - mesh.vertices[t.x],
+                                                mesh.vertices[t.z] - mesh.vertices[t.x]));
+        return sum;
+    };
+    // Part of the triangles that face the way that `front` has at their middle.
+    const auto part_in_front = [](const TriangleSurface& mesh,
+                                  const std::function<glm::dvec3(const glm::dvec3&)>& front) {
+        double in_front = 0.0;
+        for (const glm::uvec3& t : mesh.triangles) {
+            const glm::dvec3 a = mesh.vertices[t.x], b = mesh.vertices[t.y], c = mesh.vertices[t.z];
+            in_front += glm::dot(glm::cross(b - a, c - a), front((a + b + c) / 3.0)) > 0.0;
+        }
+        return in_front / double(mesh.triangles.size());
+    };
+    const auto outward = [](const glm::dvec3& p) { return p; };
+    // A polygon of 128 corners in a circle: its perimeter is less by a part of (pi / 128)^2 / 6 = 1e-4.
+    const TriangleSurface pipe = mesh_of("Shape \"cylinder\" \"float radius\" 2 \"float zmin\" -1 \"float zmax\" 3");
+    CHECK(area_of(pipe) == Approx(4.0 * pi * 4.0).epsilon(2e-4));
+    for (const glm::dvec3& p : pipe.vertices)
+        CHECK(std::hypot(p.x, p.y) == Approx(2.0));
+    CHECK(part_in_front(pipe, [](const glm::dvec3& p) { return glm::dvec3(p.x, p.y, 0.0); }) == 1.0);
+    CHECK(part_in_front(mesh_of("ReverseOrientation Shape \"cylinder\""),
+                        [](const glm::dvec3& p) { return glm::dvec3(-p.x, -p.y, 0.0); }) == 1.0);
+    const TriangleSurface ellipsoid = mesh_of("Scale 1 2 -3 Shape \"sphere\" \"float radius\" 0.5");
+    for (const glm::dvec3& p : ellipsoid.vertices)
+        CHECK(glm::length(p / glm::dvec3(0.5, 1.0, 1.5)) == Approx(1.0));
+    CHECK(part_in_front(ellipsoid, outward) == 1.0);
+    for (std::size_t i = 0; i < ellipsoid.triangles.size(); ++i)
+        for (int corner = 0; corner < 3; ++corner) {
+            const glm::dvec3 p = ellipsoid.vertices[ellipsoid.triangles[i][corner]];
+            const glm::dvec3 normal = p / glm::dvec3(0.25, 1.0, 2.25);
+            CHECK(glm::dot(glm::normalize(glm::dvec3(ellipsoid.normals.at(i)[corner])), glm::normalize(normal)) >
+                  1.0 - 1e-6);
+        }
+    // A zone of a sphere has the area of the cylinder about it.
+    const TriangleSurface zone = mesh_of("Shape \"sphere\" \"float zmin\" -0.2 \"float zmax\" 0.7 \"float phimax\" 90");
+    CHECK(area_of(zone) == Approx(0.25 * 2.0 * pi * 0.9).epsilon(1e-3));
+    for (const glm::dvec3& p : zone.vertices) { // pbrt's z, mirrored
+        CHECK((p.x > -1e-9 && p.y > -1e-9 && -p.z > -0.2 - 1e-9 && -p.z < 0.7 + 1e-9));
+        CHECK(glm::length(p) == Approx(1.0));
+    }
+    const TriangleSurface ring = mesh_of("Shape \"disk\" \"float innerradius\" 0.5 \"float height\" 2");
+    CHECK(area_of(ring) == Approx(pi * 0.75).epsilon(1e-3));
+    CHECK(part_in_front(ring, [](const glm::dvec3&) { return glm::dvec3(0.0, 0.0, -1.0); }) == 1.0);
+    // u once round from x to y, v from the outer edge to the inner.
+    for (std::size_t i = 0; i < ring.triangles.size(); ++i)
+        for (int corner = 0; corner < 3; ++corner) {
+            const glm::dvec3 p = ring.vertices[ring.triangles[i][corner]];
+            const glm::vec2 place = ring.places.at(i)[corner];
+            CHECK(place.y == Approx((1.0 - std::hypot(p.x, p.y)) / 0.5).margin(1e-6));
+            CHECK(std::cos(2.0 * pi * place.x) == Approx(p.x / std::hypot(p.x, p.y)).margin(1e-5));
+            CHECK(std::sin(2.0 * pi * place.x) == Approx(p.y / std::hypot(p.x, p.y)).margin(1e-5));
+        }
+    // A sphere that shines inwards, and one that is just turned and enlarged.
+    const Scene inwards = world_of("ReverseOrientation AreaLightSource \"diffuse\" Shape \"sphere\"");
+    REQUIRE(inwards.surfaces.size() == 1);
+    CHECK(part_in_front(std::get<TriangleSurface>(inwards.surfaces[0].shape), [](const glm::dvec3& p) { return -p; }) ==
+          1.0);
+    const Scene turned = world_of("Rotate 30 1 2 3 Scale 2 -2 2 Shape \"sphere\"");
+    CHECK(std::holds_alternative<BallSurface>(turned.surfaces.at(0).shape));
+    CHECK_THROWS_WITH(world_of("Shape \"cylinder\" \"float zmin\" 1 \"float zmax\" 1"), Contains("has no area"));
+    CHECK_THROWS_WITH(world_of("Shape \"cylinder\" \"float radius\" -1"), Contains("expected more than 0"));
+}
+
 TEST_CASE("what of a pbrt scene cannot be rendered is said once, with its place", "[cpu][pbrt]") {
     const auto noted = [](const std::string& text, const std::string& expected) {
         const Scene scene = world_of(text);
@@ -242,7 +318,7 @@ TEST_CASE("what of a pbrt scene cannot be rendered is said once, with its place"
     };
     noted("Shape \"curve\"", "s.pbrt:3:1: Shape \"curve\" is left out");
     noted("Material \"hair\" Shape \"sphere\" Shape \"sphere\"", "s.pbrt:3:1: Material \"hair\" is left out");
-    noted("Shape \"sphere\" \"float phimax\" 90", "a part of a sphere is whole");
+    noted("Shape \"sphere\" \"float phimax\" 90", "this sphere is 4032 triangles here"); // 32 x 64 x 2 - 2 x 32
     noted("Shape \"sphere\" \"float alpha\" .5", "\"alpha\" is left out");
     noted("Shape \"sphere\" \"float radios\" 2", "\"radios\" is left out");
     noted("LightSource \"goniometric\" \"string filename\" \"a.exr\"", "LightSource \"goniometric\" is left out");
@@ -308,7 +384,7 @@ TEST_CASE("wrong pbrt scenes are refused with their place", "[cpu][pbrt]") {
     refused("WorldBegin LightSource \"point\" \"spectrum I\" \"none.spd\"", "none.spd: no such file");
     // What this renderer's own scenes may not hold has the place in pbrt's.
     refused("WorldBegin\nLightSource \"spot\" \"float coneangle\" 95", "s.pbrt:2:1: a cone of 95 degrees");
-    refused("WorldBegin\n\n  Shape \"sphere\" \"float radius\" 0", "s.pbrt:3:3: <sphere> radius");
+    refused("WorldBegin\n\n  Shape \"sphere\" \"float radius\" 0", "s.pbrt:3:3: sphere of radius 0");
     CHECK_THROWS_WITH(load_scene("s.pbrt", {{"a", "b"}}), Contains("-D and -f fill in the $keys"));
     CHECK_NOTHROW(world_of("MakeNamedMaterial \"$a <b> & 'c'\" \"string type\" \"diffuse\" NamedMaterial \"$a <b> & "
                            "'c'\" Shape \"plymesh\" \"string filename\" \"$a <b> & 'c'.ply\""));
