@@ -10,6 +10,8 @@ import sys
 import xml.etree.ElementTree as ET
 from math import exp, pi, sqrt
 
+from cie_1931 import observer
+
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes/hard"
 
 
@@ -157,20 +159,14 @@ def sheared_depth(sigma):
     return sigma * 16 / abs((a[0] * b[1] - a[1] * b[0]) / det)
 
 
-def planck_rgb(kelvin, reference, step=0.5):
-    """Linear Rec. 709 of Planck's law under the observer of Wyman, Sloan and Shirley (2013); luminance 1 at reference."""
-    def lobe(x, center, below, above):
-        return exp(-0.5 * ((x - center) * (below if x < center else above)) ** 2)
-
+def planck_rgb(kelvin, reference, step=0.1):
+    """Linear Rec. 709 of Planck's law under the CIE observer of 1931; luminance 1 at reference."""
     def xyz(T):
         total = [0.0, 0.0, 0.0]
-        for i in range(int(470 / step)):
+        for i in range(round(470 / step)):
             nm = 360 + (i + 0.5) * step
             planck = nm ** -5 / math.expm1(1.438776877e7 / (nm * T))
-            total[0] += planck * (1.056 * lobe(nm, 599.8, 0.0264, 0.0323) + 0.362 * lobe(nm, 442.0, 0.0624, 0.0374)
-                                  - 0.065 * lobe(nm, 501.1, 0.0490, 0.0382))
-            total[1] += planck * (0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322))
-            total[2] += planck * (1.217 * lobe(nm, 437.0, 0.0845, 0.0278) + 0.681 * lobe(nm, 459.0, 0.0385, 0.0725))
+            total = [sum + planck * seen for sum, seen in zip(total, observer(nm))]
         return total
 
     luminance = xyz(reference)[1]

@@ -6,12 +6,14 @@
 
 namespace vkvol {
 
-// Responses of the CIE 1931 standard observer at a wavelength, whose integral over the second is 106.9 nm.
+// Responses of the CIE 1931 standard observer at a wavelength, linear between steps of 5 nm, 0 beyond 360 to 830 nm.
+// The integral over the second is 106.9 nm.
 glm::dvec3 observer(double nanometre);
 
 // Colour of a black body at `kelvin`, in units where one at `reference` kelvin has luminance 1; or, at reference 0, of
 // its spectrum divided by that's maximum and integrated over nanometres, as pbrt-v4 has it. Channels that Rec.709
-// cannot show (blue below some 1900 K) are clipped at 0. Zero for kelvin <= 0; finite for all finite arguments.
+// cannot show (blue below some 1900 K, green below some 900 K) are clipped at 0. Zero for kelvin <= 0; finite for all
+// finite arguments.
 glm::dvec3 blackbody_rgb(double kelvin, double reference);
 
 // blackbody_rgb at `count` temperatures spaced evenly over [low, high]. Between neighbours dT kelvin apart linear

@@ -34,7 +34,7 @@ TEST_CASE("black bodies at the edges", "[cpu][emission]") {
         CHECK(c.x >= c.y);
         CHECK(c.y >= c.z);
         CHECK(warmer.x > c.x);
-        CHECK(warmer.y / warmer.x > c.y / c.x);
+        CHECK((warmer.y / warmer.x > c.y / c.x || (c.y == 0.0 && kelvin < 1000.0))); // beyond Rec.709's reds
     }
 }
 

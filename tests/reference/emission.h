@@ -7,7 +7,7 @@
 
 namespace reference {
 
-// Planck's law seen by the CIE 1931 observer (the multi-lobe fit of Wyman et al. 2013), linear Rec.709, each channel
+// Planck's law seen by the CIE 1931 observer (linear between its steps of 5 nm), linear Rec.709, each channel
 // at least 0; luminance 1 at `reference` kelvin.
 vkvol::Rgb blackbody(double kelvin, double reference);
 
