@@ -169,6 +169,27 @@ std::optional<PbrtTranslator::Region> PbrtTranslator::region_within(const PbrtSh
     return std::nullopt;
 }
 
+// As far as that can be told here: what a file's mesh holds is taken to have it.
+bool PbrtTranslator::has_camera(const Region& region) const {
+    if (!scene_.camera)
+        return false;
+    const glm::dmat4 camera = world_ * glm::inverse(scene_.camera->transform);
+    const glm::dvec3 p(glm::inverse(region.transform) * camera[3]);
+    if (region.element == "sphere")
+        return glm::length(p) < 1.0;
+    return region.element.empty() || std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < 0.5;
+}
+
+bool PbrtTranslator::ends_camera_medium() {
+    return std::any_of(scene_.shapes.begin(), scene_.shapes.end(), [&](const PbrtShape& shape) {
+        if (shape.inside != scene_.camera_medium || shape.outside == shape.inside)
+            return false;
+        const std::optional<Region> region = region_within(shape);
+        return region && has_camera(*region);
+    });
+}
+
+// The camera's medium has no end, unless a shape about the camera ends it.
 void PbrtTranslator::write_media() {
     xml_.open("volumes");
     std::set<std::string> grids; // those that are written: they end by themselves
@@ -190,7 +211,7 @@ void PbrtTranslator::write_media() {
     };
     const PbrtPlace camera = scene_.camera ? scene_.camera->place : PbrtPlace();
     if (const PbrtThing* medium = medium_of(scene_.camera_medium, camera))
-        if (!is_grid(scene_.camera_medium, *medium))
+        if (!is_grid(scene_.camera_medium, *medium) && !ends_camera_medium())
             write_medium(scene_.camera_medium, *medium, {"everywhere", "", glm::dmat4(1.0)}, camera);
     for (const PbrtShape& shape : scene_.shapes) {
         if (shape.inside == shape.outside)

@@ -1,4 +1,5 @@
 // The part of PbrtTranslator that writes surfaces.
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
@@ -16,6 +17,10 @@ constexpr double least_alpha = 1e-3; // of facets; what is smoother is a mirror 
 
 double size_of(const glm::dmat4& map) {
     return std::cbrt(std::abs(glm::determinant(glm::dmat3(map))));
+}
+
+bool has_texture(const XmlAttributes& material) {
+    return std::any_of(material.begin(), material.end(), [](const auto& each) { return each.first == "texture"; });
 }
 
 bool is_left_out(const std::string& material) {
@@ -263,12 +268,15 @@ void PbrtTranslator::write_surface(const PbrtShape& shape) {
     if (thing.parameters->has("alpha"))
         note(thing.place, "\"alpha\" is left out; it is opaque");
     const bool shines_inwards = thing.type == "sphere" && shape.is_reversed && shape.light;
+    const bool is_polar = thing.type == "disk" && has_texture(*material); // there
     const bool is_quadric = thing.type == "sphere" || thing.type == "disk" || thing.type == "cylinder";
     if (thing.type == "plymesh") {
         write_file_mesh(shape, *material);
     } else if (thing.type == "trianglemesh" || thing.type == "bilinearmesh") {
-        write_triangles(shape, read_triangles(thing), *material);
-    } else if (is_quadric && (shines_inwards || !is_whole_ball_or_disk(thing, thing.transform))) {
+        const PbrtTriangles mesh = read_triangles(thing);
+        const bool needs_places = has_texture(*material) && mesh.places.empty();
+        write_triangles(shape, needs_places ? with_usual_places(mesh, thing.type == "bilinearmesh") : mesh, *material);
+    } else if (is_quadric && (shines_inwards || is_polar || !is_whole_ball_or_disk(thing, thing.transform))) {
         const PbrtTriangles mesh = quadric_triangles(thing);
         note(thing.place, fmt::format("this {} is {} triangles here", thing.type, mesh.triangles.size()));
         write_triangles(shape, mesh, *material);

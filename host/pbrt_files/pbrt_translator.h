@@ -51,6 +51,8 @@ private:
     void write_coefficients(const PbrtThing& medium);
     void write_coefficients(const glm::dvec3& sigma_a, const glm::dvec3& sigma_s, double g); // per length
     std::optional<Region> region_within(const PbrtShape& shape);
+    bool has_camera(const Region& region) const;
+    bool ends_camera_medium();
     const PbrtThing* medium_of(const std::string& name, const PbrtPlace& place) const;
 
     void write_lights();

@@ -60,6 +60,24 @@ PbrtTriangles read_triangles(const PbrtThing& shape) {
     return mesh;
 }
 
+PbrtTriangles with_usual_places(const PbrtTriangles& mesh, bool is_patches) {
+    constexpr glm::dvec2 first[] = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}},
+                         second[] = {{0.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
+    PbrtTriangles apart;
+    for (const glm::uvec3& t : mesh.triangles) {
+        const bool is_second = is_patches && apart.triangles.size() % 2 == 1;
+        const auto corner = static_cast<unsigned>(apart.points.size());
+        for (int k = 0; k < 3; ++k) {
+            apart.points.push_back(mesh.points[t[k]]);
+            if (!mesh.normals.empty())
+                apart.normals.push_back(mesh.normals[t[k]]);
+            apart.places.push_back((is_second ? second : first)[k]);
+        }
+        apart.triangles.emplace_back(corner, corner + 1, corner + 2);
+    }
+    return apart;
+}
+
 PbrtTriangles moved(const glm::dmat4& map, PbrtTriangles mesh, bool is_reversed) {
     for (glm::dvec3& point : mesh.points)
         point = glm::dvec3(map * glm::dvec4(point, 1.0));

@@ -22,6 +22,10 @@ struct PbrtTriangles {
 // Throws InputError for indices of no point, and other counts that do not fit.
 PbrtTriangles read_triangles(const PbrtThing& shape);
 
+// Where pbrt has corners on textures that a shape says nothing of: at (0, 0), (1, 0) and (1, 1) of each triangle, and
+// of each of the halves of `is_patches`, (0, 0), (1, 1) and (0, 1). No two triangles share a corner then.
+PbrtTriangles with_usual_places(const PbrtTriangles& mesh, bool is_patches);
+
 // What is right of `map` moves them; a mirror, or `is_reversed`, turns their order about so that their front stays in
 // front, or goes to the back.
 PbrtTriangles moved(const glm::dmat4& map, PbrtTriangles mesh, bool is_reversed);

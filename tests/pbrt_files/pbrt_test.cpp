@@ -166,6 +166,13 @@ TEST_CASE("pbrt's media", "[cpu][pbrt]") {
     // Around the camera it has no end.
     const Scene around = scene_of(fog + R"(MediumInterface "" "fog" Camera "perspective" WorldBegin)");
     CHECK(is_everywhere(medium(around)));
+    // But where a shape about it, whose inside it is, ends it.
+    const std::string before =
+        fog + R"(MediumInterface "" "fog" LookAt 3 0 0  0 0 0  0 1 0 Camera "perspective" WorldBegin )";
+    const std::string ball_of_fog = R"(MediumInterface "fog" "" Material "interface" Shape "sphere" "float radius" )";
+    CHECK(std::holds_alternative<Sphere>(medium(scene_of(before + ball_of_fog + "4")).shape));
+    CHECK(scene_of(before + ball_of_fog + "2").volumes.size() == 2);
+    CHECK(scene_of(before + "Translate 3 0 0 " + ball_of_fog + "2").volumes.size() == 1);
     // Neither side differs: it bounds nothing.
     CHECK(world_of(fog + R"(MediumInterface "fog" "fog" Shape "sphere")").volumes.empty());
 
@@ -224,6 +231,28 @@ TEST_CASE("pbrt's triangles", "[cpu][pbrt]") {
     CHECK(mesh.triangles[0] == glm::uvec3(0, 2, 1));
     CHECK(mesh.places.at(0)[1] == glm::vec2(0, 1));
     CHECK(near(mesh.normals.at(0)[1], glm::dvec3(0, 1, -1)));
+    // pbrt's places where a scene gives none, once there is a texture to see them by: of patches the corners', of
+    // triangles (0, 0), (1, 0), (1, 1).
+    const std::string board =
+        R"(Texture "t" "spectrum" "imagemap" "string filename" "a.png" Material "diffuse" "texture reflectance" "t" )";
+    const std::string square = R"("point3 P" [ 0 0 0 2 0 0 0 3 0 2 3 0 ])";
+    const Scene patch = world_of(board + R"(Shape "bilinearmesh" )" + square);
+    const auto& corners = std::get<TriangleSurface>(patch.surfaces.at(0).shape);
+    REQUIRE(corners.triangles.size() == 2);
+    for (int t = 0; t < 2; ++t)
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec3 p = corners.vertices[corners.triangles[t][k]];
+            CHECK(corners.places.at(t)[k] == glm::vec2(p.x / 2.0, p.y / 3.0));
+        }
+    const Scene pieces = world_of(board + R"(Shape "trianglemesh" "integer indices" [ 0 1 2 3 2 1 ] )" + square);
+    const auto& halves = std::get<TriangleSurface>(pieces.surfaces.at(0).shape);
+    for (int t = 0; t < 2; ++t) { // mirrored, so in another order
+        CHECK(halves.places.at(t)[0] == glm::vec2(0, 0));
+        CHECK(halves.places.at(t)[1] == glm::vec2(1, 1));
+        CHECK(halves.places.at(t)[2] == glm::vec2(1, 0));
+    }
+    const Scene disk = world_of(board + R"(Shape "disk")");
+    CHECK(std::get<TriangleSurface>(disk.surfaces.at(0).shape).places.size() == 128); // polar
     // Not every two triangles are a rectangle, nor every twelve a box.
     PbrtTriangles kite{{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1.1, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}, {}};
     CHECK_FALSE(as_rectangle(kite));
