@@ -9,6 +9,7 @@ namespace vkvol {
 // Responses of the CIE 1931 standard observer at a wavelength, linear between steps of 5 nm, 0 beyond 360 to 830 nm.
 // The integral over the second is 106.9 nm.
 glm::dvec3 observer(double nanometre);
+constexpr double observer_integral = 106.8569; // of the second, nanometres
 
 // Colour of a black body at `kelvin`, in units where one at `reference` kelvin has luminance 1; or, at reference 0, of
 // its spectrum divided by that's maximum and integrated over nanometres, as pbrt-v4 has it. Channels that Rec.709

@@ -15,7 +15,7 @@ namespace vkvol {
 
 namespace {
 
-constexpr double most_glow_voxels = 4e6;
+constexpr double most_finer_voxels = 4e6;
 constexpr int black_bodies = 4096; // in a table of their colours
 
 double number_in(const PbrtThing& medium, const char* name, double fallback, double low, double high) {
@@ -85,6 +85,21 @@ template <class Value> auto of_voxels(glm::ivec3 dims, const Value& value) {
                 values.push_back(value(x, y, z));
     return values;
 }
+
+// Voxels up to twelve times finer, with one more all about, where what is beyond the box falls to 0: for what bends
+// between the voxels of `dims`.
+struct FinerGrid {
+    explicit FinerGrid(glm::ivec3 of) {
+        const int finer = std::clamp(int(std::cbrt(most_finer_voxels / double(voxel_count(of)))), 1, 12);
+        dims = of * finer + 2;
+        place = {glm::dvec3(1.0 / finer), glm::dvec3(0.5 / finer - 0.5 - 1.0 / finer)};
+    }
+    // In those of `of`, from the middle of the first.
+    glm::dvec3 at(int x, int y, int z) const { return place.origin + glm::dvec3(x, y, z) * place.voxel_size; }
+
+    glm::ivec3 dims;
+    GridPlace place;
+};
 
 // Linear between the middles of voxels, and 0 beyond their neighbours, as pbrt's grids are.
 double between_voxels(const std::vector<float>& values, glm::ivec3 dims, const glm::dvec3& at) {
@@ -160,11 +175,9 @@ MemoryGrids::Grid PbrtTranslator::glow_of(const PbrtThing& medium, glm::ivec3 di
     const auto [coldest, hottest] = std::minmax_element(temperatures.begin(), temperatures.end());
     const double most = std::max({kelvin.x * *coldest + kelvin.y, kelvin.x * *hottest + kelvin.y, 2.0 * least_kelvin});
     const std::vector<glm::vec3> colors = make_blackbody_table(least_kelvin, most, 0.0, black_bodies);
-    const int finer = std::clamp(int(std::cbrt(most_glow_voxels / double(voxel_count(dims)))), 1, 12);
-    const glm::ivec3 fine = dims * finer + 2;
-    const GridPlace place{glm::dvec3(1.0 / finer), glm::dvec3(0.5 / finer - 0.5 - 1.0 / finer)};
-    const std::vector<glm::vec3> glow = of_voxels(fine, [&](int x, int y, int z) {
-        const glm::dvec3 at = place.origin + glm::dvec3(x, y, z) * place.voxel_size;
+    const FinerGrid finer(dims);
+    const std::vector<glm::vec3> glow = of_voxels(finer.dims, [&](int x, int y, int z) {
+        const glm::dvec3 at = finer.at(x, y, z);
         const double scale = scales.empty() ? usual_scale(at, dims) : between_voxels(scales, dims, at);
         const double here = kelvin.x * between_voxels(temperatures, dims, at) + kelvin.y;
         if (!(here > least_kelvin && scale > 0.0))
@@ -174,8 +187,9 @@ MemoryGrids::Grid PbrtTranslator::glow_of(const PbrtThing& medium, glm::ivec3 di
         return float(scale) * glm::mix(colors[node], colors[node + 1], float(along - node));
     });
     note(p.find("temperature")->place,
-         fmt::format("what glows by its temperature is a grid of {} x {} x {} colours here", fine.x, fine.y, fine.z));
-    return {"glow", make_grid("glow", fine, glow, place)};
+         fmt::format("what glows by its temperature is a grid of {} x {} x {} colours here", finer.dims.x, finer.dims.y,
+                     finer.dims.z));
+    return {"glow", make_grid("glow", finer.dims, glow, finer.place)};
 }
 
 void PbrtTranslator::write_dense_medium(const std::string& name, const PbrtThing& medium) {
@@ -197,6 +211,7 @@ void PbrtTranslator::write_dense_medium(const std::string& name, const PbrtThing
     const auto add = [&](const char* grid, const std::vector<float>& values) {
         grids->grids.push_back({grid, make_grid(grid, dims, values)});
     };
+    const FinerGrid finer(dims);
     const std::vector<float> densities =
         is_cloud ? values_of(cloud_of(medium), place, dims) : values_of(medium, "density", dims);
     add("density", densities);
@@ -210,7 +225,12 @@ void PbrtTranslator::write_dense_medium(const std::string& name, const PbrtThing
     else if (has_scales)
         add("Lescale", values_of(medium, "Lescale", dims));
     else if (!is_cloud && p.has("Le"))
-        add("Lescale", of_voxels(dims, [&](int x, int y, int z) { return float(usual_scale({x, y, z}, dims)); }));
+        grids->grids.push_back({"Lescale", make_grid("Lescale", finer.dims,
+                                                     of_voxels(finer.dims,
+                                                               [&](int x, int y, int z) {
+                                                                   return float(usual_scale(finer.at(x, y, z), dims));
+                                                               }),
+                                                     finer.place)});
     const std::string file = free_name(name);
     xml_.open("volume", {{"name", name}}, medium.place.text());
     xml_.element("densityField", {}, file);

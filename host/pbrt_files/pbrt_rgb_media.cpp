@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "blackbody.h"
 #include "pbrt_translator.h"
 #include "pbrt_voxels.h"
 
@@ -102,7 +103,8 @@ void PbrtTranslator::write_rgb_medium(const std::string& name, const PbrtThing& 
     parts.insert(parts.end(), scattering.begin(), scattering.end());
     const std::string file = free_name(name);
     const auto grids = std::make_shared<MemoryGrids>();
-    const double scale = p.number("scale", 1.0), brightness = p.number("Lescale", 1.0) * exposure_;
+    // pbrt divides the spectra of lights by what the observer makes of 1, but not those of these.
+    const double scale = p.number("scale", 1.0), brightness = p.number("Lescale", 1.0) * exposure_ * observer_integral;
     for (const Part& part : parts) {
         if (has_soft_edge(dims, part.values))
             note(medium.place, soft_edge_note);

@@ -117,7 +117,7 @@ XmlAttributes PbrtTranslator::material(const PbrtThing& thing) {
         glm::dvec3 eta = pair("eta", "conductor.eta", "metal-Cu-eta"), k = pair("k", "conductor.k", "metal-Cu-k");
         if (const std::optional<glm::dvec3> r =
                 p.texture("reflectance").empty() ? colors_.share(thing, "reflectance") : glm::dvec3(0.5)) {
-            const glm::dvec3 share = glm::clamp(*r, 0.0, 0.9999); // at normal incidence
+            const glm::dvec3 share = glm::clamp(*r, 0.0, 0.9996); // at normal incidence; k is 100 then
             eta = glm::dvec3(1.0);
             k = 2.0 * glm::sqrt(share / (1.0 - share));
         }
@@ -251,7 +251,11 @@ void PbrtTranslator::write_triangles(const PbrtShape& shape, const PbrtTriangles
         numbers("places", mesh.places);
         numbers("triangles", mesh.triangles);
     }
-    write_emission(shape, mesh.area());
+    const int each = shape.thing.type == "bilinearmesh" ? 2 : 1; // triangles that pbrt gives the power of a light
+    const double area = mesh.area() * each / double(mesh.triangles.size());
+    if (shape.light && shape.light->parameters->has("power") && !mesh.is_even(each))
+        note(shape.light->place, "each of the mesh's pieces has the light of one of mean size");
+    write_emission(shape, area);
     xml_.close();
 }
 

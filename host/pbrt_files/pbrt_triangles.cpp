@@ -39,11 +39,25 @@ bool is_small(const glm::dvec3& v, double size) {
 
 } // namespace
 
-double PbrtTriangles::area() const {
+double PbrtTriangles::area_of(std::size_t begin, std::size_t end) const {
     double sum = 0.0;
-    for (const glm::uvec3& t : triangles)
+    for (std::size_t i = begin; i < end; ++i) {
+        const glm::uvec3& t = triangles[i];
         sum += 0.5 * glm::length(glm::cross(points[t.y] - points[t.x], points[t.z] - points[t.x]));
+    }
     return sum;
+}
+
+double PbrtTriangles::area() const {
+    return area_of(0, triangles.size());
+}
+
+bool PbrtTriangles::is_even(int each) const {
+    const auto step = static_cast<std::size_t>(each);
+    for (std::size_t i = step; i + step <= triangles.size(); i += step)
+        if (std::abs(area_of(i, i + step) - area_of(0, step)) > tolerance * area_of(0, step))
+            return false;
+    return true;
 }
 
 PbrtTriangles read_triangles(const PbrtThing& shape) {
@@ -85,9 +99,14 @@ PbrtTriangles moved(const glm::dmat4& map, PbrtTriangles mesh, bool is_reversed)
     const glm::dmat3 of_normals = glm::transpose(glm::inverse(glm::dmat3(map))) * (is_reversed ? -1.0 : 1.0);
     for (glm::dvec3& normal : mesh.normals)
         normal = of_normals * normal;
-    if (mirrors != is_reversed)
-        for (glm::uvec3& t : mesh.triangles)
+    for (glm::uvec3& t : mesh.triangles) {
+        const glm::dvec3 face = glm::cross(mesh.points[t.y] - mesh.points[t.x], mesh.points[t.z] - mesh.points[t.x]);
+        const bool turns = mesh.normals.empty()
+                               ? mirrors != is_reversed
+                               : glm::dot(face, mesh.normals[t.x] + mesh.normals[t.y] + mesh.normals[t.z]) < 0.0;
+        if (turns)
             std::swap(t.y, t.z);
+    }
     return mesh;
 }
 

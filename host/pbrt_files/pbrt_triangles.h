@@ -16,6 +16,10 @@ struct PbrtTriangles {
     std::vector<glm::dvec2> places;  // of points, on textures; or empty
 
     double area() const;
+    bool is_even(int each) const; // all `each` triangles in a row have the same area
+
+private:
+    double area_of(std::size_t begin, std::size_t end) const;
 };
 
 // Of a "trianglemesh" or "bilinearmesh", in the shape's own space. Four-cornered patches become two triangles each.
@@ -27,7 +31,7 @@ PbrtTriangles read_triangles(const PbrtThing& shape);
 PbrtTriangles with_usual_places(const PbrtTriangles& mesh, bool is_patches);
 
 // What is right of `map` moves them; a mirror, or `is_reversed`, turns their order about so that their front stays in
-// front, or goes to the back.
+// front, or goes to the back. Where there are normals, the front is on their side, as in pbrt.
 PbrtTriangles moved(const glm::dmat4& map, PbrtTriangles mesh, bool is_reversed);
 
 struct PbrtRectangle {

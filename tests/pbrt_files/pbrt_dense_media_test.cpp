@@ -89,10 +89,12 @@ TEST_CASE("pbrt's grids within scenes glow", "[cpu][pbrt]") {
         only_medium(world_of(grid_medium(eight + "\"rgb Le\" [ 2 2 2 ] \"float Lescale\" [ 0 1 2 3 4 5 6 7 ]")));
     CHECK(near(varied.temperature.color, even.temperature.color));
     CHECK((even.temperature.color.x > 0.0 && even.temperature.model == TemperatureEmission::Model::color));
-    // pbrt's usual scale is a grid of one voxel: 1 - |x - 1/2| along each axis, here at 1/4 and 3/4.
+    // pbrt's usual scale is a grid of one voxel: 1 - |x - 1/2| along each axis. Here it has 24 of them along the box,
+    // the first before it.
     const DensityField scales = load_density_field(std::get<GridFile>(even.shape).beside("Lescale"));
-    for (const glm::ivec3 voxel : {glm::ivec3(0, 0, 0), glm::ivec3(1, 0, 1)})
-        CHECK(scales.value(voxel) == 0.75f * 0.75f * 0.75f);
+    const auto tent = [](int voxel) { return 1.0 - std::abs((voxel - 0.5) / 24.0 - 0.5); };
+    for (const glm::ivec3 voxel : {glm::ivec3(0, 1, 2), glm::ivec3(13, 12, 11), glm::ivec3(25, 24, 7)})
+        CHECK(scales.value(voxel) == Approx(tent(voxel.x) * tent(voxel.y) * tent(voxel.z)));
     CHECK(varied.temperature.grid == "Lescale");
     CHECK(has_grid(std::get<GridFile>(varied.shape).beside("Lescale")));
 }

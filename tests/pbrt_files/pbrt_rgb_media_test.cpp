@@ -92,7 +92,7 @@ TEST_CASE("media of a colour in each voxel add up to pbrt's", "[cpu][pbrt]") {
         CHECK(scene.volumes.size() == each.media);
         for (const Volume& volume : scene.volumes)
             CHECK(volume.g == 0.4);
-        double exposure = 0.0; // of pbrt's film, the same for all
+        double exposure = 0.0; // the same for all
         for (int i = 0; i < voxels; ++i) {
             const std::size_t at = std::size_t(i);
             const Voxel voxel = voxel_of(scene, place(i));
@@ -106,7 +106,8 @@ TEST_CASE("media of a colour in each voxel add up to pbrt's", "[cpu][pbrt]") {
                 exposure = voxel.emission.x / expected.x;
             CHECK(glm::length(voxel.emission - exposure * expected) < 1e-5 * exposure);
         }
-        CHECK((each.glow.empty() || exposure > 0.0));
+        // pbrt divides light by the integral of the observer where it comes from lights, and not where from these grids.
+        CHECK((each.glow.empty() || exposure == Approx(106.8569)));
     }
     // What is not there is 1.
     const Scene half = world_of(rgb_medium(parameter("sigma_s", random_colors(2))));

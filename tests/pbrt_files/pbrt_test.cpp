@@ -88,7 +88,8 @@ TEST_CASE("what shines in pbrt's scenes", "[cpu][pbrt]") {
     const std::string watts = R"(AreaLightSource "diffuse" "float power" 10 )";
     power((watts + R"(Shape "sphere" "float radius" 0.5)").c_str(), 4.0 * pi);
     power((watts + R"(Shape "disk" "float radius" 0.5)").c_str(), pi);
-    power((watts + "Shape \"trianglemesh\" " + quad).c_str(), 24.0);
+    power((watts + "Shape \"trianglemesh\" " + quad).c_str(), 12.0); // each of two triangles has the power
+    power((watts + R"(Shape "bilinearmesh" "point3 P" [ 0 0 0  3 0 0  0 2 0  3 2 0 ])").c_str(), 24.0);
     CHECK(lamp("AreaLightSource \"diffuse\" \"bool twosided\" true Shape \"sphere\"").shines_both_ways);
     CHECK_FALSE(lamp("Shape \"sphere\"").shines_both_ways);
     const Surface disk = lamp("Translate 1 0 0 Rotate 90 1 0 0 Shape \"disk\" \"float height\" 2");
@@ -231,6 +232,10 @@ TEST_CASE("pbrt's triangles", "[cpu][pbrt]") {
     CHECK(mesh.triangles[0] == glm::uvec3(0, 2, 1));
     CHECK(mesh.places.at(0)[1] == glm::vec2(0, 1));
     CHECK(near(mesh.normals.at(0)[1], glm::dvec3(0, 1, -1)));
+    // The front is where the normals are, whatever the corners' order.
+    const Scene faced = world_of(R"(Shape "trianglemesh" "point3 P" [ 0 0 0 1 0 0 0 1 0 ] "integer indices" [ 0 2 1 ]
+                                    "normal3 N" [ 0 0 1 0 0 1 0 1 1 ])");
+    CHECK(std::get<TriangleSurface>(faced.surfaces.at(0).shape).triangles.at(0) == glm::uvec3(0, 2, 1));
     // pbrt's places where a scene gives none, once there is a texture to see them by: of patches the corners', of
     // triangles (0, 0), (1, 0), (1, 1).
     const std::string board =
