@@ -6,6 +6,7 @@
 #   tests       tests on the device, of which many take a share of what they could combine, with all of it
 #   python      `pip install .` in a fresh environment: types, tests, the notebook (5 minutes; PyPI has to be there)
 #   view        every control of the page of `vkvol view`, in Debian's Chromium (2 minutes; likewise)
+#   pbrt        scenes of one feature each against what pbrt-v4 made of them (4 minutes): tools/peers/pbrt_features.py
 #   denoise     the test of tools/denoise with the denoiser (1 minute; likewise)
 #   farm        tools/farm by Open Job Description, Snakemake and Slurm, as far as they are installed (2 minutes)
 #   estimators  the tables of all unbiased combinations of estimators, of the bias of marches, and of transmittances alone
@@ -13,7 +14,7 @@
 #               `vkvol compare` (per-pixel z-test, Sidak-corrected, and a test of the means; a significance of 0.001 per
 #               scene, so that a table of this length raises a false alarm once in a hundred runs)
 # All but `tests` takes about an hour on two cores. Each part ends with a table; fails if anything differs.
-#   tools/validate.sh [--driver NAME] [hard|scenes|large|tests|python|view|denoise|farm|estimators|pictures ...] [FILE.nvdb ...]
+#   tools/validate.sh [--driver NAME] [hard|scenes|large|tests|python|view|pbrt|denoise|farm|estimators|pictures ...] [FILE.nvdb ...]
 #       a driver as in tools/test.sh; further grids for pictures: in the thesis' bunny scenes
 set -eu
 source "$(dirname "$0")/setup.sh"
@@ -27,12 +28,12 @@ if [ "${1:-}" = --driver ]; then
 fi
 for argument in "$@"; do
     case $argument in
-    hard | scenes | large | tests | python | view | denoise | farm | estimators | pictures) parts+=("$argument") ;;
+    hard | scenes | large | tests | python | view | pbrt | denoise | farm | estimators | pictures) parts+=("$argument") ;;
     *.nvdb) grids+=("$argument") ;;
-    *) die "'$argument' is neither a part (hard, scenes, large, tests, python, view, denoise, farm, estimators, pictures) nor a .nvdb file" ;;
+    *) die "'$argument' is neither a part (hard, scenes, large, tests, python, view, pbrt, denoise, farm, estimators, pictures) nor a .nvdb file" ;;
     esac
 done
-[ ${#parts[@]} -gt 0 ] || parts=(hard scenes large tests python view denoise farm estimators pictures)
+[ ${#parts[@]} -gt 0 ] || parts=(hard scenes large tests python view pbrt denoise farm estimators pictures)
 
 install_packages
 [ -z "$driver" ] || use_driver "$driver"
@@ -87,6 +88,11 @@ run_view() {
     command -v chromium >/dev/null || die "view: needs a browser: apt-get install chromium"
     python3 -m venv "$work/browser" && "$work/browser/bin/pip" install -q playwright || die "view: playwright cannot be installed"
     "$work/browser/bin/python" "$vkvol_root/tools/view_check.py" --vkvol "$vkvol_root/build/vkvol" -o "$vkvol_root/build/view_check" || failed=1
+}
+
+run_pbrt() {
+    say "Scenes of pbrt-v4"
+    /usr/bin/python3 "$vkvol_root/tools/peers/pbrt_features.py" --vkvol "$vkvol_root/build/vkvol" || failed=1
 }
 
 run_denoise() {

@@ -45,7 +45,8 @@ void check_camera(const shared::SensorParams& camera) {
     expect_finite(camera.lens_u, "the lens is not finite");
     expect_finite(camera.lens_v, "the lens is not finite");
     expect(std::isfinite(camera.lens_lever), "what the lens is sharp at is not finite");
-    expect(glm::length(camera.right) > 0.0f && glm::length(camera.down) > 0.0f, "pixels have no extent");
+    expect(camera.right != glm::vec3(0.0f) && camera.down != glm::vec3(0.0f),
+           "pixels have no extent"); // squares underflow
     const float squared = glm::dot(camera.corner, camera.corner);
     expect(std::isfinite(squared) && squared > 0.0f, "the picture's corner has no direction");
 }
