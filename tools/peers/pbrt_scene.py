@@ -6,8 +6,8 @@
     python3 tools/peers/pbrt_scene.py scenes/bench/cloud.xml --result cloud-pbrt.exr --samples 64 --seconds 93 \\
         --table cloud.peer.json
 
-Needs NumPy. Several results, made with pbrt's --seed, give the efficiency an interval. What is equal and what is not, and
-what was never run: tools/peers/README.md."""
+Needs NumPy. Several results, made with pbrt's --seed, give the efficiency an interval. What is equal and what is
+not: tools/peers/README.md."""
 import argparse
 import json
 import math
