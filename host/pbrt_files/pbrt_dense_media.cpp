@@ -89,8 +89,9 @@ template <class Value> auto of_voxels(glm::ivec3 dims, const Value& value) {
 // Voxels up to twelve times finer, with one more all about, where what is beyond the box falls to 0: for what bends
 // between the voxels of `dims`.
 struct FinerGrid {
-    explicit FinerGrid(glm::ivec3 of) {
-        const int finer = std::clamp(int(std::cbrt(most_finer_voxels / double(voxel_count(of)))), 1, 12);
+    FinerGrid(glm::ivec3 of, double most) {
+        const int finer =
+            std::clamp(int(std::cbrt(std::min(most, most_finer_voxels) / double(voxel_count(of)))), 1, 12);
         dims = of * finer + 2;
         place = {glm::dvec3(1.0 / finer), glm::dvec3(0.5 / finer - 0.5 - 1.0 / finer)};
     }
@@ -175,7 +176,7 @@ MemoryGrids::Grid PbrtTranslator::glow_of(const PbrtThing& medium, glm::ivec3 di
     const auto [coldest, hottest] = std::minmax_element(temperatures.begin(), temperatures.end());
     const double most = std::max({kelvin.x * *coldest + kelvin.y, kelvin.x * *hottest + kelvin.y, 2.0 * least_kelvin});
     const std::vector<glm::vec3> colors = make_blackbody_table(least_kelvin, most, 0.0, black_bodies);
-    const FinerGrid finer(dims);
+    const FinerGrid finer(dims, options_.most_cloud_voxels);
     const std::vector<glm::vec3> glow = of_voxels(finer.dims, [&](int x, int y, int z) {
         const glm::dvec3 at = finer.at(x, y, z);
         const double scale = scales.empty() ? usual_scale(at, dims) : between_voxels(scales, dims, at);
@@ -211,7 +212,7 @@ void PbrtTranslator::write_dense_medium(const std::string& name, const PbrtThing
     const auto add = [&](const char* grid, const std::vector<float>& values) {
         grids->grids.push_back({grid, make_grid(grid, dims, values)});
     };
-    const FinerGrid finer(dims);
+    const FinerGrid finer(dims, options_.most_cloud_voxels);
     const std::vector<float> densities =
         is_cloud ? values_of(cloud_of(medium), place, dims) : values_of(medium, "density", dims);
     add("density", densities);
