@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What the mean of each scene in scenes/hard must be, computed from the formulas in the scenes' comments.
 
-Shares nothing with the renderer or its reference. Without arguments compares the <expected> elements with the formulas
+Shares nothing with the renderer or its reference but the CIE observer's table. Without arguments compares the <expected> elements with the formulas
 and fails if one differs by more than a part in a million; with scene names prints theirs.
 """
 import math

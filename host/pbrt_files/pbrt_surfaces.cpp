@@ -251,8 +251,10 @@ void PbrtTranslator::write_triangles(const PbrtShape& shape, const PbrtTriangles
         numbers("places", mesh.places);
         numbers("triangles", mesh.triangles);
     }
-    const int each = shape.thing.type == "bilinearmesh" ? 2 : 1; // triangles that pbrt gives the power of a light
-    const double area = mesh.area() * each / double(mesh.triangles.size());
+    // Triangles to which pbrt gives the power of a light: a quadric is one shape there.
+    const int all = int(mesh.triangles.size());
+    const int each = shape.thing.type == "trianglemesh" ? 1 : shape.thing.type == "bilinearmesh" ? 2 : all;
+    const double area = mesh.area() * each / all;
     if (shape.light && shape.light->parameters->has("power") && !mesh.is_even(each))
         note(shape.light->place, "each of the mesh's pieces has the light of one of mean size");
     write_emission(shape, area);

@@ -24,7 +24,7 @@ struct PbrtTranslation {
 struct PbrtTranslationOptions {
     NameOfFile name_of_file; // null: they stay as they are, relative to the pbrt scene's folder
     std::string grid_stem;   // with which the names of `grids` begin; odd characters of it do not matter
-    double most_cloud_voxels = 256.0 * 256.0 * 256.0; // nor has any other grid more that is made up
+    double most_cloud_voxels = 256.0 * 256.0 * 256.0; // nor more of any other grid that is made up
 };
 
 // Throws InputError, "file:line:column: what is wrong; what would be right".

@@ -88,6 +88,8 @@ TEST_CASE("what shines in pbrt's scenes", "[cpu][pbrt]") {
     const std::string watts = R"(AreaLightSource "diffuse" "float power" 10 )";
     power((watts + R"(Shape "sphere" "float radius" 0.5)").c_str(), 4.0 * pi);
     power((watts + R"(Shape "disk" "float radius" 0.5)").c_str(), pi);
+    power((watts + R"(Shape "cylinder" "float radius" 0.5)").c_str(),
+          8.0 * pi * std::sin(pi / 128.0) * 128.0 / pi);             // of 128 faces
     power((watts + "Shape \"trianglemesh\" " + quad).c_str(), 12.0); // each of two triangles has the power
     power((watts + R"(Shape "bilinearmesh" "point3 P" [ 0 0 0  3 0 0  0 2 0  3 2 0 ])").c_str(), 24.0);
     CHECK(lamp("AreaLightSource \"diffuse\" \"bool twosided\" true Shape \"sphere\"").shines_both_ways);
