@@ -51,18 +51,22 @@ Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish) {
     if (plan.schedule == Schedule::automatic)
         plan.schedule = Schedule::fused;
     const bool staged = plan.schedule == Schedule::staged;
-    // A software driver wants its state in cache and few lanes that each do much; a GPU wants to be full.
-    plan.slots = pick(wish.slots, device.is_cpu() ? (staged ? 32768u : 8192u) : 1u << 18);
-    plan.lanes = pick(wish.lanes, device.is_cpu() ? 512u : 1u << 17);
+    // A software driver wants its state in cache and few lanes that each do much; a GPU wants to be full. There a pass
+    // of a staged render lasts as long as its longest lane: lanes take several paths each, and lay long ones aside.
+    const bool wide = staged && !device.is_cpu();
+    plan.slots = pick(wish.slots, device.is_cpu() ? (staged ? 32768u : 8192u) : wide ? most_slots : 1u << 18);
+    plan.lanes = pick(wish.lanes, device.is_cpu() ? 512u : wide ? 1u << 16 : 1u << 17);
     plan.steps = pick(wish.steps, 4u);
     const std::uint32_t longest = longest_budget(loops, plan.steps);
-    plan.budget = std::min(pick(wish.budget, longest), longest);
+    plan.budget = std::min(pick(wish.budget, wide ? 32u : longest), longest);
     plan.step_limit = pick(wish.step_limit, 1u << 26);
     plan.most_batch = std::min(pick(wish.most_batch, longest_batch),
                                longest_batch / (1 + loops.lights + loops.layers)); // each looks at them
     plan.waiting = staged ? std::max(wish.waiting, 4 * plan.slots) : 0;
-    if (staged) // so that two pixels and more have a place
-        plan.most_batch = std::min(plan.most_batch, plan.waiting / 2);
+    // One lane adds all samples of a pixel to the film: so many pixels have a place at a time, at least.
+    const std::uint32_t places = std::min(wide ? 8192u : 2u, plan.slots);
+    if (staged)
+        plan.most_batch = std::min(plan.most_batch, plan.waiting / places);
     plan.most_film_bytes =
         pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
     plan.most_grid_bytes = pick(wish.most_grid_bytes, std::uint64_t{device.limits().maxStorageBufferRange});

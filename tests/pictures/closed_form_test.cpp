@@ -96,6 +96,7 @@ TEST_CASE("the camera may be inside an absorber", "[gpu][hard][closed_form]") {
 
 // Where nothing is sampled every sample has the value, and no depth is too deep: the error of the distance, (4 - 3)
 // within 2^-22, of sigma, and of exp in single precision are (0.84 tau + 0.36) 1e-6 of T together (scenes/hard/01).
+// What is below the least normal number a device may take for 0.
 TEST_CASE("what only absorbs has its closed form at every depth, exactly", "[gpu][hard][closed_form]") {
     const double tau = GENERATE(0.5, 5.0, 7.5, 8.0, 11.0, 17.0, 30.0, 87.0);
     const std::string integrator = GENERATE("densitySampling", "ratioTracking", "regularTracking");
@@ -112,7 +113,8 @@ TEST_CASE("what only absorbs has its closed form at every depth, exactly", "[gpu
     for (int channel = 0; channel < 3; ++channel) {
         const double depth = depths[channel], T = std::exp(-depth);
         const double expected = sky[channel] * T - Le[channel] * std::expm1(-depth);
-        const double allowed = (0.84 * depth + 0.36) * 1e-6 * (sky[channel] + Le[channel]) * T + 2e-7 * expected;
+        const double allowed = (0.84 * depth + 0.36) * 1e-6 * (sky[channel] + Le[channel]) * T + 2e-7 * expected +
+                               std::numeric_limits<float>::min();
         for (const glm::vec3& pixel : film.mean) {
             CAPTURE(integrator, tau, chromatic, channel, pixel[channel], expected);
             REQUIRE(std::abs(pixel[channel] - expected) <= allowed);
@@ -120,7 +122,8 @@ TEST_CASE("what only absorbs has its closed form at every depth, exactly", "[gpu
     }
 }
 
-// In a homogeneous slab a march has no bias of its steps, so that only roulette is left to err.
+// In a homogeneous slab a march has no bias of its steps, so that only roulette is left to err, and rounding: for the
+// closed form's (above) each step brings that of an exp of its own, 3 units of 1.2e-7, and half of one for the product.
 TEST_CASE("roulette of a march through the medium changes no mean", "[gpu][hard][closed_form]") {
     const double tau = GENERATE(5.0, 8.0, 11.0);
     const auto [integrator, chromatic] = GENERATE(
@@ -132,6 +135,9 @@ TEST_CASE("roulette of a march through the medium changes no mean", "[gpu][hard]
     scene.settings.integrator = integrator;
     scene.settings.choices.scattering = SCATTERING_NONE;
     scene.settings.spp = 64;
+    scene.settings.march.step = 0.2;
+    scene.settings.march.optical_step = 0.1;
+    const double steps = 1.0 + (integrator == "rayMarching" ? 1.0 / 0.2 : tau / 0.1);
     const Film film = render_here(scene, 18).film;
     for (int channel = 0; channel < 3; ++channel) {
         RunningMean mean;
@@ -139,7 +145,7 @@ TEST_CASE("roulette of a march through the medium changes no mean", "[gpu][hard]
             mean.add(pixel[channel]);
         const double T = std::exp(-scene.volumes.front().sigma_a[channel]);
         CAPTURE(integrator, tau, channel, mean.mean(), mean.standard_error(), T);
-        CHECK(t_test_p(mean, T, (0.84 * tau + 0.36) * 1e-6 * T) > 1e-4);
+        CHECK(t_test_p(mean, T, (0.84 * tau + 0.42 * steps) * 1e-6 * T) > 1e-4);
     }
 }
 
