@@ -36,7 +36,7 @@ double load_average() {
 
 class Bench {
 public:
-    explicit Bench(const BenchRequest& request) : request_(request), device_(request.render.device) {}
+    explicit Bench(const BenchRequest& request) : request_(request), device_(workshop_.device(request.render.device)) {}
 
     BenchResult run(const std::vector<Estimator>& estimators);
     const Device& device() const { return device_; }
@@ -51,7 +51,8 @@ private:
     std::optional<double> measure(std::size_t index, std::uint32_t samples, double time_limit);
 
     const BenchRequest& request_;
-    const Device device_;
+    Workshop workshop_{true};
+    const Device& device_;
     BenchResult result_;
     std::vector<double> seconds_per_sample_, setup_seconds_; // of the warm-up
     std::uint32_t renders_ = 0;                              // number of the next seed; 0 is the reference's
@@ -62,12 +63,12 @@ private:
 // which is returned as seconds.
 double Bench::warm_up(const Estimator& estimator, double& setup_seconds, double& pipeline_seconds) {
     const double hopeless = std::max(request_.seconds, 10.0); // the second render is spared then
-    RenderResult result = render_whole(request_, estimator, device_, 1, next_seed(), std::nullopt);
+    RenderResult result = render_whole(request_, estimator, workshop_, 1, next_seed(), std::nullopt);
     if (!request_.quiet)
         print_warnings(result.warnings);
     pipeline_seconds = result.pipeline_seconds;
     if (result.render_seconds < hopeless)
-        result = render_whole(request_, estimator, device_, 1, next_seed(), std::nullopt);
+        result = render_whole(request_, estimator, workshop_, 1, next_seed(), std::nullopt);
     setup_seconds = result.load_seconds + result.upload_seconds + result.pipeline_seconds;
     return result.render_seconds;
 }
@@ -137,7 +138,7 @@ bool Bench::get_reference(const std::vector<Estimator>& estimators) {
         kept = find_reference(request_, estimators, wish);
     announce(request_.reference || kept ? 0.0 : wish.seconds);
     if (!request_.reference)
-        result_.reference = kept ? std::move(*kept) : make_reference(request_, estimators, device_, wish);
+        result_.reference = kept ? std::move(*kept) : make_reference(request_, estimators, workshop_, wish);
     const Reference& reference = result_.reference;
     if (!request_.quiet && !interrupted())
         tell(stderr, "vkvol: reference {}{}: {} samples per pixel{}\n", reference.cached ? "read" : "rendered",
@@ -150,7 +151,7 @@ bool Bench::get_reference(const std::vector<Estimator>& estimators) {
 std::optional<double> Bench::measure(std::size_t index, std::uint32_t samples, double time_limit) {
     Measurement& measurement = result_.measurements[index];
     const std::uint32_t seed = next_seed();
-    RenderResult result = render_whole(request_, measurement.estimator, device_, samples, seed, time_limit);
+    RenderResult result = render_whole(request_, measurement.estimator, workshop_, samples, seed, time_limit);
     if (result.interrupted || result.samples < samples)
         return std::nullopt;
     const Film& reference = result_.reference.film;

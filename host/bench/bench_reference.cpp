@@ -105,7 +105,7 @@ std::optional<Reference> read_cached(const Estimator& candidate, const Reference
 
 // By some samples of each; one that cannot be rendered after all is left out.
 const Estimator& most_efficient(const BenchRequest& request, const std::vector<Estimator>& candidates,
-                                const Device& device, const ReferenceWish& wish) {
+                                Workshop& workshop, const ReferenceWish& wish) {
     constexpr std::uint32_t samples = 8;
     const Estimator* best = &candidates.front();
     double least = 0.0;
@@ -114,7 +114,7 @@ const Estimator& most_efficient(const BenchRequest& request, const std::vector<E
             break;
         try {
             const RenderResult result =
-                render_whole(request, candidate, device, samples, wish.seed, 0.1 * wish.seconds);
+                render_whole(request, candidate, workshop, samples, wish.seed, 0.1 * wish.seconds);
             const double cost = relative_variance(result.film, result.film) * result.render_seconds;
             if (result.samples == samples && (least == 0.0 || cost < least)) {
                 least = cost;
@@ -139,13 +139,13 @@ void keep(Reference& reference, const std::filesystem::path& file, const Metadat
     }
 }
 
-Reference render_reference(const BenchRequest& request, const Estimator& estimator, const Device& device,
+Reference render_reference(const BenchRequest& request, const Estimator& estimator, Workshop& workshop,
                            const ReferenceWish& wish) {
     constexpr std::uint32_t any = 1u << 30;
-    RenderResult result = render_whole(request, estimator, device, any, wish.seed, wish.seconds);
+    RenderResult result = render_whole(request, estimator, workshop, any, wish.seed, wish.seconds);
     RenderRequest as = request.render;
     as.seed = wish.seed;
-    const Metadata metadata = make_metadata(as, estimator.scene, device, result);
+    const Metadata metadata = make_metadata(as, estimator.scene, workshop.device(as.device), result);
     Reference reference;
     reference.film = std::move(result.film);
     describe(reference, metadata);
@@ -198,13 +198,13 @@ std::optional<Reference> find_reference(const BenchRequest& request, const std::
     return std::nullopt;
 }
 
-Reference make_reference(const BenchRequest& request, const std::vector<Estimator>& measured, const Device& device,
+Reference make_reference(const BenchRequest& request, const std::vector<Estimator>& measured, Workshop& workshop,
                          const ReferenceWish& wish) {
     const std::vector<Estimator> candidates = reference_candidates(measured);
-    const Estimator& best = most_efficient(request, candidates, device, wish);
+    const Estimator& best = most_efficient(request, candidates, workshop, wish);
     if (!request.quiet)
         tell(stderr, "vkvol: reference by {}, {:.3g} s\n", best.integrator, wish.seconds);
-    return render_reference(request, best, device, wish);
+    return render_reference(request, best, workshop, wish);
 }
 
 } // namespace vkvol

@@ -7,10 +7,11 @@
 #include <string>
 
 #include "bench_estimators.h"
-#include "device.h"
 #include "film.h"
 
 namespace vkvol {
+
+class Workshop;
 
 struct Reference {
     Film film;
@@ -38,7 +39,7 @@ std::optional<Reference> find_reference(const BenchRequest& request, const std::
                                         const ReferenceWish& wish);
 
 // Rendered by the candidate with the least expected error per second, and kept in the cache.
-Reference make_reference(const BenchRequest& request, const std::vector<Estimator>& measured, const Device& device,
+Reference make_reference(const BenchRequest& request, const std::vector<Estimator>& measured, Workshop& workshop,
                          const ReferenceWish& wish);
 
 } // namespace vkvol

@@ -77,11 +77,12 @@ class Grid:
 
 
 def blosc_decompress(chunk, size, path):
-    library = ctypes.util.find_library("blosc")
-    if library is None:
+    try:
+        library = ctypes.CDLL(ctypes.util.find_library("blosc") or "libblosc.so.1") # the latter where LD_LIBRARY_PATH leads
+    except OSError:
         sys.exit(f"{path}: BLOSC data needs the library libblosc (Debian: libblosc1); or write the file with codec zip")
     out = ctypes.create_string_buffer(size)
-    if ctypes.CDLL(library).blosc_decompress_ctx(chunk, out, ctypes.c_size_t(size), 1) != size:
+    if library.blosc_decompress_ctx(chunk, out, ctypes.c_size_t(size), 1) != size:
         sys.exit(f"{path}: its BLOSC data does not decompress; copy the file again")
     return out.raw
 
