@@ -43,6 +43,16 @@ std::uint32_t longest_budget(const LoopSizes& loops, std::uint32_t steps) {
 // Samples of a pixel that one lane loops over: the sky's, and those added to the film.
 constexpr std::uint32_t longest_batch = most_iterations / 2;
 
+constexpr std::uint32_t waiting_per_slot = 4;
+
+// Paths of a staged render on a GPU: of layers, what waits has a record each, in the buffer that has the layers.
+std::uint32_t most_slots_with_records(std::uint32_t layers, std::uint64_t most_bytes) {
+    std::uint32_t slots = most_slots;
+    while (slots > 1u << 15 && std::uint64_t{waiting_per_slot} * slots * layers * sizeof(glm::vec3) > most_bytes / 2)
+        slots /= 2;
+    return slots;
+}
+
 } // namespace
 
 Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish) {
@@ -54,7 +64,10 @@ Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish) {
     // A software driver wants its state in cache and few lanes that each do much; a GPU wants to be full. There a pass
     // of a staged render lasts as long as its longest lane: lanes take several paths each, and lay long ones aside.
     const bool wide = staged && !device.is_cpu();
-    plan.slots = pick(wish.slots, device.is_cpu() ? (staged ? 32768u : 8192u) : wide ? most_slots : 1u << 18);
+    plan.most_film_bytes =
+        pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
+    const std::uint32_t wide_slots = most_slots_with_records(loops.layers, plan.most_film_bytes);
+    plan.slots = pick(wish.slots, device.is_cpu() ? (staged ? 32768u : 8192u) : wide ? wide_slots : 1u << 18);
     plan.lanes = pick(wish.lanes, device.is_cpu() ? 512u : wide ? 1u << 16 : 1u << 17);
     plan.steps = pick(wish.steps, 4u);
     const std::uint32_t longest = longest_budget(loops, plan.steps);
@@ -62,13 +75,11 @@ Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish) {
     plan.step_limit = pick(wish.step_limit, 1u << 26);
     plan.most_batch = std::min(pick(wish.most_batch, longest_batch),
                                longest_batch / (1 + loops.lights + loops.layers)); // each looks at them
-    plan.waiting = staged ? std::max(wish.waiting, 4 * plan.slots) : 0;
+    plan.waiting = staged ? std::max(wish.waiting, waiting_per_slot * plan.slots) : 0;
     // One lane adds all samples of a pixel to the film: so many pixels have a place at a time, at least.
     const std::uint32_t places = std::min(wide ? 8192u : 2u, plan.slots);
     if (staged)
         plan.most_batch = std::min(plan.most_batch, plan.waiting / places);
-    plan.most_film_bytes =
-        pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
     plan.most_grid_bytes = pick(wish.most_grid_bytes, std::uint64_t{device.limits().maxStorageBufferRange});
     // GPUs read storage as fast as texels; software drivers gather only these.
     const std::uint64_t texels = device.is_cpu() ? 4ull * device.limits().maxTexelBufferElements : 1u;
