@@ -25,16 +25,16 @@ Sums sums_of(std::span<const glm::vec3> sums, std::size_t i) {
 // Of what lies at a slot of each record.
 class Developer {
 public:
-    Developer(const LayerPlan& plan, std::span<const glm::vec3> sums, std::span<const shared::FilmPixel> pixels)
-        : plan_(plan), sums_(sums), pixels_(pixels) {}
+    Developer(const LayerPlan& plan, std::span<const glm::vec3> sums, std::span<const std::uint32_t> samples)
+        : plan_(plan), sums_(sums), samples_(samples) {}
 
     Sums at(std::size_t pixel, std::uint32_t slot) const { return sums_of(sums_, pixel * plan_.params.count + slot); }
 
     // Means over all samples.
     FilmLayer means(const std::string& name, std::uint32_t slot) const {
         FilmLayer layer{name, {}, {}};
-        for (std::size_t i = 0; i < pixels_.size(); ++i) {
-            const double n = pixels_[i].count;
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
+            const double n = samples_[i];
             const Sums s = at(i, slot);
             const glm::dvec3 mean = n > 0 ? s.value / n : glm::dvec3(0.0);
             const glm::dvec3 variance = n > 1 ? (s.square / n - mean * mean) / (n - 1.0) : glm::dvec3(0.0);
@@ -46,8 +46,8 @@ public:
 
     FilmLayer alpha(std::uint32_t slot) const {
         FilmLayer layer = means("alpha", slot);
-        for (std::size_t i = 0; i < pixels_.size(); ++i)
-            layer.mean[i] = pixels_[i].count > 0 ? 1.0f - layer.mean[i] : glm::vec3(0.0f);
+        for (std::size_t i = 0; i < samples_.size(); ++i)
+            layer.mean[i] = samples_[i] > 0 ? 1.0f - layer.mean[i] : glm::vec3(0.0f);
         return layer;
     }
 
@@ -64,8 +64,8 @@ public:
     // the mean of w squared, to first order (Cochran, "Sampling Techniques", 1977, ch. 6).
     FilmLayer depth(std::uint32_t slot) const {
         FilmLayer layer{"depth", {}, {}};
-        for (std::size_t i = 0; i < pixels_.size(); ++i) {
-            const double n = pixels_[i].count;
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
+            const double n = samples_[i];
             const Sums s = at(i, slot);
             const double w = s.value.y, m = w > 0.0 ? s.value.x / w : 0.0;
             const double mixed = 0.5 * (s.square.z - s.square.x - s.square.y); // of w d and w
@@ -79,7 +79,7 @@ public:
 
     FilmLayer position(std::uint32_t slot, const glm::dvec3& origin) const {
         FilmLayer layer{"position", {}, {}};
-        for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
             const double w = at(i, slot).value.y;
             layer.mean.emplace_back(w > 0.0 ? at(i, slot + 1).value / w + origin : glm::dvec3(0.0));
         }
@@ -89,7 +89,7 @@ public:
 private:
     const LayerPlan& plan_;
     std::span<const glm::vec3> sums_;
-    std::span<const shared::FilmPixel> pixels_;
+    std::span<const std::uint32_t> samples_; // of each pixel
 };
 
 } // namespace
@@ -131,8 +131,8 @@ std::uint32_t group_layer(const std::vector<std::string>& groups, const std::str
 }
 
 std::vector<FilmLayer> develop_layers(const LayerPlan& plan, std::span<const glm::vec3> sums,
-                                      std::span<const shared::FilmPixel> pixels, const glm::dvec3& origin) {
-    const Developer developer(plan, sums, pixels);
+                                      std::span<const std::uint32_t> samples, const glm::dvec3& origin) {
+    const Developer developer(plan, sums, samples);
     const shared::AovParams& params = plan.params;
     std::vector<FilmLayer> layers;
     for (std::uint32_t kind = 0; kind < LIGHT_KINDS; ++kind)

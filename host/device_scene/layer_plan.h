@@ -25,8 +25,9 @@ LayerPlan plan_layers(const Scene& scene);
 // Of a light's group among the layers of groups: 0 of none.
 std::uint32_t group_layer(const std::vector<std::string>& groups, const std::string& group);
 
-// What a picture's layers are on the host. `sums`: four for each layer of each pixel. `origin`: of render space, world.
+// What a picture's layers are on the host. `sums`: four for each layer of each pixel. `samples`: of each pixel.
+// `origin`: of render space, in world space.
 std::vector<FilmLayer> develop_layers(const LayerPlan& plan, std::span<const glm::vec3> sums,
-                                      std::span<const shared::FilmPixel> pixels, const glm::dvec3& origin);
+                                      std::span<const std::uint32_t> samples, const glm::dvec3& origin);
 
 } // namespace vkvol

@@ -149,47 +149,64 @@ double rounding_of(ToneCurve curve) {
     return curve == ToneCurve::reinhard ? 1e-6 : 0.5;
 }
 
-} // namespace
-
-namespace {
-
-// `alpha`: null without one.
-std::vector<std::uint8_t> to_bytes(const Film& film, const ToneMapping& mapping, const FilmLayer* alpha) {
-    const double gain = std::exp2(mapping.exposure);
+// Reinhard's: the brightest channel.
+double white_of(std::span<const glm::vec3> radiance, double gain) {
     double white = 0.0;
-    for (const glm::vec3& mean : film.mean)
+    for (const glm::vec3& mean : radiance)
         white = std::max(white, brightest_channel(exposed(mean, gain)));
+    return white;
+}
+
+// Those of each pixel go where `bytes` says, `each` from pixel to pixel.
+void write_colors(std::span<const glm::vec3> radiance, const ToneMapping& mapping, std::uint8_t* bytes,
+                  std::size_t each) {
     static const SrgbBytes srgb_bytes;
-    const bool is_srgb = !alpha && (mapping.curve == ToneCurve::srgb || mapping.curve == ToneCurve::aces);
-    const double rounding = rounding_of(mapping.curve);
-    std::vector<std::uint8_t> bytes;
-    bytes.reserve(film.mean.size() * (alpha ? 4 : 3));
-    for (std::size_t i = 0; i < film.mean.size(); ++i) {
-        if (is_srgb) {
-            const Vec3 linear = linear_value(exposed(film.mean[i], gain), mapping.curve);
-            bytes.insert(bytes.end(), {srgb_bytes(linear.x), srgb_bytes(linear.y), srgb_bytes(linear.z)});
-            continue;
+    const double gain = std::exp2(mapping.exposure), rounding = rounding_of(mapping.curve);
+    if (mapping.curve == ToneCurve::srgb || mapping.curve == ToneCurve::aces) {
+        for (const glm::vec3& mean : radiance) {
+            const Vec3 linear = linear_value(exposed(mean, gain), mapping.curve);
+            for (int channel = 0; channel < 3; ++channel)
+                bytes[channel] = srgb_bytes(linear[channel]);
+            bytes += each;
         }
-        Vec3 v = display_value(exposed(film.mean[i], gain), mapping.curve, white);
-        const double a = alpha ? std::clamp(double(alpha->mean[i].x), 0.0, 1.0) : 1.0;
-        if (alpha)
-            v = a > 0.0 ? clamped(v / a) : Vec3(0.0);
-        for (int channel = 0; channel < 3; ++channel)
-            bytes.push_back(static_cast<std::uint8_t>(255.0 * v[channel] + rounding));
-        if (alpha)
-            bytes.push_back(static_cast<std::uint8_t>(255.0 * a + 0.5));
+        return;
     }
-    return bytes;
+    const double white = mapping.curve == ToneCurve::reinhard ? white_of(radiance, gain) : 0.0;
+    for (const glm::vec3& mean : radiance) {
+        const Vec3 v = display_value(exposed(mean, gain), mapping.curve, white);
+        for (int channel = 0; channel < 3; ++channel)
+            bytes[channel] = static_cast<std::uint8_t>(255.0 * v[channel] + rounding);
+        bytes += each;
+    }
 }
 
 } // namespace
 
 std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping) {
-    return to_bytes(film, mapping, nullptr);
+    std::vector<std::uint8_t> bytes(film.mean.size() * 3);
+    write_colors(film.mean, mapping, bytes.data(), 3);
+    return bytes;
+}
+
+std::vector<std::uint8_t> tone_map_opaque(std::span<const glm::vec3> radiance, const ToneMapping& mapping) {
+    std::vector<std::uint8_t> bytes(radiance.size() * 4, 255);
+    write_colors(radiance, mapping, bytes.data(), 4);
+    return bytes;
 }
 
 std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping, const FilmLayer& alpha) {
-    return to_bytes(film, mapping, &alpha);
+    const double gain = std::exp2(mapping.exposure), white = white_of(film.mean, gain);
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(film.mean.size() * 4);
+    for (std::size_t i = 0; i < film.mean.size(); ++i) {
+        const double a = std::clamp(double(alpha.mean[i].x), 0.0, 1.0);
+        const Vec3 premultiplied = display_value(exposed(film.mean[i], gain), mapping.curve, white);
+        const Vec3 v = a > 0.0 ? clamped(premultiplied / a) : Vec3(0.0);
+        for (int channel = 0; channel < 3; ++channel)
+            bytes.push_back(static_cast<std::uint8_t>(255.0 * v[channel] + rounding_of(mapping.curve)));
+        bytes.push_back(static_cast<std::uint8_t>(255.0 * a + 0.5));
+    }
+    return bytes;
 }
 
 std::size_t clipped_pixels(const Film& film, const ToneMapping& mapping) {

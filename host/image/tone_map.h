@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,9 @@ std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping)
 // not: what the curve makes of a mean is divided by alpha, and cut at white. Readers that multiply again get the
 // picture over black; light where alpha is 0, as flames may be, is lost.
 std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping, const FilmLayer& alpha);
+
+// As the first of these, but with a fourth byte, 255, as screens have it.
+std::vector<std::uint8_t> tone_map_opaque(std::span<const glm::vec3> radiance, const ToneMapping& mapping);
 
 // Pixels brighter than the curve has values for, in one channel or more: what they differ by is lost.
 std::size_t clipped_pixels(const Film& film, const ToneMapping& mapping);

@@ -9,14 +9,6 @@ namespace vkvol {
 
 namespace {
 
-std::vector<std::uint8_t> with_alpha(const std::vector<std::uint8_t>& rgb) {
-    std::vector<std::uint8_t> rgba;
-    rgba.reserve(rgb.size() / 3 * 4);
-    for (std::size_t i = 0; i < rgb.size(); i += 3)
-        rgba.insert(rgba.end(), {rgb[i], rgb[i + 1], rgb[i + 2], 255});
-    return rgba;
-}
-
 // Values as they are, 0 black and 1 white.
 std::vector<std::uint8_t> linear(const std::vector<glm::vec3>& values) {
     std::vector<std::uint8_t> rgba;
@@ -114,12 +106,12 @@ ShownLayer show_layer(const Film& film, const Film* sketch, const std::string& l
         shown.scale = "black: 0; white: 1";
         return shown;
     }
-    Film radiance;
-    radiance.mean = found ? found->mean : sketch ? over_sketch(film, *sketch) : film.mean;
+    const std::vector<glm::vec3> sketched = !found && sketch ? over_sketch(film, *sketch) : std::vector<glm::vec3>{};
+    const std::vector<glm::vec3>& radiance = found ? found->mean : sketch ? sketched : film.mean;
     const Tone chosen = choose_tone(tone, film, metadata); // of the whole picture, so that its parts compare
     shown.mapping = chosen.mapping;
     shown.clipped = chosen.clipped;
-    shown.rgba = with_alpha(tone_map(radiance, chosen.mapping));
+    shown.rgba = tone_map_opaque(radiance, chosen.mapping);
     return shown;
 }
 

@@ -130,10 +130,8 @@ void copy_rows(const BandOn& from, const BandOn& to, Rows rows, std::uint32_t wi
     to.commands.upload(*to.band.layers, bytes, record_bytes(to.layers) + first * each);
 }
 
+namespace {
 void develop(std::span<const shared::FilmPixel> pixels, Film& film) {
-    film.mean.clear();
-    film.variance.clear();
-    film.samples.clear();
     for (const shared::FilmPixel& pixel : pixels) {
         const double n = pixel.count;
         const glm::dvec3 sum = glm::dvec3(pixel.sum) + glm::dvec3(pixel.sum_low);
@@ -143,6 +141,25 @@ void develop(std::span<const shared::FilmPixel> pixels, Film& film) {
         film.mean.emplace_back(mean);
         film.variance.emplace_back(glm::max(variance, glm::dvec3(0.0)));
         film.samples.push_back(pixel.count);
+    }
+}
+} // namespace
+
+// Where the host sees a film it is read in its place: pictures that are watched are developed again and again.
+void develop(Commands& commands, const std::vector<Band>& bands, std::uint32_t width, Film& film) {
+    film.mean.clear();
+    film.variance.clear();
+    film.samples.clear();
+    std::vector<shared::FilmPixel> copy;
+    for (const Band& band : bands) {
+        const std::size_t count = pixel_count(band, width);
+        if (band.film.mapped()) {
+            develop(band.film.view<const shared::FilmPixel>().first(count), film);
+            continue;
+        }
+        copy.resize(count);
+        commands.download(band.film, std::as_writable_bytes(std::span(copy)));
+        develop(copy, film);
     }
 }
 

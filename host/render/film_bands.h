@@ -49,7 +49,7 @@ std::vector<glm::vec3> read_layers(Commands& commands, const std::vector<Band>& 
 void write_layers(Commands& commands, const std::vector<Band>& bands, std::uint32_t width,
                   const shared::AovParams& layers, std::span<const glm::vec3> sums);
 
-// Means, and variances of the means. What else the film says is not touched.
-void develop(std::span<const shared::FilmPixel> pixels, Film& film);
+// Means, and variances of the means, of all bands. What else the film says is not touched.
+void develop(Commands& commands, const std::vector<Band>& bands, std::uint32_t width, Film& film);
 
 } // namespace vkvol

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double noise_seconds = 3.0;        // between two figures of noise
 constexpr double look_seconds = 0.2;         // between two looks at the film at least
-constexpr double look_share = 1.0 / 50.0;    // of the time, for looks
-constexpr double look_growth = 0.15;         // of the time so far, between two: noise has fallen by a fifteenth then
+constexpr double look_share = 1.0 / 100.0;   // of the time, for looks
+constexpr double look_growth = 0.25;         // of the time so far, between two: noise has fallen by a tenth then
 constexpr double patience = 5.0;             // seconds, for paths that will not end
 constexpr std::uint32_t first_look = 16;     // at the noise to be reached; samples per pixel
 constexpr std::uint32_t surely_black = 1024; // likewise: a picture without any light by then will have none
@@ -316,11 +316,10 @@ void Session::develop_film() {
     film.picture_height = scene_.picture.height;
     film.crop = job_.crop;
     film.places = reading_places(moving_ ? moving_->camera : scene_.camera, scene_.picture, job_.crop);
-    const std::vector<shared::FilmPixel> pixels = read_bands(commands_, bands_, width());
-    develop(pixels, film);
+    develop(commands_, bands_, width(), film);
     film.layers =
         develop_layers(device_scene_->layers(), read_layers(commands_, bands_, width(), device_scene_->frame().layers),
-                       pixels, device_scene_->origin());
+                       film.samples, device_scene_->origin());
 }
 
 RenderResult render(const Device& device, const Scene& scene, const RenderJob& job) {

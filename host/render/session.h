@@ -38,7 +38,7 @@ struct RenderJob {
     // standard error.
     std::function<void(double, std::optional<double>)> progress;
     // With the film as far as it is: soon after the first samples, and then whenever it has become a little better, as
-    // long as that takes no more than a fiftieth of the time.
+    // long as that takes no more than a hundredth of the time.
     std::function<void(const RenderResult&)> look;
     // Called every so many seconds, and at the end of a render that was ended early.
     double checkpoint_seconds = 0.0;
