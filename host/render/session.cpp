@@ -15,7 +15,7 @@ namespace {
 constexpr double noise_seconds = 3.0;        // between two figures of noise
 constexpr double look_seconds = 0.2;         // between two looks at the film at least
 constexpr double look_share = 1.0 / 100.0;   // of the time, for looks
-constexpr double look_growth = 0.25;         // of the time so far, between two: noise has fallen by a tenth then
+constexpr double look_growth = 0.15;         // of the time so far, between two: noise has fallen by a fifteenth then
 constexpr double patience = 5.0;             // seconds, for paths that will not end
 constexpr std::uint32_t first_look = 16;     // at the noise to be reached; samples per pixel
 constexpr std::uint32_t surely_black = 1024; // likewise: a picture without any light by then will have none
@@ -73,7 +73,8 @@ void Session::render(std::uint32_t samples) {
         while (band_ < bands_.size() && !stopped_)
             run_band(bands_[band_]);
         if (band_ == bands_.size()) {
-            next_ = next_batch(batch_, watch_.seconds() - begun);
+            const std::uint32_t after = next_batch(batch_, watch_.seconds() - begun);
+            next_ = batch_ < next_ ? std::max(next_, after) : after; // it was short to be looked at, not to be quick
             done_ += std::exchange(batch_, 0);
             band_ = 0;
         }
