@@ -53,6 +53,7 @@ private:
     const BenchRequest& request_;
     Workshop workshop_{true};
     const Device& device_;
+    BenchSessions sessions_{request_, workshop_};
     BenchResult result_;
     std::vector<double> seconds_per_sample_, setup_seconds_; // of the warm-up
     std::uint32_t renders_ = 0;                              // number of the next seed; 0 is the reference's
@@ -68,7 +69,7 @@ double Bench::warm_up(const Estimator& estimator, double& setup_seconds, double&
         print_warnings(result.warnings);
     pipeline_seconds = result.pipeline_seconds;
     if (result.render_seconds < hopeless)
-        result = render_whole(request_, estimator, workshop_, 1, next_seed(), std::nullopt);
+        result = sessions_.render(estimator, 1, next_seed(), std::nullopt);
     setup_seconds = result.load_seconds + result.upload_seconds + result.pipeline_seconds;
     return result.render_seconds;
 }
@@ -151,7 +152,7 @@ bool Bench::get_reference(const std::vector<Estimator>& estimators) {
 std::optional<double> Bench::measure(std::size_t index, std::uint32_t samples, double time_limit) {
     Measurement& measurement = result_.measurements[index];
     const std::uint32_t seed = next_seed();
-    RenderResult result = render_whole(request_, measurement.estimator, workshop_, samples, seed, time_limit);
+    RenderResult result = sessions_.render(measurement.estimator, samples, seed, time_limit);
     if (result.interrupted || result.samples < samples)
         return std::nullopt;
     const Film& reference = result_.reference.film;

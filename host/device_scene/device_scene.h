@@ -29,6 +29,8 @@ public:
     void set_queues(std::uint32_t slots, std::uint32_t queue_capacity);
     // Paths that have a record of layers at a time.
     void set_records(std::uint32_t records) { frame_.layers.records = records; }
+    // Seen by the kernels from the next set_rows on.
+    void set_seed(std::uint32_t seed) { frame_.seed = seed; }
     // The part of the picture that is rendered next.
     void set_rows(std::uint32_t first, std::uint32_t count);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <fmt/format.h>
+#include <stdexcept>
 #include <utility>
 
 #include "camera_rays.h"
@@ -84,6 +85,26 @@ void Session::render(std::uint32_t samples) {
         save_checkpoint();
     result_.render_seconds += watch_.lap();
     result_.samples = done_;
+}
+
+void Session::begin_again() {
+    if (moving_ || job_.checkpoint || job_.resume || !followers_.empty() || gave_up_)
+        throw std::logic_error("Session::begin_again: a session of another kind");
+    check_ready();
+    device_scene_->set_seed(job_.seed);
+    for (const Band& band : bands_)
+        clear(commands_, band);
+    done_ = batch_ = band_ = next_ = 0;
+    pixels_.reset();
+    const std::uint64_t cleaned = result_.counts.cleaned_voxels;
+    result_.counts = {};
+    result_.counts.cleaned_voxels = cleaned;
+    result_.non_finite.clear();
+    result_.passes.clear();
+    result_.rounds = 0;
+    result_.samples = 0;
+    result_.render_seconds = 0.0;
+    result_.interrupted = result_.reached_goal = false;
 }
 
 RenderResult& Session::result() {

@@ -134,6 +134,37 @@ TEST_CASE("samples wanted in several goes are those of one", "[gpu][determinism]
     CHECK((same_bits(session.result().film, whole) || !test_device().is_cpu()));
 }
 
+TEST_CASE("a session that begins again has the bits of a new one", "[gpu][determinism]") {
+    Scene scene = cloud(11);
+    scene.settings.integrator = GENERATE("cachedRatioTracking", "lightTracing");
+    scene.layers = scene.settings.integrator == "lightTracing" ? 0u : layer_direct | layer_depth;
+    RenderJob job;
+    job.plan.schedule = GENERATE(Schedule::fused, Schedule::staged);
+    job.disk_cache = false;
+    job.crop = {0, scene.picture.width, 0, scene.picture.height};
+    job.seed = 41;
+    Session session(test_device(), scene, job);
+    int asked = 0;
+    job.interrupted = [&] { return ++asked > 2; }; // with pixels left
+    session.render(7);
+    job.interrupted = nullptr;
+    job.seed = 42;
+    session.begin_again();
+    session.render(11);
+    const RenderResult again = session.result();
+    const RenderResult anew = render(test_device(), scene, job);
+    CHECK((same_bits(again.film, anew.film) || !test_device().is_cpu()));
+    CHECK(again.samples == 11);
+    CHECK(again.counts.paths == anew.counts.paths);
+    CHECK(again.counts.real_collisions == anew.counts.real_collisions);
+    CHECK_FALSE(again.interrupted);
+    const auto checkpointed = [&] {
+        job.checkpoint = [](const Checkpoint&) {};
+        session.begin_again();
+    };
+    CHECK_THROWS_AS(checkpointed(), std::logic_error);
+}
+
 // A search through many pieces takes several turns, and lanes are laid aside amid it.
 TEST_CASE("a flight rests while a shadow ray from amid it asks for surfaces", "[gpu][determinism][surfaces]") {
     Scene scene = cloud(4);
