@@ -96,8 +96,7 @@ AxisBox box_around(const std::vector<Member>& members) {
     return box;
 }
 
-// What is everywhere has cells about the camera, if there is nothing else, and all of its layers in them: beyond, what
-// bounds an outermost cell must come to an end of its own.
+// What is everywhere has cells about the camera, if there is nothing else, and all of its layers in them.
 void take_in(const std::vector<Member>& members, const glm::dvec3& camera, double wanted, AxisBox& box) {
     if (box.low.x > box.high.x)
         box = {camera - 2.0 * wanted, camera + 2.0 * wanted};
@@ -108,15 +107,14 @@ void take_in(const std::vector<Member>& members, const glm::dvec3& camera, doubl
         const Upright place = upright(member.volume);
         for (const double height : {layers->bottom, layers->top}) {
             const double at = (height - place.offset) / place.factor;
-            // A cell more, so that what is beyond the layers lies beyond their cells, too.
-            box.low[place.axis] = std::min(box.low[place.axis], at - wanted);
-            box.high[place.axis] = std::max(box.high[place.axis], at + wanted);
+            box.low[place.axis] = std::min(box.low[place.axis], at);
+            box.high[place.axis] = std::max(box.high[place.axis], at);
         }
     }
 }
 
-// Bounds of the extinction between the faces of cells along that axis. Beyond the outermost there are no layers: see
-// take_in().
+// Bounds of the extinction between the faces of cells along that axis. In the outermost there are no layers: see
+// empty_cells().
 std::vector<double> layers_in_cells(const Volume& volume, const Upright& place, const Superposition& whole,
                                     double sigma_t) {
     std::vector<double> bounds;
@@ -131,8 +129,10 @@ std::vector<double> layers_in_cells(const Volume& volume, const Upright& place, 
     return bounds;
 }
 
-// Cells of this edge [world units] over the box, all of them coarse if `bits` is not 0. There are no bricks yet.
-Superposition empty_cells(const AxisBox& box, double edge, int bits) {
+// Cells of this edge [world units] over the box, all of them coarse if `bits` is not 0. There are no bricks yet. Where
+// walks go on for ever, `has_ring`, so do the outermost cells: then these are beyond the box, and what ends bounds none
+// of them. Else walks that left it would meet null collisions without end.
+Superposition empty_cells(const AxisBox& box, double edge, int bits, bool has_ring) {
     Superposition whole;
     whole.origin = 0.5 * (box.low + box.high);
     whole.edge = edge;
@@ -140,7 +140,9 @@ Superposition empty_cells(const AxisBox& box, double edge, int bits) {
     const int cell = 1 << bits;
     const glm::dvec3 half = 0.5 * (box.high - box.low) / edge / double(cell);
     // A little more, for what rounding may do to a box's faces.
-    const glm::ivec3 low(glm::floor(-half - 1e-3)), high(glm::ceil(half + 1e-3));
+    const int ring = has_ring ? 1 : 0;
+    const glm::ivec3 low = glm::ivec3(glm::floor(-half - 1e-2)) - ring,
+                     high = glm::ivec3(glm::ceil(half + 1e-2)) + ring;
     whole.cells.cell = cell;
     whole.cells.origin = low * cell;
     whole.cells.dims = high - low;
@@ -272,6 +274,8 @@ Superposition lay_out(const std::vector<Member>& members, const glm::dvec3& came
     if (!std::isfinite(wanted)) // all are everywhere, and the same there
         wanted = 1.0;
     take_in(members, camera, wanted, box);
+    const bool has_ring =
+        std::any_of(members.begin(), members.end(), [](const Member& m) { return is_everywhere(m.volume); });
     const glm::dvec3 size = box.high - box.low;
     const double longest = std::max({size.x, size.y, size.z}), volume = size.x * size.y * size.z;
     if (!(longest < 1e6 * 8.0 * wanted))
@@ -280,13 +284,13 @@ Superposition lay_out(const std::vector<Member>& members, const glm::dvec3& came
                         "them measures; move them together, or leave some out",
                         longest));
     const double alike = std::max({wanted, std::cbrt(volume / most_cells), longest / 1024.0});
-    Superposition best = empty_cells(box, std::min(alike, longest / 4.0), 0);
+    Superposition best = empty_cells(box, std::min(alike, longest / 4.0), 0, has_ring);
     if (alike <= wanted)
         return best;
     const double finest_coarse = std::max(std::cbrt(volume / most_coarse_cells), longest / 512.0);
     for (int step = 0; step < 8; ++step) {
         const double coarse = finest_coarse * std::exp2(0.5 * step);
-        Superposition two_levels = empty_cells(box, coarse / (1 << most_bits), most_bits);
+        Superposition two_levels = empty_cells(box, coarse / (1 << most_bits), most_bits, has_ring);
         const double bricks = double(make_bricks(members, pieces, two_levels));
         int bits = 1;
         while (bits < most_bits && coarse / (1 << bits) > wanted && bricks * (8 << (3 * bits)) <= most_cells)
@@ -294,7 +298,7 @@ Superposition lay_out(const std::vector<Member>& members, const glm::dvec3& came
         const double edge = coarse / (1 << bits);
         if (bricks == 0.0 || bricks * (1 << (3 * bits)) > most_cells || edge >= 0.9 * best.edge)
             continue;
-        best = empty_cells(box, edge, bits);
+        best = empty_cells(box, edge, bits, has_ring);
         best.bricks = std::move(two_levels.bricks);
         best.brick_bounds.assign(std::size_t(bricks) << (3 * bits), 0.0f);
     }

@@ -237,6 +237,33 @@ TEST_CASE("cells of what is everywhere bound it, beyond their grid too", "[cpu][
     CHECK(beyond > 2000);
 }
 
+// These go on for ever: walks that left the medium would meet null collisions without end.
+TEST_CASE("what ends bounds no outermost cell of what does not", "[cpu][layers]") {
+    Scene scene = lit(atmosphere(0.4, 0.95, {1, -3.0, 17.0, 1.0, 0.0}));
+    scene.volumes.push_back(medium(Sphere{{2.0, 1.0, 0.0}, GENERATE(0.02, 0.5, 3.0)}, 0.6, 0.5));
+    scene.volumes.push_back(medium(Sphere{{40.0, 22.0, 0.0}, 4.0}, 0.6, 0.5)); // above all layers
+    const Assets assets = load_assets(scene, choose_method(scene));
+    const Superposition& whole = *assets.superposition;
+    const glm::ivec3 dims = whole.dims();
+    std::size_t layers = 0, wrong = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const int face : {0, dims[axis] - 1})
+            for (int a = 0; a < dims[(axis + 1) % 3]; ++a)
+                for (int b = 0; b < dims[(axis + 2) % 3]; ++b) {
+                    glm::ivec3 cell;
+                    cell[axis] = face;
+                    cell[(axis + 1) % 3] = a;
+                    cell[(axis + 2) % 3] = b;
+                    for (const std::uint32_t k : whole.list(whole.entry_of(cell))) {
+                        layers += k == 0;
+                        wrong += k > 0 || axis == 1;
+                    }
+                }
+    CAPTURE(dims.x, dims.y, dims.z, whole.edge, whole.bits);
+    CHECK(wrong == 0);
+    CHECK(layers > 0);
+}
+
 TEST_CASE("bounds across layers are the extrema there", "[cpu][layers]") {
     for (const Volume& volume : {atmosphere(1.0, 0.5, {1, -2.0, 18.0, 1.3, 0.4}), table(1.0, 0.5)}) {
         const MajorantGrid cells = layer_cells(volume);
