@@ -100,7 +100,7 @@ leap a cell too far ~ host/fields/empty_space.cpp ~ std::max<std::uint8_t>(neare
 leap beyond the point at its end ~ shaders/majorants/majorant.glsl ~ next = clamp(there, ~ next = clamp(there + side, ~ [majorant]
 sessions that begin again with their first seed ~ host/render/session.cpp ~ device_scene_->set_seed(job_.seed); ~ ; ~ [determinism]
 sessions that begin again on their old film ~ host/render/session.cpp ~         clear(commands_, band); ~         ; ~ [determinism]
-sessions that begin again where they were stopped ~ host/render/session.cpp ~ pixels_.reset(); ~ ; ~ [determinism]
+sessions that begin again where they were stopped ~ host/render/session.cpp ~ pixels_ = std::nullopt; ~ ; ~ [determinism]
 outermost cells that hold what ends ~ host/assets/superposition.cpp ~ has_ring ? 1 : 0 ~ has_ring ? 0 : 0 ~ [layers]
 rows left on the device that had them ~ host/render/session_devices.cpp ~ {from.commands_, from.bands_[band], from.film_layers_} ~ {to.commands_, to.bands_[band], from.film_layers_} ~ [devices]
 layers of moved rows among the records ~ host/render/film_bands.cpp ~ record_bytes(to.layers) + first ~ first ~ [devices]

@@ -43,7 +43,7 @@ public:
 
 private:
     void warm_up(const std::vector<Estimator>& estimators);
-    double warm_up(const Estimator& estimator, double& setup_seconds, double& pipeline_seconds);
+    Measurement warm_up(const Estimator& estimator);
     void leave_out_slow();
     void announce(double reference_seconds) const;
     std::uint32_t next_seed() { return seed_of_run(request_.render.seed, ++renders_); }
@@ -55,23 +55,24 @@ private:
     const Device& device_;
     BenchSessions sessions_{request_, workshop_};
     BenchResult result_;
-    std::vector<double> seconds_per_sample_, setup_seconds_; // of the warm-up
+    std::vector<double> seconds_per_sample_, setup_seconds_; // of a render
     std::uint32_t renders_ = 0;                              // number of the next seed; 0 is the reference's
     double spent_ = 0.0;
 };
 
-// One sample that is not measured, for kernels to be compiled and files to be in memory, and then one for the speed,
-// which is returned as seconds.
-double Bench::warm_up(const Estimator& estimator, double& setup_seconds, double& pipeline_seconds) {
+// One sample that is not measured, for kernels to be compiled and files to be in memory, and then one for the speed.
+Measurement Bench::warm_up(const Estimator& estimator) {
     const double hopeless = std::max(request_.seconds, 10.0); // the second render is spared then
     RenderResult result = render_whole(request_, estimator, workshop_, 1, next_seed(), std::nullopt);
     if (!request_.quiet)
         print_warnings(result.warnings);
-    pipeline_seconds = result.pipeline_seconds;
+    Measurement first{estimator, {}, {}, {}, result.load_seconds, result.upload_seconds, result.pipeline_seconds};
     if (result.render_seconds < hopeless)
         result = sessions_.render(estimator, 1, next_seed(), std::nullopt);
-    setup_seconds = result.load_seconds + result.upload_seconds + result.pipeline_seconds;
-    return result.render_seconds;
+    seconds_per_sample_.push_back(result.render_seconds);
+    setup_seconds_.push_back(
+        sessions_.keeps(estimator) ? 0.0 : result.load_seconds + result.upload_seconds + result.pipeline_seconds);
+    return first;
 }
 
 // An estimator that nobody asked for is left out if it cannot be rendered after all.
@@ -79,19 +80,14 @@ void Bench::warm_up(const std::vector<Estimator>& estimators) {
     for (const Estimator& estimator : estimators) {
         if (interrupted())
             return;
-        double pipeline_seconds = 0.0;
         try {
-            double setup_seconds = 0.0;
-            seconds_per_sample_.push_back(warm_up(estimator, setup_seconds, pipeline_seconds));
-            setup_seconds_.push_back(setup_seconds);
+            result_.measurements.push_back(warm_up(estimator));
         } catch (const InputError& error) {
             if (!request_.integrators.empty() || estimator.is_default)
                 throw;
             if (!request_.quiet)
                 tell(stderr, "vkvol: note: {} is left out: {}\n", estimator.integrator, error.what());
-            continue;
         }
-        result_.measurements.push_back({estimator, {}, {}, {}, pipeline_seconds});
     }
 }
 
@@ -111,6 +107,7 @@ void Bench::leave_out_slow() {
                  "vkvol: note: {} is left out: {:.3g} s a sample are too many; give --time {} or more, or name it\n",
                  list[slowest].estimator.integrator, seconds_per_sample_[slowest],
                  round_duration(share_worth_measuring(seconds_per_sample_[slowest]) * double(list.size())));
+        sessions_.forget(list[slowest].estimator);
         list.erase(list.begin() + std::ptrdiff_t(slowest));
         seconds_per_sample_.erase(seconds_per_sample_.begin() + std::ptrdiff_t(slowest));
         setup_seconds_.erase(setup_seconds_.begin() + std::ptrdiff_t(slowest));
@@ -153,8 +150,10 @@ std::optional<double> Bench::measure(std::size_t index, std::uint32_t samples, d
     Measurement& measurement = result_.measurements[index];
     const std::uint32_t seed = next_seed();
     RenderResult result = sessions_.render(measurement.estimator, samples, seed, time_limit);
-    if (result.interrupted || result.samples < samples)
+    if (result.interrupted || result.samples < samples) {
+        sessions_.forget(measurement.estimator);
         return std::nullopt;
+    }
     const Film& reference = result_.reference.film;
     BenchRun run{samples,
                  seed,

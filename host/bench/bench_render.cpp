@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "interrupt.h"
-#include "loaded_medium.h"
 
 namespace vkvol {
 
@@ -28,40 +27,57 @@ RenderResult render_whole(const BenchRequest& request, const Estimator& estimato
     RenderJob job = job_of(request, estimator, workshop);
     job.seed = seed;
     job.time_limit = time_limit;
-    workshop.set_next(grid_files(estimator.scene));
     Session session(workshop.device(request.render.device), estimator.scene, job);
     session.render(samples);
     return std::move(session.result());
 }
 
-// What moves is made ready for each moment anyway.
-bool BenchSessions::can_keep(const Estimator& estimator) const {
-    return !estimator.scene.motion_blur && bytes_ < most_bytes;
+void BenchSessions::forget(const Estimator& estimator) {
+    const auto found = kept_.find(estimator.integrator);
+    if (found == kept_.end())
+        return;
+    bytes_ -= found->second.bytes;
+    kept_.erase(found);
 }
 
+RenderResult BenchSessions::render_anew(const Estimator& estimator, std::uint32_t samples, std::uint32_t seed,
+                                        std::optional<double> time_limit) {
+    Kept& kept = kept_[estimator.integrator];
+    kept.job = job_of(request_, estimator, workshop_);
+    kept.job.seed = seed;
+    kept.job.time_limit = time_limit;
+    RenderResult result;
+    try {
+        kept.session = std::make_unique<Session>(workshop_.device(request_.render.device), estimator.scene, kept.job);
+        kept.session->render(samples);
+        result = kept.session->result();
+    } catch (...) {
+        kept_.erase(estimator.integrator);
+        throw;
+    }
+    kept.bytes = result.device_bytes;
+    bytes_ += kept.bytes;
+    if (bytes_ > most_bytes) {
+        too_large_.insert(estimator.integrator);
+        forget(estimator);
+    }
+    return result;
+}
+
+// What moves is made ready for each moment anyway.
 RenderResult BenchSessions::render(const Estimator& estimator, std::uint32_t samples, std::uint32_t seed,
                                    std::optional<double> time_limit) {
-    auto found = kept_.find(estimator.integrator);
-    if (found == kept_.end()) {
-        if (!can_keep(estimator))
-            return render_whole(request_, estimator, workshop_, samples, seed, time_limit);
-        Kept kept{job_of(request_, estimator, workshop_), nullptr};
-        found = kept_.emplace(estimator.integrator, std::move(kept)).first;
-    }
+    if (estimator.scene.motion_blur || too_large_.count(estimator.integrator) > 0)
+        return render_whole(request_, estimator, workshop_, samples, seed, time_limit);
+    const auto found = kept_.find(estimator.integrator);
+    if (found == kept_.end())
+        return render_anew(estimator, samples, seed, time_limit);
     Kept& kept = found->second;
     kept.job.seed = seed;
     kept.job.time_limit = time_limit;
-    const bool is_new = !kept.session;
-    if (is_new) {
-        workshop_.set_next(grid_files(estimator.scene));
-        kept.session = std::make_unique<Session>(workshop_.device(request_.render.device), estimator.scene, kept.job);
-    } else {
-        kept.session->begin_again();
-    }
+    kept.session->begin_again();
     kept.session->render(samples);
-    RenderResult result = kept.session->result();
-    bytes_ += is_new ? result.device_bytes : 0;
-    return result;
+    return kept.session->result();
 }
 
 } // namespace vkvol

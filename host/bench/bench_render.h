@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "bench_estimators.h"
@@ -17,7 +18,7 @@ RenderResult render_whole(const BenchRequest& request, const Estimator& estimato
                           std::uint32_t samples, std::uint32_t seed, std::optional<double> time_limit);
 
 // The same of estimators that render again and again. What the first render of each read, uploaded and compiled serves
-// further ones, as long as that of all together is little.
+// further ones, as long as that of all together takes little of the device's memory.
 class BenchSessions {
 public:
     BenchSessions(const BenchRequest& request, Workshop& workshop) : request_(request), workshop_(workshop) {}
@@ -25,18 +26,25 @@ public:
     RenderResult render(const Estimator& estimator, std::uint32_t samples, std::uint32_t seed,
                         std::optional<double> time_limit);
 
+    bool keeps(const Estimator& estimator) const { return kept_.count(estimator.integrator) > 0; }
+    // Of what renders no more.
+    void forget(const Estimator& estimator);
+
 private:
     struct Kept {
         RenderJob job;
         std::unique_ptr<Session> session; // refers to the job
+        std::uint64_t bytes = 0;          // on the device
     };
 
-    bool can_keep(const Estimator& estimator) const;
+    RenderResult render_anew(const Estimator& estimator, std::uint32_t samples, std::uint32_t seed,
+                             std::optional<double> time_limit);
 
     const BenchRequest& request_;
     Workshop& workshop_;
     std::map<std::string, Kept> kept_; // by integrator
-    std::uint64_t bytes_ = 0;          // theirs, on the device
+    std::set<std::string> too_large_;
+    std::uint64_t bytes_ = 0; // of all that are kept
 };
 
 } // namespace vkvol

@@ -195,7 +195,8 @@ std::vector<std::uint8_t> tone_map_opaque(std::span<const glm::vec3> radiance, c
 }
 
 std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping, const FilmLayer& alpha) {
-    const double gain = std::exp2(mapping.exposure), white = white_of(film.mean, gain);
+    const double gain = std::exp2(mapping.exposure), rounding = rounding_of(mapping.curve);
+    const double white = mapping.curve == ToneCurve::reinhard ? white_of(film.mean, gain) : 0.0;
     std::vector<std::uint8_t> bytes;
     bytes.reserve(film.mean.size() * 4);
     for (std::size_t i = 0; i < film.mean.size(); ++i) {
@@ -203,7 +204,7 @@ std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping,
         const Vec3 premultiplied = display_value(exposed(film.mean[i], gain), mapping.curve, white);
         const Vec3 v = a > 0.0 ? clamped(premultiplied / a) : Vec3(0.0);
         for (int channel = 0; channel < 3; ++channel)
-            bytes.push_back(static_cast<std::uint8_t>(255.0 * v[channel] + rounding_of(mapping.curve)));
+            bytes.push_back(static_cast<std::uint8_t>(255.0 * v[channel] + rounding));
         bytes.push_back(static_cast<std::uint8_t>(255.0 * a + 0.5));
     }
     return bytes;

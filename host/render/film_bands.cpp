@@ -20,8 +20,8 @@ std::uint64_t record_bytes(const shared::AovParams& layers) {
 
 // What is too much would not fail: the system would end the program later, without a word.
 void check_memory(const Crop& crop, std::uint32_t layers, int films) {
-    // As sums, in memory of this machine for devices that are its processor; the same read back; mean, variance and
-    // samples.
+    // As sums, in memory of this machine for devices that are its processor; the same read back, for checkpoints; mean,
+    // variance and samples.
     const double sums = sizeof(shared::FilmPixel) + layers * layer_bytes;
     const double bytes = sums * (films + 1.0) + (1.0 + layers) * 2.0 * sizeof(glm::vec3) + 4.0;
     const double width = crop.x1 - crop.x0, height = crop.y1 - crop.y0;
@@ -131,7 +131,7 @@ void copy_rows(const BandOn& from, const BandOn& to, Rows rows, std::uint32_t wi
 }
 
 namespace {
-void develop(std::span<const shared::FilmPixel> pixels, Film& film) {
+void develop_pixels(std::span<const shared::FilmPixel> pixels, Film& film) {
     for (const shared::FilmPixel& pixel : pixels) {
         const double n = pixel.count;
         const glm::dvec3 sum = glm::dvec3(pixel.sum) + glm::dvec3(pixel.sum_low);
@@ -154,12 +154,12 @@ void develop(Commands& commands, const std::vector<Band>& bands, std::uint32_t w
     for (const Band& band : bands) {
         const std::size_t count = pixel_count(band, width);
         if (band.film.mapped()) {
-            develop(band.film.view<const shared::FilmPixel>().first(count), film);
+            develop_pixels(band.film.view<const shared::FilmPixel>().first(count), film);
             continue;
         }
         copy.resize(count);
         commands.download(band.film, std::as_writable_bytes(std::span(copy)));
-        develop(copy, film);
+        develop_pixels(copy, film);
     }
 }
 

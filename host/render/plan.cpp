@@ -45,17 +45,22 @@ constexpr std::uint32_t longest_batch = most_iterations / 2;
 
 constexpr std::uint32_t waiting_per_slot = 4;
 
-// Paths of a staged render on a GPU: of layers, what waits has a record each, in the buffer that has the layers.
-std::uint32_t most_slots_with_records(std::uint32_t layers, std::uint64_t most_bytes) {
+// Paths of a staged render on a GPU: as many as have room in one buffer. Of layers, what waits has a record each, in
+// the buffer of each band.
+std::uint32_t slots_that_fit(const Device& device, std::uint32_t layers, std::uint64_t most_film_bytes) {
+    const auto fits = [&](std::uint64_t slots) {
+        return slots * sizeof(shared::Suspended) <= device.limits().maxStorageBufferRange &&
+               waiting_per_slot * slots * layers * sizeof(glm::vec3) <= most_film_bytes / 4;
+    };
     std::uint32_t slots = most_slots;
-    while (slots > 1u << 15 && std::uint64_t{waiting_per_slot} * slots * layers * sizeof(glm::vec3) > most_bytes / 2)
+    while (slots > 1u << 15 && !fits(slots))
         slots /= 2;
     return slots;
 }
 
 } // namespace
 
-Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish) {
+Plan make_plan(const Device& device, const LoopSizes& loops, std::uint64_t pixels, const Plan& wish) {
     const auto pick = [](auto wanted, auto usual) { return wanted != 0 ? wanted : usual; };
     Plan plan = wish;
     if (plan.schedule == Schedule::automatic)
@@ -66,7 +71,7 @@ Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish) {
     const bool wide = staged && !device.is_cpu();
     plan.most_film_bytes =
         pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
-    const std::uint32_t wide_slots = most_slots_with_records(loops.layers, plan.most_film_bytes);
+    const std::uint32_t wide_slots = slots_that_fit(device, loops.layers, plan.most_film_bytes);
     plan.slots = pick(wish.slots, device.is_cpu() ? (staged ? 32768u : 8192u) : wide ? wide_slots : 1u << 18);
     plan.lanes = pick(wish.lanes, device.is_cpu() ? 512u : wide ? 1u << 16 : 1u << 17);
     plan.steps = pick(wish.steps, 4u);
@@ -77,9 +82,10 @@ Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish) {
                                longest_batch / (1 + loops.lights + loops.layers)); // each looks at them
     plan.waiting = staged ? std::max(wish.waiting, waiting_per_slot * plan.slots) : 0;
     // One lane adds all samples of a pixel to the film: so many pixels have a place at a time, at least.
-    const std::uint32_t places = std::min(wide ? 8192u : 2u, plan.slots);
+    const std::uint64_t places =
+        std::min<std::uint64_t>(wide ? std::clamp<std::uint64_t>(pixels, 2, 8192) : 2, plan.slots);
     if (staged)
-        plan.most_batch = std::min(plan.most_batch, plan.waiting / places);
+        plan.most_batch = std::min<std::uint32_t>(plan.most_batch, plan.waiting / places);
     plan.most_grid_bytes = pick(wish.most_grid_bytes, std::uint64_t{device.limits().maxStorageBufferRange});
     // GPUs read storage as fast as texels; software drivers gather only these.
     const std::uint64_t texels = device.is_cpu() ? 4ull * device.limits().maxTexelBufferElements : 1u;

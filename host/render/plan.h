@@ -48,8 +48,8 @@ struct LoopSizes {
     std::uint32_t lights = 0;   // iterations over lamps, suns and the levels of a tree; 0 without a choice of lights
 };
 
-// Completes `wish`, of which what is chosen wins.
-Plan make_plan(const Device& device, const LoopSizes& loops, const Plan& wish = {});
+// Completes `wish`, of which what is chosen wins. `pixels`: of the picture.
+Plan make_plan(const Device& device, const LoopSizes& loops, std::uint64_t pixels, const Plan& wish);
 
 // Where there are particles: as many samples in a batch as have room for their splats, and of as few pixels at a time
 // as one of them takes. `pixels`: of the picture. `batch`: for which there has to be room.

@@ -75,7 +75,8 @@ void Session::render(std::uint32_t samples) {
             run_band(bands_[band_]);
         if (band_ == bands_.size()) {
             const std::uint32_t after = next_batch(batch_, watch_.seconds() - begun);
-            next_ = batch_ < next_ ? std::max(next_, after) : after; // it was short to be looked at, not to be quick
+            const bool was_cut = batch_ < next_ && after >= batch_; // to be looked at, not to be quick
+            next_ = was_cut ? std::max(next_, after) : after;
             done_ += std::exchange(batch_, 0);
             band_ = 0;
         }
@@ -95,7 +96,7 @@ void Session::begin_again() {
     for (const Band& band : bands_)
         clear(commands_, band);
     done_ = batch_ = band_ = next_ = 0;
-    pixels_.reset();
+    pixels_ = std::nullopt;
     const std::uint64_t cleaned = result_.counts.cleaned_voxels;
     result_.counts = {};
     result_.counts.cleaned_voxels = cleaned;

@@ -101,8 +101,9 @@ public:
     void render(std::uint32_t samples);
     std::uint32_t samples() const { return done_; } // per pixel, finished for every pixel
 
-    // As if made anew with the job's seed as it is now, without reading, uploading or compiling again. Of one device,
-    // without checkpoints, and where nothing moves.
+    // As if made anew with the job's seed as it is now, without reading, uploading or compiling again; only how long
+    // lanes work at a time goes by the device as met before. Of one device, without checkpoints, and where nothing
+    // moves.
     void begin_again();
 
     // What the scene asks for and does not get.

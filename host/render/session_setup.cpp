@@ -186,10 +186,10 @@ void Session::find_wish(const Assets& assets, const Specialization& specializati
 Plan Session::plan_by(Schedule schedule) const {
     Plan wish = wish_;
     wish.schedule = schedule;
-    Plan plan = make_plan(device_, loops_, wish);
+    const std::uint64_t pixels = std::uint64_t{width()} * std::uint64_t(job_.crop.y1 - job_.crop.y0);
+    Plan plan = make_plan(device_, loops_, pixels, wish);
     if (method_.paths != PATHS_CAMERA)
-        fit_splats(device_, std::uint64_t{width()} * std::uint64_t(job_.crop.y1 - job_.crop.y0),
-                   job_.resume ? job_.resume->batch : 0, plan);
+        fit_splats(device_, pixels, job_.resume ? job_.resume->batch : 0, plan);
     return plan;
 }
 

@@ -1,8 +1,10 @@
 // Tone: what curve and exposure a picture gets where nobody says, and pictures developed again from an EXR.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
@@ -84,6 +86,26 @@ TEST_CASE("pixels clip that are brighter than the curve tells apart", "[cpu][ima
     red.mean[0].x = 1.5f;
     CHECK(clipped_pixels(red, {ToneCurve::srgb, 0.0}) == 1);
     CHECK(clipped_pixels(red, {ToneCurve::agx, 0.0}) == 0);
+}
+
+TEST_CASE("screens, files and what is opaque get the same bytes", "[cpu][image_io]") {
+    std::vector<float> values{-1.0f, std::numeric_limits<float>::infinity(), 0.0f};
+    for (int i = 0; i < 3000; ++i)
+        values.push_back(std::exp2(float(i) / 200.0f - 11.0f));
+    Film film = row(values);
+    for (std::size_t i = 0; i < film.mean.size(); ++i)
+        film.mean[i].y *= 0.7f;
+    const FilmLayer opaque{"alpha", std::vector<glm::vec3>(film.mean.size(), glm::vec3(1.0f)), {}};
+    for (const ToneCurve curve : {ToneCurve::srgb, ToneCurve::aces, ToneCurve::agx, ToneCurve::reinhard}) {
+        const ToneMapping mapping{curve, 0.3};
+        const std::vector<std::uint8_t> rgb = tone_map(film, mapping), rgba = tone_map_opaque(film.mean, mapping);
+        std::vector<std::uint8_t> expected;
+        for (std::size_t i = 0; i < rgb.size(); i += 3)
+            expected.insert(expected.end(), {rgb[i], rgb[i + 1], rgb[i + 2], 255});
+        CAPTURE(int(curve));
+        CHECK(rgba == expected);
+        CHECK(tone_map(film, mapping, opaque) == expected);
+    }
 }
 
 TEST_CASE("an exposure that suits puts what is bright just below white", "[cpu][image_io]") {

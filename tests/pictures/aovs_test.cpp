@@ -87,11 +87,13 @@ void check_sum(const Film& film, const std::vector<std::string>& names) {
 }
 
 // By other kernels from the same random numbers: the same bits, but where a GPU's compiler may round them differently.
+// There the pictures share their noise, so that no more than an error beyond it is seen; what has no variance is not
+// judged.
 void check_same(const Film& film, const Film& before, const std::string& name) {
     INFO(name);
     if (test_device().is_cpu())
         CHECK((film.mean == before.mean && film.variance == before.variance));
-    else
+    else if (!film.variance.empty())
         CHECK_AGREEMENT(agree(film, before, name));
 }
 

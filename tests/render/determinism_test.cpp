@@ -140,13 +140,18 @@ TEST_CASE("a session that begins again has the bits of a new one", "[gpu][determ
     scene.layers = scene.settings.integrator == "lightTracing" ? 0u : layer_direct | layer_depth;
     RenderJob job;
     job.plan.schedule = GENERATE(Schedule::fused, Schedule::staged);
+    job.plan.slots = 64;
+    job.plan.submit_seconds = 0.0;
     job.disk_cache = false;
     job.crop = {0, scene.picture.width, 0, scene.picture.height};
     job.seed = 41;
     Session session(test_device(), scene, job);
     int asked = 0;
-    job.interrupted = [&] { return ++asked > 2; }; // with pixels left
+    job.interrupted = [&] { return ++asked > 4; }; // with pixels left, but of particles
     session.render(7);
+    const auto [least, most] =
+        std::minmax_element(session.result().film.samples.begin(), session.result().film.samples.end());
+    CHECK((*least < *most || scene.layers == 0u));
     job.interrupted = nullptr;
     job.seed = 42;
     session.begin_again();
