@@ -14,13 +14,6 @@ double median_at_largest(const Measurement& measurement, const std::function<dou
     return median(std::move(values));
 }
 
-double median_of_all(const Measurement& measurement, const std::function<double(const RenderResult&)>& figure) {
-    std::vector<double> values;
-    for (const RenderResult& result : measurement.results)
-        values.push_back(figure(result));
-    return median(std::move(values));
-}
-
 namespace {
 
 std::optional<double> median_noise(const std::vector<BenchRun>& runs) {

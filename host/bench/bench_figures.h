@@ -39,8 +39,7 @@ std::vector<Row> ranked(std::vector<Row> rows);
 // The --time that judges them all, if `seconds` did not.
 std::optional<double> seconds_to_judge(const std::vector<Row>& rows, double seconds);
 
-// Medians over all runs, and over those with the most samples.
-double median_of_all(const Measurement& measurement, const std::function<double(const RenderResult&)>& figure);
+// Median over the runs with the most samples.
 double median_at_largest(const Measurement& measurement, const std::function<double(const RenderResult&)>& figure);
 
 } // namespace vkvol
