@@ -43,14 +43,25 @@ struct Member {
     double cell;    // world units, as it has them by itself
 };
 
+// Of a volume that is everywhere and has layers: as thick as the slabs that bound them, or thicker, as long as that
+// adds no more than a null collision for two cells.
+double layered_cell(const Volume& volume, double slab, double sigma_t) {
+    const Layers& layers = *volume.layers;
+    const double most = sigma_t * layer_range(volume, layers.bottom, layers.top).most;
+    return std::min(layers.top - layers.bottom, std::max(slab, 0.5 / most));
+}
+
 std::vector<Member> members_of(const Scene& scene, Media media) {
     std::vector<Member> members;
     for (std::size_t i = 0; i < media.size(); ++i) {
         const Volume& volume = scene.volumes[i];
         const DensityField* field = media[i].field ? &*media[i].field : nullptr;
-        if (has_matter(volume, media[i]))
-            members.push_back({static_cast<std::uint32_t>(i), volume, media[i], medium_to_world(volume, media[i]),
-                               largest(world_sigma_t(volume, field)), usual_cell(volume, media[i])});
+        if (!has_matter(volume, media[i]))
+            continue;
+        const double sigma_t = largest(world_sigma_t(volume, field));
+        const double cell = usual_cell(volume, media[i]);
+        members.push_back({static_cast<std::uint32_t>(i), volume, media[i], medium_to_world(volume, media[i]), sigma_t,
+                           is_everywhere(volume) && volume.layers ? layered_cell(volume, cell, sigma_t) : cell});
     }
     return members;
 }

@@ -264,6 +264,16 @@ TEST_CASE("what ends bounds no outermost cell of what does not", "[cpu][layers]"
     CHECK(layers > 0);
 }
 
+TEST_CASE("thin layers want no smaller cells than they are worth", "[cpu][layers]") {
+    const auto edge_of = [](double sigma_t) {
+        Scene scene = lit(table(sigma_t, 0.7)); // 4 high, in slabs of less than a tenth
+        scene.volumes.push_back(medium(Sphere{{0.0, 20.0, 0.0}, 15.0}, 0.6, 0.5));
+        return load_assets(scene, choose_method(scene)).superposition->edge;
+    };
+    CHECK(edge_of(0.01) > 1.5);
+    CHECK(edge_of(10.0) < 0.5);
+}
+
 TEST_CASE("bounds across layers are the extrema there", "[cpu][layers]") {
     for (const Volume& volume : {atmosphere(1.0, 0.5, {1, -2.0, 18.0, 1.3, 0.4}), table(1.0, 0.5)}) {
         const MajorantGrid cells = layer_cells(volume);
