@@ -150,17 +150,10 @@ void develop(Commands& commands, const std::vector<Band>& bands, std::uint32_t w
     film.mean.clear();
     film.variance.clear();
     film.samples.clear();
-    std::vector<shared::FilmPixel> copy;
-    for (const Band& band : bands) {
-        const std::size_t count = pixel_count(band, width);
-        if (band.film.mapped()) {
-            develop_pixels(band.film.view<const shared::FilmPixel>().first(count), film);
-            continue;
-        }
-        copy.resize(count);
-        commands.download(band.film, std::as_writable_bytes(std::span(copy)));
-        develop_pixels(copy, film);
-    }
+    if (!bands.front().film.mapped())
+        return develop_pixels(read_bands(commands, bands, width), film);
+    for (const Band& band : bands)
+        develop_pixels(band.film.view<const shared::FilmPixel>().first(pixel_count(band, width)), film);
 }
 
 } // namespace vkvol

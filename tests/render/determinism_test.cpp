@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <stdexcept>
 
 #include "merge.h"
 #include "support/images.h"
