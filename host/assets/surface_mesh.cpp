@@ -82,7 +82,7 @@ void set_normals(TriangleSurface& mesh, MeshNormals which, const glm::dmat4& tra
 void load(const MeshSurface& mesh, Surface& surface) {
     TriangleSurface loaded = load(mesh, surface.transform, surface.material.kind == MaterialKind::dielectric);
     set_normals(loaded, mesh.normals, surface.transform);
-    if (!surface.material.texture.empty() && loaded.places.empty())
+    if (is_textured(surface.material) && loaded.places.empty())
         throw InputError(fmt::format("{}: does not say where on a texture its corners are; export it with texture "
                                      "coordinates (UVs)",
                                      mesh.file.string()));
@@ -99,7 +99,7 @@ void finish(TriangleSurface& mesh, const Surface& surface) {
         close_polygons(polygons, "<mesh>");
         mesh = {std::move(polygons.vertices), std::move(polygons.triangles), std::move(polygons.normals), {}, true};
     }
-    if (!surface.material.texture.empty() && mesh.places.empty())
+    if (is_textured(surface.material) && mesh.places.empty())
         throw InputError("<mesh> does not say where on a texture its corners are; add <places>");
     complete(mesh);
 }

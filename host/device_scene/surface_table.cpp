@@ -122,7 +122,9 @@ public:
             rows_.try_emplace(std::tuple(material.image.get(), material.repeat.x, material.repeat.y),
                               first_ + static_cast<std::uint32_t>(texels_.size()) + 1);
         if (is_new) {
-            texels_.emplace_back(material.image->width, material.image->height, material.repeat.x, material.repeat.y);
+            const int width = material.image->width;
+            texels_.emplace_back(material.image->is_nearest ? -width : width, material.image->height, material.repeat.x,
+                                 material.repeat.y);
             for (const glm::vec3& color : material.image->colors)
                 texels_.emplace_back(color, 0.0f);
         }

@@ -13,8 +13,9 @@ struct SurfaceTable {
     std::vector<shared::SurfacePrimitive> primitives; // planes first, then as leaves of the hierarchy name them
     std::vector<shared::BvhNode> nodes;
     std::uint32_t planes = 0;
-    std::uint32_t met = 0;         // the first of the primitives, which rays meet; behind them are their details
-    std::vector<glm::vec4> texels; // of textures, each after a vec4 of its width, height and repeats
+    std::uint32_t met = 0; // the first of the primitives, which rays meet; behind them are their details
+    std::vector<glm::vec4>
+        texels; // of textures, each after a vec4 of its width (negative: nearest), height and repeats
 };
 
 // `origin`: of render space. `first_texel`: where those of textures will be.

@@ -243,8 +243,12 @@ void add_surface(Writer& writer, const Surface& surface) {
     }
     if (material.roughness > 0.0)
         writer.add("roughness", material.roughness);
-    if (!material.texture.empty()) {
+    if (!material.texture.empty())
         add_file(writer, material.texture);
+    else if (material.image)
+        for (const glm::vec3& texel : material.image->colors)
+            writer.add("texel", glm::dvec3(texel));
+    if (is_textured(material)) {
         writer.add("repeat", glm::dvec3(material.repeat, 0.0));
         for (int column = 0; column < 3; ++column)
             writer.add("axis", surface.axes[column]);

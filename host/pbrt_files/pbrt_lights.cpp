@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <numbers>
 
+#include "error.h"
 #include "pbrt_translator.h"
+#include "radiance_map.h"
 
 namespace vkvol {
 
@@ -15,6 +17,20 @@ glm::dvec3 moved(const glm::dmat4& map, const glm::dvec3& p) {
     return glm::dvec3(map * glm::dvec4(p, 1.0));
 }
 
+// Of a square map, on what faces its z, as pbrt adds it up: a texel counts as 2 pi over their number, which is half of
+// its solid angle, so that a map of given illuminance shines twice as bright there, and here.
+double illuminance_of(const RadianceMap& map) {
+    double sum = 0.0;
+    for (int row = 0; row < map.height; ++row)
+        for (int column = 0; column < map.width; ++column) {
+            const double r =
+                std::abs(2.0 * (column + 0.5) / map.width - 1.0) + std::abs(2.0 * (row + 0.5) / map.height - 1.0);
+            const glm::dvec3 texel = map.texels[std::size_t(row) * map.width + column];
+            sum += r < 1.0 ? (1.0 - r * r) * glm::dot(texel, glm::dvec3(0.2126, 0.7152, 0.0722)) : 0.0;
+        }
+    return 2.0 * pi * sum / (double(map.width) * map.height);
+}
+
 } // namespace
 
 // In the unit of the film, with the light's own scale.
@@ -23,14 +39,27 @@ glm::dvec3 PbrtTranslator::light_color(const PbrtThing& light, const char* name)
     return color * (light.parameters->number("scale", 1.0) * exposure_);
 }
 
+double PbrtTranslator::own_illuminance(const PbrtThing& light) const {
+    double illuminance = 0.0;
+    try {
+        illuminance = illuminance_of(read_radiance_map(scene_.folder / light.parameters->text("filename")));
+    } catch (const InputError& error) { // which names the file
+        fail_at(light.place, error.what());
+    }
+    if (!(illuminance > 0.0))
+        fail_at(light.place, "the upper half of its map is black, so that no \"scale\" gives it an \"illuminance\"; "
+                             "leave that out");
+    return illuminance;
+}
+
 void PbrtTranslator::write_sky(const PbrtThing& light) {
     const PbrtParameters& p = *light.parameters;
-    if (p.has("illuminance"))
-        note(light.place, "\"illuminance\" of a map is left out: it is as bright as its file says, times \"scale\"");
+    double scale = p.number("scale", 1.0) * exposure_;
+    if (const double illuminance = p.number("illuminance", -1.0); illuminance > 0.0)
+        scale *= illuminance / own_illuminance(light);
     if (p.has("portal"))
         note(light.place, "\"portal\" is left out; the whole map shines");
-    XmlAttributes attributes = {{"mapping", "equalArea"},
-                                {"multiplier", xml_number(p.number("scale", 1.0) * exposure_)}};
+    XmlAttributes attributes = {{"mapping", "equalArea"}, {"multiplier", xml_number(scale)}};
     if (sky_is_mirrored_)
         attributes.emplace_back("mirror", "true");
     xml_.element("sky", attributes, file_name(light), light.place.text());

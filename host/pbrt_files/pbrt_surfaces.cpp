@@ -14,13 +14,15 @@ namespace {
 
 using std::numbers::pi;
 constexpr double least_alpha = 1e-3; // of facets; what is smoother is a mirror to pbrt, too
+constexpr int most_nested = 16;      // textures of textures
 
 double size_of(const glm::dmat4& map) {
     return std::cbrt(std::abs(glm::determinant(glm::dmat3(map))));
 }
 
 bool has_texture(const XmlAttributes& material) {
-    return std::any_of(material.begin(), material.end(), [](const auto& each) { return each.first == "texture"; });
+    return std::any_of(material.begin(), material.end(),
+                       [](const auto& each) { return each.first == "texture" || each.first == "checker"; });
 }
 
 bool is_left_out(const std::string& material) {
@@ -31,42 +33,79 @@ bool is_left_out(const std::string& material) {
 
 void PbrtTranslator::add_color(XmlAttributes& attributes, const PbrtThing& thing, const char* name,
                                const glm::dvec3& fallback) {
-    const std::string texture = thing.parameters->texture(name);
-    if (texture.empty()) {
+    if (thing.parameters->texture(name).empty())
         add_rgb(attributes, glm::clamp(colors_.share(thing, name).value_or(fallback), 0.0, 1.0));
-        return;
-    }
+    else
+        add_texture(attributes, texture_of(thing, name), glm::dvec3(1.0), 0);
+}
+
+const PbrtThing& PbrtTranslator::texture_of(const PbrtThing& thing, const char* name) const {
+    const std::string texture = thing.parameters->texture(name);
     const auto found = scene_.textures.find(texture);
     if (found == scene_.textures.end())
         fail_at(thing.parameters->find(name)->place, fmt::format("no texture \"{}\"; Texture makes one", texture));
-    add_texture(attributes, found->second, glm::dvec3(1.0), 0);
+    return found->second;
+}
+
+// Of what has one colour everywhere.
+std::optional<glm::dvec3> PbrtTranslator::even_color(const PbrtThing& texture, int depth) {
+    if (texture.type == "constant")
+        return colors_.share(texture, "value").value_or(glm::dvec3(1.0));
+    if (texture.type != "scale" || !texture.parameters->texture("scale").empty() || depth >= most_nested)
+        return std::nullopt;
+    std::optional<glm::dvec3> color = even_part(texture, "tex", 1.0, depth);
+    if (color)
+        *color *= texture.parameters->number("scale", 1.0);
+    return color;
+}
+
+std::optional<glm::dvec3> PbrtTranslator::even_part(const PbrtThing& thing, const char* name, double fallback,
+                                                    int depth) {
+    if (thing.parameters->texture(name).empty())
+        return colors_.share(thing, name).value_or(glm::dvec3(fallback));
+    return even_color(texture_of(thing, name), depth + 1);
 }
 
 void PbrtTranslator::add_texture(XmlAttributes& attributes, const PbrtThing& texture, const glm::dvec3& factor,
                                  int depth) {
     const PbrtParameters& p = *texture.parameters;
-    if (texture.type == "imagemap" && p.has("filename")) {
+    if (const std::optional<glm::dvec3> color = even_color(texture, depth)) {
+        add_rgb(attributes, glm::clamp(factor * *color, 0.0, 1.0));
+    } else if (texture.type == "imagemap" && p.has("filename")) {
         add_rgb(attributes, glm::clamp(factor * p.number("scale", 1.0), 0.0, 1.0));
         attributes.emplace_back("texture", file_name(texture));
         attributes.emplace_back("repeat", fmt::format("{} {}", p.number("uscale", 1.0), p.number("vscale", 1.0)));
         note_unused(texture, {"filter", "encoding", "wrap", "maxanisotropy"});
-        return;
+    } else if (texture.type == "checkerboard" && p.number("dimension", 2.0) == 2.0 &&
+               (!p.has("mapping") || p.text("mapping") == "uv")) {
+        add_checkerboard(attributes, texture, factor, depth);
+    } else if (texture.type == "scale" && depth < most_nested && p.texture("scale").empty()) {
+        add_texture(attributes, texture_of(texture, "tex"), factor * p.number("scale", 1.0), depth + 1);
+    } else {
+        note(texture.place, fmt::format("Texture \"{}\" is left out; what has it is grey", texture.type));
+        add_rgb(attributes, glm::dvec3(0.5));
     }
-    if (texture.type == "constant") {
-        add_rgb(attributes, glm::clamp(factor * colors_.share(texture, "value").value_or(glm::dvec3(1.0)), 0.0, 1.0));
-        return;
-    }
-    const auto inner = texture.type == "scale" ? scene_.textures.find(p.texture("tex")) : scene_.textures.end();
-    if (texture.type == "scale" && inner == scene_.textures.end() && p.has("tex") && p.texture("tex").empty()) {
-        add_rgb(attributes, glm::clamp(factor * *colors_.share(texture, "tex") * p.number("scale", 1.0), 0.0, 1.0));
-        return;
-    }
-    if (inner != scene_.textures.end() && depth < 16 && p.texture("scale").empty()) {
-        add_texture(attributes, inner->second, factor * p.number("scale", 1.0), depth + 1);
-        return;
-    }
-    note(texture.place, fmt::format("Texture \"{}\" is left out; what has it is grey", texture.type));
-    add_rgb(attributes, glm::dvec3(0.5));
+}
+
+// A square of it is 1 / uscale wide, and the one on the lower left "tex1"; beyond 0, where negative scales lead,
+// "tex2".
+void PbrtTranslator::add_checkerboard(XmlAttributes& attributes, const PbrtThing& texture, const glm::dvec3& factor,
+                                      int depth) {
+    const PbrtParameters& p = *texture.parameters;
+    const std::optional<glm::dvec3> first = even_part(texture, "tex1", 1.0, depth),
+                                    second = even_part(texture, "tex2", 0.0, depth);
+    if (!first || !second)
+        note(texture.place, "images in a Texture \"checkerboard\" are left out; its squares are light and dark grey");
+    glm::dvec3 own(0.6), other(0.4);
+    if (first && second)
+        own = *first, other = *second;
+    const double across = p.number("uscale", 1.0), upwards = p.number("vscale", 1.0);
+    if ((across < 0.0) != (upwards < 0.0))
+        std::swap(own, other);
+    add_rgb(attributes, glm::clamp(factor * own, 0.0, 1.0));
+    attributes.emplace_back("checker", xml_numbers(glm::clamp(factor * other, 0.0, 1.0)));
+    attributes.emplace_back("repeat", fmt::format("{} {}", std::abs(across) / 2.0, std::abs(upwards) / 2.0));
+    note_unused(texture);
 }
 
 // pbrt's GGX is along two axes, and its roughness the root of alpha unless told otherwise.

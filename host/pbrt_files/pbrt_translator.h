@@ -57,6 +57,7 @@ private:
 
     void write_lights();
     void write_light(const PbrtThing& light);
+    double own_illuminance(const PbrtThing& light) const;
     void write_sky(const PbrtThing& light);
     glm::dvec3 light_color(const PbrtThing& light, const char* name);
 
@@ -73,6 +74,10 @@ private:
     void add_color(XmlAttributes& attributes, const PbrtThing& thing, const char* name, const glm::dvec3& fallback);
     void add_roughness(XmlAttributes& attributes, const PbrtThing& thing);
     void add_texture(XmlAttributes& attributes, const PbrtThing& texture, const glm::dvec3& factor, int depth);
+    void add_checkerboard(XmlAttributes& attributes, const PbrtThing& texture, const glm::dvec3& factor, int depth);
+    const PbrtThing& texture_of(const PbrtThing& thing, const char* name) const;
+    std::optional<glm::dvec3> even_color(const PbrtThing& texture, int depth);
+    std::optional<glm::dvec3> even_part(const PbrtThing& thing, const char* name, double fallback, int depth);
 
     std::string file_name(const PbrtThing& thing, const char* parameter = "filename") const;
     void note(const PbrtPlace& place, const std::string& message);

@@ -86,6 +86,7 @@ inline constexpr double least_roughness = 1e-3;
 struct Texture {
     int width = 0, height = 0;
     std::vector<glm::vec3> colors; // linear Rec.709, in [0, 1], rows top to bottom
+    bool is_nearest = false;       // each texel has its colour up to its edges
 };
 
 struct Material {
@@ -99,8 +100,12 @@ struct Material {
     std::filesystem::path texture =
         {};                 // an image that multiplies the colour, of all but dielectrics and panes; or empty
     glm::dvec2 repeat{1.0}; // how many times it lies side by side across the shape, of a plane across a unit; > 0
-    std::shared_ptr<const Texture> image = {}; // once it is loaded
+    std::shared_ptr<const Texture> image = {}; // once it is loaded; or what is of no file, a board of two colours
 };
+
+inline bool is_textured(const Material& material) {
+    return material.image || !material.texture.empty();
+}
 
 // One that `ior` tells.
 inline bool has_index(const Material& material) {

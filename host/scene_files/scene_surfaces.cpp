@@ -18,8 +18,8 @@ constexpr Limits rough{0.0, 1.0, true, true, "a number from 0 to 1"};
 constexpr Limits repeats{0.0, 1e6, false, true, "a number above 0, of at most a million"};
 constexpr Limits absorbing{0.0, 100.0, true, true, "a number from 0 to 100"};
 
-const std::vector<std::string> of_materials = {"material", "r",   "g", "b",         "multiplier", "ior",
-                                               "metal",    "eta", "k", "roughness", "texture",    "repeat"};
+const std::vector<std::string> of_materials = {"material", "r", "g",         "b",       "multiplier", "ior",    "metal",
+                                               "eta",      "k", "roughness", "texture", "repeat",     "checker"};
 
 std::vector<std::string> with_material(std::vector<std::string> attributes) {
     attributes.insert(attributes.end(), of_materials.begin(), of_materials.end());
@@ -175,8 +175,9 @@ Material SceneReader::material(const XmlElement& element) const {
     for (const char* attribute : {"metal", "eta", "k"})
         only(attribute, {MaterialKind::conductor}, "conductor");
     only("roughness", {MaterialKind::conductor, MaterialKind::dielectric}, "conductor\" or \"dielectric");
-    only("texture", {MaterialKind::diffuse, MaterialKind::mirror, MaterialKind::conductor, MaterialKind::coated},
-         "diffuse\", \"mirror\", \"conductor\" or \"coated");
+    for (const char* attribute : {"texture", "checker"})
+        only(attribute, {MaterialKind::diffuse, MaterialKind::mirror, MaterialKind::conductor, MaterialKind::coated},
+             "diffuse\", \"mirror\", \"conductor\" or \"coated");
     read_texture(element, material);
     material.ior = element.attribute_number("ior", material.ior, index_limits);
     if (material.kind == MaterialKind::coated && material.ior < 1.0)
@@ -197,16 +198,26 @@ Material SceneReader::material(const XmlElement& element) const {
 }
 
 void SceneReader::read_texture(const XmlElement& element, Material& material) const {
-    if (element.has("repeat") && !element.has("texture"))
+    const bool is_checkered = element.has("checker");
+    if (element.has("repeat") && !element.has("texture") && !is_checkered)
         element.fail_attribute(
-            "repeat", fmt::format("<{}> repeat: has a meaning with texture=\"image.png\" only", element.name()));
-    if (!element.has("texture"))
+            "repeat", fmt::format("<{}> repeat: has a meaning with texture=\"image.png\" or checker=\"0.1\" only",
+                                  element.name()));
+    if (element.has("texture") && is_checkered)
+        element.fail_attribute("checker", fmt::format("<{}> has a texture; leave that or checker out", element.name()));
+    if (!element.has("texture") && !is_checkered)
         return;
-    if (element.attribute("texture").empty())
+    if (is_checkered) {
+        const glm::vec3 own = material.color, other = three(element, "checker", share);
+        material.image = std::make_shared<const Texture>(Texture{2, 2, {other, own, own, other}, true});
+        material.color = Rgb(1.0);
+    } else if (element.attribute("texture").empty()) {
         element.fail_attribute(
             "texture",
             fmt::format("<{}> texture: names no file; write one, e.g. texture=\"wood.png\"", element.name()));
-    material.texture = file_path(element, element.attribute("texture"));
+    } else {
+        material.texture = file_path(element, element.attribute("texture"));
+    }
     const std::vector<double> times = element.attribute_numbers("repeat", repeats);
     if (times.size() > 2)
         element.fail_attribute("repeat", fmt::format("<{}> repeat: {} numbers; expected one, or two for across and "

@@ -8,14 +8,16 @@ vec3 texel(uint first, ivec2 size, ivec2 at) {
     return sky_texels[first + uint(inside.y * size.x + inside.x)].xyz;
 }
 
-// Between the middles of texels linear. `place`: across and upwards from its lower left, whose upper right is (1, 1).
+// Between the middles of texels linear, or the nearest. `place`: across and upwards from its lower left, whose upper right is (1, 1).
 vec3 texture_color(uint texture, vec2 place) {
     vec4 header = sky_texels[texture];
-    ivec2 size = ivec2(header.xy);
+    ivec2 size = ivec2(abs(header.xy));
     vec2 within = fract(place * header.zw);
-    vec2 at = vec2(within.x, 1.0 - within.y) * header.xy - 0.5;
+    vec2 at = vec2(within.x, 1.0 - within.y) * vec2(size) - 0.5;
     ivec2 corner = ivec2(floor(at));
     vec2 share = at - vec2(corner);
+    if (header.x < 0.0)
+        share = step(0.5, share);
     vec3 above = mix(texel(texture + 1u, size, corner), texel(texture + 1u, size, corner + ivec2(1, 0)), share.x);
     vec3 below = mix(texel(texture + 1u, size, corner + ivec2(0, 1)), texel(texture + 1u, size, corner + ivec2(1, 1)), share.x);
     return mix(above, below, share.y);

@@ -140,7 +140,7 @@ inline constexpr Words step_grammar[] = {{"translate", "", {"x", "y", "z"}},
 // Within <surfaces>, and what each of them may hold.
 inline constexpr Words surface_grammar[] = {
     {"sphere", "", {"x", "y", "z", "radius", "material", "ior", "roughness", "multiplier"}},
-    {"disk", "", {"x", "y", "z", "lookAt", "radius", "material", "metal", "roughness"}},
+    {"disk", "", {"x", "y", "z", "lookAt", "radius", "material", "metal", "roughness", "checker", "repeat"}},
     {"plane", "", {"x", "y", "z", "lookAt", "material", "eta", "k"}},
     {"rectangle", "", {"x", "lookAt", "up", "width", "height", "r", "g", "b", "multiplier"}},
     {"box", "", {"x", "y", "z", "width", "height", "depth", "material"}},

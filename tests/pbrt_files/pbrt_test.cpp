@@ -10,6 +10,7 @@
 #include "blackbody.h"
 #include "pbrt_scenes.h"
 #include "pbrt_triangles.h"
+#include "support/scenes.h"
 
 using namespace vkvol;
 using Catch::Contains;
@@ -49,6 +50,22 @@ TEST_CASE("pbrt's lights shine as pbrt's do", "[cpu][pbrt]") {
     const Scene skies = world_of(R"(LightSource "infinite" "rgb L" [ 1 0 0 ]
                                     LightSource "infinite" "rgb L" [ 0 1 0 ] "float illuminance" 9)");
     CHECK(near(skies.background, {1.0, 9.0 / pi, 0.0}));
+
+    // A map adds up to what pbrt adds up: an even one to pi / 2 times its radiance, half of what it sends there.
+    const auto sky_of = [](const std::filesystem::path& map) {
+        return only_light<SkyLight>(world_of("LightSource \"infinite\" \"float scale\" 3 \"float illuminance\" 5 "
+                                             "\"string filename\" \"" +
+                                             map.string() + "\""));
+    };
+    constexpr int n = 64;
+    const RadianceMap day{n, n, std::vector<glm::vec3>(n * n, glm::vec3(0.25f)), 0};
+    CHECK(sky_of(write_sky(day).file).scale.x == Approx(3.0 * 5.0 / (0.25 * pi / 2.0)).epsilon(1e-3));
+    RadianceMap night = day; // bright below alone, beyond the inner square
+    for (int i = 0; i < n * n; ++i)
+        if (std::abs(2 * (i % n) + 1 - n) + std::abs(2 * (i / n) + 1 - n) < n)
+            night.texels[std::size_t(i)] = glm::vec3(0.0f);
+    CHECK_THROWS_WITH(sky_of(write_sky(night).file), Contains("s.pbrt:3:1") && Contains("black"));
+    CHECK_THROWS_WITH(sky_of("none.exr"), Contains("s.pbrt:3:1") && Contains("none.exr"));
 
     const Scene wide =
         scene_of("ColorSpace \"rec2020\"\nCamera \"perspective\"\nWorldBegin\n"
@@ -132,6 +149,23 @@ TEST_CASE("pbrt's materials and textures", "[cpu][pbrt]") {
     CHECK(tiles.texture.filename() == "t.png");
     CHECK(tiles.repeat == glm::dvec2(3, 1));
     CHECK(near(tiles.color, glm::dvec3(0.5)));
+
+    // The square on the lower left is the first, two of them are a repeat, and colours by textures are as good.
+    const auto board_of = [&](const std::string& scales) {
+        return material(R"(Texture "a" "spectrum" "constant" "rgb value" [ .8 .4 .2 ]
+            Texture "b" "spectrum" "scale" "texture tex" "a" "float scale" .5
+            Texture "t" "spectrum" "checkerboard" "texture tex1" "b" "rgb tex2" [ .1 .2 .3 ] )" +
+                        scales + R"( Material "diffuse" "texture reflectance" "t")");
+    };
+    const Material board = board_of(R"("float uscale" 4 "float vscale" 3)");
+    REQUIRE(board.image);
+    CHECK((board.image->is_nearest && board.image->width == 2 && board.image->height == 2));
+    CHECK(near(board.image->colors[2], {.4, .2, .1}, 1e-7));
+    CHECK(near(board.image->colors[3], {.1, .2, .3}, 1e-7));
+    CHECK(board.repeat == glm::dvec2(2, 1.5));
+    CHECK(near(board_of(R"("float uscale" -4)").image->colors[3], {.4, .2, .1}, 1e-7));
+    for (const char* odd : {R"("integer dimension" 3)", R"("string mapping" "planar")"})
+        CHECK_FALSE(board_of(odd).image);
 
     // Not seen at all.
     for (const char* name : {"interface", "none", ""})
@@ -362,9 +396,16 @@ TEST_CASE("what of a pbrt scene cannot be rendered is said once, with its place"
         "LightSource \"infinite\" \"string filename\" \"a.exr\" LightSource \"infinite\" \"string filename\" \"b.exr\"",
         "a second map of the sky");
     noted("Option \"bool disablepixeljitter\" true", "Option \"bool disablepixeljitter\" is left out");
-    noted("Texture \"t\" \"spectrum\" \"checkerboard\" Material \"diffuse\" \"texture reflectance\" \"t\" Shape "
-          "\"sphere\"",
-          "Texture \"checkerboard\" is left out");
+    const auto textured = [](const std::string& texture) {
+        return "Texture \"t\" \"spectrum\" " + texture +
+               " Material \"diffuse\" \"texture reflectance\" \"t\" Shape "
+               "\"sphere\"";
+    };
+    noted(textured("\"dots\""), "Texture \"dots\" is left out");
+    noted(textured("\"checkerboard\" \"integer dimension\" 3"), "Texture \"checkerboard\" is left out");
+    noted("Texture \"i\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" " +
+              textured("\"checkerboard\" \"texture tex1\" \"i\""),
+          "images in a Texture \"checkerboard\" are left out");
     noted("ActiveTransform EndTime", "nothing moves");
     noted(
         "MakeNamedMedium \"a\" \"string type\" \"homogeneous\" MediumInterface \"a\" \"\" Material \"interface\" Shape "

@@ -18,10 +18,14 @@ namespace {
 
 // Colours without any order.
 std::shared_ptr<const Texture> motley(int width, int height) {
-    Texture image{width, height, {}};
+    Texture image{width, height, {}, false};
     for (int i = 0; i < width * height; ++i)
         image.colors.emplace_back(float(i * 37 % 101) / 100.0f, float(i * 53 % 97) / 96.0f, float(i * 71 % 89) / 88.0f);
     return std::make_shared<const Texture>(image);
+}
+
+std::shared_ptr<const Texture> board(const glm::vec3& own, const glm::vec3& other) {
+    return std::make_shared<const Texture>(Texture{2, 2, {other, own, own, other}, true});
 }
 
 Surface textured(SurfaceShape shape, const std::shared_ptr<const Texture>& image, glm::dvec2 repeat = glm::dvec2(1.0)) {
@@ -70,6 +74,8 @@ std::vector<Surface> all_shapes() {
     all[1].material.kind = MaterialKind::coated;
     all[3].material.kind = MaterialKind::mirror;
     all[4].material.color = {0.9, 0.6, 0.3};
+    all.push_back(textured(RectangleSurface{{0.2, 1.9, -0.4}, {0.9, 0.0, 0.3}, {-0.06, 0.4, 0.18}},
+                           board({0.9, 0.2, 0.1}, {0.1, 0.3, 0.8}), {1.7, 0.6}));
     return all;
 }
 
@@ -83,6 +89,16 @@ Scene bare(int pixels, int spp) {
     return scene;
 }
 
+// Right is x, upwards -z.
+Camera above(double height) {
+    Camera camera;
+    camera.projection = Projection::orthographic;
+    camera.view_height = height;
+    camera.position = {0.0, 5.0, 0.0};
+    camera.pitch = -90.0;
+    return camera;
+}
+
 } // namespace
 
 // In an even sky what is flat and matte is as bright as it is coloured. Over a texel its own colour has the mean weight
@@ -92,11 +108,7 @@ TEST_CASE("a texel is seen where it lies, and its neighbours beside it", "[gpu][
     const int times = GENERATE(1, 2);
     const auto image = motley(n / times, n / times);
     Scene scene = bare(n, 1024);
-    scene.camera = {};
-    scene.camera.projection = Projection::orthographic;
-    scene.camera.view_height = 2.0;
-    scene.camera.position = {0.0, 5.0, 0.0};
-    scene.camera.pitch = -90.0; // right is x, upwards -z
+    scene.camera = above(2.0);
     scene.surfaces = {
         textured(RectangleSurface{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, -1.0}}, image, glm::dvec2(times))};
     std::vector<Rgb> expected;
@@ -112,6 +124,21 @@ TEST_CASE("a texel is seen where it lies, and its neighbours beside it", "[gpu][
             expected.push_back(sum);
         }
     CHECK_AGREEMENT(agree_with_means(render_here(scene, 1).film, expected, "texels"));
+}
+
+// Whole pixels of one colour, the one on the lower left its own.
+TEST_CASE("a board is of two colours, with edges", "[gpu][image][surfaces]") {
+    constexpr int n = 8;
+    Scene scene = bare(n, 256);
+    scene.camera = above(2.0);
+    scene.surfaces = parse("<surfaces><rectangle width=\"2\" height=\"2\" lookAt=\"0 5 0\" up=\"0 0 -1\" r=\".75\" "
+                           "g=\".5\" b=\"0\" checker=\"0.125 0.25 1\" repeat=\"2 1\"/></surfaces>")
+                         .surfaces;
+    std::vector<Rgb> expected;
+    for (int row = 0; row < n; ++row)
+        for (int column = 0; column < n; ++column)
+            expected.push_back((column / 2 + row / 4) % 2 == 1 ? Rgb(0.75, 0.5, 0.0) : Rgb(0.125, 0.25, 1.0));
+    CHECK_AGREEMENT(agree_with_means(render_here(scene, 1).film, expected, "squares"));
 }
 
 TEST_CASE("textures on every shape equal the reference", "[gpu][image][surfaces]") {
@@ -204,7 +231,17 @@ TEST_CASE("textures are read and refused by name", "[xml][surfaces]") {
     CHECK_THAT(refused("<sphere texture=\"a.png\" repeat=\"0\"/>"), Contains("above 0"));
     CHECK_THAT(refused("<sphere texture=\"\"/>"), Contains("names no file"));
     CHECK_THAT(refused("<sphere texture=\"a.png\" material=\"dielectric\"/>"), Contains("texture"));
+    CHECK_THAT(refused("<sphere checker=\".1\" material=\"thinDielectric\"/>"), Contains("checker"));
+    CHECK_THAT(refused("<sphere checker=\".1 .2\"/>"), Contains("2 numbers"));
+    CHECK_THAT(refused("<sphere checker=\"1.1\"/>"), Contains("checker") && Contains("0 to 1"));
+    CHECK_THAT(refused("<sphere checker=\".1\" texture=\"a.png\"/>"), Contains("leave that or checker out"));
     Scene other = scene;
     other.surfaces[0].material.repeat.x = 5.0;
     CHECK(scene_hash(other) != scene_hash(scene));
+    const auto hash_of = [](const char* colors) {
+        return scene_hash(parse(fmt::format("<surfaces><sphere {}/></surfaces>", colors)));
+    };
+    CHECK(hash_of("checker=\".1\"") == hash_of("r=\".5\" g=\".5\" b=\".5\" checker=\".1 .1 .1\""));
+    CHECK(hash_of("checker=\".1\"") != hash_of("checker=\".2\""));
+    CHECK(hash_of("checker=\".1\"") != hash_of("multiplier=\".2\" checker=\".1\""));
 }

@@ -48,19 +48,20 @@ glm::dvec2 place_on(const vkvol::Surface& surface, const glm::dvec3& at, const g
     return {share(r.edge_u), share(r.edge_v)};
 }
 
-// The sum of all texels' tents, of which four are not 0 there.
+// The sum of all texels' tents, of which four are not 0 there; or of a board its square's.
 Rgb texture_color(const vkvol::Material& material, const glm::dvec2& place) {
     const vkvol::Texture& image = *material.image;
     const double x = place.x * material.repeat.x * image.width, y = -place.y * material.repeat.y * image.height;
+    const auto texel = [&](double column, double row) {
+        const auto wrapped = [](double i, int n) { return static_cast<int>(i - n * std::floor(i / n)); };
+        return Rgb(image.colors[std::size_t(wrapped(row, image.height) * image.width + wrapped(column, image.width))]);
+    };
+    if (image.is_nearest)
+        return texel(std::floor(x), std::floor(y));
     Rgb color(0.0);
     for (const double column : {std::floor(x - 0.5), std::floor(x + 0.5)})
-        for (const double row : {std::floor(y - 0.5), std::floor(y + 0.5)}) {
-            const double tent = (1.0 - std::abs(x - column - 0.5)) * (1.0 - std::abs(y - row - 0.5));
-            const auto wrapped = [](double i, int n) { return static_cast<int>(i - n * std::floor(i / n)); };
-            color +=
-                tent *
-                Rgb(image.colors[std::size_t(wrapped(row, image.height) * image.width + wrapped(column, image.width))]);
-        }
+        for (const double row : {std::floor(y - 0.5), std::floor(y + 0.5)})
+            color += (1.0 - std::abs(x - column - 0.5)) * (1.0 - std::abs(y - row - 0.5)) * texel(column, row);
     return color;
 }
 
