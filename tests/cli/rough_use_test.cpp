@@ -162,6 +162,7 @@ TEST_CASE("a missing field names the command that makes it", "[cpu][command]") {
                Contains("make_field ramp --size 440 --type fp8 -o ramp-440-fp8.nvdb`"));
     for (const char* other : {"mine.nvdb", "cumulus-mine.nvdb", "440.nvdb", ""})
         CHECK_THAT(missing_field_hint(other), Contains("check the path"));
+    CHECK_THAT(missing_field_hint("smoke.####.vdb"), Contains("$F4"));
     // Also where the method asks first what is in the grid.
     CHECK_THROWS_WITH(parse_scene("<options><densityField>none/empty.nvdb</densityField><sigma_a>1</sigma_a>"
                                   "<integrator>densitySampling</integrator></options>",
