@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <functional>
 
 #include "error.h"
 #include "shared/constants.h"
@@ -22,74 +23,90 @@ Sums sums_of(std::span<const glm::vec3> sums, std::size_t i) {
     return {pair(0), pair(2)};
 }
 
-// Of what lies at a slot of each record.
+// Of what lies at the slots of each record. All layers of a pixel are made in turn: records are large, and each is read
+// but once.
 class Developer {
 public:
     Developer(const LayerPlan& plan, std::span<const glm::vec3> sums, std::span<const std::uint32_t> samples)
         : plan_(plan), sums_(sums), samples_(samples) {}
 
-    Sums at(std::size_t pixel, std::uint32_t slot) const { return sums_of(sums_, pixel * plan_.params.count + slot); }
-
     // Means over all samples.
-    FilmLayer means(const std::string& name, std::uint32_t slot) const {
-        FilmLayer layer{name, {}, {}};
-        for (std::size_t i = 0; i < samples_.size(); ++i) {
-            const double n = samples_[i];
-            const Sums s = at(i, slot);
-            const glm::dvec3 mean = n > 0 ? s.value / n : glm::dvec3(0.0);
-            const glm::dvec3 variance = n > 1 ? (s.square / n - mean * mean) / (n - 1.0) : glm::dvec3(0.0);
-            layer.mean.emplace_back(mean);
-            layer.variance.emplace_back(glm::max(variance, glm::dvec3(0.0)));
-        }
-        return layer;
+    void add_means(const std::string& name, std::uint32_t slot) {
+        add(name, true, [this, slot](std::size_t i) { return mean_of(i, slot); });
     }
 
-    FilmLayer alpha(std::uint32_t slot) const {
-        FilmLayer layer = means("alpha", slot);
-        for (std::size_t i = 0; i < samples_.size(); ++i)
-            layer.mean[i] = samples_[i] > 0 ? 1.0f - layer.mean[i] : glm::vec3(0.0f);
-        return layer;
+    void add_alpha(std::uint32_t slot) {
+        add("alpha", true, [this, slot](std::size_t i) {
+            const Value through = mean_of(i, slot);
+            return Value{samples_[i] > 0 ? 1.0f - through.mean : glm::vec3(0.0f), through.variance};
+        });
     }
 
-    FilmLayer coverage(std::uint32_t slot) const {
-        FilmLayer layer = means("coverage", slot);
-        for (glm::vec3& mean : layer.mean)
-            mean = glm::vec3(mean.y);
-        for (glm::vec3& variance : layer.variance)
-            variance = glm::vec3(variance.y);
-        return layer;
+    void add_coverage(std::uint32_t slot) {
+        add("coverage", true, [this, slot](std::size_t i) {
+            const Value collided = mean_of(i, slot);
+            return Value{glm::vec3(collided.mean.y), glm::vec3(collided.variance.y)};
+        });
     }
 
     // Sum of w d over sum of w, over the samples that collide: a quotient, whose variance is that of w (d - mean) over
     // the mean of w squared, to first order (Cochran, "Sampling Techniques", 1977, ch. 6).
-    FilmLayer depth(std::uint32_t slot) const {
-        FilmLayer layer{"depth", {}, {}};
-        for (std::size_t i = 0; i < samples_.size(); ++i) {
+    void add_depth(std::uint32_t slot) {
+        add("depth", true, [this, slot](std::size_t i) {
             const double n = samples_[i];
             const Sums s = at(i, slot);
             const double w = s.value.y, m = w > 0.0 ? s.value.x / w : 0.0;
             const double mixed = 0.5 * (s.square.z - s.square.x - s.square.y); // of w d and w
             const double spread = s.square.x - 2.0 * m * mixed + m * m * s.square.y;
             const double variance = n > 1 && w > 0.0 ? n / (n - 1.0) * spread / (w * w) : 0.0;
-            layer.mean.emplace_back(static_cast<float>(m));
-            layer.variance.emplace_back(static_cast<float>(std::max(variance, 0.0)));
-        }
-        return layer;
+            return Value{glm::vec3(static_cast<float>(m)), glm::vec3(static_cast<float>(std::max(variance, 0.0)))};
+        });
     }
 
-    FilmLayer position(std::uint32_t slot, const glm::dvec3& origin) const {
-        FilmLayer layer{"position", {}, {}};
-        for (std::size_t i = 0; i < samples_.size(); ++i) {
+    void add_position(std::uint32_t slot, const glm::dvec3& origin) {
+        add("position", false, [this, slot, origin](std::size_t i) {
             const double w = at(i, slot).value.y;
-            layer.mean.emplace_back(w > 0.0 ? at(i, slot + 1).value / w + origin : glm::dvec3(0.0));
-        }
-        return layer;
+            return Value{w > 0.0 ? at(i, slot + 1).value / w + origin : glm::dvec3(0.0), {}};
+        });
+    }
+
+    std::vector<FilmLayer> develop() {
+        for (std::size_t i = 0; i < samples_.size(); ++i)
+            for (std::size_t k = 0; k < layers_.size(); ++k) {
+                const Value value = values_[k](i);
+                layers_[k].mean[i] = value.mean;
+                if (!layers_[k].variance.empty())
+                    layers_[k].variance[i] = value.variance;
+            }
+        return std::move(layers_);
     }
 
 private:
+    struct Value {
+        glm::vec3 mean, variance;
+    };
+
+    void add(const std::string& name, bool has_variance, std::function<Value(std::size_t)> value) {
+        layers_.push_back({name, std::vector<glm::vec3>(samples_.size()),
+                           std::vector<glm::vec3>(has_variance ? samples_.size() : 0)});
+        values_.push_back(std::move(value));
+    }
+
+    Sums at(std::size_t pixel, std::uint32_t slot) const { return sums_of(sums_, pixel * plan_.params.count + slot); }
+
+    Value mean_of(std::size_t i, std::uint32_t slot) const {
+        const double n = samples_[i];
+        const Sums s = at(i, slot);
+        const glm::dvec3 mean = n > 0 ? s.value / n : glm::dvec3(0.0);
+        const glm::dvec3 variance = n > 1 ? (s.square / n - mean * mean) / (n - 1.0) : glm::dvec3(0.0);
+        return {mean, glm::max(variance, glm::dvec3(0.0))};
+    }
+
     const LayerPlan& plan_;
     std::span<const glm::vec3> sums_;
     std::span<const std::uint32_t> samples_; // of each pixel
+    std::vector<FilmLayer> layers_;
+    std::vector<std::function<Value(std::size_t)>> values_; // of each of them at a pixel
 };
 
 } // namespace
@@ -132,33 +149,32 @@ std::uint32_t group_layer(const std::vector<std::string>& groups, const std::str
 
 std::vector<FilmLayer> develop_layers(const LayerPlan& plan, std::span<const glm::vec3> sums,
                                       std::span<const std::uint32_t> samples, const glm::dvec3& origin) {
-    const Developer developer(plan, sums, samples);
+    Developer developer(plan, sums, samples);
     const shared::AovParams& params = plan.params;
-    std::vector<FilmLayer> layers;
     for (std::uint32_t kind = 0; kind < LIGHT_KINDS; ++kind)
         if (plan.wanted & 1u << kind)
-            layers.push_back(developer.means(layer_names()[kind], kind));
+            developer.add_means(layer_names()[kind], kind);
     if (plan.kinds & LAYERS_GROUPS)
-        layers.push_back(developer.means("group.none", params.groups));
+        developer.add_means("group.none", params.groups);
     for (std::size_t i = 0; i < plan.groups.size(); ++i)
-        layers.push_back(developer.means("group." + plan.groups[i], params.groups + 1 + std::uint32_t(i)));
+        developer.add_means("group." + plan.groups[i], params.groups + 1 + std::uint32_t(i));
     for (std::size_t i = 0; i < plan.media.size(); ++i)
-        layers.push_back(developer.means("medium." + plan.media[i], params.media + std::uint32_t(i)));
+        developer.add_means("medium." + plan.media[i], params.media + std::uint32_t(i));
     if (plan.wanted & layer_depth)
-        layers.push_back(developer.depth(params.collision));
+        developer.add_depth(params.collision);
     if (plan.wanted & layer_position)
-        layers.push_back(developer.position(params.collision, origin));
+        developer.add_position(params.collision, origin);
     if (plan.kinds & LAYERS_COLLISION)
-        layers.push_back(developer.coverage(params.collision));
+        developer.add_coverage(params.collision);
     if (plan.wanted & layer_albedo)
-        layers.push_back(developer.means("albedo", params.albedo));
+        developer.add_means("albedo", params.albedo);
     if (plan.wanted & layer_transmittance)
-        layers.push_back(developer.means("transmittance", params.through));
+        developer.add_means("transmittance", params.through);
     if (plan.wanted & layer_alpha)
-        layers.push_back(developer.alpha(params.through + 1));
+        developer.add_alpha(params.through + 1);
     if (plan.wanted & layer_normal)
-        layers.push_back(developer.means("normal", params.normal));
-    return layers;
+        developer.add_means("normal", params.normal);
+    return developer.develop();
 }
 
 } // namespace vkvol

@@ -38,7 +38,7 @@ struct RenderJob {
     // standard error.
     std::function<void(double, std::optional<double>)> progress;
     // With the film as far as it is: soon after the first samples, and then whenever it has become a little better, as
-    // long as that takes no more than a hundredth of the time.
+    // long as that takes no more than a hundredth of the time, and 0.1 s.
     std::function<void(const RenderResult&)> look;
     // Called every so many seconds, and at the end of a render that was ended early.
     double checkpoint_seconds = 0.0;
@@ -213,8 +213,8 @@ private:
     std::uint32_t most_batch_ = 1;
     Stopwatch watch_;
     double next_noise_ = 0.0;
-    double next_look_ = 0.0;
-    double checkpoint_at_ = 0.0; // the last one
+    double next_look_ = 0.0, looked_ = 0.0; // when, and for how long until now; seconds
+    double checkpoint_at_ = 0.0;            // the last one
     bool stopped_ = false;
     bool gave_up_ = false; // paths were left in flight
     std::optional<double> stopped_at_;
