@@ -46,7 +46,7 @@ velocities on faces taken for middles ~ host/fields/drift.cpp ~ from[axis] += 0.
 panes of one side ~ shaders/surfaces/bsdf.glsl ~ u * (1.0 + F) < 2.0 * F ~ u < F ~ [surfaces]
 colours of voxels taken for multiples of one ~ host/pbrt_files/pbrt_rgb_media.cpp ~ > 1e-6 * largest_of(each) ~ > 1e6 * largest_of(each) ~ [pbrt]
 foreseen grids kept when their files change ~ host/fields/field_cache.cpp ~ coming.mapped().stamp == stamp ~ true ~ [command]
-first looks put off as all others are ~ host/render/session.cpp ~ (looked_ - first_looks) ~ (looked_ - 0.0) ~ [live]
+first looks put off as all others are ~ host/render/session.cpp ~ (looked_ - look_allowance) ~ (looked_ - 0.0) ~ [live]
 viewers' keys not asked for ~ host/live/view_server.cpp ~ return is_local && is_equal ~ return is_local || is_equal ~ [live]
 what is wrong with a viewed file forgotten ~ host/cli/view.cpp ~ rendered = render_wish(); ~ file_trouble_.clear(), rendered = render_wish(); ~ [live]
 channels in tev one after another ~ host/live/tev_picture.cpp ~ packet.add(count); ~ packet.add(std::int64_t{1}); ~ [live]

@@ -56,7 +56,7 @@ def main():
                 rates[is_watched].append(rate)
                 print(f"{'watched' if is_watched else 'alone':8} {rate:.3f} samples per second and pixel, {pictures} pictures", flush=True)
     medians = {key: statistics.median(values) for key, values in rates.items()}
-    print(f"medians: alone {medians[False]:.3f}, watched {medians[True]:.3f}: {100 * (medians[False] / medians[True] - 1):.1f} % less")
+    print(f"medians: alone {medians[False]:.3f}, watched {medians[True]:.3f}: {100 * (1 - medians[True] / medians[False]):.1f} % less")
 
 
 if __name__ == "__main__":

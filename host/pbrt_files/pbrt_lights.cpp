@@ -26,6 +26,7 @@ double illuminance_of(const RadianceMap& map) {
             const double r =
                 std::abs(2.0 * (column + 0.5) / map.width - 1.0) + std::abs(2.0 * (row + 0.5) / map.height - 1.0);
             const glm::dvec3 texel = map.texels[std::size_t(row) * map.width + column];
+            // 1 - r^2 is the cosine.
             sum += r < 1.0 ? (1.0 - r * r) * glm::dot(texel, glm::dvec3(0.2126, 0.7152, 0.0722)) : 0.0;
         }
     return 2.0 * pi * sum / (double(map.width) * map.height);
