@@ -168,7 +168,8 @@ std::string state_json(const Shot* shot, const ShownLayer& shown, const ViewWish
         state["exposure"] = shown.mapping.exposure;
         state["curve"] = name_of(shown.mapping.curve);
         state["clipped"] = shown.clipped;
-        const std::optional<double> noise = relative_noise(shot->film);
+        // Amid the first samples, pixels that are done would speak for all.
+        const std::optional<double> noise = shot->samples > 1 ? relative_noise(shot->film) : std::nullopt;
         state["noise"] = noise ? Json(*noise) : Json();
         if (shot->scene)
             add_scene(*shot->scene, wish, state);

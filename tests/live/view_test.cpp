@@ -201,6 +201,9 @@ TEST_CASE("frames are the picture and what is known of it", "[cpu][live]") {
     const auto told = get(fmt::format("/frame?since={}", version));
     REQUIRE(told->status == 200);
     CHECK(frame_of(told->body).first["message"] == "a word");
+    first.samples = 1; // as far as all pixels have come
+    board.publish(first);
+    CHECK(frame_of(get("/frame?since=0")->body).first["noise"].is_null());
     CHECK(frame_of(get("/frame?since=0&exposure=-1&curve=srgb")->body).first["exposure"] == -1.0);
     const auto png = get("/picture.png?x=1");
     CHECK(png->body.substr(1, 3) == "PNG");
