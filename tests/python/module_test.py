@@ -4,6 +4,7 @@ import gc
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
@@ -249,6 +250,8 @@ class Running(unittest.TestCase):
     def test_interrupted_and_gone_on_with(self):
         scene = vkvol.Scene.from_dict(smoke(placed()))
         session = vkvol.Session(scene, width=96, seed=9)
+        before = signal.signal(signal.SIGINT, signal.default_int_handler)  # which shells' background jobs ignore
+        self.addCleanup(signal.signal, signal.SIGINT, before)
         timer = threading.Timer(0.5, lambda: os.kill(os.getpid(), 2))
         timer.start()
         with self.assertRaises(KeyboardInterrupt):
@@ -294,7 +297,7 @@ class Running(unittest.TestCase):
                 "s.render(1); print(s.picture())")
         done = subprocess.run([sys.executable, "-c", code, *sys.path], capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertIn("8x8, 1 samples", done.stdout)
+        self.assertIn("8x8, 1 sample>", done.stdout)
 
 
 if __name__ == "__main__":

@@ -79,4 +79,5 @@ class Picture:
     def __repr__(self) -> str:
         height, width, _ = self.mean.shape
         noise = "" if self.noise is None else f", noise {100 * self.noise:.2g} %"
-        return f"<vkvol.Picture {width}x{height}, {int(self.samples.max())} samples{noise}>"
+        most = int(self.samples.max())
+        return f"<vkvol.Picture {width}x{height}, {most} sample{'' if most == 1 else 's'}{noise}>"
