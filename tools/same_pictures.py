@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Pictures of two builds of vkvol, side by side: whether they have the same bits, and how long rendering took.
 
-    tools/same_pictures.py OLD_VKVOL [NEW_VKVOL] [--only WORD] [--runs 1] [--width 64] [--spp 8]
+    tools/same_pictures.py OLD_VKVOL [NEW_VKVOL] [--scenes FOLDER] [--only WORD] [--runs 1] [--width 64] [--spp 8]
 
-Renders every scene of scenes/, every integrator in a cloud and in a homogeneous ball, a crop, and a render that is resumed
+Renders every scene of scenes/, or of another folder if the old build does not know all that these have, every integrator in a cloud and in a homogeneous ball, a crop, and a render that is resumed
 from a checkpoint, by both builds with the same seed. Where bits differ, `vkvol compare` judges another seed of the new
 build, so that the two are independent, and its verdict is printed; the reason for such a difference is for people to find.
 Seconds are medians of --runs, in alternation. Fields: tools/all_scenes.sh makes them. Exit code 1: a picture differs by
@@ -22,10 +22,10 @@ BALL = ["scenes/bench/sphere.xml"]
 RESUMED = "a checkpoint, resumed"
 
 
-def cases(vkvol):
+def cases(vkvol, scenes):
     """Name and arguments of every picture."""
-    listed = [(path.relative_to(ROOT / "scenes").with_suffix("").as_posix(), [path.relative_to(ROOT)])
-              for path in sorted((ROOT / "scenes").rglob("*.xml")) if path.stem != "large_grid"]
+    listed = [(path.relative_to(scenes).with_suffix("").as_posix(), [path])
+              for path in sorted(scenes.rglob("*.xml")) if path.stem != "large_grid"]
     for row in json.loads(subprocess.run([vkvol, "integrators", "--json"], capture_output=True, check=True).stdout):
         for scene in (CLOUD, BALL):
             listed.append((f"{Path(scene[0]).stem}, {row['name']}", [*scene, "--integrator", row["name"]]))
@@ -66,6 +66,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("old", type=Path)
     parser.add_argument("new", type=Path, nargs="?", default=ROOT / "build" / "vkvol")
+    parser.add_argument("--scenes", type=Path, default=ROOT / "scenes")
     parser.add_argument("--only", default="")
     parser.add_argument("--runs", type=int, default=1)
     parser.add_argument("--width", default="64")
@@ -79,7 +80,7 @@ def main():
             (Path(work) / name).mkdir()
             builds.append(Build(program.resolve(), Path(work) / name))
         old, new = builds
-        for name, arguments in cases(new.program):
+        for name, arguments in cases(new.program, options.scenes.resolve()):
             if options.only not in name:
                 continue
             size = ["--width", options.width, "--spp", "400" if name == RESUMED else options.spp]
