@@ -16,7 +16,7 @@ namespace {
 constexpr double noise_seconds = 3.0;        // between two figures of noise
 constexpr double look_seconds = 0.2;         // between two looks at the film at least
 constexpr double look_share = 1.0 / 100.0;   // of the time, for looks,
-constexpr double look_allowance = 0.1;       // and seconds for the first of them
+constexpr double look_allowance = 0.3;       // and seconds for the first of them
 constexpr double look_growth = 0.15;         // of the time so far, between two: noise has fallen by a fifteenth then
 constexpr double patience = 5.0;             // seconds, for paths that will not end
 constexpr std::uint32_t first_look = 16;     // at the noise to be reached; samples per pixel
