@@ -21,12 +21,12 @@ bool has_values(const PbrtParameter& parameter, std::size_t count) {
     return parameter.numbers.size() == count && parameter.texts.empty();
 }
 
-// From the colour space of the thing.
-glm::dvec3 to_scene(const PbrtThing& thing, const double* rgb) {
-    const glm::dvec3 own(rgb[0], rgb[1], rgb[2]);
-    if (thing.color_space == "srgb")
+glm::dvec3 to_scene(const PbrtThing& thing, const PbrtParameter& parameter, std::size_t at = 0) {
+    const glm::dvec3 own(parameter.numbers[at], parameter.numbers[at + 1], parameter.numbers[at + 2]);
+    const std::string& space = parameter.color_space.empty() ? thing.color_space : parameter.color_space;
+    if (space == "srgb")
         return own;
-    return glm::max(*to_rec709(thing.color_space) * own, glm::dvec3(0.0));
+    return glm::max(*to_rec709(space) * own, glm::dvec3(0.0));
 }
 
 std::vector<double> numbers_in_file(const std::filesystem::path& file, const PbrtParameter& parameter) {
@@ -73,7 +73,7 @@ std::optional<glm::dvec3> PbrtColors::color(const PbrtThing& thing, const PbrtPa
         return std::nullopt;
     if (!has_values(parameter, 3))
         fail(parameter, "red, green and blue");
-    return to_scene(thing, parameter.numbers.data());
+    return to_scene(thing, parameter);
 }
 
 // A "spectrum" of values, or by one of pbrt's names or a file's.
@@ -95,7 +95,7 @@ std::vector<glm::dvec3> PbrtColors::colors(const PbrtThing& thing, const std::st
         fail(*parameter, "red, green and blue of each voxel");
     std::vector<glm::dvec3> colors;
     for (std::size_t i = 0; i < parameter->numbers.size(); i += 3)
-        colors.push_back(to_scene(thing, &parameter->numbers[i]));
+        colors.push_back(to_scene(thing, *parameter, i));
     return colors;
 }
 

@@ -1,6 +1,7 @@
 #include "pbrt_directives.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -37,17 +38,16 @@ void PbrtDirectives::note(const PbrtPlace& place, const std::string& message) {
 
 void PbrtDirectives::read() {
     for (PbrtToken token = tokens_.next(); !token.is(Kind::end); token = tokens_.next()) {
+        end_imports();
         const auto handler = token.is(Kind::word) ? handlers_.find(token.value) : handlers_.end();
         if (handler == handlers_.end()) {
             std::vector<std::string> known;
             for (const auto& [name, unused] : handlers_)
                 known.push_back(name);
-            const bool is_old = token.value == "WorldEnd" || token.value == "TransformTimes";
             fail_at(token.place,
-                    is_old ? fmt::format("{} is of older versions of pbrt; pbrt --upgrade makes a scene of "
-                                         "version 4",
-                                         token.value)
-                           : fmt::format("'{}' is no directive{}", token.value, name_hint(token.value, known)));
+                    token.value == "WorldEnd"
+                        ? "WorldEnd is of older versions of pbrt; pbrt --upgrade makes a scene of version 4"
+                        : fmt::format("'{}' is no directive{}", token.value, name_hint(token.value, known)));
         }
         handler->second(token);
     }
@@ -149,8 +149,13 @@ void PbrtDirectives::add_transforms() {
         const std::string wanted = name("a name in quotes");
         const auto system = coordinate_systems_.find(wanted);
         if (system == coordinate_systems_.end())
-            fail_at(token.place, fmt::format("no CoordinateSystem \"{}\" before this", wanted));
-        state_.transform = system->second;
+            note(token.place, fmt::format("no CoordinateSystem \"{}\" before this; it changes nothing", wanted));
+        else
+            state_.transform = system->second;
+    };
+    handlers_["TransformTimes"] = [this](const PbrtToken&) {
+        tokens_.number();
+        tokens_.number();
     };
     handlers_["ActiveTransform"] = [this](const PbrtToken& token) { read_active_transform(token); };
 }
@@ -194,7 +199,9 @@ void PbrtDirectives::read_option() {
 }
 
 void PbrtDirectives::read_color_space() {
-    const PbrtToken space = tokens_.next(Kind::quoted, "a colour space in quotes");
+    PbrtToken space = tokens_.next(Kind::quoted, "a colour space in quotes");
+    std::transform(space.value.begin(), space.value.end(), space.value.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (!to_rec709(space.value))
         fail_at(space.place, fmt::format("ColorSpace \"{}\" is unknown{}", space.value,
                                          name_hint(space.value, {"srgb", "dci-p3", "rec2020", "aces2065-1"})));
@@ -219,14 +226,8 @@ void PbrtDirectives::add_world() {
                         fmt::format("{} within {} others, more than are read", token.value, deepest_state));
             push();
         };
-    handlers_["AttributeEnd"] = [this](const PbrtToken& token) { pop(token); };
-    handlers_["TransformEnd"] = [this](const PbrtToken& token) {
-        PbrtState inner = state_;
-        pop(token);
-        inner.transform = state_.transform;
-        inner.is_moving = state_.is_moving;
-        state_ = std::move(inner);
-    };
+    for (const char* end : {"AttributeEnd", "TransformEnd"}) // which are the same in version 4
+        handlers_[end] = [this](const PbrtToken& token) { pop(token); };
     handlers_["Attribute"] = [this](const PbrtToken& token) { read_attribute(token); };
     handlers_["ReverseOrientation"] = [this](const PbrtToken&) { state_.is_reversed = !state_.is_reversed; };
     handlers_["MediumInterface"] = [this](const PbrtToken&) { read_medium_interface(); };
@@ -256,15 +257,31 @@ void PbrtDirectives::add_world() {
     handlers_["ObjectBegin"] = [this](const PbrtToken& token) { begin_object(token); };
     handlers_["ObjectEnd"] = [this](const PbrtToken& token) { end_object(token); };
     handlers_["ObjectInstance"] = [this](const PbrtToken&) { place_object(); };
-    for (const char* include : {"Include", "Import"})
-        handlers_[include] = [this](const PbrtToken& token) {
-            const std::string file = name("a file in quotes");
-            tokens_.include(scene_.folder / file, token.place);
-        };
+    handlers_["Include"] = [this](const PbrtToken& token) {
+        const std::string file = name("a file in quotes");
+        tokens_.include(scene_.folder / file, token.place);
+    };
+    handlers_["Import"] = [this](const PbrtToken& token) { import(token); };
+}
+
+void PbrtDirectives::import(const PbrtToken& directive) {
+    const std::string file = name("a file in quotes");
+    push();
+    imports_.push_back({states_.size(), tokens_.depth()});
+    tokens_.include(scene_.folder / file, directive.place);
+}
+
+// Where a directive begins, those whose file has ended before it.
+void PbrtDirectives::end_imports() {
+    for (; !imports_.empty() && tokens_.depth() <= imports_.back().files; imports_.pop_back()) {
+        states_.resize(imports_.back().states);
+        state_ = std::move(states_.back());
+        states_.pop_back();
+    }
 }
 
 void PbrtDirectives::pop(const PbrtToken& directive) {
-    if (states_.empty())
+    if (states_.size() == (imports_.empty() ? 0 : imports_.back().states))
         fail_at(directive.place, fmt::format("{} without what it ends", directive.value));
     state_ = std::move(states_.back());
     states_.pop_back();
@@ -275,9 +292,11 @@ void PbrtDirectives::read_attribute(const PbrtToken& directive) {
     const std::vector<std::string> known = {"shape", "light", "material", "medium", "texture"};
     if (std::find(known.begin(), known.end(), target) == known.end())
         fail_at(directive.place, fmt::format("Attribute \"{}\" is unknown{}", target, name_hint(target, known)));
-    const PbrtParameters parameters(tokens_);
+    std::vector<PbrtParameter> parameters = PbrtParameters(tokens_).all();
+    for (PbrtParameter& parameter : parameters)
+        parameter.color_space = state_.color_space;
     std::vector<PbrtParameter>& defaults = state_.defaults[target];
-    defaults.insert(defaults.begin(), parameters.all().begin(), parameters.all().end()); // the last one counts
+    defaults.insert(defaults.begin(), parameters.begin(), parameters.end()); // the last one counts
 }
 
 void PbrtDirectives::read_medium_interface() {
@@ -293,8 +312,12 @@ void PbrtDirectives::read_medium_interface() {
 
 void PbrtDirectives::read_texture(const PbrtToken& directive) {
     const std::string called = name("a name in quotes");
-    name("\"spectrum\" or \"float\"");
-    scene_.textures[called] = thing(directive, "texture");
+    const PbrtToken kind = tokens_.next(Kind::quoted, "\"spectrum\" or \"float\"");
+    if (kind.value != "spectrum" && kind.value != "float")
+        fail_at(kind.place, fmt::format("Texture of \"{}\"; expected \"spectrum\" or \"float\"", kind.value));
+    PbrtThing made = thing(directive, "texture");
+    if (kind.value == "spectrum") // the others have names of their own, and nothing here has them
+        scene_.textures[called] = std::move(made);
 }
 
 void PbrtDirectives::read_shape(const PbrtToken& directive) {

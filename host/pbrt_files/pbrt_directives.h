@@ -50,12 +50,20 @@ private:
     void place_object();
     void push() { states_.push_back(state_); }
     void pop(const PbrtToken& directive);
+    void import(const PbrtToken& directive);
+    void end_imports();
     void note(const PbrtPlace& place, const std::string& message);
 
     PbrtTokens tokens_;
     PbrtScene& scene_;
     PbrtState state_;
     std::vector<PbrtState> states_;
+    // Of the files being imported, which leave the state as they find it: how many states were kept, and how many files
+    // open.
+    struct Importing {
+        std::size_t states, files;
+    };
+    std::vector<Importing> imports_;
     std::map<std::string, glm::dmat4> coordinate_systems_;
     std::map<std::string, std::vector<PbrtShape>> objects_;
     std::optional<std::string> object_; // that is being defined

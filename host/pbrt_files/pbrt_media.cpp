@@ -5,24 +5,14 @@
 #include "density_field.h"
 #include "error.h"
 #include "nearest_name.h"
+#include "pbrt_presets.h"
+#include "pbrt_quadrics.h"
 #include "pbrt_translator.h"
+#include "pbrt_voxels.h"
 
 namespace vkvol {
 
 namespace {
-
-// Jensen, Marschner, Levoy, Hanrahan, "A Practical Model for Subsurface Light Transport", 2001, figure 5 [1 / mm].
-struct Preset {
-    const char* name;
-    glm::dvec3 sigma_s, sigma_a;
-};
-const Preset presets[] = {
-    {"Apple", {2.29, 2.39, 1.97}, {0.0030, 0.0034, 0.046}}, {"Chicken1", {0.15, 0.21, 0.38}, {0.015, 0.077, 0.19}},
-    {"Chicken2", {0.19, 0.25, 0.32}, {0.018, 0.088, 0.20}}, {"Cream", {7.38, 5.47, 3.15}, {0.0002, 0.0028, 0.0163}},
-    {"Ketchup", {0.18, 0.07, 0.03}, {0.061, 0.97, 1.45}},   {"Marble", {2.19, 2.62, 3.00}, {0.0021, 0.0041, 0.0071}},
-    {"Potato", {0.68, 0.70, 0.55}, {0.0024, 0.0090, 0.12}}, {"Skimmilk", {0.70, 1.22, 1.90}, {0.0014, 0.0025, 0.0142}},
-    {"Skin1", {0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}},     {"Skin2", {1.09, 1.59, 1.79}, {0.013, 0.070, 0.145}},
-    {"Spectralon", {11.6, 20.4, 14.9}, {0.0, 0.0, 0.0}},    {"Wholemilk", {2.55, 3.21, 3.77}, {0.0011, 0.0024, 0.014}}};
 
 bool has_grid(const std::filesystem::path& file, const std::string& grid) {
     try {
@@ -60,11 +50,11 @@ void PbrtTranslator::write_coefficients(const PbrtThing& medium) {
     glm::dvec3 sigma_a(1.0), sigma_s(1.0);
     const std::string wanted = medium.type == "homogeneous" ? p.text("preset") : "";
     if (!wanted.empty()) {
-        const auto* preset = std::find_if(std::begin(presets), std::end(presets),
-                                          [&](const Preset& each) { return wanted == each.name; });
-        if (preset == std::end(presets))
+        const std::optional<PbrtPreset> preset = pbrt_preset(wanted);
+        if (!preset)
             fail_at(p.find("preset")->place,
-                    fmt::format("preset \"{}\" is not known here; write its sigma_a and sigma_s", wanted));
+                    fmt::format("preset \"{}\" is not known{}; or write its sigma_a and sigma_s", wanted,
+                                name_hint(wanted, pbrt_preset_names())));
         sigma_a = preset->sigma_a;
         sigma_s = preset->sigma_s;
     } else {
@@ -152,21 +142,28 @@ void PbrtTranslator::write_black_body(const std::string& grid, double glow, cons
     xml_.element("emission", attributes);
 }
 
-// Nothing, with a note, for shapes that hold no medium here.
-std::optional<PbrtTranslator::Region> PbrtTranslator::region_within(const PbrtShape& shape) {
+// Nothing for shapes that hold no medium here.
+std::optional<PbrtTranslator::Region> PbrtTranslator::region_of(const PbrtShape& shape) const {
     const PbrtThing& thing = shape.thing;
     const glm::dmat4 transform = world_ * thing.transform;
-    if (thing.type == "sphere")
+    if (thing.type == "sphere" && is_whole_ball_or_disk(thing, glm::dmat4(1.0)))
         return Region{"sphere", "", transform * glm::dmat4(glm::dmat3(thing.parameters->number("radius", 1.0)))};
-    if (thing.type == "plymesh")
+    if (thing.type == "plymesh" && media_count_ <= 1)
         return Region{"", file_name(thing), transform};
     if (thing.type == "trianglemesh" || thing.type == "bilinearmesh")
         if (const std::optional<glm::dmat4> box = as_box(read_triangles(thing)))
             return Region{"box", "", transform * *box};
-    note(thing.place, fmt::format("\"{}\" encloses medium \"{}\", which is left out: of shapes a sphere, a box or a "
-                                  "plymesh can hold it",
-                                  thing.type, shape.inside));
     return std::nullopt;
+}
+
+std::optional<PbrtTranslator::Region> PbrtTranslator::region_within(const PbrtShape& shape, const std::string& medium) {
+    std::optional<Region> region = region_of(shape);
+    if (!region)
+        note(shape.thing.place,
+             fmt::format("\"{}\" encloses medium \"{}\", which is left out: of shapes a whole sphere, a box or, of a "
+                         "scene's only medium, a plymesh can hold it",
+                         shape.thing.type, medium));
+    return region;
 }
 
 // As far as that can be told here: what a file's mesh holds is taken to have it.
@@ -182,52 +179,121 @@ bool PbrtTranslator::has_camera(const Region& region) const {
 
 bool PbrtTranslator::ends_camera_medium() {
     return std::any_of(scene_.shapes.begin(), scene_.shapes.end(), [&](const PbrtShape& shape) {
-        if (shape.inside != scene_.camera_medium || shape.outside == shape.inside)
+        const PbrtSides sides = sides_of(shape);
+        if (sides.within != scene_.camera_medium || sides.beyond == sides.within)
             return false;
-        const std::optional<Region> region = region_within(shape);
+        const std::optional<Region> region = region_within(shape, sides.within);
         return region && has_camera(*region);
     });
 }
 
-// The camera's medium has no end, unless a shape about the camera ends it.
-void PbrtTranslator::write_media() {
-    xml_.open("volumes");
-    std::set<std::string> grids; // those that are written: they end by themselves
-    const auto is_grid = [&](const std::string& name, const PbrtThing& medium) {
-        const bool is_file = medium.type == "nanovdb", is_one = is_file || is_dense(medium);
-        if (!is_one && medium.type != "homogeneous")
-            fail_at(medium.place,
-                    fmt::format(
-                        "medium \"{}\" cannot be rendered; take homogeneous, uniformgrid, rgbgrid, cloud, or nanovdb "
+// Whether it is one. Grids end by themselves, and are written once.
+bool PbrtTranslator::write_grid_once(const std::string& name, const PbrtThing& medium) {
+    const bool is_file = medium.type == "nanovdb", is_grid = is_file || is_dense(medium);
+    if (!is_grid && medium.type != "homogeneous")
+        fail_at(
+            medium.place,
+            fmt::format("medium \"{}\" cannot be rendered; take homogeneous, uniformgrid, rgbgrid, cloud, or nanovdb "
                         "with a file",
                         medium.type));
-        if (is_one && grids.insert(name).second) {
-            if (is_file)
-                write_grid_medium(name, medium);
-            else
-                write_dense_medium(name, medium);
-        }
-        return is_one;
+    if (is_grid && written_grids_.insert(name).second) {
+        if (is_file)
+            write_grid_medium(name, medium);
+        else
+            write_dense_medium(name, medium);
+    }
+    return is_grid;
+}
+
+// The volumes that shapes ask for, each grid once.
+void PbrtTranslator::count_media() {
+    std::set<std::string> grids;
+    const auto is_grid = [&](const std::string& name) {
+        const auto medium = scene_.media.find(name);
+        return medium != scene_.media.end() && medium->second.type != "homogeneous";
     };
-    const PbrtPlace camera = scene_.camera ? scene_.camera->place : PbrtPlace();
-    if (const PbrtThing* medium = medium_of(scene_.camera_medium, camera))
-        if (!is_grid(scene_.camera_medium, *medium) && !ends_camera_medium())
-            write_medium(scene_.camera_medium, *medium, {"everywhere", "", glm::dmat4(1.0)}, camera);
     for (const PbrtShape& shape : scene_.shapes) {
         if (shape.inside == shape.outside)
             continue;
-        const PbrtThing* inside = medium_of(shape.inside, shape.thing.place);
-        const PbrtThing* outside = medium_of(shape.outside, shape.thing.place);
-        if (outside && outside->type != "homogeneous")
-            is_grid(shape.outside, *outside);
-        else if (outside && lets_light_in(shape))
-            note(shape.thing.place,
-                 fmt::format("medium \"{}\" goes on within: media add up where they overlap here", shape.outside));
-        if (!inside || is_grid(shape.inside, *inside))
-            continue;
-        if (const std::optional<Region> region = region_within(shape))
-            write_medium(shape.inside, *inside, *region, shape.thing.place);
+        const PbrtSides sides = sides_of(shape);
+        media_within_.insert(sides.within);
+        for (const std::string& name : {sides.within, sides.beyond})
+            if (is_grid(name))
+                grids.insert(name);
+        media_count_ += !sides.within.empty() && !is_grid(sides.within) ? 1 : 0;
     }
+    media_count_ += int(grids.size());
+}
+
+// It has no end, unless a shape about the camera ends it.
+void PbrtTranslator::write_camera_medium() {
+    const PbrtPlace place = scene_.camera ? scene_.camera->place : PbrtPlace();
+    const PbrtThing* medium = medium_of(scene_.camera_medium, place);
+    if (!medium || write_grid_once(scene_.camera_medium, *medium) || ends_camera_medium())
+        return;
+    ++media_count_;
+    write_medium(scene_.camera_medium, *medium, {"everywhere", "", glm::dmat4(1.0)}, place);
+    if (std::any_of(scene_.lights.begin(), scene_.lights.end(),
+                    [](const PbrtThing& light) { return light.type == "distant" || light.type == "infinite"; }))
+        note(place, fmt::format("medium \"{}\" has no end, and lets no light through from \"distant\" and \"infinite\" "
+                                "sources; pbrt has it "
+                                "come from twice the scene's radius. A sphere about camera and scene would end it",
+                                scene_.camera_medium));
+}
+
+// Of a homogeneous medium outside of a shape.
+void PbrtTranslator::note_beyond(const PbrtShape& shape, const std::string& medium) {
+    if (medium != scene_.camera_medium && media_within_.count(medium) == 0)
+        note(shape.thing.place,
+             fmt::format("medium \"{}\" is outside of this, as its normals point, and neither the camera's nor within "
+                         "another shape: it is left out",
+                         medium));
+    else if (lets_light_in(shape))
+        note(shape.thing.place,
+             fmt::format("medium \"{}\" goes on within: media add up where they overlap here", medium));
+}
+
+void PbrtTranslator::note_what_is_not_cut(const PbrtShape& shape, const std::string& name, const PbrtThing& medium) {
+    const std::optional<Region> region = region_of(shape);
+    if (!region || region->element.empty() || !is_dense(medium))
+        return;
+    const PbrtBounds bounds = bounds_of(medium);
+    const glm::dmat4 to_region = glm::inverse(region->transform) * world_ * medium.transform;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 own = bounds.low + bounds.size * glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2);
+        const glm::dvec3 p(to_region * glm::dvec4(own, 1.0));
+        const double reach = region->element == "sphere"
+                                 ? glm::length(p)
+                                 : 2.0 * std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        if (reach > 1.0 + 1e-5)
+            return note(shape.thing.place, fmt::format("the grid of medium \"{}\" reaches beyond this, and is there "
+                                                       "beyond it too: shapes do not cut grids here",
+                                                       name));
+    }
+}
+
+void PbrtTranslator::write_media_of(const PbrtShape& shape) {
+    const PbrtSides sides = sides_of(shape);
+    if (sides.within == sides.beyond)
+        return;
+    const PbrtThing* within = medium_of(sides.within, shape.thing.place);
+    const PbrtThing* beyond = medium_of(sides.beyond, shape.thing.place);
+    if (beyond && !write_grid_once(sides.beyond, *beyond))
+        note_beyond(shape, sides.beyond);
+    if (!within)
+        return;
+    if (write_grid_once(sides.within, *within))
+        note_what_is_not_cut(shape, sides.within, *within);
+    else if (const std::optional<Region> region = region_within(shape, sides.within))
+        write_medium(sides.within, *within, *region, shape.thing.place);
+}
+
+void PbrtTranslator::write_media() {
+    xml_.open("volumes");
+    count_media();
+    write_camera_medium();
+    for (const PbrtShape& shape : scene_.shapes)
+        write_media_of(shape);
     xml_.close();
 }
 

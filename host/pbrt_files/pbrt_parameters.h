@@ -16,6 +16,7 @@ struct PbrtParameter {
     std::vector<double> numbers;
     std::vector<std::string> texts; // of truth values "true" and "false"
     bool is_truth = false;
+    std::string color_space = {}; // of its colours; empty: that of what it belongs to
 };
 
 // Getters throw InputError for values of a wrong type or number.

@@ -86,16 +86,19 @@ struct NamedShare {
 };
 
 // Of metals as in scene files (Johnson and Christy 1972; Rakic 1995), brass by Querry (1985); of glasses from Schott's
-// data sheets, at 588 nm.
+// data sheets, at 588 nm; pbrt's F5, F10 and F11 are of SF5, SF10 and SF11. Oxides at 630, 532 and 465 nm.
 const NamedShare shares[] = {{"metal-Ag-eta", {0.155, 0.117, 0.138}},   {"metal-Ag-k", {4.828, 3.122, 2.147}},
                              {"metal-Al-eta", {1.657, 0.880, 0.521}},   {"metal-Al-k", {9.224, 6.270, 4.837}},
                              {"metal-Au-eta", {0.143, 0.375, 1.442}},   {"metal-Au-k", {3.983, 2.386, 1.603}},
                              {"metal-Cu-eta", {0.200, 0.924, 1.102}},   {"metal-Cu-k", {3.912, 2.452, 2.142}},
                              {"metal-CuZn-eta", {0.444, 0.527, 1.094}}, {"metal-CuZn-k", {3.695, 2.765, 1.829}},
-                             {"glass-BK7", glm::dvec3(1.5168)},         {"glass-BAF10", glm::dvec3(1.6700)},
-                             {"glass-FK51A", glm::dvec3(1.4866)},       {"glass-LASF9", glm::dvec3(1.8503)},
-                             {"glass-SF5", glm::dvec3(1.6727)},         {"glass-SF10", glm::dvec3(1.7283)},
-                             {"glass-SF11", glm::dvec3(1.7847)}};
+                             {"metal-MgO-eta", {1.735, 1.742, 1.750}},  {"metal-MgO-k", glm::dvec3(0.0)},
+                             {"metal-TiO2-eta", {2.875, 2.969, 3.118}}, {"metal-TiO2-k", glm::dvec3(0.0)},
+                             {"glass-F5", glm::dvec3(1.6727)},          {"glass-F10", glm::dvec3(1.7283)},
+                             {"glass-F11", glm::dvec3(1.7847)},         {"glass-BK7", glm::dvec3(1.5168)},
+                             {"glass-BAF10", glm::dvec3(1.6700)},       {"glass-FK51A", glm::dvec3(1.4866)},
+                             {"glass-LASF9", glm::dvec3(1.8503)},       {"glass-SF5", glm::dvec3(1.6727)},
+                             {"glass-SF10", glm::dvec3(1.7283)},        {"glass-SF11", glm::dvec3(1.7847)}};
 
 } // namespace
 

@@ -72,10 +72,7 @@ void PbrtTranslator::add_texture(XmlAttributes& attributes, const PbrtThing& tex
     if (const std::optional<glm::dvec3> color = even_color(texture, depth)) {
         add_rgb(attributes, glm::clamp(factor * *color, 0.0, 1.0));
     } else if (texture.type == "imagemap" && p.has("filename")) {
-        add_rgb(attributes, glm::clamp(factor * p.number("scale", 1.0), 0.0, 1.0));
-        attributes.emplace_back("texture", file_name(texture));
-        attributes.emplace_back("repeat", fmt::format("{} {}", p.number("uscale", 1.0), p.number("vscale", 1.0)));
-        note_unused(texture, {"filter", "encoding", "wrap", "maxanisotropy"});
+        add_image(attributes, texture, factor);
     } else if (texture.type == "checkerboard" && p.number("dimension", 2.0) == 2.0 &&
                (!p.has("mapping") || p.text("mapping") == "uv")) {
         add_checkerboard(attributes, texture, factor, depth);
@@ -85,6 +82,24 @@ void PbrtTranslator::add_texture(XmlAttributes& attributes, const PbrtThing& tex
         note(texture.place, fmt::format("Texture \"{}\" is left out; what has it is grey", texture.type));
         add_rgb(attributes, glm::dvec3(0.5));
     }
+}
+
+void PbrtTranslator::add_image(XmlAttributes& attributes, const PbrtThing& texture, const glm::dvec3& factor) {
+    const PbrtParameters& p = *texture.parameters;
+    const glm::dvec3 share = factor * p.number("scale", 1.0);
+    if (const double most = std::max({share.x, share.y, share.z}); most > 1.0)
+        note(texture.place,
+             fmt::format("its image is taken {:g} times, and once here; brighter ones have to be in the file", most));
+    if (const std::string wrap = p.text("wrap", "repeat"); wrap != "repeat")
+        note(texture.place, fmt::format("\"{}\" at its edges is left out; the image is repeated", wrap));
+    if (const std::string encoding = p.text("encoding", "sRGB"); encoding != "sRGB")
+        note(texture.place,
+             fmt::format("encoding \"{}\" is left out; what is in the file is known by its format, of 8 bits as sRGB",
+                         encoding));
+    add_rgb(attributes, glm::clamp(share, 0.0, 1.0));
+    attributes.emplace_back("texture", file_name(texture));
+    attributes.emplace_back("repeat", fmt::format("{} {}", p.number("uscale", 1.0), p.number("vscale", 1.0)));
+    note_unused(texture, {"filter", "maxanisotropy"});
 }
 
 // A square of it is 1 / uscale wide, and the one on the lower left "tex1"; beyond 0, where negative scales lead,
@@ -312,7 +327,10 @@ void PbrtTranslator::write_surface(const PbrtShape& shape) {
     const PbrtThing& thing = shape.thing;
     if (thing.parameters->has("alpha"))
         note(thing.place, "\"alpha\" is left out; it is opaque");
-    const bool shines_inwards = thing.type == "sphere" && shape.is_reversed && shape.light;
+    PbrtShape turned = shape; // as its triangles would be
+    if (thing.type == "sphere" || thing.type == "cylinder")
+        turned.is_reversed = faces_inwards(shape);
+    const bool shines_inwards = thing.type == "sphere" && turned.is_reversed && shape.light;
     const bool is_polar = thing.type == "disk" && has_texture(*material); // there
     const bool is_quadric = thing.type == "sphere" || thing.type == "disk" || thing.type == "cylinder";
     if (thing.type == "plymesh") {
@@ -324,7 +342,7 @@ void PbrtTranslator::write_surface(const PbrtShape& shape) {
     } else if (is_quadric && (shines_inwards || is_polar || !is_whole_ball_or_disk(thing, thing.transform))) {
         const PbrtTriangles mesh = quadric_triangles(thing);
         note(thing.place, fmt::format("this {} is {} triangles here", thing.type, mesh.triangles.size()));
-        write_triangles(shape, mesh, *material);
+        write_triangles(turned, mesh, *material);
     } else if (is_quadric) {
         thing.type == "sphere" ? write_ball(shape, *material) : write_disk(shape, *material);
     } else {

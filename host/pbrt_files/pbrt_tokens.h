@@ -42,6 +42,8 @@ public:
 
     // Goes on with that file. Throws InputError for files that include one another, or too many.
     void include(const std::filesystem::path& file, const PbrtPlace& by);
+    // Files that are open: that of the last token, and those that include it.
+    std::size_t depth() const { return sources_.size(); }
 
 private:
     struct Source {

@@ -140,6 +140,8 @@ void PbrtTranslator::note(const PbrtPlace& place, const std::string& message) {
 // Empty if it names none.
 std::string PbrtTranslator::file_name(const PbrtThing& thing, const char* parameter) const {
     const std::string name = thing.parameters->text(parameter);
+    if (name.ends_with(".gz"))
+        fail_at(thing.place, fmt::format("{} is compressed; unpack it with gunzip, and name what that leaves", name));
     return name.empty() || !options_.name_of_file ? name : options_.name_of_file(name);
 }
 
@@ -272,8 +274,8 @@ void PbrtTranslator::write_settings() {
     const PbrtThing& integrator = thing_or(scene_.integrator, usual_integrator);
     const PbrtParameters& s = *sampler.parameters;
     const bool is_grid = sampler.type == "stratified";
-    const long long samples =
-        is_grid ? s.integer("xsamples", 4) * s.integer("ysamples", 4) : s.integer("pixelsamples", 16);
+    const long long samples = is_grid ? s.integer("xsamples", 4) * s.integer("ysamples", 4)
+                                      : s.integer("pixelsamples", sampler.type == "independent" ? 4 : 16);
     xml_.element("rayPerPixelCount", {}, fmt::format("{}", samples), sampler.place.text());
     note_unused(sampler, {"seed", "randomization", "jitter"});
     if (integrator.type != "volpath" && integrator.type != "path" && integrator.type != "simplevolpath")

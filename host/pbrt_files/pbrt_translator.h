@@ -10,6 +10,7 @@
 #include <string>
 
 #include "pbrt_colors.h"
+#include "pbrt_sides.h"
 #include "pbrt_translation.h"
 #include "pbrt_triangles.h"
 #include "xml_text.h"
@@ -50,9 +51,16 @@ private:
     static glm::dvec2 kelvins(const PbrtThing& medium);
     void write_coefficients(const PbrtThing& medium);
     void write_coefficients(const glm::dvec3& sigma_a, const glm::dvec3& sigma_s, double g); // per length
-    std::optional<Region> region_within(const PbrtShape& shape);
+    std::optional<Region> region_of(const PbrtShape& shape) const;
+    std::optional<Region> region_within(const PbrtShape& shape, const std::string& medium);
     bool has_camera(const Region& region) const;
     bool ends_camera_medium();
+    void write_camera_medium();
+    void write_media_of(const PbrtShape& shape);
+    bool write_grid_once(const std::string& name, const PbrtThing& medium);
+    void note_beyond(const PbrtShape& shape, const std::string& medium);
+    void note_what_is_not_cut(const PbrtShape& shape, const std::string& name, const PbrtThing& medium);
+    void count_media();
     const PbrtThing* medium_of(const std::string& name, const PbrtPlace& place) const;
 
     void write_lights();
@@ -74,6 +82,7 @@ private:
     void add_color(XmlAttributes& attributes, const PbrtThing& thing, const char* name, const glm::dvec3& fallback);
     void add_roughness(XmlAttributes& attributes, const PbrtThing& thing);
     void add_texture(XmlAttributes& attributes, const PbrtThing& texture, const glm::dvec3& factor, int depth);
+    void add_image(XmlAttributes& attributes, const PbrtThing& texture, const glm::dvec3& factor);
     void add_checkerboard(XmlAttributes& attributes, const PbrtThing& texture, const glm::dvec3& factor, int depth);
     const PbrtThing& texture_of(const PbrtThing& thing, const char* name) const;
     std::optional<glm::dvec3> even_color(const PbrtThing& texture, int depth);
@@ -90,7 +99,10 @@ private:
     XmlText xml_;
     std::vector<std::string> notes_;
     std::set<std::string> heard_;
-    glm::dmat4 world_{1.0}; // from pbrt's world to this renderer's
+    std::set<std::string> written_grids_; // media
+    std::set<std::string> media_within_;  // of shapes
+    int media_count_ = 0;                 // of volumes, at most
+    glm::dmat4 world_{1.0};               // from pbrt's world to this renderer's
     bool sky_is_mirrored_ = false;
     double exposure_ = 1.0; // by which pbrt's film multiplies radiance
 };

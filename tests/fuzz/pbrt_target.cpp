@@ -64,6 +64,7 @@ constexpr const char* directives[] = {
     "MediumInterface \"fog\" \"\"",
     "Attribute \"shape\" \"float radius\" 2",
     "TransformBegin",
+    "TransformTimes",
     "TransformEnd",
     "CoordSysTransform \"camera\"",
     "ActiveTransform EndTime",

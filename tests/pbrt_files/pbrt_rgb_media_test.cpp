@@ -106,7 +106,8 @@ TEST_CASE("media of a colour in each voxel add up to pbrt's", "[cpu][pbrt]") {
                 exposure = voxel.emission.x / expected.x;
             CHECK(glm::length(voxel.emission - exposure * expected) < 1e-5 * exposure);
         }
-        // pbrt divides light by the integral of the observer where it comes from lights, and not where from these grids.
+        // pbrt divides light by the integral of the observer where it comes from lights, and not where from these
+        // grids.
         CHECK((each.glow.empty() || exposure == Approx(106.8569)));
     }
     // What is not there is 1.

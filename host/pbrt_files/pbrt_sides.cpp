@@ -1,0 +1,28 @@
+#include "pbrt_sides.h"
+
+#include "pbrt_triangles.h"
+
+namespace vkvol {
+
+bool faces_inwards(const PbrtShape& shape) {
+    const PbrtThing& thing = shape.thing;
+    if (thing.type == "plymesh")
+        return shape.is_reversed;
+    if (thing.type != "trianglemesh" && thing.type != "bilinearmesh")
+        return shape.is_reversed != (glm::determinant(glm::dmat3(thing.transform)) < 0.0);
+    const PbrtTriangles mesh = moved(thing.transform, read_triangles(thing), shape.is_reversed);
+    double volume = 0.0; // by Gauss's theorem, six times
+    for (const glm::uvec3& t : mesh.triangles) {
+        const glm::dvec3& o = mesh.points[mesh.triangles[0].x];
+        volume += glm::dot(mesh.points[t.x] - o, glm::cross(mesh.points[t.y] - o, mesh.points[t.z] - o));
+    }
+    return volume < 0.0;
+}
+
+PbrtSides sides_of(const PbrtShape& shape) {
+    if (shape.inside == shape.outside || !faces_inwards(shape))
+        return {shape.inside, shape.outside};
+    return {shape.outside, shape.inside};
+}
+
+} // namespace vkvol

@@ -1,0 +1,152 @@
+// Which side of a pbrt shape has which medium, what of it is not rendered, and what files and blocks leave behind.
+#include <algorithm>
+
+#include "pbrt_scenes.h"
+#include "support/scene_text.h"
+#include "support/scenes.h"
+#include "support/test_directory.h"
+
+using namespace vkvol;
+using Catch::Contains;
+
+namespace {
+
+const std::string media = "MakeNamedMedium \"a\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 1 1 1 ]\n"
+                          "MakeNamedMedium \"b\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 2 2 2 ]\n"
+                          "Material \"interface\" ";
+const std::string ball = " Shape \"sphere\" ";
+// Its points go round as seen from outside.
+const std::string box =
+    " Shape \"trianglemesh\" \"point3 P\" [ -1 -1 -1  1 -1 -1  1 1 -1  -1 1 -1  -1 -1 1  1 -1 1  1 1 1  -1 1 1 ]"
+    " \"integer indices\" [ 0 2 1 0 3 2  5 7 4 5 6 7  4 3 0 4 7 3  1 6 5 1 2 6  3 6 2 3 7 6  4 1 5 4 0 1 ] ";
+
+// sigma_a of the volumes, in their order.
+std::vector<double> absorbs(const std::string& text) {
+    std::vector<double> all;
+    for (const Volume& volume : world_of(media + text).volumes)
+        all.push_back(volume.sigma_a.x);
+    return all;
+}
+
+void check_noted(const std::string& text, const std::string& expected) {
+    const Scene scene = world_of(media + text);
+    CAPTURE(text, expected);
+    CHECK(std::count_if(scene.warnings.begin(), scene.warnings.end(),
+                        [&](const std::string& warning) { return warning.find(expected) != warning.npos; }) == 1);
+}
+
+} // namespace
+
+TEST_CASE("pbrt's normals say which medium is within", "[cpu][pbrt]") {
+    using All = std::vector<double>;
+    CHECK(absorbs("MediumInterface \"a\" \"\"" + ball) == All{1});
+    CHECK(absorbs("ReverseOrientation MediumInterface \"\" \"a\"" + ball) == All{1});
+    CHECK(absorbs("ReverseOrientation Scale -1 1 1 MediumInterface \"a\" \"\"" + ball) ==
+          All{1}); // a mirror turns a ball about,
+    CHECK(absorbs("Scale -1 1 1 MediumInterface \"\" \"a\"" + ball) == All{1});
+    CHECK(absorbs("Scale -1 1 1 MediumInterface \"a\" \"\"" + box) == All{1}); // and no triangles
+    CHECK(absorbs("MediumInterface \"a\" \"\"" + box) == All{1});
+    CHECK(absorbs("ReverseOrientation MediumInterface \"\" \"a\"" + box) == All{1});
+    CHECK(absorbs("MediumInterface \"b\" \"a\"" + ball + "MediumInterface \"a\" \"\" Scale 3 3 3" + ball) == All{2, 1});
+    CHECK(absorbs("ReverseOrientation MediumInterface \"a\" \"\"" + ball).empty());
+}
+
+TEST_CASE("pbrt's media that are not rendered as in pbrt are named", "[cpu][pbrt]") {
+    check_noted("ReverseOrientation MediumInterface \"a\" \"\"" + ball,
+                "medium \"a\" is outside of this, as its normals point");
+    check_noted("MediumInterface \"b\" \"a\"" + ball + "MediumInterface \"a\" \"\" Scale 3 3 3" + ball,
+                "medium \"a\" goes on within");
+    check_noted("MediumInterface \"a\" \"\" Shape \"sphere\" \"float zmax\" 0",
+                "\"sphere\" encloses medium \"a\", which is left out");
+    check_noted("MediumInterface \"a\" \"\" Shape \"plymesh\" \"string filename\" \"a.ply\"" + ball,
+                "\"plymesh\" encloses medium \"a\", which is left out");
+    const std::string grid =
+        "MakeNamedMedium \"g\" \"string type\" \"uniformgrid\" \"integer nx\" 1 \"integer ny\" 1 \"integer nz\" 1 "
+        "\"float density\" [ 0 ] \"point3 p0\" [ -1 -1 -1 ] \"point3 p1\" [ 1 1 1 ] MediumInterface \"g\" \"\" ";
+    const std::string not_cut = "the grid of medium \"g\" reaches beyond this";
+    check_noted(grid + ball, not_cut);
+    check_noted(grid + "Scale .9 2 2" + box, not_cut);
+    for (const std::string& whole : {box, "Scale 1.8 1.8 1.8" + ball})
+        for (const std::string& warning : world_of(media + grid + whole).warnings)
+            CHECK_THAT(warning, !Contains(not_cut));
+    const auto fog = [](const std::string& lights) {
+        return scene_of("MakeNamedMedium \"a\" \"string type\" \"homogeneous\" MediumInterface \"\" \"a\" Camera "
+                        "\"perspective\" WorldBegin " +
+                        lights);
+    };
+    REQUIRE(fog("LightSource \"distant\"").warnings.size() == 1);
+    CHECK_THAT(fog("LightSource \"distant\"").warnings[0], Contains("medium \"a\" has no end"));
+    CHECK(fog("LightSource \"point\"").warnings.empty());
+}
+
+TEST_CASE("images of pbrt's textures that are taken otherwise are named", "[cpu][pbrt]") {
+    const auto check = [](const std::string& parameter, const std::string& expected) {
+        check_noted("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" " + parameter +
+                        " Material \"diffuse\" \"texture reflectance\" \"t\"" + ball,
+                    expected);
+    };
+    check("\"float scale\" 3", "taken 3 times, and once here");
+    check("\"string wrap\" \"black\"", "the image is repeated");
+    check("\"string encoding\" \"linear\"", "encoding \"linear\" is left out");
+    // Of colours and of numbers, by one name.
+    const Scene scene =
+        world_of("Texture \"t\" \"spectrum\" \"constant\" \"rgb value\" [ .8 .1 .1 ] Texture \"t\" \"float\" "
+                 "\"constant\" \"float value\" .05 Material \"diffuse\" \"texture reflectance\" \"t\"" +
+                 ball);
+    CHECK(near(scene.surfaces.at(0).material.color, {.8, .1, .1}));
+    CHECK_THROWS_WITH(world_of("Texture \"t\" \"color\" \"constant\""), Contains("expected \"spectrum\" or \"float\""));
+}
+
+TEST_CASE("blocks and imported files leave pbrt's state as they find it", "[cpu][pbrt]") {
+    const std::string red = "Material \"diffuse\" \"rgb reflectance\" [ .8 .1 .1 ] ",
+                      green = "Material \"diffuse\" \"rgb reflectance\" [ .1 .8 .1 ] ";
+    const auto colors = [&](const std::string& text, const std::filesystem::path& file = "s.pbrt") {
+        const std::string whole = "Camera \"perspective\" WorldBegin " + red + text + ball;
+        std::vector<glm::dvec3> all;
+        for (const Surface& surface : parse_scene(translate_pbrt(read_pbrt(whole, file)), file.string()).surfaces)
+            all.push_back(surface.material.color);
+        return all;
+    };
+    CHECK(near(colors("TransformBegin " + green + "TransformEnd").back(), {.8, .1, .1}));
+    const TestDirectory directory;
+    directory.write("green.inc", green + "AttributeBegin" + ball);
+    directory.write("nothing.inc", "# nothing");
+    directory.write("nested.inc", "Import \"green.inc\"" + ball);
+    directory.write("ends.inc", "AttributeEnd");
+    const std::filesystem::path file = directory.path / "s.pbrt";
+    const std::vector<glm::dvec3> seen =
+        colors("Import \"green.inc\" Import \"nothing.inc\" Import \"nested.inc\"", file);
+    REQUIRE(seen.size() == 4);
+    CHECK(near(seen[0], {.1, .8, .1}));
+    CHECK(near(seen[1], {.1, .8, .1}));
+    CHECK(near(seen[2], {.8, .1, .1}));
+    CHECK(near(seen[3], {.8, .1, .1}));
+    CHECK(near(colors("Include \"green.inc\"", file).back(), {.1, .8, .1}));
+    CHECK_THROWS_WITH(colors("AttributeBegin Import \"ends.inc\"", file),
+                      Contains("ends.inc:1:1: AttributeEnd without what it ends"));
+}
+
+TEST_CASE("pbrt's names of media, spectra and spaces", "[cpu][pbrt]") {
+    const auto preset = [](const std::string& name) {
+        return world_of("MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"string preset\" \"" + name +
+                        "\" MediumInterface \"m\" \"\" Material \"interface\"" + ball)
+            .volumes.at(0)
+            .sigma_a;
+    };
+    CHECK(near(preset("Coke"), {.10014, .16503, .2468}));
+    CHECK_THROWS_WITH(preset("Cokes"), Contains("did you mean Coke?"));
+    CHECK(world_of("Material \"dielectric\" \"spectrum eta\" \"glass-F11\"" + ball).surfaces.at(0).material.ior ==
+          Approx(1.7847));
+    CHECK(world_of("Material \"conductor\" \"spectrum eta\" \"metal-TiO2-eta\" \"spectrum k\" \"metal-TiO2-k\"" + ball)
+              .warnings.empty());
+    CHECK(world_of("ColorSpace \"sRGB\" LightSource \"point\"").warnings.empty());
+    // Colours of an Attribute are of the space at its place.
+    const Scene scene =
+        world_of("Attribute \"light\" \"rgb I\" [ 1 0 0 ] ColorSpace \"rec2020\" LightSource \"point\"");
+    CHECK(near(only_light<PointLight>(scene).intensity, {1, 0, 0}));
+    CHECK(world_of("CoordSysTransform \"none\" LightSource \"point\"").warnings.size() == 1);
+    CHECK(scene_of("Sampler \"independent\" Camera \"perspective\" WorldBegin").settings.spp == 4);
+    CHECK(scene_of("Sampler \"zsobol\" Camera \"perspective\" WorldBegin").settings.spp == 16);
+    CHECK_THROWS_WITH(world_of("Shape \"plymesh\" \"string filename\" \"a.ply.gz\""),
+                      Contains("unpack it with gunzip"));
+}
