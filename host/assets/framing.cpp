@@ -180,8 +180,9 @@ void frame_medium(Scene& scene, FieldCache& fields) {
                                      projection_name(scene.camera.projection)));
     const std::optional<Corners> corners = medium_corners(scene, fields);
     if (!corners)
-        throw InputError(scene.volumes.empty()
-                             ? "--frame: the scene has no medium to frame; leave --frame out"
+        throw InputError(scene.volumes.empty() ? "--frame: the scene has no medium to frame; leave --frame out"
+                         : std::any_of(scene.volumes.begin(), scene.volumes.end(), is_everywhere)
+                             ? "--frame: <everywhere> has no box to frame; leave --frame out"
                              : "--frame: the medium is a grid without voxels, which has no box to frame; leave --frame "
                                "out, or give another grid with --grid FILE");
     if (scene.camera.projection == Projection::equirectangular)

@@ -148,7 +148,7 @@ void judge(const Film& a, const CompareOptions& options, Comparison& result) {
         return verdict(false, "identical");
     if (!result.has_variance)
         return verdict(true, "neither image knows its variance, and they are not identical; --max-relmse sets a limit");
-    if (worst_mean > mean_bound)
+    if (result.has_mean_z && worst_mean > mean_bound)
         return verdict(true, fmt::format("the picture means are {:.2f} standard errors apart, more than {:.2f}",
                                          worst_mean, mean_bound));
     if (result.beyond_bound > 0)
@@ -172,6 +172,7 @@ Comparison compare_films(const Film& a, const Film& b, const CompareOptions& opt
         }
     // Half of the significance goes to the pixels, half to the three means.
     result.z_bound = sidak_bound(0.5 * options.significance, testable);
+    result.has_mean_z = !a.moves && !b.moves;
 
     Sums sums;
     for (std::size_t i = 0; i < result.pixels; ++i) {
@@ -208,7 +209,11 @@ void print_text(const Comparison& result) {
          result.mean_ratio[2]);
     tell(stdout, "max difference  {:.6g}\n", result.max_abs_difference);
     if (result.has_variance) {
-        tell(stdout, "mean z          {:.2f} {:.2f} {:.2f}\n", result.mean_z[0], result.mean_z[1], result.mean_z[2]);
+        if (result.has_mean_z)
+            tell(stdout, "mean z          {:.2f} {:.2f} {:.2f}\n", result.mean_z[0], result.mean_z[1],
+                 result.mean_z[2]);
+        else
+            tell(stdout, "mean z          unknown: all pixels have the same moments of what moves\n");
         tell(stdout, "|z| histogram   {} in steps of 1, the last is 6 and more\n", fmt::join(result.z_histogram, " "));
         tell(stdout, "beyond {:5.2f}    {} of {} values\n", result.z_bound, result.beyond_bound, result.tested);
     }
@@ -232,7 +237,7 @@ void print_json(const Comparison& result) {
     json["maxAbsDifference"] = number(result.max_abs_difference);
     if (result.has_variance) {
         for (const double z : result.mean_z)
-            json["meanZ"].push_back(number(z));
+            json["meanZ"].push_back(result.has_mean_z ? number(z) : nullptr);
         json["zHistogram"] = result.z_histogram;
         json["zBound"] = result.z_bound;
         json["beyondBound"] = result.beyond_bound;

@@ -24,7 +24,8 @@ struct Comparison {
     double z_bound = 0.0;               // two-sided normal quantile for the significance, Sidak-corrected
     std::size_t beyond_bound = 0;       // values with |z| > z_bound
     std::array<std::size_t, 7> z_histogram{}; // |z| in [0,1) [1,2) ... [5,6) [6,inf)
-    std::array<double, 3> mean_z{};           // z of the difference of the picture means per channel
+    std::array<double, 3> mean_z{};           // z of the difference of the picture means per channel,
+    bool has_mean_z = true;                   // if it is known: not of what moves
     bool different = false;
     std::string reason; // one line: why the verdict is what it is
 };

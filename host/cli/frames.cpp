@@ -170,6 +170,7 @@ std::vector<int> frames_with_file(const std::filesystem::path& name) {
 RenderOptions frame_options(const RenderOptions& options, int frame) {
     RenderOptions one = options;
     one.frames.clear();
+    one.is_frame = true;
     one.defines["F"] = std::to_string(frame);
     for (std::filesystem::path& output : one.outputs)
         output = frame_file(output, frame);

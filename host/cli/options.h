@@ -38,6 +38,7 @@ struct RenderOptions : RenderRequest {
     std::optional<double> checkpoint; // seconds between two
     bool resume = false;              // from the checkpoint, if there is one
     std::vector<int> frames;          // of a sequence, by -f; empty: one picture
+    bool is_frame = false;            // one of a sequence
     bool grid_has_frame = false;      // the grid's name goes by the frame
     bool dry_run = false;             // check everything, render and write nothing
     bool trace = false;               // print the path's vertices; crop and sample range hold just one

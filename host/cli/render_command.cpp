@@ -151,7 +151,9 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
         shown.tone = choose_tone(options.tone, result.film, make_metadata(options, scene, device, result));
     shown.explanation = foreseen || options.trace ? foreseen : explain(scene, result, shown.tone);
     outputs.write(device, result, shown);
-    if (result.samples == scene.settings.spp || result.reached_goal) // it is of no more use
+    // A picture's time may be given once more, and it goes on; a frame is done with it.
+    const bool is_done = result.samples == scene.settings.spp || result.reached_goal;
+    if (is_done || (options.is_frame && !result.interrupted))
         checkpoint.remove();
     if (!foreseen)
         tell_why(options, workshop, shown.explanation);

@@ -29,7 +29,8 @@ std::optional<int> code_of(const std::filesystem::path& exr, const RenderOptions
                          text_of(metadata, "vkvol/integrator") == choose_method(with_preset(scene)).integrator &&
                          text_of(metadata, "vkvol/asked") == asked_text(options, scene) &&
                          text_of(metadata, "vkvol/interrupted") == "0";
-    if (!is_this)
+    const bool shows = std::any_of(options.outputs.begin(), options.outputs.end(), is_display_file);
+    if (!is_this || (shows && !has_recorded(options.tone, metadata)))
         return std::nullopt;
     return options.strict && text_of(metadata, "vkvol/capsHit") != "0" ? exit_caps_hit : exit_done;
 }

@@ -93,6 +93,7 @@ void add_band(const Film& film, double weight, Film& sum) {
     }
     if (sum.pixel_count() != film.pixel_count())
         throw InputError("bands are of pictures of one size; the values of some make it another");
+    sum.moves = sum.moves || film.moves;
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
         sum.mean[i] += w * film.mean[i];
         sum.variance[i] += w * w * film.variance[i];

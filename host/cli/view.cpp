@@ -84,9 +84,8 @@ private:
     // False: there is nothing more to do for this wish.
     bool render_wish() {
         const ViewWish wish = board_.wish(&wish_number_);
-        if (has_new_file_)
+        if (std::exchange(has_new_file_, false)) // whatever comes of it: what cannot be read is not read again
             see_file_camera();
-        has_new_file_ = false;
         if (wish.layer != "picture" && wish.layer != "noise" && layers_.find(wish.layer) == std::string::npos)
             layers_ += (layers_.empty() ? "" : ",") + wish.layer;
         WatchedScene::Read read = source_.read(board_.wish().edits, layers_, workshop_.fields());

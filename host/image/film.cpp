@@ -40,7 +40,7 @@ std::optional<double> relative_noise(const Film& film) {
 ImageMean image_mean(const Film& film) {
     glm::dvec3 sum(0.0), variance(0.0);
     double counted = 0.0;
-    bool known = true;
+    bool known = !film.moves;
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
         if (film.samples[i] == 0)
             continue;

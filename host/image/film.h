@@ -34,6 +34,7 @@ struct Film {
     std::vector<std::uint32_t> samples; // per pixel
     std::vector<FilmLayer> layers;      // those asked for
     std::vector<glm::dvec3> places;     // where a sensor of flux reads each, its patch's middle, world; else none
+    bool moves = false;                 // pixels have the same moments of what moves: their errors go together
 
     int width() const { return crop.x1 - crop.x0; }
     int height() const { return crop.y1 - crop.y0; }
@@ -51,10 +52,12 @@ std::optional<double> relative_noise(const Film& film);
 
 // Metadata by which an image's layers are found: their names, between spaces.
 inline constexpr const char* layers_key = "vkvol/layers";
+// And by which it is known that it moves.
+inline constexpr const char* moves_key = "vkvol/moves";
 std::string layer_list(const Film& film);
 
 // Of the picture, over the pixels that have samples. Pixels are independent, so their variances add; of a pixel with a
-// single sample none is known, nor then of the picture.
+// single sample none is known, nor then of the picture, and not where pixels move together.
 struct ImageMean {
     glm::dvec3 value{0.0};
     std::optional<glm::dvec3> standard_error;

@@ -280,9 +280,11 @@ Film read_exr(const path& file, Metadata* metadata) {
     std::vector<float> pixels(std::size_t(header.width) * header.height * header.channels.size());
     if (!reader->read(pixels.data()))
         fail_to_read(file, *reader);
-    if (metadata)
-        *metadata = metadata_of(header);
+    const Metadata found = metadata_of(header);
     Film film = film_of(header, pixels, file);
+    film.moves = text_of(found, moves_key) == "1";
+    if (metadata)
+        *metadata = found;
     // Read as floats, whole numbers would be parts of the largest there is.
     if (const int samples = channel_of(header, "samples");
         samples >= 0 && header.counts[std::size_t(samples)] && !reader->read(samples, film.samples.data()))

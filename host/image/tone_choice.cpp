@@ -70,6 +70,10 @@ void record_tone(const ToneRequest& request, Metadata& metadata) {
             request.automatic_exposure ? std::string(automatic) : fmt::format("{}", *request.exposure);
 }
 
+bool has_recorded(const ToneRequest& request, const Metadata& metadata) {
+    return recorded(metadata) == request;
+}
+
 Tone choose_tone(const ToneRequest& request, const Film& film, const Metadata& metadata) {
     const ToneRequest before = recorded(metadata);
     const ToneRequest& exposing = says_exposure(request) ? request : before;

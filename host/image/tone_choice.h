@@ -14,6 +14,8 @@ struct ToneRequest {
     std::optional<ToneCurve> curve;
     std::optional<double> exposure;  // stops
     bool automatic_exposure = false; // in place of a number: that of suitable_exposure()
+
+    bool operator==(const ToneRequest&) const = default;
 };
 
 // What the picture gets.
@@ -34,6 +36,9 @@ inline constexpr const char* camera_exposure_key = "vkvol/cameraExposure";
 void record_tone(const ToneRequest& request, bool glows, Metadata& metadata);
 // What was asked for in addition; the rest is as it was.
 void record_tone(const ToneRequest& request, Metadata& metadata);
+
+// Whether these say that this was asked for.
+bool has_recorded(const ToneRequest& request, const Metadata& metadata);
 
 // What is not asked for is as the image's metadata say; else the exposure is that of the camera's settings, or 0, and
 // the curve is agx for what glows, since it keeps the colours of fire, which srgb cuts to yellow and white, and srgb

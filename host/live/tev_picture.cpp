@@ -7,12 +7,14 @@
 #include <fmt/format.h>
 #include <memory>
 #include <netdb.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <unistd.h>
 
 #include "error.h"
 #include "film_channels.h"
+#include "interrupt.h"
 
 namespace vkvol {
 
@@ -20,7 +22,11 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "packets are written as they lie in memory");
 
-constexpr timeval patience{5, 0};                  // for a viewer that takes nothing
+using Clock = std::chrono::steady_clock;
+
+constexpr timeval patience{5, 0}; // to connect
+// For a viewer to take a picture, whole; where the render is to end, the little that others need.
+constexpr std::chrono::milliseconds to_take{5000}, to_take_at_last{500};
 constexpr std::size_t largest_packet = 64u << 20u; // bytes of pixels; larger pictures go some rows at a time
 
 enum class PacketType : char { create_image = 4, update_image = 6 };
@@ -97,6 +103,7 @@ TevPicture::~TevPicture() {
 }
 
 void TevPicture::show(const Film& film, const ToneMapping&) {
+    begun_ = Clock::now();
     const std::vector<std::string> channels = channel_names(film);
     if (!is_there_)
         create(film, channels);
@@ -140,12 +147,17 @@ void TevPicture::update(const Film& film, const std::vector<std::string>& channe
 
 bool TevPicture::send(const std::string& packet) {
     for (std::size_t sent = 0; failure_.empty() && sent < packet.size();) {
-        const ssize_t taken = ::send(socket_, packet.data() + sent, packet.size() - sent, MSG_NOSIGNAL);
+        pollfd ready{socket_, POLLOUT, 0};
+        poll(&ready, 1, 100);
+        const ssize_t taken = ::send(socket_, packet.data() + sent, packet.size() - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
+        const int error = taken > 0 ? 0 : errno;
+        const Clock::duration limit = interrupted() ? to_take_at_last : to_take;
         if (taken > 0)
             sent += static_cast<std::size_t>(taken);
-        else if (errno != EINTR)
-            failure_ = fmt::format("tev at {} takes no more pictures: {}", address_,
-                                   std::strerror(errno == EAGAIN ? ETIMEDOUT : errno));
+        if (sent < packet.size() && Clock::now() - begun_ > limit)
+            failure_ = fmt::format("tev at {} takes pictures too slowly", address_);
+        else if (error != 0 && error != EINTR && error != EAGAIN)
+            failure_ = fmt::format("tev at {} takes no more pictures: {}", address_, std::strerror(error));
     }
     return failure_.empty();
 }

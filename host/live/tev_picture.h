@@ -2,6 +2,7 @@
 // little-endian, each a length of 32 bits that counts itself, a byte for what it is, and fields; texts end in a zero.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -31,6 +32,7 @@ private:
 
     std::string address_, name_;
     int socket_ = -1;
+    std::chrono::steady_clock::time_point begun_; // with the picture that is being sent
     bool is_there_ = false;
     std::string failure_;
 };

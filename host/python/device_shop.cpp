@@ -31,18 +31,30 @@ Turn::Turn(DeviceShop& shop, const std::function<bool()>& interrupted) : shop_(s
 }
 
 Turn::~Turn() {
-    shop_.retired_.clear();
+    shop_.clear_retired();
     shop_.owner_ = std::thread::id();
     shop_.mutex_.unlock();
+    shop_.clear_retired_if_idle(); // what came between the first two
 }
 
 void retire(const std::shared_ptr<DeviceShop>& shop, std::shared_ptr<void> things) {
-    if (shop->owner_ == std::this_thread::get_id()) {
+    {
+        const std::lock_guard lock(shop->retired_mutex_);
         shop->retired_.push_back(std::move(things));
-        return;
     }
-    const Turn turn(*shop);
-    things.reset();
+    if (shop->owner_ != std::this_thread::get_id())
+        shop->clear_retired_if_idle();
+}
+
+void DeviceShop::clear_retired() {
+    std::vector<std::shared_ptr<void>> gone;
+    const std::lock_guard lock(retired_mutex_);
+    gone.swap(retired_);
+}
+
+void DeviceShop::clear_retired_if_idle() {
+    if (const std::unique_lock turn(mutex_, std::try_to_lock); turn)
+        clear_retired();
 }
 
 std::shared_ptr<DeviceShop> device_shop(const DeviceOptions& options) {

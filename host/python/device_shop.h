@@ -22,9 +22,13 @@ struct DeviceShop {
 private:
     friend class Turn;
     friend void retire(const std::shared_ptr<DeviceShop>& shop, std::shared_ptr<void> things);
+    void clear_retired();
+    void clear_retired_if_idle();
+
     std::timed_mutex mutex_; // never asked for with Python's lock held
     std::atomic<std::thread::id> owner_{};
-    std::vector<std::shared_ptr<void>> retired_; // the owner's
+    std::mutex retired_mutex_; // of the following, and of nothing that lasts
+    std::vector<std::shared_ptr<void>> retired_;
 };
 
 // Whoever works in the shop. A render calls what Python wants to be called, and that may come here again, on the same
@@ -40,7 +44,8 @@ private:
     DeviceShop& shop_;
 };
 
-// Destroys what has buffers of the device, in a turn, or at the end of the one that this thread has.
+// Destroys what has buffers of the device: at once, or at the end of the turn that somebody has. Never waits for that:
+// whoever lets go of a session may hold what that turn waits for.
 void retire(const std::shared_ptr<DeviceShop>& shop, std::shared_ptr<void> things);
 
 // The same for the same options. Throws DeviceError.

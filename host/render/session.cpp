@@ -338,6 +338,7 @@ void Session::gather() {
 void Session::develop_film() {
     bring_home();
     Film& film = result_.film;
+    film.moves = moving_.has_value();
     film.picture_width = scene_.picture.width;
     film.picture_height = scene_.picture.height;
     film.crop = job_.crop;

@@ -86,6 +86,8 @@ std::optional<Explanation> foresee(const Scene& authored) {
     const Scene scene = with_preset(authored);
     const Method method = choose_method(scene);
     const auto glows = [](const Surface& surface) { return surface.emission != Rgb(0.0); };
+    if (authored.motion_blur) // at other times of the picture there may be light
+        return std::nullopt;
     if (std::any_of(scene.surfaces.begin(), scene.surfaces.end(), glows))
         return std::nullopt;
     if (sees_light(scene, method) || scene.background != Rgb(0.0) || emits(scene) || method.material_colour)

@@ -161,6 +161,11 @@ Answer missed(const Evidence& e) {
         return fmt::format("no ray enters the medium, but {:.2g} % of the reference frame's do; the picture is another "
                            "part of it, by startOffset and reference of <width> and <height>",
                            100.0 * s.entering_frame);
+    if (s.degrees_off < 1.0) // it is looked at
+        return fmt::format(
+            "no ray enters the medium, whose box {} is before the camera, but too thin to be met by any: "
+            "give the picture more pixels, or {}",
+            box_text(s.box), view_advice(e.scene.camera).larger);
     const std::string where =
         s.degrees_off > 90.0 ? "behind the camera" : fmt::format("{:.0f} degrees off the middle", s.degrees_off);
     return fmt::format("no ray enters the medium, whose box {} is {}: the camera at {} looks along {} with {}; {}",
@@ -251,6 +256,11 @@ Answer inside(const Evidence& e) {
     const bool nothing = e.odd == Odd::black || e.odd == Odd::noise;
     if (!nothing || !e.sight || !e.sight->inside || !e.result->outline.fills || e.sight->least_depth < deep)
         return {};
+    if (std::any_of(e.scene.volumes.begin(), e.scene.volumes.end(), is_everywhere))
+        return fmt::format(
+            "<everywhere> has no end, and the optical depth before the camera reaches {:.3g} and more; give "
+            "the medium a shape, lights within it, or lower sigma_a and sigma_s",
+            e.sight->least_depth);
     return fmt::format("the camera at {} stands inside of the medium, whose box is {}, and sees no way out: the "
                        "optical depth before it is {:.3g} and more; {} or lower sigma_a and sigma_s",
                        text_of(e.sight->eye), box_text(e.sight->box), e.sight->least_depth,

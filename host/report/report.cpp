@@ -213,6 +213,8 @@ Metadata make_metadata(const RenderRequest& request, const Scene& scene, const D
                       {"vkvol/queueOverflows", metadata_count(result.counts.queue_overflows)},
                       {"vkvol/abandonedPaths", metadata_count(result.counts.abandoned)},
                       {"vkvol/nonFiniteSamples", metadata_count(result.counts.non_finite)}};
+    if (result.film.moves)
+        metadata[moves_key] = 1;
     if (!scene.units.empty())
         metadata["vkvol/units"] = scene.units;
     if (const std::optional<Exposure>& exposure = scene.camera.exposure) {

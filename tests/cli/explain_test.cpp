@@ -130,6 +130,8 @@ TEST_CASE("pictures that miss the medium are explained", "[gpu][explain]") {
     check({lit_ball, camera + "<width>24</width>",
            "<camera z=\"5\" projection=\"equirectangular\"/><width reference=\"240\">24</width>", "black", "missed",
            "startOffset"});
+    check({lit_ball, "<sphere/>", "<box width=\"1e-3\" height=\"2\" depth=\"1\"/>", "black", "missed",
+           "too thin to be met by any"});
     check({lit_ball, "<sphere/>", "", "black", "noMedium", "the scene has no medium"});
     check({ball_before_sky, "<sphere/>", "<sphere/><lightRayDensityMultiplier>0</lightRayDensityMultiplier>",
            "background", "noMedium", "lightRayDensityMultiplier is 0"});

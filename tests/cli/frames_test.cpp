@@ -233,6 +233,15 @@ TEST_CASE("a sequence that is gone on with passes over the frames that are there
         CHECK(again.code == (is_wrong ? exit_bad_input : exit_done));
         CHECK_THAT(again.text, !Contains("is there"));
     }
+    // A picture that would show otherwise is not there.
+    REQUIRE(scene.vkvol("ball.xml -f 1..1 -o t.#.exr -o t.#.png --exposure 1 -q").code == exit_done);
+    CHECK_THAT(scene.vkvol("ball.xml -f 1..1 -o t.#.exr -o t.#.png --exposure 1 --resume").text, Contains("is there"));
+    CHECK_THAT(scene.vkvol("ball.xml -f 1..1 -o t.#.exr --resume").text, Contains("is there"));
+    CHECK_THAT(scene.vkvol("ball.xml -f 1..1 -o t.#.exr -o t.#.png --exposure 2 --resume").text, !Contains("is there"));
+    // A frame whose time is over is done.
+    const std::string timed = "ball.xml -f 1..1 -o l.#.exr --time 0.3 --checkpoint 0.05s --resume";
+    REQUIRE(scene.vkvol(timed + " -q").code == exit_done);
+    CHECK_THAT(scene.vkvol(timed).text, Contains("l.1.exr is there"));
     // What only shows says nothing of itself.
     REQUIRE(scene.vkvol("ball.xml -f 1..2 -o p.#.png -q").code == exit_done);
     CHECK_THAT(scene.vkvol("ball.xml -f 1..2 -o p.#.png --resume").text, !Contains("is there"));

@@ -17,10 +17,11 @@ using Catch::Contains;
 
 namespace {
 
-// Takes one connection, and all that comes until it ends or `most` bytes are there.
+// Takes one connection, and all that comes until it ends or `most` bytes are there, with pauses after 64 KiB each.
 class Viewer {
 public:
-    explicit Viewer(std::size_t most = SIZE_MAX) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+    explicit Viewer(std::size_t most = SIZE_MAX, std::chrono::milliseconds pause = {})
+        : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
         sockaddr_in address{};
         address.sin_family = AF_INET;
         address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -29,12 +30,13 @@ public:
         socklen_t size = sizeof address;
         getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size);
         port_ = ntohs(address.sin_port);
-        thread_ = std::thread([this, most] {
+        thread_ = std::thread([this, most, pause] {
             const int connection = accept(socket_, nullptr, nullptr);
             char bytes[65536];
             for (ssize_t got = 1; got > 0 && bytes_.size() < most;) {
                 got = recv(connection, bytes, sizeof bytes, 0);
                 bytes_.append(bytes, got > 0 ? std::size_t(got) : 0);
+                std::this_thread::sleep_for(pause);
             }
             close(connection);
         });
@@ -163,4 +165,14 @@ TEST_CASE("a viewer that is not there, or goes away", "[cpu][live]") {
         picture.show(film, {});
     CHECK_THAT(picture.failure(), Contains(viewer.address()));
     picture.show(film, {}); // which it does not mind
+}
+
+// 29 MB, at 1.3 MB a second at most.
+TEST_CASE("a viewer that takes pictures slowly is given up", "[cpu][live]") {
+    Viewer viewer(SIZE_MAX, std::chrono::milliseconds(50));
+    TevPicture picture(viewer.address(), "a");
+    const auto begun = std::chrono::steady_clock::now();
+    picture.show(film_of(1024, 1024), {});
+    CHECK_THAT(picture.failure(), Contains("too slowly"));
+    CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds(10));
 }

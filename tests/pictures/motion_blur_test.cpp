@@ -8,8 +8,10 @@
 #include <regex>
 #include <set>
 
+#include "compare.h"
 #include "drift.h"
 #include "error.h"
+#include "explain.h"
 #include "memory_grids.h"
 #include "scene_hash.h"
 #include "support/images.h"
@@ -108,6 +110,25 @@ TEST_CASE("the frame's number is a time in arithmetic alone", "[cpu][motion][xml
     CHECK(later.picture.width == scene.picture.width);
     CHECK(scene_of_time(parse_at(R"(<camera x="${= F4 + 1}" y="${= F}"/>)", 3), 0.5).camera.position ==
           glm::dvec3(4.0, 3.5, 0.0));
+}
+
+// Its light is 0 when the shutter opens.
+TEST_CASE("pixels that move together know no error of their mean", "[gpu][motion]") {
+    const Scene scene =
+        parse_at(R"(<sphere/><sigma_s>1</sigma_s><camera z="5" fov="40"/><width>12</width><height>12</height>
+        <rayPerPixelCount>16</rayPerPixelCount><light y="1" r="1" g="1" b="1" multiplier="${= F}"/>)",
+                 0.0);
+    CHECK(!foresee(scene));
+    Scene at_rest = scene;
+    at_rest.motion_blur.reset();
+    const Film film = render_here(scene, 1).film, still = render_here(at_rest, 1).film;
+    CHECK(film.moves);
+    CHECK(!image_mean(film).standard_error);
+    CHECK(!still.moves);
+    CHECK(image_mean(still).standard_error);
+    const Comparison result = compare_films(film, render_here(scene, 2).film, {});
+    CHECK(!result.has_mean_z);
+    CHECK(compare_films(still, still, {}).has_mean_z);
 }
 
 TEST_CASE("what is said of motion that cannot be", "[cpu][motion][xml]") {

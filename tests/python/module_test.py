@@ -243,6 +243,25 @@ class Running(unittest.TestCase):
         gc.collect()
         self.assertIsNone(gone())
 
+    def test_letting_go_of_a_session_waits_for_nobody(self):
+        scene = vkvol.Scene.from_dict(smoke(placed()))
+        begun, gone, sessions = threading.Event(), threading.Event(), [vkvol.Session(scene)]
+        sessions[0].render(1)
+
+        def let_go():
+            begun.wait()
+            sessions.clear()
+            gone.set()
+
+        def progress(samples, noise):
+            begun.set()
+            self.assertTrue(gone.wait(20))
+
+        thread = threading.Thread(target=let_go)
+        thread.start()
+        vkvol.Session(scene, spp=64, progress=progress).render()
+        thread.join()
+
     def test_black_is_good_enough(self):
         scene = vkvol.Scene.from_xml("<options><sphere/><camera z='4'/></options>")
         self.assertEqual(int(vkvol.render(scene, width=4, height=4, noise=0.01).samples.max()), 1024)

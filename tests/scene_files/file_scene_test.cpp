@@ -181,6 +181,9 @@ TEST_CASE("init writes a scene to start from, and over nothing", "[gpu][command]
     const Folder folder;
     CHECK_THAT(folder.vkvol("init").text, Contains("scene.xml: vkvol scene.xml renders it"));
     const std::string first = text_of(folder.file("scene.xml"));
+    // Others' readers of XML want no two hyphens within a comment.
+    for (std::size_t at = first.find("<!--"); at != first.npos; at = first.find("<!--", at + 4))
+        CHECK(first.compare(first.find("--", at + 4), 3, "-->") == 0);
     REQUIRE(folder.vkvol("scene.xml --width 32 --spp 1 -q").code == exit_done);
     CHECK(folder.has("scene.png"));
     const Run again = folder.vkvol("init");
