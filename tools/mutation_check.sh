@@ -53,6 +53,7 @@ pixels that move together taken for independent ~ host/image/film.cpp ~ bool kno
 pictures that show otherwise taken for those asked for ~ host/cli/rendered_before.cpp ~ (shows && !has_recorded ~ (false && !has_recorded ~ [command]
 slow viewers waited for ~ host/live/tev_picture.cpp ~ Clock::now() - begun_ > limit ~ Clock::now() - begun_ > 10 * limit ~ [live]
 first looks put off as all others are ~ host/render/session.cpp ~ (looked_ - look_allowance) ~ (looked_ - 0.0) ~ [live]
+wishes without a length read ~ host/live/view_server.cpp ~ if (!request.has_header("Transfer-Encoding")) ~ if (true) ~ [live]
 viewers' keys not asked for ~ host/live/view_server.cpp ~ return is_local && is_equal ~ return is_local || is_equal ~ [live]
 what is wrong with a viewed file forgotten ~ host/cli/view.cpp ~ rendered = render_wish(); ~ file_trouble_.clear(), rendered = render_wish(); ~ [live]
 channels in tev one after another ~ host/live/tev_picture.cpp ~ packet.add(count); ~ packet.add(std::int64_t{1}); ~ [live]

@@ -122,8 +122,9 @@ struct ViewServer::Serving {
     std::list<Made> made;
 
     bool knows(const Request& request) const;
+    bool refuses(const Request& request, Response& response) const;
     void route();
-    void answer(const Request& request, Response& response, const std::function<void()>& content) const;
+    static void answer(Response& response, const std::function<void()>& content);
     std::shared_ptr<const std::string> frame(const std::shared_ptr<const Shot>& shot, const Request& request);
     void send_file(const Request& request, Response& response, const char* ending, const char* type);
 };
@@ -135,16 +136,25 @@ bool ViewServer::Serving::knows(const Request& request) const {
     return is_local && is_equal(request.get_param_value("key"), key);
 }
 
-void ViewServer::Serving::answer(const Request& request, Response& response,
-                                 const std::function<void()>& content) const {
+// Before any body is read: of strangers none is, and a body without a length could be of any. What is not there is not
+// for strangers to know either.
+bool ViewServer::Serving::refuses(const Request& request, Response& response) const {
     response.set_header("Cache-Control", "no-store");
     response.set_header("Referrer-Policy", "no-referrer");
     response.set_header("X-Content-Type-Options", "nosniff");
     if (!knows(request)) {
         response.status = 403;
         response.set_content("The address is not complete: vkvol view has printed one with a key.\n", "text/plain");
-        return;
+        return true;
     }
+    if (!request.has_header("Transfer-Encoding"))
+        return false;
+    response.status = 411;
+    response.set_content("a body needs its Content-Length\n", "text/plain");
+    return true;
+}
+
+void ViewServer::Serving::answer(Response& response, const std::function<void()>& content) {
     try {
         content();
     } catch (const InputError& error) {
@@ -195,8 +205,12 @@ void ViewServer::Serving::send_file(const Request& request, Response& response, 
 }
 
 void ViewServer::Serving::route() {
-    server.Get("/", [this](const Request& request, Response& response) {
-        answer(request, response, [&] {
+    server.set_pre_routing_handler([this](const Request& request, Response& response) {
+        return refuses(request, response) ? httplib::Server::HandlerResponse::Handled
+                                          : httplib::Server::HandlerResponse::Unhandled;
+    });
+    server.Get("/", [this](const Request&, Response& response) {
+        answer(response, [&] {
             // Nothing but this page's own script and style runs in it.
             const std::string nonce = random_key();
             response.set_header("Content-Security-Policy",
@@ -208,7 +222,7 @@ void ViewServer::Serving::route() {
         });
     });
     server.Get("/frame", [this](const Request& request, Response& response) {
-        answer(request, response, [&] {
+        answer(response, [&] {
             const auto since = number_of<std::uint64_t>(request, "since");
             const std::shared_ptr<const Shot> shot = board.next_shot(since, longest_wait);
             if (const std::uint64_t version = shot ? shot->version : 0; version == since && since != 0) {
@@ -219,26 +233,23 @@ void ViewServer::Serving::route() {
         });
     });
     server.Post("/wish", [this](const Request& request, Response& response) {
-        answer(request, response, [&] {
+        answer(response, [&] {
             const std::uint64_t number = board.want(wish_of(request.body));
             response.set_content(nlohmann::json{{"wish", number}}.dump(), "application/json");
         });
     });
     server.Get("/picture.exr", [this](const Request& request, Response& response) {
-        answer(request, response, [&] { send_file(request, response, ".exr", "image/x-exr"); });
+        answer(response, [&] { send_file(request, response, ".exr", "image/x-exr"); });
     });
     server.Get("/picture.png", [this](const Request& request, Response& response) {
-        answer(request, response, [&] { send_file(request, response, ".png", "image/png"); });
+        answer(response, [&] { send_file(request, response, ".png", "image/png"); });
     });
     server.Get("/scene.xml", [this](const Request& request, Response& response) {
-        answer(request, response, [&] { send_file(request, response, ".xml", "application/xml"); });
+        answer(response, [&] { send_file(request, response, ".xml", "application/xml"); });
     });
-    // What is not there is not for strangers to know either.
-    server.set_error_handler([this](const Request& request, Response& response) {
-        if (response.status != 404)
-            return;
-        response.status = knows(request) ? 404 : 403;
-        response.set_content("not here\n", "text/plain");
+    server.set_error_handler([](const Request&, Response& response) {
+        if (response.status == 404)
+            response.set_content("not here\n", "text/plain");
     });
 }
 

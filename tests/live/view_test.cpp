@@ -160,6 +160,10 @@ TEST_CASE("nobody without the key gets an answer", "[cpu][live]") {
         CHECK(good == (std::string(path) == "/nothing" ? 404 : 200));
     }
     CHECK(client.Post("/wish", "{}", "application/json")->status == 403);
+    // Bodies have a length, which has a limit.
+    const std::string wish = "/wish?key=" + key;
+    CHECK(client.Post(wish.c_str(), {{"Transfer-Encoding", "chunked"}}, "{}", "application/json")->status == 411);
+    CHECK(client.Post(wish.c_str(), "{}", "application/json")->status == 200);
     const auto page = client.Get(("/?key=" + key).c_str());
     CHECK_THAT(page->get_header_value("Content-Security-Policy"), Contains("default-src 'none'"));
     CHECK_THAT(page->body, Contains("[\"ratioTracking\"]") && !Contains("{{"));
