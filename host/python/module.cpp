@@ -219,9 +219,12 @@ private:
     }
 
     py::object progress_ = py::none();
-    std::unique_ptr<py::error_already_set> raised_;
+    // By what this thread's call has called: others may wait for the same session.
+    static thread_local std::unique_ptr<py::error_already_set> raised_;
     std::unique_ptr<PythonSession> session_;
 };
+
+thread_local std::unique_ptr<py::error_already_set> SessionObject::raised_;
 
 void add_errors(py::module_& module) {
     const py::exception<std::exception> error(module, "Error");
