@@ -1,6 +1,7 @@
 #include "scene_edits.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
@@ -66,11 +67,14 @@ pugi::xml_node child(pugi::xml_node parent, const char* name) {
     return found ? found : parent.append_child(name);
 }
 
-// Media that stand for themselves, each with all that it is made of.
+// Media that stand for themselves, each with all that it is made of; the scene itself is one if it has a shape, or none
+// else is.
 std::vector<pugi::xml_node> media(pugi::xml_node root) {
     std::vector<pugi::xml_node> found;
-    const pugi::xml_node volumes = root.child("volumes");
-    for (const pugi::xml_node volume : volumes.children("volume"))
+    constexpr std::array shapes{"densityField", "sphere", "box", "everywhere", "layers", "models"};
+    if (std::any_of(shapes.begin(), shapes.end(), [&](const char* shape) { return root.child(shape); }))
+        found.push_back(root);
+    for (const pugi::xml_node volume : root.child("volumes").children("volume"))
         found.push_back(volume);
     if (found.empty())
         found.push_back(root);

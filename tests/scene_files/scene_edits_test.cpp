@@ -1,6 +1,7 @@
 // Changes of scenes by a viewer, as what the changed text says.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstring>
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
@@ -106,4 +107,12 @@ TEST_CASE("the density of several media is changed once for each", "[cpu][live]"
     CHECK(scene.volumes[0].density_scale == 2.0);
     CHECK(scene.volumes[1].density_scale == 2.0);
     CHECK(scene.volumes[2].density_scale == 6.0);
+    // What stands in the scene itself is one more, and shines.
+    const std::string own =
+        "<options><box/><sigma_a>1</sigma_a><medium r=\"1\"/>" + xml.substr(std::strlen("<options>"));
+    const Scene more = read(edited(own, edits));
+    REQUIRE(more.volumes.size() == 4);
+    CHECK(more.volumes[0].density_scale == 2.0);
+    CHECK(more.volumes[3].density_scale == 6.0);
+    CHECK(what_shines(own).size() == 1);
 }
