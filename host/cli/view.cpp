@@ -144,6 +144,7 @@ private:
         auto viewed = std::make_shared<ViewedScene>();
         viewed->name = source_.name();
         viewed->xml = xml;
+        viewed->has_grids = source_.has_grids();
         viewed->camera = scene_.camera;
         viewed->has_view = !reads_flux(scene_.camera);
         viewed->lights = what_shines(xml);

@@ -28,6 +28,7 @@ public:
     Read read(const SceneEdits& edits, const std::string& layers, FieldCache& fields) const;
 
     const std::string& name() const { return name_; }
+    bool has_grids() const { return !grids_.empty(); } // that stand in the scene, and in no file
 
 private:
     void load();

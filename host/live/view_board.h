@@ -24,6 +24,7 @@ struct ViewWish {
 // The scene as it is rendered, for a viewer's controls.
 struct ViewedScene {
     std::string name;            // of its file
+    bool has_grids = false;      // that no file has
     std::string xml;             // with the edits
     Camera camera;               // as edited
     bool has_view = false;       // it looks, and reads no flux

@@ -195,6 +195,10 @@ void ViewServer::Serving::send_file(const Request& request, Response& response, 
     const std::shared_ptr<const Shot> shot = board.shot();
     if (!shot || !shot->scene || shot->film.pixel_count() == 0)
         throw InputError("there is no picture yet");
+    if (shot->scene->has_grids && std::string(ending) == ".xml")
+        throw InputError(
+            "grids of this scene stand in it, and in no file that a scene could name; vkvol convert writes them "
+            "beside it\n");
     const std::string name = std::filesystem::path(shot->scene->name).stem().string() + ending;
     response.set_header("Content-Disposition",
                         fmt::format("attachment; filename=\"{}\"", replaced(replaced(name, "\"", "_"), "\\", "_")));

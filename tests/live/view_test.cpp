@@ -205,6 +205,13 @@ TEST_CASE("frames are the picture and what is known of it", "[cpu][live]") {
     const auto told = get(fmt::format("/frame?since={}", version));
     REQUIRE(told->status == 200);
     CHECK(frame_of(told->body).first["message"] == "a word");
+    CHECK(get("/scene.xml?x=1")->status == 200);
+    auto in_memory = std::make_shared<ViewedScene>(*first.scene);
+    in_memory->has_grids = true;
+    first.scene = std::move(in_memory);
+    board.publish(first);
+    CHECK(get("/scene.xml?x=1")->status == 400);
+    CHECK_THAT(get("/scene.xml?x=1")->body, Contains("vkvol convert"));
     first.samples = 1; // as far as all pixels have come
     board.publish(first);
     CHECK(frame_of(get("/frame?since=0")->body).first["noise"].is_null());
