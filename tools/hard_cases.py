@@ -30,13 +30,13 @@ BY_TESTS_ALONE = {
     12: "g about 0",
     25: "random numbers at the ends of their range",
     29: "caps are counted",
+    31: "overlapping volumes against one with summed densities: [several], halves on top of each other",
     35: "more paths than slots",
     36: "2^25 samples of value 1",
     37: "ranges of samples, windows and merges",
     38: "damaged and foreign files",
     39: "grids beyond a storage buffer",
     40: "a lost device",
-    31: "overlapping volumes against one with summed densities: [several], halves on top of each other",
 }
 
 

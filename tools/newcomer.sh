@@ -9,8 +9,7 @@
 #     python: `pip install .` in an environment of its own, and a picture from Python; likewise. PyPI has to be there
 #   tools/newcomer.sh --cache DIR          where bare systems are kept; default: ~/.cache/vkvol-newcomer
 #   tools/newcomer.sh --mirror URL         default: http://deb.debian.org/debian
-# Every release and user begins with a system of its own, and so do packages and the module; of demo and test the second finds what
-# the first left.
+# Each has a system of its own; but of demo and test, one after the other, the second finds what the first left.
 # Needs root, the network and the package debootstrap. What it mounts is in a name space of its own and goes with it.
 set -eu
 source "$(dirname "$0")/setup.sh"
@@ -212,12 +211,11 @@ commit=$(git -C "$vkvol_root" log -1 --format='commit %h')
 for release in "${releases[@]}"; do
     bare "$release"
     for user in "${users[@]}"; do
-        fresh=no
+        built=
         for command in "${commands[@]}"; do
-            case $fresh$command in
-            no* | *package | *tar | *python) new_system "$release" "$user" ;;
-            esac
-            fresh=yes
+            [ -n "$built" ] && [[ $command = demo || $command = test ]] || new_system "$release" "$user"
+            built=
+            [[ $command != demo && $command != test ]] || built=yes
             attempt "$release" "$user" "$command"
         done
     done

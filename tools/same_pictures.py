@@ -3,8 +3,8 @@
 
     tools/same_pictures.py OLD_VKVOL [NEW_VKVOL] [--scenes FOLDER] [--only WORD] [--runs 1] [--width 64] [--spp 8]
 
-Renders every scene of scenes/, or of another folder if the old build does not know all that these have, every integrator in a cloud and in a homogeneous ball, a crop, and a render that is resumed
-from a checkpoint, by both builds with the same seed. Where bits differ, `vkvol compare` judges another seed of the new
+Renders every scene of scenes/, or of another folder if the old build does not know all that these have, every integrator in
+a cloud and in a homogeneous ball, a crop, and a render that is resumed from a checkpoint, by both builds with the same seed. Where bits differ, `vkvol compare` judges another seed of the new
 build, so that the two are independent, and its verdict is printed; the reason for such a difference is for people to find.
 Seconds are medians of --runs, in alternation. Fields: tools/all_scenes.sh makes them. Exit code 1: a picture differs by
 more than noise, or was not rendered (closed forms in a cloud are refused, by both builds)."""

@@ -99,11 +99,6 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
     }
 }
 
-// Whether a picture is written that is for looking at.
-bool shows(const RenderOptions& options) {
-    return std::any_of(options.outputs.begin(), options.outputs.end(), is_display_file);
-}
-
 bool has_samples(const Film& film) {
     return std::any_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n > 0; });
 }

@@ -1,5 +1,6 @@
 #include "render_outputs.h"
 
+#include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -36,6 +37,10 @@ void append(std::string& list, const char* separator, const std::string& text) {
 }
 
 } // namespace
+
+bool shows(const RenderOptions& options) {
+    return std::any_of(options.outputs.begin(), options.outputs.end(), is_display_file);
+}
 
 void RenderOutputs::write(const Device& device, const RenderResult& result, const Shown& shown) {
     const auto start = std::chrono::steady_clock::now();

@@ -9,6 +9,9 @@
 
 namespace vkvol {
 
+// Whether a picture is written that is for looking at.
+bool shows(const RenderOptions& options);
+
 class RenderOutputs {
 public:
     RenderOutputs(const RenderOptions& options, const Scene& scene) : options_(options), scene_(scene) {}

@@ -10,6 +10,7 @@
 #include "image_io.h"
 #include "metadata.h"
 #include "method.h"
+#include "render_outputs.h"
 #include "requested_scene.h"
 #include "scene_hash.h"
 
@@ -29,8 +30,7 @@ std::optional<int> code_of(const std::filesystem::path& exr, const RenderOptions
                          text_of(metadata, "vkvol/integrator") == choose_method(with_preset(scene)).integrator &&
                          text_of(metadata, "vkvol/asked") == asked_text(options, scene) &&
                          text_of(metadata, "vkvol/interrupted") == "0";
-    const bool shows = std::any_of(options.outputs.begin(), options.outputs.end(), is_display_file);
-    if (!is_this || (shows && !has_recorded(options.tone, metadata)))
+    if (!is_this || (shows(options) && !has_recorded(options.tone, metadata)))
         return std::nullopt;
     return options.strict && text_of(metadata, "vkvol/capsHit") != "0" ? exit_caps_hit : exit_done;
 }

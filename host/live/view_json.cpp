@@ -98,6 +98,7 @@ void add_scene(const ViewedScene& scene, const ViewWish& wish, Json& state) {
     state["biased"] = scene.biased;
     state["sceneWish"] = scene.wish;
     state["begun"] = scene.number;
+    state["hasGrids"] = scene.has_grids;
     state["lights"] = lights_json(scene, wish);
     if (scene.has_view) {
         state["camera"] = json_of(scene.camera);

@@ -212,6 +212,7 @@ TEST_CASE("frames are the picture and what is known of it", "[cpu][live]") {
     board.publish(first);
     CHECK(get("/scene.xml?x=1")->status == 400);
     CHECK_THAT(get("/scene.xml?x=1")->body, Contains("vkvol convert"));
+    CHECK(frame_of(get("/frame?since=0")->body).first["hasGrids"] == true);
     first.samples = 1; // as far as all pixels have come
     board.publish(first);
     CHECK(frame_of(get("/frame?since=0")->body).first["noise"].is_null());
