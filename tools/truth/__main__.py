@@ -49,7 +49,7 @@ def cases(chosen, folder):
 def row(verdict):
     v = verdict
     return f"{v.case.name:28} {v.case.what + ', ' + v.label if v.label != v.case.what else v.label:44.44} {v.reading:11.6g} " \
-           f"{v.published:11.6g} {v.reading - v.published:+9.1e} {v.error:8.1e} {v.slack:8.1e} {v.z:+6.2f}"
+           f"{v.published:11.6g} {v.reading - v.published:+9.1e} {v.error:8.1e} {v.slack:8.1e} {v.z:+6.2f}" + ("" if v.case.judged else " not judged")
 
 
 def main():
@@ -71,15 +71,16 @@ def main():
                 print(row(verdict), flush=True)
     if not found:
         raise SystemExit("no group's name contains such a word")
-    most = judge.limit(len(found))
-    print(f"\n{len(found)} figures; |z| may be {most:.2f}\n")
+    judged = [v for v in found if v.case.judged]
+    most = judge.limit(len(judged))
+    print(f"\n{len(judged)} figures; |z| may be {most:.2f}\n")
     for name, (seconds, figures) in groups.items():
         here = [v for v in found if v.case.name == name]
         worst = max(here, key=lambda v: abs(v.z))
         print(f"{name:28} {figures:4} figures in {seconds:6.1f} s, largest |z| {abs(worst.z):.2f} ({worst.case.what}, {worst.label})")
     if chosen.page:
         page.write(chosen.page, found)
-    return 0 if all(abs(v.z) <= most for v in found) else 1
+    return 0 if all(abs(v.z) <= most for v in judged) else 1
 
 
 if __name__ == "__main__":

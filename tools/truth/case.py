@@ -19,6 +19,8 @@ class Case:
     samples: int = 1 << 10  # of a reading, to begin with
     least: float = 0.0  # standard errors that do, as a share of the figures' mean
     is_map: bool = False  # rows of the picture are readings too, in their order
+    others: list = field(default_factory=list)  # scenes besides; the mean of all is read
+    judged: bool = True  # or only shown, since the figures are of something a little different
 
 
 def digits(last):

@@ -9,18 +9,23 @@ import subprocess
 MOST_SAMPLES = 1 << 26
 
 
+def mean_of(readings):
+    n = len(readings)
+    return [(sum(mean for mean, _ in each) / n, math.sqrt(sum(error**2 for _, error in each)) / n) for each in zip(*readings)]
+
+
 class Reader:
     def __init__(self, vkvol, folder, schedule):
         self.vkvol, self.folder, self.schedule = vkvol, pathlib.Path(folder), schedule
         self.count = 0
 
-    def read(self, scene, samples, seed, is_map=False):
+    def read(self, scene, samples, seed, is_map=False, options=()):
         """Of each column its mean and standard error, or of each pixel: of the middle channel, since all are alike."""
         self.count += 1
         file = self.folder / f"case{self.count}.xml"
         table = file.with_suffix(".csv")
         file.write_text(f"<options>{scene}<rayPerPixelCount>{samples}</rayPerPixelCount></options>\n")
-        done = subprocess.run([self.vkvol, file, "-q", "--seed", str(seed), "--schedule", self.schedule, "-o", table],
+        done = subprocess.run([self.vkvol, file, "-q", "--seed", str(seed), "--schedule", self.schedule, "-o", table, *options],
                               capture_output=True, text=True)
         if done.returncode != 0:
             raise SystemExit(f"{file}: {done.stderr.strip()}")
@@ -40,7 +45,7 @@ class Reader:
         wanted = [max(share * slack, least * abs(value), case.least * usual) / case.scale
                   for slack, value in zip(case.slack or [0.0] * len(case.published), case.published)]
         while True:
-            rows = self.read(case.scene, samples, seed, case.is_map)
+            rows = mean_of([self.read(scene, samples, seed + 50 * i, case.is_map) for i, scene in enumerate([case.scene, *case.others])])
             # Of maps a few pixels are noisier by chance.
             short = (statistics.mean if case.is_map else max)((error / goal) ** 2 for (_, error), goal in zip(rows, wanted))
             if short <= 1.0 or samples >= MOST_SAMPLES:

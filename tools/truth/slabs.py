@@ -81,6 +81,9 @@ def disort(haze):
     # A flux of 1 from the sky is a radiance of 1 / pi.
     yield from up_and_down(name, source, [(.25, .5, ""), (.25, .3, "")], scenes.even_sky(1.0 / PI), .0929633, .513132,
                            (1e-7, 1e-6), more=scenes.ground(-.51, 0.0))
+    # Kirchhoff: what they send out where all of them are as warm is what they keep of that sky, 1 - R - T.
+    glow = f'<medium r="1" g="1" b="1" multiplier="{1.0 / PI!r}"/>'
+    yield from up_and_down("layers that glow", source, [(.25, .5, glow), (.25, .3, glow)], "", 1.0 - .0929633 - .513132, None, (1e-6, 0))
 
 
 def cases(haze):
