@@ -48,7 +48,7 @@ pbrt's media on the sides where they are written ~ host/pbrt_files/pbrt_sides.cp
 what an imported file sets stays ~ host/pbrt_files/pbrt_directives.cpp ~ tokens_.depth() <= imports_.back().files ~ tokens_.depth() == 0 ~ [pbrt]
 colours of an Attribute in a later space ~ host/pbrt_files/pbrt_directives.cpp ~ parameter.color_space = state_.color_space; ~ parameter.color_space = ""; ~ [pbrt]
 colours of voxels taken for multiples of one ~ host/pbrt_files/pbrt_rgb_media.cpp ~ > 1e-6 * largest_of(each) ~ > 1e6 * largest_of(each) ~ [pbrt]
-foreseen grids kept when their files change ~ host/fields/field_cache.cpp ~ coming.mapped().stamp == stamp ~ true ~ [command]
+foreseen grids kept when their files change ~ host/fields/field_cache.cpp ~ coming.mapped().stamp == stamp ~ true ~ [density]
 pixels that move together taken for independent ~ host/image/film.cpp ~ bool known = !film.moves; ~ bool known = true; ~ [motion]
 black foretold of what moves ~ host/report/explain.cpp ~ if (authored.motion_blur) ~ if (false) ~ [motion]
 frames whose time is over begun again ~ host/cli/render_command.cpp ~ (options.is_frame && !result.interrupted) ~ false ~ [command]

@@ -1,9 +1,11 @@
 // Sequences by -f, and --dry-run.
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
 #include <set>
+#include <thread>
 #include <unistd.h>
 
 #include "error.h"
@@ -160,7 +162,8 @@ TEST_CASE("a foreseen grid is the file's as it is when it is taken", "[cpu][dens
     CHECK(cache.take(file).bytes.data() == field.bytes.data());
     cache.retain({});
     cache.foresee({file});
-    copy_field("sphere.nvdb", copy); // meanwhile
+    std::this_thread::sleep_for(std::chrono::milliseconds(200)); // in which it is read, as a rule
+    copy_field("sphere.nvdb", copy);
     CHECK(cache.take(file).active_voxels == 14328);
     cache.foresee({file});
     cache.foresee({});
