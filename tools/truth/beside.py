@@ -18,10 +18,9 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))  # where this is run as a folder
 
 from truth import i3rc, nanodisort_case, reading, scenes
+from truth.i3rc import COLUMNS, DEPTHS, HEIGHT, WIDTH
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-WIDTH, HEIGHT, COLUMNS = .5, .25, 32  # of the step cloud
-EXTINCTIONS = 8.0, 72.0
 TILES = 41  # 20 km; light has left the cloud, of albedo 1, long before
 WANTED = 1e-3
 PASSES = 8
@@ -37,9 +36,9 @@ def mean(rows):
 
 
 def row(program, seconds, rows):
-    reading_, error = mean(rows)
+    value, error = mean(rows)
     s = share(rows)
-    return f"{program:44} {seconds:8.1f} {s:9.1e} {seconds * (s / WANTED) ** 2:12.0f}   {reading_:.5f} +- {error:.5f}"
+    return f"{program:44} {seconds:8.1f} {s:9.1e} {seconds * (s / WANTED) ** 2:12.0f}   {value:.5f} +- {error:.5f}"
 
 
 def timed(reader, scene, seconds):
@@ -58,7 +57,7 @@ def tiles(mi):
     """A grid of sigma_t, in which the step falls on the tiles' middles."""
     import numpy
 
-    grid = numpy.tile(numpy.array(EXTINCTIONS, dtype=numpy.float32), TILES).reshape(1, 1, -1, 1)
+    grid = numpy.tile(numpy.array(DEPTHS, dtype=numpy.float32) / HEIGHT, TILES).reshape(1, 1, -1, 1)
     half = .5 * TILES * WIDTH
     place = mi.ScalarTransform4f().translate([-half, 0.0, -half]).scale([2.0 * half, HEIGHT, 2.0 * half])
     return {"type": "gridvolume", "grid": mi.VolumeGrid(grid), "filter_type": "nearest", "raw": True, "to_world": place}, half
@@ -101,12 +100,12 @@ def by_mitsuba(variant, seconds):
         values = [float(numpy.array(mi.render(scene, sensor=sensor, spp=samples, seed=seed + i))[0, 0, 1]) for i, sensor in enumerate(sensors)]
         return time.time() - start, values
 
-    once(16)
+    once(16)  # kernels are compiled
+    # A pass with few samples is mostly its starting: as many more until one takes most of its share.
     samples, took = 64, once(64)[0]
-    while took < .1 * seconds / PASSES:
-        samples *= 4
+    while took < .6 * seconds / PASSES:
+        samples = int(samples * min(8.0, max(1.5, seconds / PASSES / took)))
         took = once(samples)[0]
-    samples = max(1, int(samples * seconds / PASSES / took))
     passes = [once(samples) for _ in range(PASSES)]
     columns = list(zip(*(values for _, values in passes)))
     return sum(took for took, _ in passes), [(statistics.mean(c), statistics.stdev(c) / PASSES**.5) for c in columns]
@@ -122,7 +121,7 @@ def options():
 
 def step_cloud(reader, chosen):
     print(f"{'step cloud, R in 32 columns':44} {'seconds':>8} {'error':>9} {'s to a 1000th':>12}   mean")
-    scene = i3rc.step_cloud_scene(*i3rc.step_cloud_sensors("R"))
+    scene = i3rc.step_cloud_scene(i3rc.step_cloud_sensor("R"))
     print(row("vkvol, particles (the default)", *timed(reader, scene, chosen.seconds)), flush=True)
     paths = scene + "<integrator>ratioTracking</integrator>"
     print(row("vkvol, paths", *timed(reader, paths, chosen.seconds)), flush=True)

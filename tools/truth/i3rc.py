@@ -10,7 +10,8 @@ from .case import Case
 
 SOURCE = "I3RC phase 1, consensus"
 PHASE = scenes.henyey_greenstein(.85)
-CONE = 2.0  # degrees from the nadir, at which the step cloud's columns agree
+CONE = 2.0  # degrees from the nadir
+WIDTH, HEIGHT, COLUMNS, DEPTHS = .5, .25, 32, (2.0, 18.0)  # of the step cloud, and its optical depths
 
 
 def consensus(folder, case, what):
@@ -28,30 +29,32 @@ def sensor(what, top, bottom, width, columns, depth=1.0, rows=scenes.ROWS):
 
 
 def step_cloud_scene(sensor):
-    """32 columns over 0.5 km, of optical depth 2 and 18; infinite along z."""
-    width, height = .5, .25
-    cloud = scenes.volumes(*(scenes.box((x0, 0.0, -.5), (x1, height, .5), tau / height, 1.0, PHASE)
-                             for x0, x1, tau in ((-.25, 0.0, 2.0), (0.0, .25, 18.0))))
-    return cloud + scenes.periodic(width, 1.0) + scenes.sun(1.0, 1.0) + sensor
+    """Infinite along z."""
+    cloud = scenes.volumes(*(scenes.box((x0, 0.0, -.5), (x0 + .5 * WIDTH, HEIGHT, .5), tau / HEIGHT, 1.0, PHASE)
+                             for x0, tau in zip((-.5 * WIDTH, 0.0), DEPTHS)))
+    return cloud + scenes.periodic(WIDTH, 1.0) + scenes.sun(1.0, 1.0) + sensor
 
 
-def step_cloud_sensors(what):
-    """Of the nadir's radiance the consensus is that of a cone, in which photons are counted; how wide, was found by trying."""
-    width, height = .5, .25
-    if what == "Iu":
-        return [scenes.radiance(height, math.cos(math.radians(CONE)), azimuth, width, 32) for azimuth in (0.0, 90.0, 180.0, 270.0)]
-    return [sensor("Iu" if what == "nadir" else what, height, 0.0, width, 32)]
+def step_cloud_sensor(what):
+    return sensor(what, HEIGHT, 0.0, WIDTH, COLUMNS)
+
+
+def step_cloud_case(folder, name, what, sensors, share, judged=True):
+    published = consensus(folder, 1, what)
+    first, *others = map(step_cloud_scene, sensors)
+    return Case(name, what, SOURCE, first, [f"column {i + 1}" for i in range(COLUMNS)], published, [share * value for value in published],
+                scale=math.pi if what[0] == "I" else 1.0, mean=(sum(published) / COLUMNS, share * sum(published) / COLUMNS / COLUMNS**.5),
+                others=others, judged=judged)
 
 
 def step_cloud(folder):
     # How far the consensus scatters from column to column, from its mirror symmetry; of the slant radiance as of the nadir's.
-    scatter = {"R": .0010, "T": .0006, "Iu": .0051, "I602": .0051, "nadir": .0051}
+    scatter = {"R": .0010, "T": .0006, "Iu": .0051, "I602": .0051}
     for what, share in scatter.items():
-        published = consensus(folder, 1, "Iu" if what == "nadir" else what)
-        first, *others = [step_cloud_scene(sensor) for sensor in step_cloud_sensors(what)]
-        yield Case("step cloud" if what != "nadir" else "step cloud, nadir itself", what, SOURCE, first, [f"column {i + 1}" for i in range(32)],
-                   published, [share * value for value in published], scale=1.0 if what in "RT" else math.pi,
-                   mean=(sum(published) / 32, share * sum(published) / 32 / 32**.5), others=others, judged=what != "nadir")
+        yield step_cloud_case(folder, "step cloud", what, [step_cloud_sensor(what)], share)
+    # The nadir's consensus seems to be that of a cone, in which photons are counted. How wide was found by trying, so that it proves nothing.
+    around = [scenes.radiance(HEIGHT, math.cos(math.radians(CONE)), azimuth, WIDTH, COLUMNS) for azimuth in (0.0, 90.0, 180.0, 270.0)]
+    yield step_cloud_case(folder, "step cloud, nadir's cone", "Iu", around, scatter["Iu"], judged=False)
 
 
 def field(folder, name):
