@@ -41,6 +41,20 @@ std::vector<const DensityField*> grids_of(const LoadedMedium& medium) {
     return grids;
 }
 
+double hottest_radiance(const Volume& volume, const LoadedMedium& loaded) {
+    if (!loaded.temperature)
+        return 0.0;
+    double most = loaded.largest_temperature;
+    if (volume.temperature.model == TemperatureEmission::Model::blackbody) {
+        most = 0.0;
+        for (const glm::vec3& color : loaded.blackbody)
+            for (int i = 0; i < 3; ++i)
+                most = std::isfinite(color[i]) ? std::max(most, double(color[i]))
+                                               : std::numeric_limits<double>::infinity();
+    }
+    return most * largest(volume.temperature.color);
+}
+
 std::vector<const DensityField*> distinct_grids(Media media) {
     std::set<const std::byte*> seen;
     std::vector<const DensityField*> grids;

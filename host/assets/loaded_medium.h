@@ -48,6 +48,10 @@ std::vector<const DensityField*> grids_of(const LoadedMedium& medium);
 // Of each of the scene's volumes, in their order.
 using Media = std::span<const LoadedMedium>;
 
+// What its grid of temperatures or colours reaches, in the brightest channel; 0 without one, infinite if single
+// precision has no such number.
+double hottest_radiance(const Volume& volume, const LoadedMedium& loaded);
+
 // Of each that any of them has one, in the order in which these first come: the same bytes are the same grid, wherever
 // media have put it.
 std::vector<const DensityField*> distinct_grids(Media media);

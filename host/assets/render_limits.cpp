@@ -124,17 +124,7 @@ void check_everywhere(const Scene& scene, const Volume& volume, const LoadedMedi
 }
 
 void check_glow(const Volume& volume, const LoadedMedium& loaded) {
-    if (!loaded.temperature)
-        return;
-    double most = 0.0;
-    if (volume.temperature.model == TemperatureEmission::Model::blackbody)
-        for (const glm::vec3& color : loaded.blackbody)
-            for (int i = 0; i < 3; ++i)
-                most = std::isfinite(color[i]) ? std::max(most, double(color[i]))
-                                               : std::numeric_limits<double>::infinity();
-    else
-        most = loaded.largest_temperature;
-    most *= largest(volume.temperature.color);
+    const double most = hottest_radiance(volume, loaded);
     if (!(most <= brightest_light))
         throw InputError(fmt::format("<emission> reaches a radiance of {:.3g} where \"{}\" is hottest, but {:g} is the "
                                      "most; lower its multiplier or temperatureScale, or raise referenceTemperature",

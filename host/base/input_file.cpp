@@ -8,6 +8,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "atomic_file.h"
 #include "error.h"
 #include "interrupt.h"
 
@@ -79,6 +80,11 @@ void check_input_file(const path& file, const std::string& hint) {
         throw InputError(
             fmt::format("{}: is a pipe or device, and no regular file; copy what it gives into one", file.string()));
     const Descriptor test(file, hint);
+}
+
+void check_read_again(const path& file, const std::string& reader) {
+    if (is_special(file))
+        throw InputError(fmt::format("{}: a pipe is read once, but {}; write it to a file", file.string(), reader));
 }
 
 std::string read_input_text(const path& file, std::size_t longest, const std::string& hint) {

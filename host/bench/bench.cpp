@@ -13,6 +13,7 @@
 #include "error.h"
 #include "file_uses.h"
 #include "image_io.h"
+#include "input_file.h"
 #include "interrupt.h"
 #include "messages.h"
 #include "render_notes.h"
@@ -254,6 +255,7 @@ std::uint32_t seed_of_run(std::uint32_t seed, std::uint32_t number) {
 
 int run_bench(const BenchRequest& request) {
     install_interrupt_handler();
+    check_read_again(request.render.scene, "bench reads the scene for each integrator");
     const std::vector<Estimator> estimators = find_estimators(request);
     for (const Estimator& estimator : estimators)
         if (!request.quiet && (estimator.is_default || !request.integrators.empty()))

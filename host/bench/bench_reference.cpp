@@ -7,6 +7,7 @@
 #include "bench_statistics.h"
 #include "cache_directory.h"
 #include "error.h"
+#include "file_uses.h"
 #include "image_io.h"
 #include "interrupt.h"
 #include "messages.h"
@@ -58,32 +59,12 @@ std::filesystem::path cache_file(const Estimator& estimator, std::uint32_t seed)
                                    picture.width, picture.height);
 }
 
-// The hash knows the files of a scene by name and size; one made anew may have both as before.
-bool is_newer_than_assets(const std::filesystem::path& file, const Scene& scene) {
-    std::vector<std::filesystem::path> assets;
-    for (const Volume& volume : scene.volumes) {
-        if (volume.phase == PhaseFunction::table)
-            assets.push_back(volume.phase_details.file);
-        if (const GridFile* grid = std::get_if<GridFile>(&volume.shape); grid && !grid->memory)
-            assets.push_back(grid->path);
-        else if (const MeshFiles* mesh = std::get_if<MeshFiles>(&volume.shape))
-            assets.insert(assets.end(), mesh->paths.begin(), mesh->paths.end());
-    }
-    for (const Light& light : scene.lights)
-        if (const auto* sky = std::get_if<SkyLight>(&light); sky && !sky->daylight)
-            assets.push_back(sky->file);
-    std::error_code error;
-    const auto written = std::filesystem::last_write_time(file, error);
-    return !error && std::all_of(assets.begin(), assets.end(), [&](const std::filesystem::path& asset) {
-        return std::filesystem::last_write_time(asset, error) < written && !error;
-    });
-}
-
 std::optional<Reference> read_cached(const Estimator& candidate, const ReferenceWish& wish) {
     Reference reference;
     const std::filesystem::path file = cache_file(candidate, wish.seed);
-    std::error_code error;
-    if (file.empty() || !std::filesystem::exists(file, error) || !is_newer_than_assets(file, candidate.scene))
+    FileUses uses;
+    uses.reads_files_of(candidate.scene);
+    if (file.empty() || !uses.is_newer_than_inputs(file))
         return std::nullopt;
     Metadata metadata;
     try {

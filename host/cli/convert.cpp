@@ -25,8 +25,11 @@ void check_unnamed(const std::filesystem::path& file, const std::string& bytes) 
     std::error_code error;
     if (!std::filesystem::exists(std::filesystem::symlink_status(file, error)))
         return;
-    std::ifstream there(file, std::ios::binary);
-    const std::string old((std::istreambuf_iterator<char>(there)), std::istreambuf_iterator<char>());
+    std::string old;
+    if (std::filesystem::is_regular_file(file, error)) {
+        std::ifstream there(file, std::ios::binary);
+        old.assign(std::istreambuf_iterator<char>(there), std::istreambuf_iterator<char>());
+    }
     if (old != bytes)
         throw InputError(
             fmt::format("{}: is there already, and densities of the new scene would be written over it; remove "
@@ -71,8 +74,8 @@ int run_convert(const ConvertOptions& options) {
         return exit_done;
     for (const std::string& warning : scene.warnings)
         tell(stderr, "vkvol: warning: {}\n", warning);
-    tell(stdout, "{}: {} media, {} lights, {} surfaces\n", options.output.string(), scene.volumes.size(),
-         scene.lights.size(), scene.surfaces.size());
+    tell(is_special(options.output) ? stderr : stdout, "{}: {} media, {} lights, {} surfaces\n",
+         options.output.string(), scene.volumes.size(), scene.lights.size(), scene.surfaces.size());
     return exit_done;
 }
 

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include "atomic_file.h"
+#include "bench.h"
 #include "error.h"
 #include "file_ending.h"
 #include "file_uses.h"
 #include "film_table.h"
 #include "image_io.h"
+#include "input_file.h"
 #include "interrupt.h"
 #include "messages.h"
 #include "render_scene.h"
@@ -51,7 +53,7 @@ RenderResult measure(const MeasureOptions& options, const Scene& scene, std::uin
     RenderJob job;
     job.workshop = &workshop;
     job.crop = {0, scene.picture.width, 0, scene.picture.height};
-    job.seed = options.request.seed + band;
+    job.seed = band == 0 ? options.request.seed : seed_of_run(options.request.seed, band);
     job.plan = options.request.plan;
     job.time_limit = options.request.time_limit;
     job.noise_goal = options.request.noise_goal;
@@ -200,11 +202,13 @@ std::vector<SpectralBand> bands_of(const MeasureOptions& options) {
 
 int run_measure(const MeasureOptions& options) {
     install_interrupt_handler();
+    check_read_again(options.request.scene, "measure reads the scene for each reading, and to check all of them first");
     Workshop workshop(true);
     const std::vector<SpectralBand> bands = bands_of(options);
     check_all(options, bands, workshop);
     std::vector<Values> rows;
     bool was_interrupted = false;
+    std::size_t added = 0; // bands of one reading
     const auto measure_band = [&](const Values& values, std::size_t band, Film& sum) {
         of_values(options.sweeps, values, bands[band], [&] {
             const RenderScene loaded = load_render_scene(request_of(options, values, bands[band]), workshop.fields());
@@ -217,16 +221,18 @@ int run_measure(const MeasureOptions& options) {
             was_interrupted = result.interrupted;
             if (result.samples == 0 && !was_interrupted)
                 throw RenderError("ended before any sample was done");
-            if (result.samples > 0)
+            if (result.samples > 0) {
                 add_band(result.film, bands[band].weight, sum);
+                ++added;
+            }
         });
     };
     const auto measure_one = [&](const Values& values) {
         Film sum;
-        std::size_t band = 0;
-        for (; band < bands.size() && !was_interrupted; ++band)
+        added = 0;
+        for (std::size_t band = 0; band < bands.size() && !was_interrupted; ++band)
             measure_band(values, band, sum);
-        if (band == bands.size() && !sum.mean.empty()) // of some bands alone it would be another reading
+        if (added == bands.size()) // of some bands alone it would be another reading
             add(options.sweeps, values, options.means ? mean_table(sum) : film_table(sum), rows);
     };
     try {

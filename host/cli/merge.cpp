@@ -32,7 +32,7 @@ void check_pair(const MergeInput& a, const MergeInput& b) {
         refuse(a, b,
                fmt::format("the pictures are {}x{} and {}x{}", a.film.picture_width, a.film.picture_height,
                            b.film.picture_width, b.film.picture_height));
-    for (const char* key : {"vkvol/sceneHash", "vkvol/integrator"})
+    for (const char* key : {"vkvol/sceneHash", "vkvol/integrator", "vkvol/layersOf"})
         if (text_of(a.metadata, key) != text_of(b.metadata, key))
             refuse(a, b, fmt::format("{} is '{}' and '{}'", key, text_of(a.metadata, key), text_of(b.metadata, key)));
     if (layer_list(a.film) != layer_list(b.film))

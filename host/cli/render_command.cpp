@@ -155,7 +155,7 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
     if (!options.quiet)
         print_caps(options, result);
     if (options.trace)
-        put(stdout, trace_table(result.trace, result.trace_origin, scene.background));
+        put(stdout, trace_table(result.trace, result.trace_origin, result.film.mean.front()));
     else if (!options.quiet)
         print_summary(options, device, result, shown.tone);
     if (result.interrupted)

@@ -1,6 +1,5 @@
 #include "rendered_before.h"
 
-#include <algorithm>
 #include <string>
 
 #include "checkpoint_file.h"
@@ -35,18 +34,6 @@ std::optional<int> code_of(const std::filesystem::path& exr, const RenderOptions
     return options.strict && text_of(metadata, "vkvol/capsHit") != "0" ? exit_caps_hit : exit_done;
 }
 
-// The hash knows files by their names and sizes.
-bool is_newer_than_inputs(const std::filesystem::path& output, const Scene& scene) {
-    FileUses uses;
-    uses.reads_files_of(scene);
-    const std::vector<std::filesystem::path> inputs = uses.inputs();
-    std::error_code error;
-    const auto made = std::filesystem::last_write_time(output, error);
-    return !error && std::all_of(inputs.begin(), inputs.end(), [&](const std::filesystem::path& input) {
-        return std::filesystem::last_write_time(input, error) < made && !error;
-    });
-}
-
 } // namespace
 
 std::optional<int> rendered_before(const RenderOptions& options, const Scene& scene) {
@@ -56,9 +43,11 @@ std::optional<int> rendered_before(const RenderOptions& options, const Scene& sc
     std::vector<std::filesystem::path> outputs = options.outputs;
     if (options.report)
         outputs.push_back(*options.report);
+    FileUses uses;
+    uses.reads_files_of(scene);
     std::optional<int> code;
     for (const std::filesystem::path& output : outputs) {
-        if (!std::filesystem::is_regular_file(output, error) || !is_newer_than_inputs(output, scene))
+        if (!std::filesystem::is_regular_file(output, error) || !uses.is_newer_than_inputs(output))
             return std::nullopt;
         if (file_ending(output) != ".exr")
             continue;

@@ -10,6 +10,7 @@
 #include "error.h"
 #include "file_uses.h"
 #include "frames.h"
+#include "input_file.h"
 #include "interrupt.h"
 #include "memory_left.h"
 #include "messages.h"
@@ -121,10 +122,7 @@ void print_end(const RenderOptions& options, const std::vector<int>& done, int c
 
 int run_sequence(const RenderOptions& options) {
     const auto start = std::chrono::steady_clock::now();
-    if (is_special(options.scene))
-        throw InputError(
-            fmt::format("{}: a pipe is read once, but -f reads the scene for each frame; write it to a file",
-                        options.scene.string()));
+    check_read_again(options.scene, "-f reads the scene for each frame");
     Workshop workshop(true);
     std::vector<int> done;
     FrameFiles files;

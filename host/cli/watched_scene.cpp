@@ -25,6 +25,7 @@ std::filesystem::file_time_type time_of(const std::filesystem::path& file) {
 
 WatchedScene::WatchedScene(const ViewOptions& options)
     : options_(options), name_(options.request.scene.filename().string()), file_(options.request.scene) {
+    check_read_again(file_, "view reads the scene whenever something of it changes");
     load();
 }
 
@@ -47,7 +48,8 @@ void WatchedScene::load() {
         grids_ = translation.grids;
         notes_ = translation.notes;
     } else {
-        load_scene(file, options_.request.defines); // likewise
+        const RenderRequest& request = options_.request;
+        load_scene(file, request.defines, {request.grid, request.integrator, options_.strict}); // likewise
         xml_ = read_input_text(file, largest_scene, "name a scene file (.xml)");
     }
 }

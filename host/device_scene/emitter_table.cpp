@@ -21,11 +21,6 @@ glm::dmat4 to_render(const shared::MediumParams& medium) {
     return glm::inverse(map);
 }
 
-// Per unit of extinction, of what is constant. What grids and maps hold is not known here.
-double glow_of(const shared::MediumParams& medium) {
-    return channel_mean(medium.emission.constant) + channel_mean(medium.emission.color);
-}
-
 class Emitters {
 public:
     Emitters(EmitterTable& table, double across) : table_(table), across_(across) {}
@@ -115,20 +110,40 @@ double place_sensor(const Scene& scene, glm::dvec3 origin, shared::ParticleParam
 }
 
 // In which splats count: a power of two some 2^34 below a pixel's value, so that sums of 64 bits hold what is 2^25
-// above it; and 2^14 below that of a light that is seen.
-double unit_of_splats(double power, double across, const LightTable& lights) {
-    double usual = power / across;
-    for (const shared::LightRow& light : lights.rows)
-        usual = std::max(usual, channel_mean(light.radiance) / double(1 << 20));
+// above it; and of what is seen itself, `brightest`, 2^54 below.
+double unit_of_splats(double power, double across, double brightest) {
+    const double usual = std::max(power / across, brightest / double(1 << 20));
     return std::exp2(std::floor(std::log2(usual)) - 34.0);
+}
+
+// Radiance, of lights that have a place their intensity.
+double brightest_of(const Scene& scene, const LightTable& lights, const SurfaceTable& surfaces, const Glow& glow) {
+    double brightest = std::max(channel_mean(scene.background), glow.most);
+    for (const shared::LightRow& light : lights.rows)
+        brightest = std::max(brightest, channel_mean(light.radiance));
+    for (const shared::SurfaceRow& surface : surfaces.rows)
+        brightest = std::max(brightest, channel_mean(surface.emission));
+    return brightest;
 }
 
 } // namespace
 
+Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumParams> rows) {
+    Glow glow;
+    if (!emits(scene))
+        return glow;
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+        const shared::EmissionParams& emission = rows[i].emission;
+        const double even = channel_mean(emission.constant) + channel_mean(most_map_emission(scene.volumes[i]));
+        glow.usual += even + channel_mean(emission.color);
+        glow.most = std::max(glow.most, even + hottest_radiance(scene.volumes[i], loaded[i]));
+    }
+    return glow;
+}
+
 EmitterTable make_emitter_table(const Scene& scene, const Method& method, const LightTable& lights,
-                                const SurfaceTable& surfaces, const shared::MediumParams& medium,
-                                std::span<const shared::MediumParams> media, const shared::PeriodParams& period,
-                                double radius, glm::dvec3 origin) {
+                                const SurfaceTable& surfaces, const shared::MediumParams& medium, const Glow& glow,
+                                const shared::PeriodParams& period, double radius, glm::dvec3 origin) {
     EmitterTable table;
     const bool bounded = std::isfinite(radius);
     table.params.radius = bounded ? static_cast<float>(radius * 1.0001) : 0.0f;
@@ -146,17 +161,14 @@ EmitterTable make_emitter_table(const Scene& scene, const Method& method, const 
                 emitters.add_primitive(piece, surfaces.rows[piece.surface], static_cast<std::uint32_t>(i));
         if (emits(scene)) {
             place_glow(medium, table.params);
-            double glow = media.empty() ? glow_of(medium) : 0.0;
-            for (const shared::MediumParams& one : media)
-                glow += glow_of(one);
-            emitters.add(SOURCE_GLOW,
-                         std::max(4.0 * pi * table.params.glow_volume * medium.usual_sigma_t * glow, 1e-30));
+            emitters.add(SOURCE_GLOW, 4.0 * pi * table.params.glow_volume * medium.usual_sigma_t * glow.usual);
         }
     }
     emitters.finish();
     const double reach = bounded && radius > 0.0 ? radius : 1.0;
     table.params.unit =
-        static_cast<float>(unit_of_splats(table.params.power, counts ? sensor : 4.0 * pi * pi * reach * reach, lights));
+        static_cast<float>(unit_of_splats(table.params.power, counts ? sensor : 4.0 * pi * pi * reach * reach,
+                                          brightest_of(scene, lights, surfaces, glow)));
     return table;
 }
 

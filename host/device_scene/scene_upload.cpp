@@ -33,7 +33,7 @@ static_assert(sizeof(shared::SensorParams) == 7 * 12 + 4 * 4 + 2 * 8 + 4 + 12);
 static_assert(sizeof(shared::GridParams) == 4 * 12 + 2 * 4);
 static_assert(sizeof(shared::AlbedoParams) == sizeof(shared::GridParams) + 3 * 16);
 static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 6 * 4);
-static_assert(sizeof(shared::LayerParams) == 12 + 2 * 4);
+static_assert(sizeof(shared::LayerParams) == 12 + 3 * 4);
 static_assert(sizeof(shared::MediumParams) == 3 * 16 + 4 * 12 + sizeof(shared::GridParams) + 12 + 6 * 4 + 2 * 12 +
                                                   sizeof(shared::PhaseParams) + sizeof(shared::AlbedoParams) +
                                                   sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) +
@@ -129,6 +129,8 @@ shared::LayerParams make_layers(const Volume& volume, const MajorantGrid& cells)
     if (layers.scale_height > 0.0) {
         params.bottom = static_cast<float>(layer_density(volume, box.low[layers.axis]));
         params.decay = static_cast<float>(1.0 / layers.scale_height);
+    } else {
+        params.above = static_cast<float>(box.low[layers.axis] - layers.bottom);
     }
     return params;
 }

@@ -10,6 +10,8 @@
 
 namespace vkvol {
 
+static_assert(SMOOTH_FACES > MATERIAL_THIN_DIELECTRIC, "bits of one number");
+
 namespace {
 
 struct Piece {

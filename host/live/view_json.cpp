@@ -45,6 +45,13 @@ std::string text(const Json& json, const char* name) {
     return json.get<std::string>();
 }
 
+Projection projection_of(const std::string& name) {
+    for (const Projection known : {Projection::perspective, Projection::orthographic, Projection::equirectangular})
+        if (name == projection_name(known))
+            return known;
+    refuse(fmt::format("a camera has no projection '{}'", name));
+}
+
 Camera camera_of(const Json& json) {
     Camera camera;
     camera.position = vector(json.at("position"), "position");
@@ -52,11 +59,8 @@ Camera camera_of(const Json& json) {
     if (forward == glm::dvec3(0.0) || up == glm::dvec3(0.0) || is_parallel(forward, up))
         refuse("forward and up give no view");
     look_along(camera, forward, up);
-    const std::string projection = text(json.at("projection"), "projection");
-    for (const Projection known : {Projection::perspective, Projection::orthographic, Projection::equirectangular})
-        if (projection == projection_name(known))
-            camera.projection = known;
-    camera.fov = number(json.at("fov"), "fov", 1e-3, 179.9);
+    camera.projection = projection_of(text(json.at("projection"), "projection"));
+    camera.fov = number(json.at("fov"), "fov", narrowest_fov, widest_fov);
     camera.view_height = number(json.at("viewHeight"), "viewHeight", 1.0 / largest_length, largest_length);
     camera.lens.radius = number(json.at("lensRadius"), "lensRadius", 0.0, largest_length);
     camera.lens.focus = number(json.at("focus"), "focus", 0.0, largest_length);

@@ -350,7 +350,7 @@ void Resolution::find_chances() {
         found.push_back(
             "what smooth mirrors, coats and glass throw of lights, which integrator bidirectional looks for");
     if (method_.paths != PATHS_LIGHT && any_surface(shines))
-        found.push_back("light of meshes, boxes and planes, which integrator lightTracing begins at");
+        found.push_back("light of meshes and boxes, which integrator lightTracing begins at");
     method_.by_chance = fmt::format("{}", fmt::join(found, "; "));
 }
 

@@ -227,6 +227,24 @@ void add_shape(Writer& writer, const MeshSurface& mesh) {
         writer.add("normals", static_cast<int>(mesh.normals));
 }
 
+void add_texture(Writer& writer, const Surface& surface) {
+    const Material& material = surface.material;
+    if (!material.texture.empty()) {
+        add_file(writer, material.texture);
+    } else if (const auto& image = material.image) {
+        writer.add("texels", glm::dvec3(image->width, image->height, image->is_nearest ? 1.0 : 0.0));
+        for (const glm::vec3& texel : image->colors)
+            writer.add("texel", glm::dvec3(texel));
+    }
+    writer.add("repeat", glm::dvec3(material.repeat, 0.0));
+    for (int column = 0; column < 3; ++column)
+        writer.add("axis", surface.axes[column]);
+    if (const auto* mesh = std::get_if<TriangleSurface>(&surface.shape))
+        for (const glm::mat3x2& places : mesh->places)
+            for (int corner = 0; corner < 3; ++corner)
+                writer.add("place", glm::dvec3(places[corner], 0.0));
+}
+
 void add_surface(Writer& writer, const Surface& surface) {
     std::visit([&](const auto& shape) { add_shape(writer, shape); }, surface.shape);
     if (surface.transform != glm::dmat4(1.0))
@@ -243,16 +261,8 @@ void add_surface(Writer& writer, const Surface& surface) {
     }
     if (material.roughness > 0.0)
         writer.add("roughness", material.roughness);
-    if (!material.texture.empty())
-        add_file(writer, material.texture);
-    else if (material.image)
-        for (const glm::vec3& texel : material.image->colors)
-            writer.add("texel", glm::dvec3(texel));
-    if (is_textured(material)) {
-        writer.add("repeat", glm::dvec3(material.repeat, 0.0));
-        for (int column = 0; column < 3; ++column)
-            writer.add("axis", surface.axes[column]);
-    }
+    if (is_textured(material))
+        add_texture(writer, surface);
     writer.add("shine", surface.emission);
     if (surface.shines_both_ways)
         writer.add("sides", 2);

@@ -35,9 +35,9 @@ const char* kind_name(const shared::TraceRecord& record) {
 } // namespace
 
 std::string trace_table(const std::vector<shared::TraceRecord>& records, const glm::dvec3& origin,
-                        const glm::dvec3& background) {
+                        const glm::dvec3& radiance) {
     if (records.empty())
-        return fmt::format("the path never meets the medium: background {}\n", triple(background));
+        return fmt::format("the path never meets the medium: radiance {}\n", triple(radiance));
     const char* const row = "{:<10} {:>6} {:>7}  {:<36} {:<33} {:<33} {:<33} {}\n";
     std::string table = fmt::format(fmt::runtime(row), "vertex", "depth", "steps", "position (world)", "direction",
                                     "throughput", "transmittance to the light", "radiance so far");

@@ -21,9 +21,9 @@ private:
     Buffer buffer_;
 };
 
-// A table, one line a vertex. `origin`: world position of the records' space. `background`: what a path sees that never
-// met the medium, of which there is no record.
+// A table, one line a vertex. `origin`: world position of the records' space. `radiance`: of the sample, where the path
+// never met the medium, of which there is no record.
 std::string trace_table(const std::vector<shared::TraceRecord>& records, const glm::dvec3& origin,
-                        const glm::dvec3& background);
+                        const glm::dvec3& radiance);
 
 } // namespace vkvol

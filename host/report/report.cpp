@@ -217,6 +217,8 @@ Metadata make_metadata(const RenderRequest& request, const Scene& scene, const D
         metadata[moves_key] = 1;
     if (!scene.units.empty())
         metadata["vkvol/units"] = scene.units;
+    if (const std::string layers = layers_text(scene); !layers.empty())
+        metadata["vkvol/layersOf"] = layers;
     if (const std::optional<Exposure>& exposure = scene.camera.exposure) {
         metadata["isoSpeed"] =
             static_cast<float>(exposure->iso); // by OpenEXR's names, which OpenImageIO has others for

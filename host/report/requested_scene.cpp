@@ -53,12 +53,31 @@ std::string apply_request(const RenderRequest& request, bool has_view, Scene& sc
     return given;
 }
 
+std::string layers_text(const Scene& scene) {
+    std::string text;
+    if (scene.layers & layer_groups) {
+        for (const Light& light : scene.lights)
+            text += fmt::format("light of '{}'; ", group_of(light));
+        text += fmt::format("background of '{}'; ", scene.background_group);
+    }
+    if (scene.layers & layer_media)
+        for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+            text += fmt::format("medium '{}'; ", medium_name(scene, i));
+    return text;
+}
+
 std::string asked_text(const RenderRequest& request, const Scene& scene) {
     const Crop crop = resolve_crop(request.crop, scene.picture);
-    return fmt::format("{} samples from {} of seed {}, {} seconds, noise {}, window {},{},{},{}, layers {}{}",
-                       scene.settings.spp, request.sample_offset, request.seed, request.time_limit.value_or(0.0),
-                       request.noise_goal.value_or(0.0), crop.x0, crop.x1, crop.y0, crop.y1, scene.layers,
-                       scene.holds_out ? ", alpha" : "");
+    std::string text = fmt::format(
+        "{} samples from {} of seed {}, {} seconds, noise {}, window {},{},{},{}, layers {}{}", scene.settings.spp,
+        request.sample_offset, request.seed, request.time_limit.value_or(0.0), request.noise_goal.value_or(0.0),
+        crop.x0, crop.x1, crop.y0, crop.y1, scene.layers, scene.holds_out ? ", alpha" : "");
+    if (const auto& exposure = scene.camera.exposure)
+        text += fmt::format(", exposed {} s at f/{}, ISO {}, {} cd/m^2", exposure->shutter, exposure->f_number,
+                            exposure->iso, exposure->luminance_unit);
+    if (const std::string layers = layers_text(scene); !layers.empty())
+        text += ", " + layers;
+    return text;
 }
 
 Crop resolve_crop(const std::optional<CropRequest>& request, const Picture& picture) {

@@ -13,7 +13,10 @@ namespace vkvol {
 // which. `has_view`: the view was chosen with the scene, and stays. Throws InputError.
 std::string apply_request(const RenderRequest& request, bool has_view, Scene& scene, FieldCache& fields);
 
-// All that decides which samples a picture of the scene holds, and which layers, in one line.
+// Which light is in which layer, where layers are told apart by groups or media, in one line; else empty.
+std::string layers_text(const Scene& scene);
+
+// All that decides which samples a picture of the scene holds, which layers, and how it is shown, in one line.
 std::string asked_text(const RenderRequest& request, const Scene& scene);
 
 // The window in pixels; the whole picture without a request. Throws InputError if it is empty or leaves the picture.

@@ -40,6 +40,9 @@ enum class Projection { perspective, orthographic, equirectangular, irradiance, 
 // The largest radius of a lens, by the distance of what is sharp: single precision has no directions beyond.
 inline constexpr double widest_lens = 1000.0;
 
+// What single precision can tell from 0 and 180 degrees.
+inline constexpr double narrowest_fov = 1e-30, widest_fov = 179.9999;
+
 // A thin lens across the eye, in its plane. Perspective only.
 struct Lens {
     double radius = 0.0; // world units, >= 0; 0: a pinhole
@@ -61,10 +64,11 @@ struct Exposure {
 struct Camera {
     Projection projection = Projection::perspective;
     glm::dvec3 position{0.0};
-    double pitch = 0.0;        // degrees, + looks up
-    double yaw = 0.0;          // degrees, + turns left
-    double roll = 0.0;         // degrees, + counter-clockwise about world z
-    double fov = 90.0;         // degrees, the full vertical angle of the reference frame, in (0, 180); perspective only
+    double pitch = 0.0; // degrees, + looks up
+    double yaw = 0.0;   // degrees, + turns left
+    double roll = 0.0;  // degrees, + counter-clockwise about world z
+    double fov =
+        90.0; // degrees, the full vertical angle of the reference frame, narrowest_fov to widest_fov; perspective
     double view_height = 10.0; // world units, of the reference frame, > 0; orthographic only
     Lens lens;
     std::optional<Exposure> exposure;

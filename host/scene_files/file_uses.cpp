@@ -50,11 +50,12 @@ void FileUses::reads(const std::string& what, const path& file) {
         inputs_.push_back({what, file, ""});
 }
 
-std::vector<std::filesystem::path> FileUses::inputs() const {
-    std::vector<std::filesystem::path> files;
-    for (const Use& input : inputs_)
-        files.push_back(input.file);
-    return files;
+bool FileUses::is_newer_than_inputs(const path& file) const {
+    std::error_code error;
+    const auto written = std::filesystem::last_write_time(file, error);
+    return !error && std::all_of(inputs_.begin(), inputs_.end(), [&](const Use& input) {
+        return std::filesystem::last_write_time(input.file, error) < written && !error;
+    });
 }
 
 void FileUses::reads_files_of(const Scene& scene) {

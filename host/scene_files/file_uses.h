@@ -18,7 +18,9 @@ public:
     // `option` is the one that gives the file its name: "-o".
     void writes(const std::string& what, const std::filesystem::path& file, const std::string& option);
 
-    std::vector<std::filesystem::path> inputs() const;
+    // Whether a file was written after all that is read: hashes know files by name and size, which one made anew may
+    // have as before. False if that cannot be told.
+    bool is_newer_than_inputs(const std::filesystem::path& file) const;
 
     // Throws InputError that names both uses and the remedy. Other spellings and links are the same file; devices and
     // pipes may be used more than once.

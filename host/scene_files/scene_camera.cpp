@@ -199,12 +199,11 @@ Camera SceneReader::camera() const {
     camera.roll = number("roll", any_number);
     camera.fov = element.attribute_number("fov", camera.fov,
                                           {0, 180, false, false, "an angle between 0 and 180 degrees, both excluded"});
-    constexpr double narrowest = 1e-30, widest = 179.9999; // what single precision can tell from 0 and 180
-    if (camera.fov < narrowest || camera.fov > widest)
+    if (camera.fov < narrowest_fov || camera.fov > widest_fov)
         element.fail_attribute("fov",
                                fmt::format("<camera> fov: {:g} cannot be told from 0 or 180 in single precision; "
                                            "expected an angle from {:g} to {:.4f}",
-                                           camera.fov, narrowest, widest));
+                                           camera.fov, narrowest_fov, widest_fov));
     check_combination(element);
     if (element.has("lookAt"))
         look_at(element, camera);

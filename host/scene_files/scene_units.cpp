@@ -30,7 +30,7 @@ void set_irradiance(Light& light, const Rgb& irradiance) {
 }
 
 bool glows(const Volume& volume) {
-    return volume.Le != Rgb(0.0) || volume.temperature.color != Rgb(0.0);
+    return volume.Le != Rgb(0.0) || volume.temperature.color != Rgb(0.0) || most_map_emission(volume) != Rgb(0.0);
 }
 
 } // namespace

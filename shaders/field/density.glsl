@@ -57,7 +57,7 @@ float voxel_value(GridParams g, int type, VoxelPlace place, uint entry) {
     return place.inside ? value : 0.0;
 }
 
-// Value of voxel `ijk`, >= 0; 0 outside the box of active voxels. `type` is a specialization constant.
+// Value of voxel `ijk`, >= 0; 0 outside the box of active voxels. `type` is a specialization constant, or, of several grids, of a row.
 float voxel(GridParams g, int type, ivec3 ijk) {
     VoxelPlace place = find_voxel(g, ijk);
     return voxel_value(g, type, place, leaf_entry(place.entry));

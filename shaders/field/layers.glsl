@@ -4,9 +4,9 @@
 #include "field/value_map.glsl"
 #include "shapes/shape.glsl"
 
-// Above the bottom, of a point of medium space [world units].
+// Above the bottom, of a point of medium space; of layers that are a map above the first of these [world units].
 float layer_height(MediumParams v, vec3 p) {
-    return max(dot(v.layers.up, p), 0.0);
+    return max(dot(v.layers.up, p), 0.0) + v.layers.above;
 }
 
 // `map`: MAP_...

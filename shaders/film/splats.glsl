@@ -28,7 +28,7 @@ void add_whole(uint at, float x) {
         atomicAdd(splats[at + 1u], high);
 }
 
-// What is not finite is dropped, and counted.
+// What is not finite, or more than the numbers hold, is dropped, and counted.
 void splat(uint pixel, uint place, uint sample_index, vec3 light) {
     vec3 x = light / frame.particles.unit;
     if (any(isnan(x)) || any(greaterThan(abs(x), vec3(MOST_SPLAT)))) {

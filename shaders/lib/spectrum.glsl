@@ -30,4 +30,9 @@ float one_minus_exp(float x) {
 }
 vec3 one_minus_exp(vec3 x) { return vec3(one_minus_exp(x.x), one_minus_exp(x.y), one_minus_exp(x.z)); }
 
+// -log(1 - y), 0 <= y < 1, likewise: the series to y^4.
+float minus_log_of_rest(float y) {
+    return y < 0.03 ? y * (1.0 + y * (0.5 + y * (1.0 / 3.0 + y * 0.25))) : -log(max(1.0 - y, 1.0e-30));
+}
+
 #endif

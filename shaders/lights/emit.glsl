@@ -58,8 +58,7 @@ Particle from_afar(vec3 toward, vec3 light, vec2 u) {
 
 // Off the surface that it may be: see SurfacePoint.
 Particle from_surface(vec3 position, vec3 normal, vec3 light, vec2 u) {
-    vec3 reach = abs(position);
-    float apart = HAS_SURFACES ? 3.8147e-6 * max(reach.x, max(reach.y, reach.z)) : 0.0;
+    float apart = HAS_SURFACES ? spare_at(position) : 0.0;
     Particle p = particle(position + apart * normal, by_cosine(normal, u), light, SHINES_FLAT);
     p.normal = normal;
     return p;

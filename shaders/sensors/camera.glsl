@@ -46,8 +46,7 @@ vec2 picture_point(uint place, vec2 u) {
 
 // Evenly over the aperture, in units of the lens' radius.
 vec2 aperture_point(SensorParams s, vec2 u) {
-    float turn = 2.0 * PI * u.x;
-    vec2 p = sqrt(u.y) * vec2(cos(turn), sin(turn));
+    vec2 p = in_disk(u.yx);
     if (s.blades > 0u) { // in one of the triangles between the middle and an edge
         float triangle = floor(u.x * float(s.blades));
         float along = u.x * float(s.blades) - triangle;

@@ -93,6 +93,25 @@ SensorLook toward_panorama(SensorParams s, vec3 from, out vec2 p) {
     return SensorLook(-normalize(q), length(q), 0.0, dot(q, q) > 0.0 ? 0u : NO_PIXEL);
 }
 
+// One of the places at which a panorama has a point that filters carry across its seam or a pole: camera_ray goes on beyond both. `count`: of
+// those. Of filters that reach less than half around.
+vec2 image_in_panorama(SensorParams s, vec2 p, vec2 u, out float count) {
+    vec2 whole = abs(vec2(2.0 * PI, PI) / s.angle_step);
+    float reach = frame_block.filter_quantiles[FILTER_QUANTILES];
+    count = 1.0;
+    if (min(p.y, whole.y - p.y) < reach) {
+        count *= 2.0;
+        if (u.y < 0.5)
+            p = vec2(p.x + (p.x < 0.5 * whole.x ? 0.5 : -0.5) * whole.x, p.y < reach ? -p.y : 2.0 * whole.y - p.y);
+    }
+    if (min(p.x, whole.x - p.x) < reach) {
+        count *= 2.0;
+        if (u.x < 0.5)
+            p.x += p.x < 0.5 * whole.x ? whole.x : -whole.x;
+    }
+    return p;
+}
+
 SensorLook toward_sensor(vec3 from, inout Rng rng) {
     SensorParams s = frame.sensors[0];
     vec4 u = to_uniform(next_words(rng));
@@ -105,8 +124,11 @@ SensorLook toward_sensor(vec3 from, inout Rng rng) {
     else
         look = toward_eye(s, from, SENSOR == SENSOR_LENS ? aperture_point(s, u.xy) : vec2(0.0), p);
     if (look.pixel != NO_PIXEL) {
-        float filtered;
+        float filtered, images = 1.0;
+        if (SENSOR == SENSOR_EQUIRECTANGULAR && PIXEL_FILTER != PIXEL_EVEN)
+            p = image_in_panorama(s, p, u.xy, images);
         look.pixel = pixel_at(p, u.zw, filtered);
+        filtered *= images;
         look.weight = look.pixel != NO_PIXEL ? filtered * seen_weight(from, -look.direction, look.distance) : 0.0;
     }
     return look;

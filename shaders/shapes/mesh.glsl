@@ -135,7 +135,7 @@ MeshRay make_mesh_ray(uint root, uint bvh_nodes, Ray ray) {
     MeshRay m;
     m.shear = make_shear(ray);
     vec3 reach = bvh_nodes > 0u ? max(abs(bvh[root].low), abs(bvh[root].high)) + abs(ray.origin) : vec3(0.0);
-    float margin = 3.8147e-6 * max(reach.x, max(reach.y, reach.z));
+    float margin = spare_at(reach);
     m.before = ray.origin + margin;
     m.after = ray.origin - margin;
     // Components so small that their inverse would overflow are taken for 1e-30, which moves the ray by nothing.

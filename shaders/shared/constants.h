@@ -227,8 +227,8 @@
 #define MATERIAL_ROUGH_DIELECTRIC 6
 #define MATERIAL_THIN_DIELECTRIC 7 // both sides of a pane at once
 // No materials, but further bits of SPEC_MATERIALS.
-#define SMOOTH_FACES 7 // some triangles have normals of their own
-#define TEXTURED 8     // some surfaces have a texture
+#define SMOOTH_FACES 8 // some triangles have normals of their own
+#define TEXTURED 9     // some surfaces have a texture
 
 // What a piece of surfaces is that rays do not meet.
 #define DETAIL_NORMALS 1 // a, b, c: of a triangle's corners; surface: the piece that is their places, or 0

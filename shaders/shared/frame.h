@@ -75,6 +75,7 @@ struct LayerParams {
     vec3 up;      // a point of medium space, times this, has that height above the bottom [world units]
     float bottom; // density there
     float decay;  // per world unit
+    float above;  // of layers that are a map: how far medium space begins above the first of them [world units]
 };
 
 // Where the density is procedural; see noise.glsl. Each octave has its own map, so that its offset can be wrapped to

@@ -119,10 +119,29 @@ void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, i
     trace(TRACE_COLLISION, lane, lane.path.position, lane.path.direction);
 }
 
+// How far behind its beginning a flight that goes through at once collides, of the channels by what each takes away: on average, or,
+// where the density falls with height, of a collision that is drawn. Nothing else is drawn with these numbers while it goes through.
+float collision_along(MediumParams v, Walk w, vec3 deposit, Rng rng) {
+    vec3 sigma = max(v.sigma_t * v.sigma_ratio, vec3(1.0e-30));
+    vec3 t;
+    if (LAYERED) {
+        Fading f = fading_along(v, w.origin, w.direction);
+        float whole = faded_depth(f, w.t_end), u = to_uniform(next_words(rng)).x;
+        [[unroll]] for (int c = 0; c < 3; ++c) {
+            float depth = minus_log_of_rest(u * one_minus_exp(sigma[c] * whole)) / sigma[c];
+            t[c] = min(faded_distance(f, min(depth, 0.999999 * whole)), w.t_end); // not behind the last of it, by rounding
+        }
+    } else {
+        [[unroll]] for (int c = 0; c < 3; ++c)
+            t[c] = mean_part(sigma[c] * w.t_end) * w.t_end;
+    }
+    return dot(deposit, t) / max(deposit.x + deposit.y + deposit.z, 1.0e-30);
+}
+
 // The first collision of a flight that goes through: at each step as much as that takes away.
-void note_step(MediumParams v, MediumParams met, Spectrum deposit, float t, Lane lane) {
+void note_step(MediumParams v, MediumParams met, Spectrum deposit, float t, Lane lane, Rng rng) {
     if (FREE_FLIGHT == FREE_FLIGHT_ANALYTIC)
-        t = lane.walk.start + mean_part(v.sigma_t * lane.walk.t_end) * lane.walk.t_end;
+        t = lane.walk.start + collision_along(v, lane.walk, vec3(deposit), rng);
     vec3 position = lane.path.position + t * lane.path.direction;
     note_collision(lane.record, vec3(deposit), position, lane.path.direction, flown_before(lane) + t, albedo_at(met, position));
 }
@@ -138,7 +157,7 @@ void touch(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng) {
         if (EMISSION != EMISSION_NONE)
             add_light(lane, deposit * emitted_radiance(met, position), glow_label(lane.path.depth) | label);
         if (HAS_LAYERS)
-            note_step(v, met, deposit, t, lane);
+            note_step(v, met, deposit, t, lane, rng);
         next = largest(lane.beta) == 0.0 ? TODO_END : TODO_FLY;
     }
     lane.todo = next;

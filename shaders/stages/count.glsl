@@ -6,8 +6,7 @@
 // World units before the sensor's plane. Where there are surfaces, of a plane a little before it: particles that come to a surface
 // in the sensor's plane have passed then, and those that leave it, from a little off it, have not: see SurfacePoint.
 float before_sensor(vec3 position) {
-    vec3 reach = abs(position);
-    float apart = HAS_SURFACES ? 2.0 * 3.8147e-6 * max(reach.x, max(reach.y, reach.z)) : 0.0;
+    float apart = HAS_SURFACES ? 2.0 * spare_at(position) : 0.0;
     return dot(position - frame.sensors[0].position, frame.sensors[0].corner) - apart;
 }
 

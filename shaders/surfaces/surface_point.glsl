@@ -134,7 +134,7 @@ SurfacePoint surface_point(uint i, vec3 near) {
     if (HAS_TEXTURES)
         at.place = texture_place(p, at.position, at.normal);
 #endif
-    at.apart = 3.8147e-6 * max(reach.x, max(reach.y, reach.z));
+    at.apart = spare_at(reach);
     return at;
 }
 

@@ -241,6 +241,20 @@ TEST_CASE("a sequence that is gone on with passes over the frames that are there
     CHECK_THAT(scene.vkvol("ball.xml -f 1..1 -o t.#.exr -o t.#.png --exposure 1 --resume").text, Contains("is there"));
     CHECK_THAT(scene.vkvol("ball.xml -f 1..1 -o t.#.exr --resume").text, Contains("is there"));
     CHECK_THAT(scene.vkvol("ball.xml -f 1..1 -o t.#.exr -o t.#.png --exposure 2 --resume").text, !Contains("is there"));
+    // Nor is one that the camera exposes otherwise, or whose layers are of other lights.
+    const auto write_with = [&](const char* iso, const char* group) {
+        std::ofstream(scene.file("lit.xml"))
+            << "<options><sphere/><sigma_a>1</sigma_a><sigma_s>1</sigma_s><width>8</width><height>8</height><camera "
+               "z=\"5\" yaw=\"$F\" fov=\"30\" shutter=\"0.01\" fNumber=\"8\" iso=\""
+            << iso << "\"/><light y=\"1\" r=\"1\" group=\"" << group << "\"/></options>";
+    };
+    const std::string lit = "lit.xml -f 1..1 -o g.#.exr --aov groups --resume";
+    for (const auto& [iso, group] : {std::pair("100", "key"), std::pair("800", "key"), std::pair("800", "sun")}) {
+        CAPTURE(iso, group);
+        write_with(iso, group);
+        CHECK_THAT(scene.vkvol(lit).text, !Contains("is there"));
+        CHECK_THAT(scene.vkvol(lit).text, Contains("is there"));
+    }
     // A frame whose time is over is done.
     const std::string timed = "ball.xml -f 1..1 -o l.#.exr --time 0.3 --checkpoint 0.05s --resume";
     REQUIRE(scene.vkvol(timed + " -q").code == exit_done);

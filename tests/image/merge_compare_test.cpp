@@ -148,6 +148,7 @@ TEST_CASE("what does not belong together is not merged", "[cpu][merge]") {
     CHECK_THROWS_WITH(merge_films({a, with("vkvol/sceneHash", "other")}),
                       "a.exr and b.exr do not belong together: vkvol/sceneHash is 'abc' and 'other'");
     CHECK_THROWS_WITH(merge_films({a, with("vkvol/integrator", "deltaTracking")}), Catch::Contains("vkvol/integrator"));
+    CHECK_THROWS_WITH(merge_films({a, with("vkvol/layersOf", "light of 'key'; ")}), Catch::Contains("vkvol/layersOf"));
     CHECK_THROWS_WITH(merge_films({a, with("vkvol/sampleOffset", 3)}), Catch::Contains("the same samples"));
     CHECK_THROWS_WITH(merge_films({a, a}), Catch::Contains("the same samples"));
     MergeInput larger = input("b.exr", film, 4, 4);

@@ -256,6 +256,28 @@ TEST_CASE("layers are shown as what they are", "[cpu][live]") {
     CHECK(show_layer(film, nullptr, "direct", {}, {}).rgba[0] == 255);
 }
 
+TEST_CASE("a page's camera is one that a scene may have", "[cpu][live]") {
+    Json camera{{"position", {0, 0, 1}}, {"forward", {0, 0, -1}}, {"up", {0, 1, 0}}, {"projection", "perspective"},
+                {"fov", 1e-4},           {"viewHeight", 1},       {"lensRadius", 0}, {"focus", 1}};
+    CHECK(wish_of(Json{{"camera", camera}}.dump()).edits.camera->fov == 1e-4);
+    camera["fov"] = 180;
+    CHECK_THROWS_WITH(wish_of(Json{{"camera", camera}}.dump()), Contains("fov is 180"));
+    camera["fov"] = 90;
+    camera["projection"] = "fisheye";
+    CHECK_THROWS_WITH(wish_of(Json{{"camera", camera}}.dump()), Contains("no projection 'fisheye'"));
+}
+
+TEST_CASE("a scene is viewed by the integrator that is asked for", "[gpu][live]") {
+    const Folder folder("");
+    folder.write(
+        "noise.xml",
+        "<options><sphere radius=\"1\"/><noise/><sigma_a>1</sigma_a><sigma_s>1</sigma_s><width>8</width>"
+        "<height>8</height><camera z=\"4\"/><light y=\"1\"/><integrator>regularTracking</integrator></options>");
+    CHECK(folder.vkvol("noise.xml -o a.exr").code == exit_bad_input); // exact optical depths of noise are not known
+    Watched watched(folder, "noise.xml --spp 1 --integrator ratioTracking");
+    CHECK(watched.end(SIGTERM) == exit_done);
+}
+
 TEST_CASE("looks at a render change none of its bits", "[gpu][live]") {
     Scene scene = scene_of(medium(Sphere{}, 3.0, 0.9), 3.0, 24);
     scene.lights = {LightsAbout{}.beam};

@@ -123,6 +123,7 @@ TEST_CASE("a converted pbrt scene is the picture of the pbrt scene, bit for bit"
                  "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
                  "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n-9 -1 -9\n"
                  "9 -1 -9\n0 -1 9\n3 0 1 2\n");
+    CHECK(folder.script("\"$vkvol\" convert in/a.pbrt -o /dev/stdout 2>/dev/null | tail -c 11").text == "</options>\n");
     const Run converted = folder.vkvol("convert in/a.pbrt -o out/b.xml");
     CHECK(converted.text == "out/b.xml: 1 media, 1 lights, 1 surfaces\n");
     REQUIRE(folder.vkvol("in/a.pbrt -q -o a.exr").code == exit_done);
@@ -182,6 +183,8 @@ TEST_CASE("pbrt scenes on the command line", "[gpu][pbrt]") {
                  "density\" 1\nMediumInterface \"m\" \"\" Material \"interface\" Shape \"sphere\"\n");
     folder.write("g_m.nvdb", "mine");
     refused("convert g.pbrt -o g.xml", "g_m.nvdb: is there already");
+    std::filesystem::create_directories(folder.file("f_m.nvdb"));
+    refused("convert g.pbrt -o f.xml", "f_m.nvdb: is there already");
     CHECK_FALSE(std::filesystem::exists(folder.file("g.xml")));
     CHECK(folder.vkvol("convert g.pbrt -q -o h.xml").code == exit_done);
     CHECK(folder.vkvol("convert g.pbrt -q -o h.xml").code == exit_done);

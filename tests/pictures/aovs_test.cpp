@@ -293,6 +293,39 @@ TEST_CASE("the first collision in a slab is where its density has it", "[gpu][im
     }
 }
 
+TEST_CASE("the first collision of what is gone through at once is where its density has it", "[gpu][image][aovs]") {
+    const auto mean_below = [](double rate) { return 1.0 / rate - std::exp(-rate) / -std::expm1(-rate); };
+    // Channel by channel, weighted by what each loses.
+    const Rgb sigma_t = {10.0, 1.0, 0.5};
+    Scene scene = beam(slab(1.0, 0.0), 3.0, 4);
+    scene.volumes.front().sigma_a = sigma_t;
+    scene.settings.integrator = "densitySampling";
+    scene.layers = layer_depth;
+    double depth = 0.0, lost = 0.0;
+    for (int c = 0; c < 3; ++c) {
+        depth += -std::expm1(-sigma_t[c]) * mean_below(sigma_t[c]);
+        lost += -std::expm1(-sigma_t[c]);
+    }
+    const Film colours = render_here(scene, 4).film; // of which the film has to outlive its layer
+    for (const glm::vec3& pixel : layer_of(colours, "depth").mean)
+        CHECK(pixel.x == Approx(3.0 + depth / lost).epsilon(1e-5));
+    // Down through an exponential atmosphere, whose mean is an integral: of exp(-tau) - exp(-tau(20)) over the way.
+    scene.volumes.front() = medium(Everywhere{}, 1.5, 0.0);
+    scene.volumes.front().layers = Layers{1, 0.0, 20.0, 1.0, 0.0};
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.view_height = 1e-3;
+    scene.camera.position = {0.0, 20.0, 0.0};
+    scene.camera.pitch = -90.0;
+    scene.settings.spp = 1024;
+    const auto passed = [](double t) { return std::exp(-1.5 * (std::exp(t - 20.0) - std::exp(-20.0))); };
+    constexpr int steps = 20000; // by midpoints: off by (20 / steps)^2 / 24 of the second derivative, 1e-7
+    double mean = 0.0;
+    for (int i = 0; i < steps; ++i)
+        mean += 20.0 / steps * (passed(20.0 * (i + 0.5) / steps) - passed(20.0)) / (1.0 - passed(20.0));
+    const Film air = render_here(scene, 4).film;
+    CHECK_AGREEMENT(agree_with_means(as_film(air, "depth"), everywhere(air, Rgb(mean)), "atmosphere"));
+}
+
 TEST_CASE("a surface's normal is seen through what is before it", "[gpu][image][aovs]") {
     const double tau = 0.7;
     Scene scene = beam(slab(tau, 0.7), 3.0, 1024);

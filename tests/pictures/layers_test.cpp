@@ -113,6 +113,11 @@ TEST_CASE("rays through layers of a table have the sum of its slabs", "[gpu][ima
         check_transmittance(parallel_rays(table(sigma_t, 0.0), {1.0, 9.0, 0.0}, pitch),
                             sigma_t * slabs / std::sin(glm::radians(-pitch)), "table");
     check_transmittance(parallel_rays(table(sigma_t, 0.0), {1.0, 0.0, 0.0}, 90.0), sigma_t * (0.375 + 0.075), "up");
+    // A box that begins above the lowest layer, from 0 to 2: 0.4 to 0.1, and half a unit on toward 0.
+    Volume boxed = table(sigma_t, 0.0);
+    boxed.shape = Box{{0.0, 1.0, 0.0}, {2e3, 2.0, 2e3}};
+    check_transmittance(parallel_rays(boxed, {1.0, 9.0, 0.0}, -90.0), sigma_t * (0.375 + 0.5 * (0.1 + 0.2 / 3.0) / 2.0),
+                        "a box above the lowest layer");
     Scene two = parallel_rays(table(0.3 * sigma_t, 0.0), {1.0, 9.0, 0.0}, -35.0);
     two.volumes.push_back(table(0.7 * sigma_t, 0.0));
     check_transmittance(two, sigma_t * slabs / std::sin(glm::radians(35.0)), "two tables");
@@ -172,6 +177,8 @@ TEST_CASE("media that are everywhere equal the reference", "[gpu][image][layers]
     colors.map.points[2].albedo = {0.2, 0.6, 0.9};
     colors.map.points[2].emission = {0.3, 0.1, 0.0};
     check_against_reference(lit(colors), "colours by height");
+    colors.shape = Box{{0.0, 1.2, 0.0}, {5.0, 3.0, 4.0}}; // begins above the lowest
+    check_against_reference(lit(colors), "colours by height in a box");
     Volume boxed = table(1.2, 0.9);
     boxed.shape = Box{{0.0, 0.5, 0.0}, {5.0, 4.0, 4.0}};
     boxed.transform = glm::rotate(glm::dmat4(1.0), 0.6, glm::normalize(glm::dvec3(1.0, 0.3, -0.5)));

@@ -109,6 +109,14 @@ std::vector<Case> cases() {
     Volume ember = smoke();
     ember.Le = {1.0, 0.5, 0.2};
     all.push_back({"what glows", seen(ember, 4.0, {})});
+    Volume layered = medium(Box{{0.0, 0.2, 0.0}, {2.0, 1.8, 2.0}}, 2.0, 0.8); // begins above the lowest layer
+    layered.layers = Layers{1, -1.0, 1.0, 0.0, 0.0};
+    layered.map.is_transfer = true;
+    layered.map.points = {{0.0, 1.0}, {1.0, 0.5}, {2.0, 1.0}};
+    for (MapPoint& point_of_map : layered.map.points)
+        point_of_map.albedo = {0.8, 0.6, 0.7};
+    layered.map.points[1].emission = {0.4, 0.3, 0.1};
+    all.push_back({"layers that glow", seen(layered, 4.0, {})});
     Scene several = seen(smoke(), 5.0, {point});
     several.volumes.push_back(medium(Box{{-0.9, -0.5, -0.5}, {1.4, 0.6, 0.7}}, 2.0, 0.9));
     several.volumes.back().sigma_s = {1.9, 1.5, 1.8}; // of an extinction that is grey, as the reference wants it
@@ -194,6 +202,9 @@ TEST_CASE("particles are seen by every camera through every filter", "[gpu][part
     scene.camera.projection = Projection::equirectangular;
     scene.camera.position = {0.4, 0.3, 2.4};
     all.push_back({"panorama", scene});
+    scene.settings.pixel_filter = PixelFilter::tent; // goes on across its seam and the poles
+    scene.settings.pixel_filter_radius = 1.0;
+    all.push_back({"panorama, filtered", scene});
     // From so far away that rays begin before the eye.
     scene = usual;
     scene.camera.position *= 200.0;
@@ -226,6 +237,22 @@ TEST_CASE("particles from an even sky leave it even", "[gpu][particles]") {
     scene = by(scene, "lightTracing");
     const Film film = render_here(scene, 1).film;
     CHECK_AGREEMENT(agree_with_means(film, std::vector<Rgb>(film.mean.size(), scene.background), "even sky"));
+}
+
+// Splats are numbers of so many digits, and what paths from the camera bring are splats as well.
+TEST_CASE("what is seen may be far brighter than what particles bring", "[gpu][particles]") {
+    Scene scene =
+        seen(medium(Sphere{glm::dvec3(0.0), 1000.0}, 1e-6, 1.0), 100.0, {PointLight{{0.0, 0.0, 0.0}, Rgb(0.01)}});
+    scene.settings.spp = 16;
+    scene.background = Rgb(1.0); // nothing is lost on the way
+    const RenderResult sky = render_here(by(scene, "bidirectional"), 1);
+    CHECK(sky.counts.non_finite == 0);
+    for (const glm::vec3& pixel : sky.film.mean)
+        CHECK(pixel.x == Approx(1.0).epsilon(1e-3));
+    scene.background = Rgb(0.0);
+    scene.volumes.front().sigma_a = scene.volumes.front().sigma_s = Rgb(1e-3);
+    scene.volumes.front().Le = Rgb(1e4);
+    CHECK(render_here(by(scene, "bidirectional"), 1).counts.non_finite == 0);
 }
 
 TEST_CASE("negative estimates are splats too", "[gpu][particles]") {

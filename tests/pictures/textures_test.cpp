@@ -244,4 +244,11 @@ TEST_CASE("textures are read and refused by name", "[xml][surfaces]") {
     CHECK(hash_of("checker=\".1\"") == hash_of("r=\".5\" g=\".5\" b=\".5\" checker=\".1 .1 .1\""));
     CHECK(hash_of("checker=\".1\"") != hash_of("checker=\".2\""));
     CHECK(hash_of("checker=\".1\"") != hash_of("multiplier=\".2\" checker=\".1\""));
+    const auto hash_of_places = [](const char* checker, const char* places) {
+        return scene_hash(parse(fmt::format("<surfaces><mesh {}><vertices>0 0 0 1 0 0 0 1 0</vertices><triangles>0 1 2"
+                                            "</triangles><places>{}</places></mesh></surfaces>",
+                                            checker, places)));
+    };
+    CHECK(hash_of_places("checker=\".1\"", "0 0 1 0 0 1") != hash_of_places("checker=\".1\"", "0 0 2 0 0 1"));
+    CHECK(hash_of_places("", "0 0 1 0 0 1") == hash_of_places("", "0 0 2 0 0 1")); // the same picture
 }

@@ -66,10 +66,11 @@ TEST_CASE("a followed path gathers the radiance of its sample, bit by bit", "[gp
 
 TEST_CASE("a followed path is printed", "[gpu][trace]") {
     const RenderResult hit = one_sample(cloud(), 12, 11, 4, true);
-    const std::string table = trace_table(hit.trace, hit.trace_origin, cloud().background);
+    const std::string table = trace_table(hit.trace, hit.trace_origin, hit.film.mean.front());
     for (const char* word : {"camera", "position (world)", "end"})
         CHECK_THAT(table, Catch::Contains(word));
     const RenderResult missed = one_sample(looking_away(), 0, 0, 4, true);
     CHECK(missed.trace.empty());
-    CHECK_THAT(trace_table(missed.trace, missed.trace_origin, cloud().background), Catch::Contains("0.3 0.5 0.9"));
+    CHECK_THAT(trace_table(missed.trace, missed.trace_origin, missed.film.mean.front()),
+               Catch::Contains("radiance 0.3 0.5 0.9"));
 }

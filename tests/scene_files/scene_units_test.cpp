@@ -87,6 +87,10 @@ TEST_CASE("units that readings cannot have are refused", "[cpu][xml]") {
     CHECK_THAT(complaint(units), Contains("one light far away"));
     CHECK_THAT(complaint(units + light + "<backgroundColor r=\"1\"/>"), Contains("nothing else that shines"));
     CHECK_THAT(complaint(units + light + "<medium r=\"1\"/>"), Contains("nothing else that shines"));
+    CHECK_THAT(complaint(units + light +
+                         "<layers><layer height=\"-1\" sigma_t=\"1\"/><layer height=\"0\" sigma_t=\"1\" "
+                         "emission=\"1 1 1\"/></layers>"),
+               Contains("nothing else that shines"));
     CHECK_THAT(complaint(units + light + "<lights><sun y=\"1\"/></lights>"), Contains("one light far away"));
     CHECK_THAT(complaint(units + "<light x=\"1\" y=\"0\" z=\"0\" r=\"1\"/>"), Contains("the light is level"));
     const auto points = [&](const std::string& rest) {

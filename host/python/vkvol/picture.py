@@ -33,7 +33,7 @@ class Picture:
 
     @cached_property
     def samples(self) -> npt.NDArray[np.uint32]:
-        """Of each pixel: (height, width). They differ only if Ctrl-C or `time` ended the render."""
+        """Of each pixel: (height, width). They differ if Ctrl-C or `time` ended the render, or samples were not finite."""
         return self._picture.samples
 
     @cached_property
