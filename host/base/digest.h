@@ -1,6 +1,7 @@
 // Fingerprints of bytes, by which files, scenes and renders are told apart: equal by accident once in 10^19.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -26,5 +27,9 @@ private:
 };
 
 std::string digest_text(std::string_view bytes);
+
+// Of a regular file: of all of it up to 64 MiB, of larger ones of parts evenly apart that come to half as much. Read
+// once as long as its size and time are the same. Empty if it cannot be read.
+std::string digest_of_file(const std::filesystem::path& file);
 
 } // namespace vkvol

@@ -53,11 +53,15 @@ void find_ratios(std::vector<Row>& rows) {
     const auto usual = std::find_if(rows.begin(), rows.end(), [](const Row& row) { return row.is_default(); });
     if (usual == rows.end() || !usual->figures.judged)
         return;
+    // Of many ratios the best is named: their intervals hold together.
+    const auto others =
+        std::count_if(rows.begin(), rows.end(), [](const Row& row) { return row.figures.judged && !row.is_default(); });
     for (Row& row : rows)
         if (row.is_default())
             row.figures.ratio = Interval{1.0, 1.0, 1.0};
         else if (row.figures.judged)
-            row.figures.ratio = efficiency_ratio(row.measurement->runs, usual->measurement->runs);
+            row.figures.ratio = efficiency_ratio(row.measurement->runs, usual->measurement->runs,
+                                                 probability_of_each(std::size_t(others)));
 }
 
 } // namespace

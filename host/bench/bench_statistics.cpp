@@ -209,14 +209,15 @@ std::optional<Interval> efficiency(std::span<const BenchRun> runs) {
     return exponential(log->mean, student_t95(log->freedom) * log->error);
 }
 
-std::optional<Interval> efficiency_ratio(std::span<const BenchRun> runs, std::span<const BenchRun> base) {
+std::optional<Interval> efficiency_ratio(std::span<const BenchRun> runs, std::span<const BenchRun> base,
+                                         double probability) {
     const std::optional<LogEfficiency> a = log_efficiency(runs), b = log_efficiency(base);
     if (!a || !b)
         return std::nullopt;
     const double variance = square(a->error) + square(b->error);
     const double spread = square(square(a->error)) / a->freedom + square(square(b->error)) / b->freedom;
     const double freedom = spread > 0.0 ? square(variance) / spread : std::min(a->freedom, b->freedom);
-    return exponential(a->mean - b->mean, student_t95(freedom) * std::sqrt(variance));
+    return exponential(a->mean - b->mean, student_t(freedom, probability) * std::sqrt(variance));
 }
 
 double times_to_judge(std::span<const BenchRun> runs) {

@@ -1,4 +1,5 @@
-// What a bench makes of its runs. Pure functions; every interval holds the true value with probability 95 %.
+// What a bench makes of its runs. Pure functions; an interval holds the true value with probability 95 % unless
+// another is given.
 #pragma once
 
 #include <cstdint>
@@ -85,8 +86,10 @@ double probability_of_each(std::size_t count);
 // narrow at the five or ten runs there are; and the logarithm makes the heavy right tail of relMSE a light one.
 std::optional<Interval> efficiency(std::span<const BenchRun> runs);
 
-// efficiency(runs) / efficiency(base): Welch's t on the logarithms.
-std::optional<Interval> efficiency_ratio(std::span<const BenchRun> runs, std::span<const BenchRun> base);
+// efficiency(runs) / efficiency(base): Welch's t on the logarithms. The interval holds the true value with
+// `probability`.
+std::optional<Interval> efficiency_ratio(std::span<const BenchRun> runs, std::span<const BenchRun> base,
+                                         double probability = 0.95);
 
 // How many times as long a bench would have to be for the efficiency to be fit to compare: 1 if it is. Fit it is from
 // four effective runs on, with an interval from a third to thrice its value at most: what is measured so differs by

@@ -45,7 +45,8 @@ void check_windows(const Film& a, const Film& b) {
 struct Sums {
     double squared = 0.0, relative = 0.0, peak = 0.0;
     std::size_t values = 0;
-    std::array<double, 3> a{}, b{}, variance{};
+    std::array<double, 3> a{}, b{};
+    std::array<double, 3> tested_a{}, tested_b{}, variance{}; // over the pixels of which a variance is known
 };
 
 void add_pixel(const glm::vec3& a, const glm::vec3& b, Sums& sums, Comparison& result) {
@@ -101,6 +102,19 @@ Noise noise_of(const Film& a, const Film& b, std::size_t pixel, int channel) {
     // All of 16 samples in one image and none of 16 in the other: at most 2^-32 by chance.
     noise.certain = per_sample == 0.0 && n_a >= 16 && n_b >= 16;
     return noise;
+}
+
+bool knows_samples(const Film& film) { // an image of unknown making has none anywhere
+    return std::any_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n > 0; });
+}
+
+// Of which pixels there is something in both images.
+std::vector<bool> sampled_pixels(const Film& a, const Film& b) {
+    const bool a_knows = knows_samples(a), b_knows = knows_samples(b);
+    std::vector<bool> sampled;
+    for (std::size_t i = 0; i < a.pixel_count(); ++i)
+        sampled.push_back((a.samples[i] > 0 || !a_knows) && (b.samples[i] > 0 || !b_knows));
+    return sampled;
 }
 
 // For sums over many pixels: unbiased, where noise_of is cautious. One sample has no variance of its own.
@@ -165,14 +179,17 @@ Comparison compare_films(const Film& a, const Film& b, const CompareOptions& opt
     result.pixels = a.pixel_count();
     const auto variance_of = [&](std::size_t i) { return a.variance[i] + b.variance[i]; };
     std::size_t testable = 0;
+    const std::vector<bool> sampled = sampled_pixels(a, b);
     for (std::size_t i = 0; i < result.pixels; ++i)
         for (int c = 0; c < 3; ++c) {
-            testable += is_tested(noise_of(a, b, i, c)) ? 1 : 0;
+            testable += sampled[i] && is_tested(noise_of(a, b, i, c)) ? 1 : 0;
             result.has_variance = result.has_variance || variance_of(i)[c] > 0.0f;
         }
     // Half of the significance goes to the pixels, half to the three means.
     result.z_bound = sidak_bound(0.5 * options.significance, testable);
-    result.has_mean_z = !a.moves && !b.moves;
+    const bool is_correlated = a.is_correlated || b.is_correlated;
+    const std::optional<glm::dvec3> of_a = variance_of_sum(a), of_b = variance_of_sum(b);
+    result.has_mean_z = !is_correlated || (of_a && of_b);
 
     Sums sums;
     for (std::size_t i = 0; i < result.pixels; ++i) {
@@ -181,9 +198,18 @@ Comparison compare_films(const Film& a, const Film& b, const CompareOptions& opt
             continue;
         }
         result.identical_pixels += same_bits(a.mean[i], b.mean[i]) ? 1 : 0;
+        if (!sampled[i]) {
+            ++result.unsampled;
+            continue;
+        }
         add_pixel(a.mean[i], b.mean[i], sums, result);
-        for (int c = 0; c < 3; ++c)
-            sums.variance[c] += plain_variance(a, b, i, c);
+        // Of two single samples no variance is known, nor of a sum that has them.
+        if (is_correlated || a.samples[i] != 1 || b.samples[i] != 1)
+            for (int c = 0; c < 3; ++c) {
+                sums.tested_a[c] += a.mean[i][c];
+                sums.tested_b[c] += b.mean[i][c];
+                sums.variance[c] += plain_variance(a, b, i, c);
+            }
         add_z(a, b, i, result);
     }
     const double values = std::max(1.0, double(sums.values));
@@ -193,7 +219,8 @@ Comparison compare_films(const Film& a, const Film& b, const CompareOptions& opt
                                    : std::numeric_limits<double>::infinity();
     for (int c = 0; c < 3; ++c) {
         result.mean_ratio[c] = sums.a[c] == sums.b[c] ? 1.0 : sums.a[c] / sums.b[c];
-        result.mean_z[c] = z_of(sums.a[c], sums.b[c], sums.variance[c]);
+        const double variance = is_correlated && result.has_mean_z ? (*of_a)[c] + (*of_b)[c] : sums.variance[c];
+        result.mean_z[c] = z_of(sums.tested_a[c], sums.tested_b[c], variance);
     }
     judge(a, options, result);
     return result;
@@ -203,6 +230,8 @@ namespace {
 
 void print_text(const Comparison& result) {
     tell(stdout, "pixels          {} compared, {} identical\n", result.pixels, result.identical_pixels);
+    if (result.unsampled > 0)
+        tell(stdout, "without samples {} pixels, which are left out\n", result.unsampled);
     tell(stdout, "MSE             {:.6g}\nrelMSE          {:.6g}\nPSNR            {:.2f} dB\n", result.mse,
          result.relmse, result.psnr);
     tell(stdout, "mean ratio      {:.6f} {:.6f} {:.6f}\n", result.mean_ratio[0], result.mean_ratio[1],
@@ -228,6 +257,7 @@ void print_json(const Comparison& result) {
     json["reason"] = result.reason;
     json["pixels"] = result.pixels;
     json["identicalPixels"] = result.identical_pixels;
+    json["unsampledPixels"] = result.unsampled;
     json["nonFinite"] = result.non_finite;
     json["mse"] = number(result.mse);
     json["relMSE"] = number(result.relmse);

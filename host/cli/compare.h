@@ -25,7 +25,8 @@ struct Comparison {
     std::size_t beyond_bound = 0;       // values with |z| > z_bound
     std::array<std::size_t, 7> z_histogram{}; // |z| in [0,1) [1,2) ... [5,6) [6,inf)
     std::array<double, 3> mean_z{};           // z of the difference of the picture means per channel,
-    bool has_mean_z = true;                   // if it is known: not of what moves
+    std::size_t unsampled = 0;                // pixels, in one image or both: they are left out
+    bool has_mean_z = true;                   // if it is known: not of what moves, and of particles with their sum's
     bool different = false;
     std::string reason; // one line: why the verdict is what it is
 };

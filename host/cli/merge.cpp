@@ -1,9 +1,11 @@
 #include "merge.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <fmt/format.h>
 #include <limits>
+#include <map>
 
 #include "error.h"
 #include "file_uses.h"
@@ -141,9 +143,20 @@ FilmLayer merge_collisions(const std::vector<MergeInput>& inputs, std::size_t wh
         }
     }
     FilmLayer merged{first.name, {}, {}};
+    for (std::size_t i = 0; i < pixels; ++i)
+        merged.mean.emplace_back(weights[i] > 0.0 ? sums[i] / weights[i] : glm::dvec3(0.0));
+    // How far the parts lie apart is scatter of their samples as well; of single samples all there is.
+    for (const MergeInput& input : inputs) {
+        const FilmLayer& layer = input.film.layers[which];
+        const FilmLayer* coverage = input.film.layer("coverage");
+        for (std::size_t i = 0; coverage && i < input.film.pixel_count(); ++i) {
+            const std::size_t at = place_in(window, input.film, i);
+            const glm::dvec3 apart = glm::dvec3(layer.mean[i]) - glm::dvec3(merged.mean[at]);
+            squares[at] += double(coverage->mean[i].x) * input.film.samples[i] * apart * apart;
+        }
+    }
     for (std::size_t i = 0; i < pixels; ++i) {
         const double weight = weights[i];
-        merged.mean.emplace_back(weight > 0.0 ? sums[i] / weight : glm::dvec3(0.0));
         if (!first.variance.empty())
             merged.variance.emplace_back(weight > 0.0 ? squares[i] / (weight * weight) : glm::dvec3(0.0));
     }
@@ -167,7 +180,7 @@ FilmLayer merge_layer(const std::vector<MergeInput>& inputs, std::size_t which, 
 
 Film film_of(const std::vector<Moments>& moments, const Film& like, const Crop& window) {
     Film film;
-    film.moves = like.moves;
+    film.is_correlated = like.is_correlated;
     film.picture_width = like.picture_width;
     film.picture_height = like.picture_height;
     film.crop = window;
@@ -176,6 +189,29 @@ Film film_of(const std::vector<Moments>& moments, const Film& like, const Crop& 
         film.samples.push_back(
             static_cast<std::uint32_t>(std::min<std::uint64_t>(pixel.n, std::numeric_limits<std::uint32_t>::max())));
     return film;
+}
+
+// Of one window's samples the means count by their number; windows add up.
+std::optional<glm::dvec3> merged_sum_variance(const std::vector<MergeInput>& inputs) {
+    struct Window {
+        glm::dvec3 weighted{0.0};
+        double samples = 0.0;
+    };
+    std::map<std::array<int, 4>, Window> windows;
+    for (const MergeInput& input : inputs) {
+        if (!input.film.sum_variance)
+            return std::nullopt;
+        const Crop& crop = input.film.crop;
+        Window& window = windows[{crop.x0, crop.x1, crop.y0, crop.y1}];
+        const double n = input.film.samples.front();
+        window.weighted += n * n * *input.film.sum_variance;
+        window.samples += n;
+    }
+    glm::dvec3 sum(0.0);
+    for (const auto& [crop, window] : windows)
+        if (window.samples > 0.0)
+            sum += window.weighted / (window.samples * window.samples);
+    return sum;
 }
 
 // Whether an image without ranges holds samples of another of its window, nobody knows.
@@ -216,6 +252,8 @@ MergeResult merge_films(const std::vector<MergeInput>& inputs) {
         add_means(input.film, input.film.mean, input.film.variance, window, moments);
     MergeResult result;
     result.film = film_of(moments, inputs.front().film, window);
+    if (result.film.is_correlated)
+        result.film.sum_variance = merged_sum_variance(inputs);
     for (std::size_t i = 0; i < inputs.front().film.layers.size(); ++i)
         result.film.layers.push_back(merge_layer(inputs, i, window));
     result.metadata = merged_metadata(inputs, result.film);

@@ -90,10 +90,16 @@ void add_band(const Film& film, double weight, Film& sum) {
         sum = film;
         std::fill(sum.mean.begin(), sum.mean.end(), glm::vec3(0.0f));
         std::fill(sum.variance.begin(), sum.variance.end(), glm::vec3(0.0f));
+        if (sum.sum_variance)
+            sum.sum_variance = glm::dvec3(0.0);
     }
     if (sum.pixel_count() != film.pixel_count())
         throw InputError("bands are of pictures of one size; the values of some make it another");
-    sum.moves = sum.moves || film.moves;
+    if (sum.sum_variance && film.sum_variance)
+        *sum.sum_variance += weight * weight * *film.sum_variance;
+    else
+        sum.sum_variance.reset();
+    sum.is_correlated = sum.is_correlated || film.is_correlated;
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
         sum.mean[i] += w * film.mean[i];
         sum.variance[i] += w * w * film.variance[i];

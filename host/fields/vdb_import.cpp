@@ -2,6 +2,7 @@
 
 #include <cstring>
 #include <fmt/format.h>
+#include <mutex>
 #include <nanovdb/util/OpenToNanoVDB.h>
 #include <openvdb/openvdb.h>
 
@@ -57,6 +58,8 @@ openvdb::GridBase::Ptr read_grid(const std::filesystem::path& path, const std::s
         if (entry.name == name)
             full_name = entry.full_name;
     check_vdb(path, full_name.c_str(), allowed);
+    static std::mutex types; // of grids that are read ahead: OpenVDB has one table of them
+    const std::scoped_lock lock(types);
     try {
         openvdb::initialize();
         const StandIns stand_ins(entries);

@@ -37,21 +37,33 @@ std::optional<double> relative_noise(const Film& film) {
     return signal > 0.0 ? std::optional(std::sqrt(error / signal)) : std::nullopt;
 }
 
+std::optional<glm::dvec3> variance_of_sum(const Film& film) {
+    if (film.is_correlated)
+        return film.sum_variance;
+    glm::dvec3 variance(0.0);
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        if (film.samples[i] == 1)
+            return std::nullopt;
+        variance += glm::dvec3(film.variance[i]);
+    }
+    return variance;
+}
+
 ImageMean image_mean(const Film& film) {
-    glm::dvec3 sum(0.0), variance(0.0);
+    glm::dvec3 sum(0.0);
     double counted = 0.0;
-    bool known = !film.moves;
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
         if (film.samples[i] == 0)
             continue;
-        known = known && film.samples[i] > 1;
         sum += glm::dvec3(film.mean[i]);
-        variance += glm::dvec3(film.variance[i]);
         counted += 1.0;
     }
     if (counted == 0.0)
         return {};
-    return {sum / counted, known ? std::optional(glm::sqrt(variance) / counted) : std::nullopt};
+    ImageMean mean{sum / counted, variance_of_sum(film)};
+    if (mean.standard_error)
+        mean.standard_error = glm::sqrt(*mean.standard_error) / counted;
+    return mean;
 }
 
 } // namespace vkvol

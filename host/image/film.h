@@ -34,7 +34,10 @@ struct Film {
     std::vector<std::uint32_t> samples; // per pixel
     std::vector<FilmLayer> layers;      // those asked for
     std::vector<glm::dvec3> places;     // where a sensor of flux reads each, its patch's middle, world; else none
-    bool moves = false;                 // pixels have the same moments of what moves: their errors go together
+    // Errors of pixels go together: what moves has the same moments in all of them, particles are parts of several.
+    bool is_correlated = false;
+    // Then, of the sum of all pixels' means, if it is known. Else their variances add.
+    std::optional<glm::dvec3> sum_variance = {};
 
     int width() const { return crop.x1 - crop.x0; }
     int height() const { return crop.y1 - crop.y0; }
@@ -52,17 +55,18 @@ std::optional<double> relative_noise(const Film& film);
 
 // Metadata by which an image's layers are found: their names, between spaces.
 inline constexpr const char* layers_key = "vkvol/layers";
-// And by which it is known that it moves.
-inline constexpr const char* moves_key = "vkvol/moves";
 std::string layer_list(const Film& film);
 
-// Of the picture, over the pixels that have samples. Pixels are independent, so their variances add; of a pixel with a
-// single sample none is known, nor then of the picture, and not where pixels move together.
+// Of the picture, over the pixels that have samples. Of independent pixels variances add; of one with a single sample
+// none is known, nor then of the picture, and of pixels whose errors go together only their sum's.
 struct ImageMean {
     glm::dvec3 value{0.0};
     std::optional<glm::dvec3> standard_error;
 };
 ImageMean image_mean(const Film& film);
+
+// Of the sum of all pixels' means, as above.
+std::optional<glm::dvec3> variance_of_sum(const Film& film);
 
 // Key "vkvol/seed" etc. -> value; written into EXR headers, read back by merge and compare.
 using Metadata = std::map<std::string, std::variant<int, float, std::string>>;

@@ -282,7 +282,7 @@ Film read_exr(const path& file, Metadata* metadata) {
         fail_to_read(file, *reader);
     const Metadata found = metadata_of(header);
     Film film = film_of(header, pixels, file);
-    film.moves = text_of(found, moves_key) == "1";
+    read_correlation(found, film);
     if (metadata)
         *metadata = found;
     // Read as floats, whole numbers would be parts of the largest there is.

@@ -1,7 +1,9 @@
 #include "metadata.h"
 
 #include <charconv>
+#include <cmath>
 #include <fmt/format.h>
+#include <sstream>
 
 #include "error.h"
 #include "one_line.h"
@@ -24,6 +26,30 @@ std::optional<std::uint64_t> count_of(const Metadata& metadata, const std::strin
     if (error != std::errc() || end != text.data() + text.size())
         throw InputError(one_line(fmt::format("{}: {} is '{}'; expected a whole number", image, key, text)));
     return count;
+}
+
+namespace {
+constexpr const char* correlated_key = "vkvol/correlated";
+constexpr const char* sum_variance_key = "vkvol/sumVariance"; // red, green, blue
+} // namespace
+
+void record_correlation(const Film& film, Metadata& metadata) {
+    metadata.erase(correlated_key);
+    metadata.erase(sum_variance_key);
+    if (film.is_correlated)
+        metadata[correlated_key] = 1;
+    if (const auto& v = film.sum_variance; film.is_correlated && v)
+        metadata[sum_variance_key] = fmt::format("{} {} {}", v->x, v->y, v->z);
+}
+
+void read_correlation(const Metadata& metadata, Film& film) {
+    film.is_correlated = text_of(metadata, correlated_key) == "1";
+    film.sum_variance.reset();
+    std::istringstream text(text_of(metadata, sum_variance_key));
+    glm::dvec3 v;
+    const auto is_variance = [](double x) { return x >= 0.0 && std::isfinite(x); };
+    if (film.is_correlated && text >> v.x >> v.y >> v.z && is_variance(v.x) && is_variance(v.y) && is_variance(v.z))
+        film.sum_variance = v;
 }
 
 } // namespace vkvol

@@ -16,4 +16,8 @@ std::string text_of(const Metadata& metadata, const std::string& key);
 // else.
 std::optional<std::uint64_t> count_of(const Metadata& metadata, const std::string& key, const std::string& image);
 
+// How the errors of the film's pixels go together, whatever the metadata said of that before; and back.
+void record_correlation(const Film& film, Metadata& metadata);
+void read_correlation(const Metadata& metadata, Film& film);
+
 } // namespace vkvol

@@ -36,6 +36,7 @@ void add_file(Writer& writer, const std::filesystem::path& path) {
     const std::uintmax_t size = std::filesystem::file_size(path, error);
     writer.add("file", path.filename().string());
     writer.add("bytes", error ? -1.0 : double(size));
+    writer.add("content", digest_of_file(path));
 }
 
 void add_grids(Writer& writer, const MemoryGrids& grids) {

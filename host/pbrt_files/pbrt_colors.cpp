@@ -21,9 +21,13 @@ bool has_values(const PbrtParameter& parameter, std::size_t count) {
     return parameter.numbers.size() == count && parameter.texts.empty();
 }
 
+const std::string& space_of(const PbrtThing& thing, const PbrtParameter& parameter) {
+    return parameter.color_space.empty() ? thing.color_space : parameter.color_space;
+}
+
 glm::dvec3 to_scene(const PbrtThing& thing, const PbrtParameter& parameter, std::size_t at = 0) {
     const glm::dvec3 own(parameter.numbers[at], parameter.numbers[at + 1], parameter.numbers[at + 2]);
-    const std::string& space = parameter.color_space.empty() ? thing.color_space : parameter.color_space;
+    const std::string& space = space_of(thing, parameter);
     if (space == "srgb")
         return own;
     return glm::max(*to_rec709(space) * own, glm::dvec3(0.0));
@@ -115,7 +119,7 @@ std::optional<glm::dvec3> PbrtColors::light(const PbrtThing& thing, const std::s
     if (!parameter)
         return std::nullopt;
     if (const std::optional<glm::dvec3> rgb = color(thing, *parameter))
-        return rgb;
+        return *rgb * white_of_space(space_of(thing, *parameter));
     if (parameter->type != "blackbody")
         return of_spectrum(*parameter, named_light, color_of_light);
     if (!has_values(*parameter, 1) || !(parameter->numbers[0] > 0.0))

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
+#include <iterator>
+#include <utility>
 
 #include "error.h"
 #include "nearest_name.h"
@@ -53,6 +55,11 @@ void PbrtDirectives::read() {
     }
     if (object_)
         throw InputError(fmt::format("ObjectBegin \"{}\" lacks its ObjectEnd; is the file whole?", *object_));
+    if (states_.size() > imports_.size()) // each of which has kept one
+        throw InputError("an AttributeBegin lacks its AttributeEnd; is the file whole?");
+    if (!in_world_)
+        throw InputError("the scene lacks its WorldBegin, behind which it is; is the file whole?");
+    place_objects();
 }
 
 std::string PbrtDirectives::name(const char* expected) {
@@ -165,7 +172,7 @@ void PbrtDirectives::read_active_transform(const PbrtToken& directive) {
     if (which.value != "All" && which.value != "StartTime" && which.value != "EndTime")
         fail_at(which.place, fmt::format("'{}': expected All, StartTime or EndTime", which.value));
     state_.is_moving = which.value == "EndTime";
-    if (state_.is_moving)
+    if (which.value != "All")
         note(directive.place, "nothing moves while the shutter is open; all is where it is at StartTime");
 }
 
@@ -194,7 +201,10 @@ void PbrtDirectives::add_settings() {
 void PbrtDirectives::read_option() {
     const PbrtToken option = tokens_.next(Kind::quoted, "an option in quotes");
     tokens_.next();
-    if (!option.value.ends_with("seed") && !option.value.ends_with("rendercoordsys"))
+    const std::vector<std::string> without_effect = {"seed", "rendercoordsys", "wavefront", "pixelstats",
+                                                     "recordpixelstatistics"};
+    if (std::none_of(without_effect.begin(), without_effect.end(),
+                     [&](const std::string& name) { return option.value.ends_with(name); }))
         note(option.place, fmt::format("Option \"{}\" is left out", option.value));
 }
 
@@ -242,6 +252,8 @@ void PbrtDirectives::add_world() {
         PbrtThing made = thing(token, "material");
         const std::string called = made.type;
         made.type = made.parameters->text("type");
+        if (!made.parameters->has("type"))
+            fail_at(token.place, fmt::format("MakeNamedMaterial \"{}\" lacks its \"string type\"", called));
         scene_.materials[called] = std::move(made);
     };
     handlers_["MakeNamedMedium"] = [this](const PbrtToken& token) {
@@ -256,7 +268,7 @@ void PbrtDirectives::add_world() {
     handlers_["Shape"] = [this](const PbrtToken& token) { read_shape(token); };
     handlers_["ObjectBegin"] = [this](const PbrtToken& token) { begin_object(token); };
     handlers_["ObjectEnd"] = [this](const PbrtToken& token) { end_object(token); };
-    handlers_["ObjectInstance"] = [this](const PbrtToken&) { place_object(); };
+    handlers_["ObjectInstance"] = [this](const PbrtToken&) { read_instance(); };
     handlers_["Include"] = [this](const PbrtToken& token) {
         const std::string file = name("a file in quotes");
         tokens_.include(scene_.folder / file, token.place);
@@ -267,7 +279,7 @@ void PbrtDirectives::add_world() {
 void PbrtDirectives::import(const PbrtToken& directive) {
     const std::string file = name("a file in quotes");
     push();
-    imports_.push_back({states_.size(), tokens_.depth()});
+    imports_.push_back({states_.size(), tokens_.depth(), std::exchange(coordinate_systems_, {})});
     tokens_.include(scene_.folder / file, directive.place);
 }
 
@@ -277,6 +289,7 @@ void PbrtDirectives::end_imports() {
         states_.resize(imports_.back().states);
         state_ = std::move(states_.back());
         states_.pop_back();
+        coordinate_systems_ = std::move(imports_.back().coordinate_systems);
     }
 }
 
@@ -292,7 +305,7 @@ void PbrtDirectives::read_attribute(const PbrtToken& directive) {
     const std::vector<std::string> known = {"shape", "light", "material", "medium", "texture"};
     if (std::find(known.begin(), known.end(), target) == known.end())
         fail_at(directive.place, fmt::format("Attribute \"{}\" is unknown{}", target, name_hint(target, known)));
-    std::vector<PbrtParameter> parameters = PbrtParameters(tokens_).all();
+    std::vector<PbrtParameter> parameters = PbrtParameters(tokens_).all(); // the last first
     for (PbrtParameter& parameter : parameters)
         parameter.color_space = state_.color_space;
     std::vector<PbrtParameter>& defaults = state_.defaults[target];
@@ -324,6 +337,7 @@ void PbrtDirectives::read_shape(const PbrtToken& directive) {
     PbrtShape shape;
     shape.thing = thing(directive, "shape");
     shape.is_reversed = state_.is_reversed;
+    shape.is_mirrored = glm::determinant(glm::dmat3(state_.transform)) < 0.0;
     shape.material = state_.material;
     shape.light = state_.light;
     shape.inside = state_.inside;
@@ -340,7 +354,8 @@ void PbrtDirectives::begin_object(const PbrtToken& directive) {
         fail_at(directive.place, "ObjectBegin within another one; end that first");
     push();
     object_ = name("a name in quotes");
-    objects_[*object_].clear();
+    if (!objects_.try_emplace(*object_).second)
+        fail_at(directive.place, fmt::format("a second object \"{}\"; give it another name", *object_));
 }
 
 void PbrtDirectives::end_object(const PbrtToken& directive) {
@@ -350,19 +365,36 @@ void PbrtDirectives::end_object(const PbrtToken& directive) {
     pop(directive);
 }
 
-void PbrtDirectives::place_object() {
+void PbrtDirectives::read_instance() {
     const PbrtToken which = tokens_.next(Kind::quoted, "a name in quotes");
-    const auto object = objects_.find(which.value);
-    if (object == objects_.end())
-        fail_at(which.place, fmt::format("no object \"{}\" before this; ObjectBegin defines one", which.value));
     if (object_)
         fail_at(which.place, "an ObjectInstance within an object; put it after ObjectEnd");
-    if (scene_.shapes.size() + object->second.size() > most_shapes)
-        fail_at(which.place, fmt::format("comes to more than {} shapes, the most that are read", most_shapes));
-    for (PbrtShape shape : object->second) {
-        shape.thing.transform = state_.transform * shape.thing.transform;
-        scene_.shapes.push_back(std::move(shape));
+    instances_.push_back({which.value, state_.transform, which.place, scene_.shapes.size()});
+}
+
+// Once all are known: an instance may come before its object. Shapes stay in the order of the file.
+void PbrtDirectives::place_objects() {
+    std::vector<PbrtShape> all;
+    std::size_t taken = 0;
+    const auto take = [&](std::size_t end) {
+        std::move(scene_.shapes.begin() + std::ptrdiff_t(taken), scene_.shapes.begin() + std::ptrdiff_t(end),
+                  std::back_inserter(all));
+        taken = end;
+    };
+    for (const Instance& instance : instances_) {
+        take(instance.before);
+        const auto object = objects_.find(instance.object);
+        if (object == objects_.end())
+            fail_at(instance.place, fmt::format("no object \"{}\"; ObjectBegin defines one", instance.object));
+        if (all.size() + object->second.size() > most_shapes)
+            fail_at(instance.place, fmt::format("comes to more than {} shapes, the most that are read", most_shapes));
+        for (PbrtShape shape : object->second) {
+            shape.thing.transform = instance.transform * shape.thing.transform;
+            all.push_back(std::move(shape));
+        }
     }
+    take(scene_.shapes.size());
+    scene_.shapes = std::move(all);
 }
 
 namespace {

@@ -47,7 +47,8 @@ private:
     void read_texture(const PbrtToken& directive);
     void begin_object(const PbrtToken& directive);
     void end_object(const PbrtToken& directive);
-    void place_object();
+    void read_instance();
+    void place_objects();
     void push() { states_.push_back(state_); }
     void pop(const PbrtToken& directive);
     void import(const PbrtToken& directive);
@@ -59,14 +60,22 @@ private:
     PbrtState state_;
     std::vector<PbrtState> states_;
     // Of the files being imported, which leave the state as they find it: how many states were kept, and how many files
-    // open.
+    // open; coordinate systems, of which they know their own alone.
     struct Importing {
         std::size_t states, files;
+        std::map<std::string, glm::dmat4> coordinate_systems;
     };
     std::vector<Importing> imports_;
     std::map<std::string, glm::dmat4> coordinate_systems_;
     std::map<std::string, std::vector<PbrtShape>> objects_;
     std::optional<std::string> object_; // that is being defined
+    struct Instance {
+        std::string object;
+        glm::dmat4 transform;
+        PbrtPlace place;
+        std::size_t before; // shapes that are no instances'
+    };
+    std::vector<Instance> instances_;
     std::map<std::string, Handler> handlers_;
     bool in_world_ = false;
 };

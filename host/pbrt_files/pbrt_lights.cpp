@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "error.h"
+#include "pbrt_spectra.h"
 #include "pbrt_translator.h"
 #include "radiance_map.h"
 
@@ -36,7 +37,7 @@ double illuminance_of(const RadianceMap& map) {
 
 // In the unit of the film, with the light's own scale.
 glm::dvec3 PbrtTranslator::light_color(const PbrtThing& light, const char* name) {
-    const glm::dvec3 color = colors_.light(light, name).value_or(glm::dvec3(1.0));
+    const glm::dvec3 color = colors_.light(light, name).value_or(white_of_space(light.color_space));
     return color * (light.parameters->number("scale", 1.0) * exposure_);
 }
 

@@ -23,14 +23,13 @@ bool has_grid(const std::filesystem::path& file, const std::string& grid) {
     }
 }
 
-// Whether light that meets it goes on into what it encloses.
-bool lets_light_in(const PbrtShape& shape) {
-    const std::string& type = shape.material.thing.type;
-    return !shape.material.is_named &&
-           (type.empty() || type == "none" || type == "interface" || type == "dielectric" || type == "thindielectric");
-}
-
 } // namespace
+
+// Whether light that meets it goes on into what it encloses.
+bool PbrtTranslator::lets_light_in(const PbrtShape& shape) const {
+    const std::string& type = material_thing(shape).type;
+    return type.empty() || type == "none" || type == "interface" || type == "dielectric" || type == "thindielectric";
+}
 
 const PbrtThing* PbrtTranslator::medium_of(const std::string& name, const PbrtPlace& place) const {
     if (name.empty())

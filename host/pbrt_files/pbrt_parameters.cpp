@@ -80,6 +80,7 @@ PbrtParameters::PbrtParameters(PbrtTokens& tokens) {
         }
         parameters_.push_back(read_parameter(tokens, token));
     }
+    std::reverse(parameters_.begin(), parameters_.end()); // of two of one name the last one counts
     used_.resize(parameters_.size());
 }
 

@@ -6,6 +6,8 @@
 #include <functional>
 #include <numbers>
 
+#include "surfaces.h"
+
 namespace vkvol {
 
 namespace {
@@ -104,7 +106,8 @@ bool is_similarity(const glm::dmat3& map) {
     const double size = (square[0][0] + square[1][1] + square[2][2]) / 3.0;
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
-            if (!(std::abs(square[i][j] - (i == j ? size : 0.0)) <= 1e-6 * size))
+            if (!(std::abs(square[i][j] - (i == j ? size : 0.0)) <=
+                  0.5 * stretch_of_digits * size)) // with room for another mean
                 return false;
     return true;
 }

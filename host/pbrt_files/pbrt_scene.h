@@ -31,6 +31,7 @@ struct PbrtMaterial {
 struct PbrtShape {
     PbrtThing thing;
     bool is_reversed = false;
+    bool is_mirrored = false; // by its own transform, without an instance's
     PbrtMaterial material;
     std::optional<PbrtThing> light; // what its surface sends out
     std::string inside, outside;    // names of media; empty: vacuum

@@ -9,7 +9,7 @@ bool faces_inwards(const PbrtShape& shape) {
     if (thing.type == "plymesh")
         return shape.is_reversed;
     if (thing.type != "trianglemesh" && thing.type != "bilinearmesh")
-        return shape.is_reversed != (glm::determinant(glm::dmat3(thing.transform)) < 0.0);
+        return shape.is_reversed != shape.is_mirrored; // an instance carries normals along
     const PbrtTriangles mesh = moved(thing.transform, read_triangles(thing), shape.is_reversed);
     double volume = 0.0; // by Gauss's theorem, six times
     for (const glm::uvec3& t : mesh.triangles) {

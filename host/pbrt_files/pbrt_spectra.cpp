@@ -115,6 +115,10 @@ std::optional<glm::dmat3> to_rec709(const std::string& space) {
     return std::nullopt;
 }
 
+glm::dvec3 white_of_space(const std::string& space) {
+    return space == "aces2065-1" ? *named_light("illum-acesD60") : glm::dvec3(1.0);
+}
+
 glm::dvec3 color_of_share(const Spectrum& spectrum) {
     const glm::dmat3 from_xyz = glm::inverse(rec709());
     const glm::dvec3 seen = from_xyz * xyz_of([&](double nm) { return value_at(spectrum, nm) * daylight(nm); });

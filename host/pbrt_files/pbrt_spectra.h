@@ -17,6 +17,9 @@ using Spectrum = std::vector<std::pair<double, double>>;
 // The colour spaces of pbrt's ColorSpace directive, as matrices from their colours to Rec.709. Nothing for others.
 std::optional<glm::dmat3> to_rec709(const std::string& color_space);
 
+// The white of such a space as light, of luminance 1: pbrt's colours of lights are times its illuminant.
+glm::dvec3 white_of_space(const std::string& color_space);
+
 // What a coefficient or a share of light is in each channel: its mean under the illuminant D65, with the weights by
 // which light becomes Rec.709. A constant spectrum is that constant.
 glm::dvec3 color_of_share(const Spectrum& spectrum);

@@ -98,7 +98,12 @@ void PbrtTranslator::add_image(XmlAttributes& attributes, const PbrtThing& textu
                          encoding));
     add_rgb(attributes, glm::clamp(share, 0.0, 1.0));
     attributes.emplace_back("texture", file_name(texture));
-    attributes.emplace_back("repeat", fmt::format("{} {}", p.number("uscale", 1.0), p.number("vscale", 1.0)));
+    const double across = p.number("uscale", 1.0), upwards = p.number("vscale", 1.0);
+    if (across < 0.0 || upwards < 0.0)
+        note(texture.place, "a negative \"uscale\" or \"vscale\" mirrors no image here");
+    if (const std::string mapping = p.text("mapping", "uv"); mapping != "uv")
+        note(texture.place, fmt::format("mapping \"{}\" is left out; its places are the shape's", mapping));
+    attributes.emplace_back("repeat", fmt::format("{} {}", std::abs(across), std::abs(upwards)));
     note_unused(texture, {"filter", "maxanisotropy"});
 }
 
@@ -144,49 +149,75 @@ void PbrtTranslator::add_roughness(XmlAttributes& attributes, const PbrtThing& t
         attributes.emplace_back("roughness", xml_number(alpha));
 }
 
+// Of the channels' mean, `least` to what scene files take at most; elsewhere, and of a texture, with a note.
+double PbrtTranslator::index_of(const PbrtThing& thing, double least) {
+    constexpr double most = 20.0;
+    const glm::dvec3 eta = even_part(thing, "eta", 1.5, 0).value_or(glm::dvec3(0.0));
+    const double index = (eta.x + eta.y + eta.z) / 3.0;
+    if (index >= least && index <= most)
+        return index;
+    const double instead = index > 0.0 ? std::clamp(index, least, most) : 1.5;
+    note(thing.place, fmt::format("its index of refraction is {:g} here", instead));
+    return instead;
+}
+
+// By eta and k, or by what it reflects at normal incidence.
+void PbrtTranslator::add_conductor(XmlAttributes& attributes, const PbrtThing& thing) {
+    const PbrtParameters& p = *thing.parameters;
+    const bool is_coated = thing.type == "coatedconductor";
+    const auto part = [&](const char* own, const char* coated, const char* fallback, double least, double most) {
+        const char* name = is_coated ? coated : own;
+        const glm::dvec3 usual = *named_share(fallback);
+        const std::optional<glm::dvec3> value = p.has(name) ? even_part(thing, name, 1.0, 0) : usual;
+        const glm::dvec3 taken = glm::clamp(value.value_or(usual), least, most);
+        if (!value || taken != *value)
+            note(thing.place, fmt::format("its \"{}\" is {} here", name, xml_numbers(taken)));
+        return taken;
+    };
+    glm::dvec3 eta = part("eta", "conductor.eta", "metal-Cu-eta", 0.05, 20.0),
+               k = part("k", "conductor.k", "metal-Cu-k", 0.0, 100.0);
+    if (p.has("reflectance")) {
+        const std::optional<glm::dvec3> reflected = even_part(thing, "reflectance", 1.0, 0);
+        if (!reflected)
+            note(thing.place, "the texture of its reflectance is left out; it reflects a half");
+        const glm::dvec3 share = glm::clamp(reflected.value_or(glm::dvec3(0.5)), 0.0, 0.9996); // k is 100 then
+        eta = glm::dvec3(1.0);
+        k = 2.0 * glm::sqrt(share / (1.0 - share));
+    }
+    attributes.emplace_back("eta", xml_numbers(eta));
+    attributes.emplace_back("k", xml_numbers(k));
+    add_roughness(attributes, thing);
+    if (is_coated)
+        note(thing.place, "has no coat here; it is a conductor");
+}
+
 XmlAttributes PbrtTranslator::material(const PbrtThing& thing) {
     const PbrtParameters& p = *thing.parameters;
     XmlAttributes attributes;
-    const auto index = [&](const char* name) {
-        const glm::dvec3 eta = colors_.share(thing, name).value_or(glm::dvec3(1.5));
-        return xml_number((eta.x + eta.y + eta.z) / 3.0);
-    };
+    constexpr double thinnest = 0.05; // as scene files have indices
     if (thing.type == "diffuse" || thing.type == "diffusetransmission") {
         add_color(attributes, thing, "reflectance", glm::dvec3(thing.type == "diffuse" ? 0.5 : 0.25));
         if (thing.type == "diffusetransmission")
             note(thing.place, "lets no light through here; it is matte");
     } else if (thing.type == "coateddiffuse") {
+        const auto is_rough = [&](const char* name) { return !p.texture(name).empty() || p.number(name, 0.0) > 0.0; };
         attributes.emplace_back("material", "coated");
         add_color(attributes, thing, "reflectance", glm::dvec3(0.5));
-        attributes.emplace_back("ior", index("eta"));
-        if (p.number("roughness", 0.0) > 0.0 || p.number("uroughness", 0.0) > 0.0 || p.has("albedo"))
+        attributes.emplace_back("ior", xml_number(index_of(thing, 1.0)));
+        if (is_rough("roughness") || is_rough("uroughness") || is_rough("vroughness") || p.has("albedo"))
             note(thing.place, "its coat is smooth and clear here");
     } else if (thing.type == "conductor" || thing.type == "coatedconductor") {
-        const bool is_coated = thing.type == "coatedconductor";
         attributes.emplace_back("material", "conductor");
-        const auto pair = [&](const char* own, const char* coated, const char* fallback) {
-            const std::optional<glm::dvec3> value = colors_.share(thing, is_coated ? coated : own);
-            return value.value_or(*named_share(fallback));
-        };
-        glm::dvec3 eta = pair("eta", "conductor.eta", "metal-Cu-eta"), k = pair("k", "conductor.k", "metal-Cu-k");
-        if (const std::optional<glm::dvec3> r =
-                p.texture("reflectance").empty() ? colors_.share(thing, "reflectance") : glm::dvec3(0.5)) {
-            const glm::dvec3 share = glm::clamp(*r, 0.0, 0.9996); // at normal incidence; k is 100 then
-            eta = glm::dvec3(1.0);
-            k = 2.0 * glm::sqrt(share / (1.0 - share));
-        }
-        attributes.emplace_back("eta", xml_numbers(eta));
-        attributes.emplace_back("k", xml_numbers(k));
-        add_roughness(attributes, thing);
-        if (is_coated)
-            note(thing.place, "has no coat here; it is a conductor");
+        add_conductor(attributes, thing);
     } else if (thing.type == "dielectric") {
+        const double index = index_of(thing, thinnest);
         attributes.emplace_back("material", "dielectric");
-        attributes.emplace_back("ior", index("eta"));
-        add_roughness(attributes, thing);
+        attributes.emplace_back("ior", xml_number(index));
+        if (std::abs(index - 1.0) >= 0.01) // else it bends next to nothing, and scene files take no roughness of it
+            add_roughness(attributes, thing);
     } else if (thing.type == "thindielectric") {
         attributes.emplace_back("material", "thinDielectric");
-        attributes.emplace_back("ior", index("eta"));
+        attributes.emplace_back("ior", xml_number(index_of(thing, thinnest)));
     } else {
         note(thing.place, fmt::format("Material \"{}\" is left out; what has it is grey and matte", thing.type));
         return {};
@@ -195,23 +226,25 @@ XmlAttributes PbrtTranslator::material(const PbrtThing& thing) {
     return attributes;
 }
 
+const PbrtThing& PbrtTranslator::material_thing(const PbrtShape& shape) const {
+    const PbrtThing& thing = shape.material.thing;
+    if (!shape.material.is_named)
+        return thing;
+    const auto named = scene_.materials.find(thing.type);
+    if (named != scene_.materials.end())
+        return named->second;
+    std::vector<std::string> known;
+    for (const auto& [name, unused] : scene_.materials)
+        known.push_back(name);
+    fail_at(thing.place, fmt::format("no material \"{}\"{}", thing.type,
+                                     known.empty() ? "; MakeNamedMaterial makes one" : name_hint(thing.type, known)));
+}
+
 std::optional<XmlAttributes> PbrtTranslator::material_of(const PbrtShape& shape) {
-    const PbrtThing* thing = &shape.material.thing;
-    if (shape.material.is_named) {
-        const auto named = scene_.materials.find(thing->type);
-        if (named == scene_.materials.end()) {
-            std::vector<std::string> known;
-            for (const auto& [name, unused] : scene_.materials)
-                known.push_back(name);
-            fail_at(thing->place,
-                    fmt::format("no material \"{}\"{}", thing->type,
-                                known.empty() ? "; MakeNamedMaterial makes one" : name_hint(thing->type, known)));
-        }
-        thing = &named->second;
-    }
-    if (is_left_out(thing->type))
+    const PbrtThing& thing = material_thing(shape);
+    if (is_left_out(thing.type))
         return std::nullopt;
-    return material(*thing);
+    return material(thing);
 }
 
 // `area`: of the whole shape, where it is known.
@@ -277,7 +310,11 @@ void PbrtTranslator::write_file_mesh(const PbrtShape& shape, const XmlAttributes
 
 // `own`: in the shape's own space.
 void PbrtTranslator::write_triangles(const PbrtShape& shape, const PbrtTriangles& own, const XmlAttributes& material) {
-    const PbrtTriangles mesh = moved(world_ * shape.thing.transform, own, shape.is_reversed);
+    PbrtTriangles mesh = moved(world_ * shape.thing.transform, own, shape.is_reversed);
+    if (!has_texture(material))
+        mesh.places.clear();
+    if (has_normals_of_faces(mesh)) // on whose sides they have their fronts by now
+        mesh.normals.clear();
     const std::string place = shape.thing.place.text();
     const std::optional<PbrtRectangle> rectangle = mesh.places.empty() ? as_rectangle(mesh) : std::nullopt;
     if (rectangle) {

@@ -282,6 +282,9 @@ void PbrtTranslator::write_settings() {
         note(integrator.place,
              fmt::format("Integrator \"{}\" is left out; the best unbiased one for the scene renders it",
                          integrator.type));
+    if (integrator.type == "path" && !scene_.media.empty())
+        note(integrator.place,
+             "pbrt's \"path\" leaves media out, and they are shown here; \"volpath\" shows them there");
     if (integrator.parameters->truth("regularize", false))
         note(integrator.place, "\"regularize\" is left out: roughness stays what it is");
     xml_.element("maxDepth", {}, fmt::format("{}", integrator.parameters->integer("maxdepth", 5)),

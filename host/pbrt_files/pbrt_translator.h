@@ -60,6 +60,7 @@ private:
     bool write_grid_once(const std::string& name, const PbrtThing& medium);
     void note_beyond(const PbrtShape& shape, const std::string& medium);
     void note_what_is_not_cut(const PbrtShape& shape, const std::string& name, const PbrtThing& medium);
+    bool lets_light_in(const PbrtShape& shape) const;
     void count_media();
     const PbrtThing* medium_of(const std::string& name, const PbrtPlace& place) const;
 
@@ -77,8 +78,11 @@ private:
     void write_triangles(const PbrtShape& shape, const PbrtTriangles& own, const XmlAttributes& material);
     void write_emission(const PbrtShape& shape, std::optional<double> area);
     void write_matrix(const glm::dmat4& matrix);
+    const PbrtThing& material_thing(const PbrtShape& shape) const;
     std::optional<XmlAttributes> material_of(const PbrtShape& shape); // nothing: it is not seen
     XmlAttributes material(const PbrtThing& thing);
+    void add_conductor(XmlAttributes& attributes, const PbrtThing& thing);
+    double index_of(const PbrtThing& thing, double least);
     void add_color(XmlAttributes& attributes, const PbrtThing& thing, const char* name, const glm::dvec3& fallback);
     void add_roughness(XmlAttributes& attributes, const PbrtThing& thing);
     void add_texture(XmlAttributes& attributes, const PbrtThing& texture, const glm::dvec3& factor, int depth);

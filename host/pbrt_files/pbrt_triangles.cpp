@@ -110,6 +110,20 @@ PbrtTriangles moved(const glm::dmat4& map, PbrtTriangles mesh, bool is_reversed)
     return mesh;
 }
 
+bool has_normals_of_faces(const PbrtTriangles& mesh) {
+    if (mesh.normals.empty())
+        return false;
+    return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const glm::uvec3& t) {
+        const glm::dvec3 face = glm::cross(mesh.points[t.y] - mesh.points[t.x], mesh.points[t.z] - mesh.points[t.x]);
+        for (int k = 0; k < 3; ++k)
+            if (const glm::dvec3& normal = mesh.normals[t[k]];
+                !(glm::dot(face, normal) > 0.0 &&
+                  glm::length(glm::cross(face, normal)) <= tolerance * glm::length(face) * glm::length(normal)))
+                return false;
+        return true;
+    });
+}
+
 std::optional<PbrtRectangle> as_rectangle(const PbrtTriangles& mesh) {
     if (mesh.triangles.size() != 2 || !mesh.normals.empty())
         return std::nullopt;

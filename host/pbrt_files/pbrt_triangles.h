@@ -39,6 +39,9 @@ struct PbrtRectangle {
     glm::dvec3 edge_u, edge_v; // whole edges; their cross product points to the front
 };
 
+// Whether normals at corners say no more than that faces are flat.
+bool has_normals_of_faces(const PbrtTriangles& mesh);
+
 // If they are two triangles that make one.
 std::optional<PbrtRectangle> as_rectangle(const PbrtTriangles& mesh);
 

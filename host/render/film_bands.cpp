@@ -46,7 +46,7 @@ std::vector<Band> make_bands(const Device& device, Commands& commands, const Cro
                                      "slots",
                                      layers.count, layers.records, double(records + layer_row) / mebibyte,
                                      device.info().name, double(most_bytes) / mebibyte));
-    std::uint64_t most = std::max<std::uint64_t>(most_bytes / row_bytes, 1);
+    std::uint64_t most = std::max<std::uint64_t>((most_bytes - sizeof(shared::FilmPixel)) / row_bytes, 1);
     if (layers.count > 0)
         most = std::min(most, (most_bytes - records) / layer_row);
     const auto height = static_cast<std::uint32_t>(crop.y1 - crop.y0);
@@ -56,7 +56,7 @@ std::vector<Band> make_bands(const Device& device, Commands& commands, const Cro
         const auto make = [&](const char* name, std::uint64_t bytes) {
             return Buffer(device, name, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device);
         };
-        bands.push_back({row, rows, make("film", rows * row_bytes), std::nullopt});
+        bands.push_back({row, rows, make("film", rows * row_bytes + sizeof(shared::FilmPixel)), std::nullopt});
         if (layers.count > 0)
             bands.back().layers.emplace(make("layers", records + rows * layer_row));
         clear(commands, bands.back());
@@ -131,15 +131,36 @@ void copy_rows(const BandOn& from, const BandOn& to, Rows rows, std::uint32_t wi
 }
 
 namespace {
+
+glm::dvec3 variance_of_mean(const shared::FilmPixel& pixel) { // of two samples at least
+    const double n = pixel.count;
+    const glm::dvec3 mean = (glm::dvec3(pixel.sum) + glm::dvec3(pixel.sum_low)) / n;
+    const glm::dvec3 square = glm::dvec3(pixel.square) + glm::dvec3(pixel.square_low);
+    return glm::max((square / n - mean * mean) / (n - 1.0), glm::dvec3(0.0));
+}
+
+} // namespace
+
+std::optional<glm::dvec3> variance_of_sums(Commands& commands, const std::vector<Band>& bands, std::uint32_t width) {
+    glm::dvec3 variance(0.0);
+    for (const Band& band : bands) {
+        shared::FilmPixel sum{};
+        commands.download(band.film, std::as_writable_bytes(std::span(&sum, 1)),
+                          pixel_count(band, width) * sizeof(shared::FilmPixel));
+        if (sum.count < 2)
+            return std::nullopt;
+        variance += double(sum.count) * variance_of_mean(sum);
+    }
+    return variance;
+}
+
+namespace {
 void develop_pixels(std::span<const shared::FilmPixel> pixels, Film& film) {
     for (const shared::FilmPixel& pixel : pixels) {
         const double n = pixel.count;
         const glm::dvec3 sum = glm::dvec3(pixel.sum) + glm::dvec3(pixel.sum_low);
-        const glm::dvec3 square = glm::dvec3(pixel.square) + glm::dvec3(pixel.square_low);
-        const glm::dvec3 mean = n > 0 ? sum / n : glm::dvec3(0.0);
-        const glm::dvec3 variance = n > 1 ? (square / n - mean * mean) / (n - 1.0) : glm::dvec3(0.0);
-        film.mean.emplace_back(mean);
-        film.variance.emplace_back(glm::max(variance, glm::dvec3(0.0)));
+        film.mean.emplace_back(n > 0 ? sum / n : glm::dvec3(0.0));
+        film.variance.emplace_back(n > 1 ? variance_of_mean(pixel) : glm::dvec3(0.0));
         film.samples.push_back(pixel.count);
     }
 }

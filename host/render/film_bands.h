@@ -14,7 +14,7 @@ namespace vkvol {
 struct Band {
     std::uint32_t first_row;
     std::uint32_t rows;
-    Buffer film;
+    Buffer film;                  // and behind its pixels the sum of all, of particles: see collect.comp
     std::optional<Buffer> layers; // records of paths, then sums of pixels; where layers are asked for
 };
 
@@ -48,6 +48,9 @@ std::vector<glm::vec3> read_layers(Commands& commands, const std::vector<Band>& 
                                    const shared::AovParams& layers);
 void write_layers(Commands& commands, const std::vector<Band>& bands, std::uint32_t width,
                   const shared::AovParams& layers, std::span<const glm::vec3> sums);
+
+// Of the sum of all pixels, of one sample: the bands' are independent. Nothing if one has less than two samples.
+std::optional<glm::dvec3> variance_of_sums(Commands& commands, const std::vector<Band>& bands, std::uint32_t width);
 
 // Means, and variances of the means, of all bands. What else the film says is not touched.
 void develop(Commands& commands, const std::vector<Band>& bands, std::uint32_t width, Film& film);

@@ -86,7 +86,8 @@ Plan make_plan(const Device& device, const LoopSizes& loops, std::uint64_t pixel
         std::min<std::uint64_t>(wide ? std::clamp<std::uint64_t>(pixels, 2, 8192) : 2, plan.slots);
     if (staged)
         plan.most_batch = std::min<std::uint32_t>(plan.most_batch, plan.waiting / places);
-    plan.most_grid_bytes = pick(wish.most_grid_bytes, std::uint64_t{device.limits().maxStorageBufferRange});
+    plan.most_grid_bytes = pick(
+        wish.most_grid_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, device.most_allocation()));
     // GPUs read storage as fast as texels; software drivers gather only these.
     const std::uint64_t texels = device.is_cpu() ? 4ull * device.limits().maxTexelBufferElements : 1u;
     plan.most_texel_bytes = pick(wish.most_texel_bytes, texels);
@@ -96,9 +97,10 @@ Plan make_plan(const Device& device, const LoopSizes& loops, std::uint64_t pixel
 void fit_splats(const Device& device, std::uint64_t pixels, std::uint32_t batch, Plan& plan) {
     constexpr std::uint64_t each = SPLAT_WORDS * sizeof(std::uint32_t), usual = 1u << 26; // bytes
     const std::uint64_t most = std::min<std::uint64_t>(usual, device.limits().maxStorageBufferRange);
-    plan.most_film_bytes = std::min<std::uint64_t>(plan.most_film_bytes, most / each * sizeof(shared::FilmPixel));
+    plan.most_film_bytes = std::min<std::uint64_t>(plan.most_film_bytes, (most / each - 1) * sizeof(shared::FilmPixel));
     pixels = std::min<std::uint64_t>(pixels, plan.most_film_bytes / sizeof(shared::FilmPixel));
-    plan.most_batch = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most / (each * pixels), 1, plan.most_batch));
+    plan.most_batch =
+        static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most / (each * (pixels + 1)), 1, plan.most_batch));
     plan.splats = std::max(plan.most_batch, batch);
 }
 

@@ -65,7 +65,7 @@ void Session::render(std::uint32_t samples) {
         try {
             enter_moments();
         } catch (const std::exception&) {
-            if (job_.checkpoint && device_scene_)
+            if (job_.checkpoint) // what was rendered outlives a moment that cannot be made ready
                 save_checkpoint();
             throw;
         }
@@ -139,7 +139,7 @@ void Session::resume(const Checkpoint& from) {
                                      "asked for; ask for more with --spp",
                                      from.done + from.batch, wanted_));
     write_bands(commands_, bands_, width(), from.film);
-    write_layers(commands_, bands_, width(), device_scene_->frame().layers, from.layers);
+    write_layers(commands_, bands_, width(), film_layers_, from.layers);
     done_ = from.done;
     batch_ = from.batch;
     band_ = from.band;
@@ -158,7 +158,7 @@ void Session::save_checkpoint() {
                           band_,
                           pixels_,
                           read_bands(commands_, bands_, width()),
-                          read_layers(commands_, bands_, width(), device_scene_->frame().layers),
+                          read_layers(commands_, bands_, width(), film_layers_),
                           result_.counts,
                           result_.non_finite,
                           result_.render_seconds + watch_.seconds(),
@@ -338,12 +338,17 @@ void Session::gather() {
 void Session::develop_film() {
     bring_home();
     Film& film = result_.film;
-    film.moves = moving_.has_value();
+    film.is_correlated = moving_ || method_.paths != PATHS_CAMERA;
     film.picture_width = scene_.picture.width;
     film.picture_height = scene_.picture.height;
     film.crop = job_.crop;
     film.places = reading_places(moving_ ? moving_->camera : scene_.camera, scene_.picture, job_.crop);
     develop(commands_, bands_, width(), film);
+    film.sum_variance.reset();
+    if (method_.paths != PATHS_CAMERA && !moving_ && done_ > 0)
+        if (const auto of_sample =
+                variance_of_sums(commands_, bands_, width())) // of those since a resume, if there was one
+            film.sum_variance = *of_sample / double(done_);
     film.layers =
         develop_layers(device_scene_->layers(), read_layers(commands_, bands_, width(), device_scene_->frame().layers),
                        film.samples, device_scene_->origin());

@@ -81,7 +81,7 @@ Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, st
     }
     if (plan.splats > 0)
         add_buffer(BINDING_SPLATS, "splats",
-                   std::uint64_t{most_pixels} * plan.splats * SPLAT_WORDS * sizeof(std::uint32_t));
+                   (std::uint64_t{most_pixels} + 1) * plan.splats * SPLAT_WORDS * sizeof(std::uint32_t));
     bindings_.emplace(device, bound(scene_buffers));
     make_passes(specialization, form, cache, meanwhile);
     push_.budget = std::min(plan.budget, first_budget);
@@ -225,6 +225,7 @@ void Wavefront::free_slots(std::uint32_t begin, std::uint32_t end) {
 
 void Wavefront::collect(std::uint32_t pixels) {
     over_pixels(*collect_, 0, pixels);
+    over_pixels(*collect_, pixels, pixels + 1);
 }
 
 // Each lane loops over the batch's samples.
@@ -349,9 +350,9 @@ void Wavefront::read_figures() {
                                    VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
     for (std::size_t round = 0; round < rounds_; ++round)
         for (std::size_t pass = 1; pass < marks; ++pass)
-            figures_[pass].seconds +=
-                static_cast<double>(ticks[round * marks + pass] - ticks[round * marks + pass - 1]) *
-                device_.limits().timestampPeriod * 1e-9;
+            figures_[pass].seconds += static_cast<double>(device_.ticks_between(ticks[round * marks + pass - 1],
+                                                                                ticks[round * marks + pass])) *
+                                      device_.limits().timestampPeriod * 1e-9;
 }
 
 // First lanes work for longer at a time, for they are laid aside less often then; after that there are more rounds.

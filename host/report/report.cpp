@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 
 #include "camera_view.h"
+#include "metadata.h"
 #include "render_notes.h"
 #include "requested_scene.h"
 #include "scene_hash.h"
@@ -213,8 +214,7 @@ Metadata make_metadata(const RenderRequest& request, const Scene& scene, const D
                       {"vkvol/queueOverflows", metadata_count(result.counts.queue_overflows)},
                       {"vkvol/abandonedPaths", metadata_count(result.counts.abandoned)},
                       {"vkvol/nonFiniteSamples", metadata_count(result.counts.non_finite)}};
-    if (result.film.moves)
-        metadata[moves_key] = 1;
+    record_correlation(result.film, metadata);
     if (!scene.units.empty())
         metadata["vkvol/units"] = scene.units;
     if (const std::string layers = layers_text(scene); !layers.empty())

@@ -24,6 +24,9 @@ struct DiskSurface {
     double radius = 1.0;              // > 0
 };
 
+// By which part a transform may stretch what stays a ball or a disk: scene files have matrices of six digits.
+inline constexpr double stretch_of_digits = 1e-5;
+
 // Counterclockwise as seen from without, or from in front.
 struct TriangleSurface {
     std::vector<glm::dvec3> vertices;

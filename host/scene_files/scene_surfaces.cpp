@@ -51,7 +51,15 @@ Rgb three(const XmlElement& element, const char* attribute, const Limits& limits
 }
 
 void read_metal(const XmlElement& element, Material& material) {
-    if (element.has("eta") && element.has("k")) {
+    const bool has_eta = element.has("eta"), has_k = element.has("k");
+    if (has_eta != has_k)
+        element.fail_attribute(has_eta ? "eta" : "k",
+                               fmt::format("<{}> has {} without {}; a conductor is described by both, or by metal=",
+                                           element.name(), has_eta ? "eta" : "k", has_eta ? "k" : "eta"));
+    if (has_eta && element.has("metal"))
+        element.fail_attribute(
+            "metal", fmt::format("<{}> has eta and k, and is of no metal besides; remove it, or them", element.name()));
+    if (has_eta) {
         material.eta = three(element, "eta", index_limits);
         material.k = three(element, "k", absorbing);
         return;
@@ -91,7 +99,8 @@ double scale_of(const XmlElement& element, const glm::dmat4& map) {
     const glm::dmat3 square = glm::transpose(m) * m;
     for (int column = 0; column < 3; ++column)
         for (int row = 0; row < 3; ++row)
-            if (std::abs(square[column][row] - (column == row ? scale * scale : 0.0)) > 1e-9 * scale * scale)
+            if (std::abs(square[column][row] - (column == row ? scale * scale : 0.0)) >
+                stretch_of_digits * scale * scale)
                 element.fail(fmt::format("<{}> transform: stretches it along one axis, or shears it, and it would not "
                                          "stay what it is; use a mesh",
                                          element.name()));
@@ -111,9 +120,12 @@ TriangleSurface moved(const glm::dmat4& map, TriangleSurface shape) {
 }
 
 // A mirror leaves its front where the mirrored front is; sheared it is a parallelogram, of triangles.
-SurfaceShape moved(const glm::dmat4& map, const Rectangle& r) {
+// `shows`: what goes along with a mirror, a texture, so that it has to be of triangles.
+SurfaceShape moved(const glm::dmat4& map, const Rectangle& r, bool shows) {
     const glm::dmat3 linear(map);
     const double turn = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
+    if (shows && turn < 0.0)
+        return moved(map, RectangleSurface{r.center, r.edge_u, r.edge_v}.triangles());
     const glm::dvec3 center = moved(map, r.center), u = turn * (linear * r.edge_u), v = linear * r.edge_v;
     if (std::abs(glm::dot(u, v)) > 1e-9 * glm::length(u) * glm::length(v))
         return RectangleSurface{center, u, v}.triangles();
@@ -305,7 +317,7 @@ Surface SceneReader::surface(const XmlElement& element) const {
         surface.axes = glm::dmat3(map) * axes_facing(element, normal) / scale_of(element, map);
     } else if (kind == "rectangle") {
         allow({"x", "y", "z", "lookAt", "up", "width", "height"});
-        surface.shape = moved(map, rectangle(element));
+        surface.shape = moved(map, rectangle(element), element.has("texture") || element.has("checker"));
     } else if (kind == "box") {
         allow({"x", "y", "z", "width", "height", "depth"});
         const auto edge = [&](const char* name) { return element.attribute_number(name, 1.0, length); };

@@ -17,7 +17,7 @@ enum class BufferPlace {
 
 class Buffer {
 public:
-    // Throws RenderError naming the buffer if it is larger than the device allows or memory is short.
+    // Throws InputError naming the buffer if it is larger than the device allows, RenderError if memory is short.
     Buffer(const Device& device, const std::string& name, VkDeviceSize bytes, VkBufferUsageFlags usage,
            BufferPlace place);
     ~Buffer();

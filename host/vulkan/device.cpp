@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstring>
 #include <fmt/format.h>
+#include <mutex>
 #include <optional>
 
 #include "pipeline_cache.h"
@@ -43,15 +44,15 @@ int preference(const DeviceInfo& info) {
     return static_cast<int>(std::find(order.begin(), order.end(), info.type) - order.begin());
 }
 
-std::optional<std::uint32_t> find_compute_family(VkPhysicalDevice physical, bool* timestamps = nullptr) {
+std::optional<std::uint32_t> find_compute_family(VkPhysicalDevice physical, std::uint32_t* timestamp_bits = nullptr) {
     std::uint32_t count = 0;
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
     for (std::uint32_t i = 0; i < count; ++i) {
         if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) {
-            if (timestamps)
-                *timestamps = families[i].timestampValidBits >= 36;
+            if (timestamp_bits)
+                *timestamp_bits = families[i].timestampValidBits;
             return i;
         }
     }
@@ -125,6 +126,8 @@ std::vector<VkPhysicalDevice> enumerate(VkInstance instance) {
 
 VkBool32 VKAPI_PTR on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                               const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+    static std::mutex mutex; // kernels are compiled on several threads
+    const std::scoped_lock lock(mutex);
     static_cast<std::vector<std::string>*>(user)->push_back(data->pMessage);
     return VK_FALSE;
 }
@@ -280,12 +283,24 @@ void Device::choose_physical(const std::string& choice) {
                                                         "what there is",
                                                         choice, reasons));
     physical_ = devices[best];
-    vkGetPhysicalDeviceProperties(physical_, &properties_);
+    VkPhysicalDeviceMaintenance3Properties allocations{};
+    allocations.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES;
+    VkPhysicalDeviceProperties2 all{};
+    all.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+    all.pNext = &allocations;
+    vkGetPhysicalDeviceProperties2(physical_, &all);
+    properties_ = all.properties;
+    most_allocation_ = allocations.maxMemoryAllocationSize;
     vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
 }
 
+std::uint64_t Device::ticks_between(std::uint64_t first, std::uint64_t second) const {
+    const std::uint64_t valid = timestamp_bits_ >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << timestamp_bits_) - 1;
+    return (second - first) & valid;
+}
+
 void Device::create_device(const DeviceOptions& options) {
-    queue_family_ = find_compute_family(physical_, &timestamps_).value();
+    queue_family_ = find_compute_family(physical_, &timestamp_bits_).value();
     const float priority = 1.0f;
     VkDeviceQueueCreateInfo queue{};
     queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;

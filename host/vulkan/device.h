@@ -51,9 +51,12 @@ public:
     std::uint32_t queue_family() const { return queue_family_; }
     const DeviceInfo& info() const { return info_; }
     const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
+    VkDeviceSize most_allocation() const { return most_allocation_; } // bytes, in one piece
     const VkPhysicalDeviceProperties& properties() const { return properties_; }
     bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
-    bool has_timestamps() const { return timestamps_; }
+    bool has_timestamps() const { return timestamp_bits_ >= 36; }
+    // Between two marks of one submit, counters that have begun anew between them included.
+    std::uint64_t ticks_between(std::uint64_t first, std::uint64_t second) const;
     bool has_addresses() const { return info_.addresses; }
 
     // Index of a memory type in `allowed` with all `wanted` properties, or -1.
@@ -77,10 +80,11 @@ private:
     VkDevice device_ = VK_NULL_HANDLE;
     VkQueue queue_ = VK_NULL_HANDLE;
     std::uint32_t queue_family_ = 0;
-    bool timestamps_ = false;
+    std::uint32_t timestamp_bits_ = 0; // valid ones
     std::unique_ptr<Pipelines> pipelines_;
     VkPhysicalDeviceProperties properties_{};
     VkPhysicalDeviceMemoryProperties memory_{};
+    VkDeviceSize most_allocation_ = 0;
     DeviceInfo info_;
     std::vector<std::string> messages_;
 };

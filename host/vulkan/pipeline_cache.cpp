@@ -9,6 +9,7 @@
 
 #include "atomic_file.h"
 #include "cache_directory.h"
+#include "digest.h"
 #include "vulkan_error.h"
 
 namespace vkvol {
@@ -50,7 +51,7 @@ PipelineCache::PipelineCache(const Device& device, bool use_disk) : device_(devi
         if (!header_fits(data, device.properties()))
             data.clear();
     }
-    loaded_bytes_ = data.size();
+    on_disk_ = digest_text({data.data(), data.size()});
     VkPipelineCacheCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
     create.initialDataSize = data.size();
@@ -78,19 +79,22 @@ PipelineCache::~PipelineCache() {
 
 void PipelineCache::save() const {
     std::size_t size = 0;
-    if (path_.empty() || vkGetPipelineCacheData(device_.handle(), cache_, &size, nullptr) != VK_SUCCESS ||
-        size == loaded_bytes_)
+    if (path_.empty() || vkGetPipelineCacheData(device_.handle(), cache_, &size, nullptr) != VK_SUCCESS)
         return;
     std::vector<char> data(size);
     if (vkGetPipelineCacheData(device_.handle(), cache_, &size, data.data()) != VK_SUCCESS)
         return;
     static std::mutex mutex; // of devices of one kind, whose file is the same
     const std::scoped_lock lock(mutex);
+    const std::string digest = digest_text({data.data(), size});
+    if (digest == on_disk_)
+        return;
     try {
         std::filesystem::create_directories(path_.parent_path());
         AtomicFile file(path_);
         file.write(data.data(), size, 0);
         file.put_in_place();
+        on_disk_ = digest;
     } catch (const std::system_error&) {
         // Said in the header.
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "device.h"
 
@@ -22,8 +23,8 @@ public:
 
 private:
     const Device& device_;
-    std::filesystem::path path_; // empty: memory only
-    std::size_t loaded_bytes_ = 0;
+    std::filesystem::path path_;  // empty: memory only
+    mutable std::string on_disk_; // digest of what the file has
     VkPipelineCache cache_ = VK_NULL_HANDLE;
 };
 

@@ -7,11 +7,15 @@
 #include "lib/rng.glsl"
 
 const float WORD = 4294967296.0;
+const uint COARSE = 16u; // bits that the sum over all pixels leaves out: it has to hold a million of the brightest
 const float MOST_SPLAT = 1.0e18; // thousands of which are below 2^63
 
-// SPLAT_WORDS: red's low and high one, and so on.
+// SPLAT_WORDS: red's low and high one, and so on. Behind the last pixel is the picture's sum.
+uint splat_pixels() {
+    return frame.crop_width * frame.crop_height;
+}
 uint splat_place(uint pixel, uint sample_index) {
-    return uint(SPLAT_WORDS) * ((sample_index - push.sample_begin) * (frame.crop_width * frame.crop_height) + pixel);
+    return uint(SPLAT_WORDS) * ((sample_index - push.sample_begin) * (splat_pixels() + 1u) + pixel);
 }
 
 void add_whole(uint at, float x) {
@@ -41,6 +45,16 @@ void splat(uint pixel, uint place, uint sample_index, vec3 light) {
     add_whole(at, x.x);
     add_whole(at + 2u, x.y);
     add_whole(at + 4u, x.z);
+}
+
+// Whole numbers of 64 bits, shifted and added, whose last bits are dropped: for the sum's variance, to which an offset is nothing.
+void add_to_sum(uint at, uint sum) {
+    for (uint c = 0u; c < uint(SPLAT_WORDS); c += 2u) {
+        uint low = splats[at + c] >> COARSE | splats[at + c + 1u] << (32u - COARSE);
+        uint high = uint(int(splats[at + c + 1u]) >> COARSE);
+        uint before = atomicAdd(splats[sum + c], low);
+        atomicAdd(splats[sum + c + 1u], high + (before + low < before ? 1u : 0u));
+    }
 }
 
 vec3 splatted(uint at) {

@@ -52,7 +52,7 @@ Particle from_afar(vec3 toward, vec3 light, vec2 u) {
     vec3 tangent, bitangent;
     build_frame(toward, tangent, bitangent);
     vec2 at = all.radius * in_disk(u);
-    return particle(all.center + all.radius * toward + at.x * tangent + at.y * bitangent, -toward,
+    return particle(all.radius * toward + at.x * tangent + at.y * bitangent, -toward,
                     PI * all.radius * all.radius * light, SHINES_UNSEEN);
 }
 

@@ -275,8 +275,7 @@ struct EmitterRow {
 };
 
 struct ParticleParams {
-    vec3 center;       // of a ball that holds all that is to be lit from afar, render space
-    float radius;      // 0: nothing comes from afar
+    float radius;      // of a ball about the origin that holds all that is to be lit from afar; 0: nothing comes from there
     uint emitters;     // rows to choose among
     float power;       // of all of them together, roughly: a particle's throughput is in units of it
     float glow_volume; // of the box about the media [world units^3],

@@ -7,6 +7,7 @@
 #include "compare.h"
 #include "error.h"
 #include "merge.h"
+#include "metadata.h"
 
 using namespace vkvol;
 
@@ -205,6 +206,68 @@ TEST_CASE("compare: noise alone is no difference", "[cpu][merge][compare]") {
         INFO(n_a << " against " << n_b);
         CHECK(different <= 4);
     }
+}
+
+// Where both have one sample nothing is known of its variance; where one has none, nothing of the pixel.
+TEST_CASE("compare: interrupted pictures differ by noise alone", "[cpu][merge][compare]") {
+    for (unsigned seed = 0; seed < 30; ++seed) {
+        Samples a = draw(2 * seed, 8), b = draw(2 * seed + 1, 8);
+        for (std::size_t i = 0; i < a.of_pixel.size(); i += 2)
+            for (Samples* each : {&a, &b})
+                each->of_pixel[i].resize(1);
+        for (std::size_t i = 1; i < a.of_pixel.size(); i += 8)
+            b.of_pixel[i].clear();
+        const Comparison result = compare_films(film_of(a), film_of(b), options_at(1e-4));
+        CAPTURE(seed, result.reason, result.mean_z[0]);
+        CHECK_FALSE(result.different);
+    }
+}
+
+// Pixels that share samples: of one window by the numbers of samples, windows side by side add up.
+TEST_CASE("variances of sums are merged, and compared by", "[cpu][merge][compare]") {
+    const auto with = [](Film film, glm::dvec3 variance) {
+        film.is_correlated = true;
+        film.sum_variance = variance;
+        return film;
+    };
+    const Film some = with(film_of(draw(1, 4)), {8.0, 4.0, 2.0}), more = with(film_of(draw(2, 12)), {4.0, 4.0, 2.0});
+    const MergeResult merged = merge_films({input("a", some, 0, 4), input("b", more, 4, 12)});
+    REQUIRE(merged.film.sum_variance);
+    CHECK(merged.film.sum_variance->x == Approx((16.0 * 8.0 + 144.0 * 4.0) / 256.0));
+    CHECK(merged.film.sum_variance->z == Approx(160.0 * 2.0 / 256.0));
+    Film read;
+    read_correlation(merged.metadata, read);
+    REQUIRE(read.sum_variance);
+    CHECK(*read.sum_variance == *merged.film.sum_variance);
+    // The sums differ by their noise as independent pixels, which is far above the variance of 8 that they say.
+    const Comparison result = compare_films(some, with(film_of(draw(3, 4)), {1e-3, 1e-3, 1e-3}), options_at());
+    CHECK(result.has_mean_z);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < some.pixel_count(); ++i)
+        sum += double(some.mean[i].x) - film_of(draw(3, 4)).mean[i].x;
+    CHECK(result.mean_z[0] == Approx(std::abs(sum) / std::sqrt(8.001)).epsilon(1e-3));
+    Film unknown = some;
+    unknown.sum_variance.reset();
+    CHECK_FALSE(compare_films(some, unknown, options_at()).has_mean_z);
+    CHECK_FALSE(merge_films({input("a", some, 0, 4), input("b", unknown, 4, 4)}).film.sum_variance);
+}
+
+TEST_CASE("depths of single samples know their scatter once merged", "[cpu][merge]") {
+    std::vector<MergeInput> parts;
+    double mean = 0.0, squares = 0.0;
+    for (int k = 0; k < 16; ++k) {
+        Film film = film_of(draw(unsigned(k), 1));
+        const float depth = 3.0f + 0.25f * float(k % 5);
+        film.layers.push_back({"depth", std::vector<glm::vec3>(film.pixel_count(), glm::vec3(depth)),
+                               std::vector<glm::vec3>(film.pixel_count(), glm::vec3(0.0f))});
+        film.layers.push_back({"coverage", std::vector<glm::vec3>(film.pixel_count(), glm::vec3(1.0f)), {}});
+        parts.push_back(input(std::to_string(k), film, k, 1));
+        mean += depth / 16.0;
+        squares += depth * depth / 16.0;
+    }
+    const Film merged = merge_films(parts).film;
+    CHECK(merged.layer("depth")->mean[5].x == Approx(mean));
+    CHECK(merged.layer("depth")->variance[5].x == Approx((squares - mean * mean) / 16.0).epsilon(1e-4));
 }
 
 TEST_CASE("compare: real differences are found", "[cpu][merge][compare]") {

@@ -49,6 +49,13 @@ TEST_CASE("pbrt's normals say which medium is within", "[cpu][pbrt]") {
     CHECK(absorbs("ReverseOrientation MediumInterface \"\" \"a\"" + box) == All{1});
     CHECK(absorbs("MediumInterface \"b\" \"a\"" + ball + "MediumInterface \"a\" \"\" Scale 3 3 3" + ball) == All{2, 1});
     CHECK(absorbs("ReverseOrientation MediumInterface \"a\" \"\"" + ball).empty());
+    // An instance carries normals along, whatever it does to space.
+    const auto object = [](const std::string& text) {
+        return "ObjectBegin \"o\" MediumInterface \"a\" \"\" " + text + " ObjectEnd Scale -1 1 1 ObjectInstance \"o\"";
+    };
+    CHECK(absorbs(object(ball)) == All{1});
+    CHECK(absorbs(object("Scale -1 1 1" + ball)).empty());
+    CHECK(absorbs(object(box)) == All{1});
 }
 
 TEST_CASE("pbrt's media that are not rendered as in pbrt are named", "[cpu][pbrt]") {
@@ -56,6 +63,13 @@ TEST_CASE("pbrt's media that are not rendered as in pbrt are named", "[cpu][pbrt
                 "medium \"a\" is outside of this, as its normals point");
     check_noted("MediumInterface \"b\" \"a\"" + ball + "MediumInterface \"a\" \"\" Scale 3 3 3" + ball,
                 "medium \"a\" goes on within");
+    check_noted(
+        "MakeNamedMaterial \"g\" \"string type\" \"dielectric\" NamedMaterial \"g\" MediumInterface \"b\" \"a\"" +
+            ball + "Material \"interface\" MediumInterface \"a\" \"\" Scale 3 3 3" + ball,
+        "medium \"a\" goes on within");
+    CHECK(
+        scene_of("Integrator \"path\" Camera \"perspective\" WorldBegin " + media + "MediumInterface \"a\" \"\"" + ball)
+            .warnings.size() == 1);
     check_noted("MediumInterface \"a\" \"\" Shape \"sphere\" \"float zmax\" 0",
                 "\"sphere\" encloses medium \"a\", which is left out");
     check_noted("MediumInterface \"a\" \"\" Shape \"plymesh\" \"string filename\" \"a.ply\"" + ball,
@@ -88,6 +102,12 @@ TEST_CASE("images of pbrt's textures that are taken otherwise are named", "[cpu]
     check("\"float scale\" 3", "taken 3 times, and once here");
     check("\"string wrap\" \"black\"", "the image is repeated");
     check("\"string encoding\" \"linear\"", "encoding \"linear\" is left out");
+    check("\"float uscale\" -1", "mirrors no image here");
+    check("\"string mapping\" \"planar\"", "mapping \"planar\" is left out");
+    for (const char* usual : {"\"string mapping\" \"uv\"", "\"float uscale\" 2"})
+        CHECK(world_of(std::string("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" ") + usual +
+                       " Material \"diffuse\" \"texture reflectance\" \"t\"" + ball)
+                  .warnings.empty());
     // Of colours and of numbers, by one name.
     const Scene scene =
         world_of("Texture \"t\" \"spectrum\" \"constant\" \"rgb value\" [ .8 .1 .1 ] Texture \"t\" \"float\" "
@@ -121,7 +141,19 @@ TEST_CASE("blocks and imported files leave pbrt's state as they find it", "[cpu]
     CHECK(near(seen[1], {.1, .8, .1}));
     CHECK(near(seen[2], {.8, .1, .1}));
     CHECK(near(seen[3], {.8, .1, .1}));
-    CHECK(near(colors("Include \"green.inc\"", file).back(), {.1, .8, .1}));
+    directory.write("plain.inc", green);
+    CHECK(near(colors("Include \"plain.inc\"", file).back(), {.1, .8, .1}));
+    CHECK_THROWS_WITH(colors("Include \"green.inc\"", file), Contains("an AttributeBegin lacks its AttributeEnd"));
+    // Coordinate systems are a file's own.
+    directory.write("system.inc", "CoordSysTransform \"far\"" + ball);
+    const std::string whole =
+        "Camera \"perspective\" WorldBegin AttributeBegin Translate 9 0 0 CoordinateSystem \"far\" "
+        "AttributeEnd Import \"system.inc\" CoordSysTransform \"far\"" +
+        ball;
+    const Scene systems = parse_scene(translate_pbrt(read_pbrt(whole, file)), file.string());
+    REQUIRE(systems.surfaces.size() == 2);
+    CHECK(near(std::get<BallSurface>(systems.surfaces[0].shape).center, {0, 0, 0}));
+    CHECK(near(std::get<BallSurface>(systems.surfaces[1].shape).center, {9, 0, 0}));
     CHECK_THROWS_WITH(colors("AttributeBegin Import \"ends.inc\"", file),
                       Contains("ends.inc:1:1: AttributeEnd without what it ends"));
 }
@@ -144,6 +176,15 @@ TEST_CASE("pbrt's names of media, spectra and spaces", "[cpu][pbrt]") {
     const Scene scene =
         world_of("Attribute \"light\" \"rgb I\" [ 1 0 0 ] ColorSpace \"rec2020\" LightSource \"point\"");
     CHECK(near(only_light<PointLight>(scene).intensity, {1, 0, 0}));
+    // Light of ACES's space is times its illuminant, D60: its chromaticity (0.32168, 0.33767) as Rec.709 of
+    // luminance 1.
+    for (const char* light : {"LightSource \"point\"", "LightSource \"point\" \"rgb I\" [ 1 1 1 ]"})
+        CHECK(near(only_light<PointLight>(world_of(std::string("ColorSpace \"aces2065-1\" ") + light)).intensity,
+                   {1.0470, .9946, .9155}, 1e-3));
+    CHECK(near(world_of("ColorSpace \"aces2065-1\" Material \"diffuse\" \"rgb reflectance\" [ .5 .5 .5 ]" + ball)
+                   .surfaces.at(0)
+                   .material.color,
+               glm::dvec3(.5), 1e-4));
     CHECK(world_of("CoordSysTransform \"none\" LightSource \"point\"").warnings.size() == 1);
     CHECK(scene_of("Sampler \"independent\" Camera \"perspective\" WorldBegin").settings.spp == 4);
     CHECK(scene_of("Sampler \"zsobol\" Camera \"perspective\" WorldBegin").settings.spp == 16);

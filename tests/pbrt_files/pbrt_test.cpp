@@ -140,6 +140,17 @@ TEST_CASE("pbrt's materials and textures", "[cpu][pbrt]") {
         const double n = grey.eta[c], k = grey.k[c];
         CHECK(((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k) == Approx(c == 0 ? .3 : c == 1 ? .5 : .9));
     }
+    const std::string gold = R"(Texture "g" "spectrum" "constant" "rgb value" [ .9 .6 .2 ] )";
+    const Material plain = material(R"(Material "conductor" "rgb reflectance" [ .9 .6 .2 ])"),
+                   by_texture = material(gold + R"(Material "conductor" "texture reflectance" "g")");
+    CHECK((near(plain.k, by_texture.k) && near(plain.eta, by_texture.eta)));
+    CHECK(near(material(gold + R"(Material "conductor" "texture eta" "g")").eta, {.9, .6, .2}));
+    // What scene files do not take becomes the nearest that they do.
+    CHECK(material(R"(Material "conductor" "rgb eta" [ .04 .05 .06 ])").eta.x == Approx(0.05));
+    CHECK(material(R"(Material "coateddiffuse" "float eta" .9)").ior == Approx(1.0));
+    CHECK(material(R"(Material "dielectric" "float eta" 1 "float roughness" .1)").roughness == 0.0);
+    CHECK(material(R"(Texture "r" "float" "constant" Material "coateddiffuse" "texture roughness" "r")").kind ==
+          MaterialKind::coated);
     const Material coat = material(R"(Material "coateddiffuse" "float eta" 1.7 "rgb reflectance" [ 1 .5 0 ])");
     CHECK((coat.kind == MaterialKind::coated && coat.ior == Approx(1.7)));
 
@@ -258,11 +269,24 @@ TEST_CASE("pbrt's transforms, attributes and objects", "[cpu][pbrt]") {
     CHECK((ball(0).radius == Approx(0.5) && ball(1).radius == Approx(0.5) && ball(2).radius == Approx(1.0)));
     CHECK(near(objects.surfaces[1].material.color, {.9, 0, 0}));
     CHECK(near(objects.surfaces[2].material.color, glm::dvec3(.5)));
+    // An instance may come before its object, a parameter twice, and a matrix have six digits.
+    CHECK(world_of("ObjectInstance \"o\" ObjectBegin \"o\" Shape \"sphere\" ObjectEnd").surfaces.size() == 1);
+    const auto radius = [](const std::string& text) {
+        return std::get<BallSurface>(world_of(text).surfaces.at(0).shape).radius;
+    };
+    CHECK(radius("Shape \"sphere\" \"float radius\" 1 \"float radius\" 2") == Approx(2.0));
+    CHECK(radius("Attribute \"shape\" \"float radius\" 1 \"float radius\" 2 Shape \"sphere\"") == Approx(2.0));
+    CHECK(radius("Transform [ .707107 0 .707107 0 0 1 0 0 -.707107 0 .707107 0 0 0 0 1 ] Shape \"sphere\"") ==
+          Approx(1.0).epsilon(1e-5));
 }
 
 TEST_CASE("pbrt's triangles", "[cpu][pbrt]") {
-    const Scene scene = world_of(R"(Shape "trianglemesh" "point3 P" [ 0 0 0 1 0 0 0 1 0 ] "point2 uv" [ 0 0 1 0 0 1 ]
-                                    "normal3 N" [ 0 0 1 0 0 1 0 1 1 ])");
+    const std::string board =
+        R"(Texture "t" "spectrum" "imagemap" "string filename" "a.png" Material "diffuse" "texture reflectance" "t" )";
+    const std::string corner = R"(Shape "trianglemesh" "point3 P" [ 0 0 0 1 0 0 0 1 0 ] "point2 uv" [ 0 0 1 0 0 1 ]
+                                  "normal3 N" [ 0 0 1 0 0 1 0 1 1 ])";
+    const Scene scene = world_of(board + corner);
+    CHECK(std::get<TriangleSurface>(world_of(corner).surfaces.at(0).shape).places.empty()); // without a texture
     const auto& mesh = std::get<TriangleSurface>(scene.surfaces.at(0).shape);
     REQUIRE(mesh.triangles.size() == 1);
     // Mirrored, and turned about so that its front is where it was.
@@ -275,8 +299,6 @@ TEST_CASE("pbrt's triangles", "[cpu][pbrt]") {
     CHECK(std::get<TriangleSurface>(faced.surfaces.at(0).shape).triangles.at(0) == glm::uvec3(0, 2, 1));
     // pbrt's places where a scene gives none, once there is a texture to see them by: of patches the corners', of
     // triangles (0, 0), (1, 0), (1, 1).
-    const std::string board =
-        R"(Texture "t" "spectrum" "imagemap" "string filename" "a.png" Material "diffuse" "texture reflectance" "t" )";
     const std::string square = R"("point3 P" [ 0 0 0 2 0 0 0 3 0 2 3 0 ])";
     const Scene patch = world_of(board + R"(Shape "bilinearmesh" )" + square);
     const auto& corners = std::get<TriangleSurface>(patch.surfaces.at(0).shape);
@@ -295,6 +317,10 @@ TEST_CASE("pbrt's triangles", "[cpu][pbrt]") {
     }
     const Scene disk = world_of(board + R"(Shape "disk")");
     CHECK(std::get<TriangleSurface>(disk.surfaces.at(0).shape).places.size() == 128); // polar
+    // What exporters say of a flat quad does not keep it from being a rectangle, nor a lamp.
+    const Scene lamp = world_of(R"(AreaLightSource "diffuse" Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ]
+        "point3 P" [ 0 0 0 2 0 0 2 3 0 0 3 0 ] "normal3 N" [ 0 0 1 0 0 1 0 0 1 0 0 1 ] "point2 uv" [ 0 0 1 0 1 1 0 1 ])");
+    CHECK(std::holds_alternative<RectangleSurface>(lamp.surfaces.at(0).shape));
     // Not every two triangles are a rectangle, nor every twelve a box.
     PbrtTriangles kite{{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1.1, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}, {}};
     CHECK_FALSE(as_rectangle(kite));
@@ -358,7 +384,9 @@ TEST_CASE("pbrt's quadrics that are none here are triangles", "[cpu][pbrt]") {
         CHECK((p.x > -1e-9 && p.y > -1e-9 && -p.z > -0.2 - 1e-9 && -p.z < 0.7 + 1e-9));
         CHECK(glm::length(p) == Approx(1.0));
     }
-    const TriangleSurface ring = mesh_of("Shape \"disk\" \"float innerradius\" 0.5 \"float height\" 2");
+    const TriangleSurface ring = mesh_of(
+        R"(Texture "t" "spectrum" "imagemap" "string filename" "a.png" Material "diffuse" "texture reflectance" "t"
+           Shape "disk" "float innerradius" 0.5 "float height" 2)");
     CHECK(area_of(ring) == Approx(pi * 0.75).epsilon(1e-3));
     CHECK(part_in_front(ring, [](const glm::dvec3&) { return glm::dvec3(0.0, 0.0, -1.0); }) == 1.0);
     // u once round from x to y, v from the outer edge to the inner.
@@ -409,6 +437,7 @@ TEST_CASE("what of a pbrt scene cannot be rendered is said once, with its place"
               textured("\"checkerboard\" \"texture tex1\" \"i\""),
           "images in a Texture \"checkerboard\" are left out");
     noted("ActiveTransform EndTime", "nothing moves");
+    noted("ActiveTransform StartTime", "nothing moves");
     noted(
         "MakeNamedMedium \"a\" \"string type\" \"homogeneous\" MediumInterface \"a\" \"\" Material \"interface\" Shape "
         "\"disk\"",
@@ -442,7 +471,11 @@ TEST_CASE("wrong pbrt scenes are refused with their place", "[cpu][pbrt]") {
     refused("Film \"rgb\" \"integer xresolution\" 0 WorldBegin", "expected one at least");
     refused("Film \"rgb\" \"float iso\" 0 WorldBegin", "an exposure of 0");
     refused("WorldBegin AttributeEnd", "AttributeEnd without what it ends");
-    refused("WorldBegin ObjectInstance \"o\"", "no object \"o\" before this");
+    refused("WorldBegin ObjectInstance \"o\"", "no object \"o\"; ObjectBegin defines one");
+    refused("WorldBegin ObjectBegin \"o\" ObjectEnd ObjectBegin \"o\" ObjectEnd", "a second object \"o\"");
+    refused("Camera \"perspective\"", "lacks its WorldBegin");
+    refused("WorldBegin AttributeBegin", "an AttributeBegin lacks its AttributeEnd");
+    refused("WorldBegin MakeNamedMaterial \"m\" \"rgb reflectance\" [ 1 1 1 ]", "lacks its \"string type\"");
     refused("WorldBegin ObjectBegin \"o\"", "lacks its ObjectEnd");
     refused("WorldBegin NamedMaterial \"m\" Shape \"sphere\"", "no material \"m\"; MakeNamedMaterial makes one");
     refused("WorldBegin Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\"", "no texture \"t\"");

@@ -122,9 +122,9 @@ TEST_CASE("pixels that move together know no error of their mean", "[gpu][motion
     Scene at_rest = scene;
     at_rest.motion_blur.reset();
     const Film film = render_here(scene, 1).film, still = render_here(at_rest, 1).film;
-    CHECK(film.moves);
+    CHECK(film.is_correlated);
     CHECK(!image_mean(film).standard_error);
-    CHECK(!still.moves);
+    CHECK(!still.is_correlated);
     CHECK(image_mean(still).standard_error);
     const Comparison result = compare_films(film, render_here(scene, 2).film, {});
     CHECK(!result.has_mean_z);
@@ -292,6 +292,27 @@ TEST_CASE("a moment that cannot be leaves what was rendered", "[motion]") {
     CHECK(kept->done == session.samples());
     CHECK_THROWS_AS(session.render(256), InputError);
     CHECK(session.result().film.samples.front() == session.samples());
+}
+
+TEST_CASE("a moment whose files are gone leaves a checkpoint", "[motion]") {
+    const RadianceMap map{4, 2, std::vector<glm::vec3>(8, glm::vec3(1.0f)), 0};
+    const std::filesystem::path sky = write_sky(map).file;
+    const Scene scene = parse_at(fmt::format(R"(<width>8</width><height>8</height><camera x="${{= F}}" z="5"/><sphere/>
+        <lights><sky>{}</sky></lights>)",
+                                             sky.string()),
+                                 0);
+    RenderJob job;
+    job.crop = {0, 8, 0, 8};
+    std::optional<Checkpoint> kept;
+    job.checkpoint_seconds = 1e9;
+    job.checkpoint = [&](const Checkpoint& checkpoint) { kept = checkpoint; };
+    Session session(test_device(), scene, job);
+    session.render(2);
+    kept.reset();
+    std::filesystem::remove(sky);
+    CHECK_THROWS_AS(session.render(4096), InputError);
+    REQUIRE(kept);
+    CHECK(kept->done >= 2);
 }
 
 // The reference at times that are drawn one by one.

@@ -7,6 +7,7 @@
 
 #include "method.h"
 #include "scene_hash.h"
+#include "session.h"
 #include "shared/constants.h"
 #include "support/images.h"
 #include "support/scene_text.h"
@@ -237,6 +238,43 @@ TEST_CASE("particles from an even sky leave it even", "[gpu][particles]") {
     scene = by(scene, "lightTracing");
     const Film film = render_here(scene, 1).film;
     CHECK_AGREEMENT(agree_with_means(film, std::vector<Rgb>(film.mean.size(), scene.background), "even sky"));
+}
+
+// A particle is in several pixels, or in one of those that count it. Of 48 pictures, the variance of their means over
+// the mean of what they say it is: a chi-square of 47 degrees over 47, beyond 0.40 or 1.96 once in 10^4 each (Wilson
+// and Hilferty). As if pixels were independent it would be 2.6 of the lamp, and 0.02 of the slab.
+TEST_CASE("pixels of particles are parts of a sum whose error is known", "[gpu][particles]") {
+    Scene lamp =
+        by(seen(medium(Box{glm::dvec3(0.0), glm::dvec3(2.0)}, 10.0, 0.9), 4.0, {PointLight{{0.0, 0.0, 0.0}, Rgb(9.0)}}),
+           "lightTracing");
+    lamp.background = Rgb(0.0);
+    Scene slab = parse(R"(<box y="-0.5"/><periodic x="-0.5 0.5" z="-0.5 0.5"/><sigma_s>20</sigma_s><sigma_a>0</sigma_a>
+        <light zenith="60" r="1" g="1" b="1"/><irradiance y="0.2" lookAt="0 -1 0" width="1" height="1"/>
+        <width>8</width><height>8</height><integrator>lightTracing</integrator>)");
+    for (Scene* scene : {&lamp, &slab}) {
+        scene->settings.spp = 32;
+        RenderJob job;
+        job.disk_cache = false;
+        job.crop = {0, scene->picture.width, 0, scene->picture.height};
+        Session session(test_device(), *scene, job);
+        double sum = 0.0, squares = 0.0, said = 0.0;
+        constexpr int pictures = 48;
+        for (int i = 0; i < pictures; ++i) {
+            job.seed = static_cast<std::uint32_t>(i);
+            session.begin_again();
+            session.render(32);
+            const Film& film = session.result().film;
+            CHECK(film.is_correlated);
+            const ImageMean mean = image_mean(film);
+            REQUIRE(mean.standard_error);
+            sum += mean.value.x;
+            squares += mean.value.x * mean.value.x;
+            said += mean.standard_error->x * mean.standard_error->x / pictures;
+        }
+        const double found = (squares - sum * sum / pictures) / (pictures - 1);
+        CAPTURE(found, said);
+        CHECK((found / said > 0.40 && found / said < 1.96));
+    }
 }
 
 // Splats are numbers of so many digits, and what paths from the camera bring are splats as well.

@@ -235,6 +235,23 @@ TEST_CASE("textures are read and refused by name", "[xml][surfaces]") {
     CHECK_THAT(refused("<sphere checker=\".1 .2\"/>"), Contains("2 numbers"));
     CHECK_THAT(refused("<sphere checker=\"1.1\"/>"), Contains("checker") && Contains("0 to 1"));
     CHECK_THAT(refused("<sphere checker=\".1\" texture=\"a.png\"/>"), Contains("leave that or checker out"));
+    CHECK_THAT(refused("<sphere material=\"conductor\" eta=\"1 1 1\"/>"), Contains("has eta without k"));
+    CHECK_THAT(refused("<sphere material=\"conductor\" eta=\"1 1 1\" k=\"1 1 1\" metal=\"gold\"/>"), Contains("metal"));
+    // A mirror takes a rectangle's texture along.
+    const std::string mirrored = "lookAt=\"0 0 1\"{}><transform><scale x=\"-1\"/></transform></rectangle></surfaces>";
+    const auto shape_of = [&](const char* texture) {
+        return parse("<surfaces><rectangle " + fmt::format(fmt::runtime(mirrored), texture)).surfaces.at(0).shape;
+    };
+    CHECK(std::holds_alternative<RectangleSurface>(shape_of("")));
+    const SurfaceShape turned = shape_of(" checker=\".1\"");
+    REQUIRE(std::holds_alternative<TriangleSurface>(turned));
+    const auto& mesh = std::get<TriangleSurface>(turned);
+    for (std::size_t t = 0; t < 2; ++t)
+        for (int k = 0; k < 3; ++k) { // a unit wide, its right on the left
+            const glm::dvec3 at = mesh.vertices[mesh.triangles[t][k]];
+            CHECK(mesh.places[t][k].x == Approx(0.5 - at.x));
+            CHECK(mesh.places[t][k].y == Approx(0.5 + at.y));
+        }
     Scene other = scene;
     other.surfaces[0].material.repeat.x = 5.0;
     CHECK(scene_hash(other) != scene_hash(scene));
@@ -244,6 +261,16 @@ TEST_CASE("textures are read and refused by name", "[xml][surfaces]") {
     CHECK(hash_of("checker=\".1\"") == hash_of("r=\".5\" g=\".5\" b=\".5\" checker=\".1 .1 .1\""));
     CHECK(hash_of("checker=\".1\"") != hash_of("checker=\".2\""));
     CHECK(hash_of("checker=\".1\"") != hash_of("multiplier=\".2\" checker=\".1\""));
+    // Files count by what is in them.
+    const TestDirectory directory;
+    const auto hash_of_file = [&](const char* folder, const char* text) {
+        std::filesystem::create_directories(directory.path / folder);
+        const std::filesystem::path file = directory.path / folder / "a.png";
+        std::ofstream(file) << text;
+        return hash_of(fmt::format("texture=\"{}\"", file.string()).c_str());
+    };
+    CHECK(hash_of_file("first", "same size") == hash_of_file("second", "same size"));
+    CHECK(hash_of_file("first", "same size") != hash_of_file("third", "also nine"));
     const auto hash_of_places = [](const char* checker, const char* places) {
         return scene_hash(parse(fmt::format("<surfaces><mesh {}><vertices>0 0 0 1 0 0 0 1 0</vertices><triangles>0 1 2"
                                             "</triangles><places>{}</places></mesh></surfaces>",

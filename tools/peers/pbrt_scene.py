@@ -212,7 +212,7 @@ def main():
         return add_result(options)
     options.output = options.output or pathlib.Path(options.scene.stem + ".pbrt")
     scene = scenes.read(options.scene, options.width, options.height, options.keys, options.grid)
-    if np.ptp(scene.medium.sigma_t) or np.ptp(scene.medium.sigma_s):
+    if scene.medium is not None and (np.ptp(scene.medium.sigma_t) or np.ptp(scene.medium.sigma_s)):
         print("note: pbrt renders spectra; coefficients that differ between r, g and b are smooth curves there, and the "
               "picture will differ", file=sys.stderr)
     with open(options.output, "w") as file:

@@ -22,6 +22,13 @@ WITHOUT_LIGHT = ("deltaTracking", "densitySampling")
 PHASES = ("henyeyGreenstein", "doubleHenyeyGreenstein", "rayleigh")
 LEFT_OUT = {"noise": "procedural noise", "models": "a medium in a mesh", "everywhere": "a medium without end",
             "layers": "a density by height"}
+# What is translated, and what changes no picture.
+KNOWN = ("densityField", "sphere", "box", "sigma_a", "sigma_s", "heyneygreenstein_g", "heynegreenstein_g", "phase", "medium",
+         "emission", "lightRayDensityMultiplier", "shadowRayDensityMultiplier", "filter", "light", "lights", "surfaces",
+         "backgroundColor", "camera", "width", "height", "pixelFilter", "rayPerPixelCount", "integrator", "march", "maxDepth",
+         "russianRoulette", "majorant", "expected", "film")
+# Attributes of any element that are not, and the values that say nothing.
+NEUTRAL = {"depolarization": "0", "limbDarkening": "0", "mapping": "equirectangular", "mirror": "false", "texture": "", "checker": ""}
 
 
 @dataclasses.dataclass
@@ -191,6 +198,13 @@ class Reader:
                 self.fail(f"maps the values of its grid (<{name}>), which is not translated; remove it")
         if self.color("medium").any() or self.color("emission").any():
             self.fail("the medium glows, which is not translated; remove <medium> and <emission>")
+        for element in self.root:
+            if isinstance(element.tag, str) and element.tag not in KNOWN:  # else a comment
+                self.fail(f"<{element.tag}> is not translated; remove it")
+        for element in self.root.iter():
+            for name, text in element.attrib.items():
+                if self.filled(text) != NEUTRAL.get(name, self.filled(text)):
+                    self.fail(f"<{element.tag}> {name}: is not translated; remove it")
         integrator = self.text("integrator")
         choices = {} if self.find("integrator") is None else self.find("integrator").attrib
         if integrator in NOT_MULTIPLE or choices.get("scattering", "multiple") != "multiple":

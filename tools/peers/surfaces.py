@@ -126,6 +126,8 @@ class Surfaces:
 
     def mesh(self, element):
         name, folder = (self.reader.filled(element.get(key, "")).replace("\\", "/") for key in ("file", "baseDir"))
+        if not name.lower().endswith(".obj"):
+            self.reader.fail("<mesh> is translated where it is an .obj file alone; write one")
         path = self.reader.path.parent / folder / name
         normals = self.reader.filled(element.get("normals", "file"))
         with open(path, encoding="utf-8", errors="replace") as file:
