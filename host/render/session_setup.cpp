@@ -290,8 +290,8 @@ double Session::paths_per_second(Wavefront& wavefront, const Plan& plan) {
     Stopwatch watch;
     double counted_from = 0.0;
     std::uint64_t paths = 0;
-    // A slow device's first submit may take longer than all of that, and a second one has to tell.
-    for (bool resting = false; !resting && (watch.seconds() < enough || paths == 0);) {
+    // A slow device's first submits may take longer than that.
+    for (bool resting = false; !resting && watch.seconds() < std::max(enough, 3.0 * counted_from);) {
         resting = wavefront.advance();
         paths += wavefront.counters().paths;
         if (!resting && counted_from == 0.0 && watch.seconds() > start_up) {
