@@ -35,7 +35,7 @@ class Lab:
             self.old[extension] = pathlib.Path(f"{old}.{extension}").read_bytes()
         self.whole = self.work / "whole.exr"
         self.report = self.work / "whole.json"
-        spp = 16
+        spp = 32  # two first batches of a staged render, at least
         run, report = self.undisturbed(spp)
         while report["seconds"]["render"] < least_render:
             spp *= 2

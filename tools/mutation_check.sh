@@ -64,7 +64,7 @@ slopes of keys from one side ~ host/scene_files/keyed_values.cpp ~ i == 0 ? 0 : 
 particles at a surface in the sensor's plane missed ~ shaders/stages/count.glsl ~ HAS_SURFACES ? 2.0 * spare_at ~ HAS_SURFACES ? 0.0 * spare_at ~ [counted]
 particles counted in one domain alone ~ shaders/stages/count.glsl ~ position - frame.period.size * floor ~ position - 0.0 * floor ~ [counted]
 particles not counted on their way into a domain ~ shaders/stages/seam.glsl ~ if (COUNTS_PASSING) ~ if (false) ~ [counted]
-filters that end at a panorama's seam ~ shaders/sensors/toward_sensor.glsl ~ p = image_in_panorama(s, p, u.xy, images); ~ ; ~ [particles]
+filters that end at a panorama's seam ~ shaders/sensors/toward_sensor.glsl ~ abs(to_pole) < reach ~ false ~ [particles]
 pixels of particles taken for independent ~ host/render/session.cpp ~ moving_ || method_.paths != PATHS_CAMERA; ~ moving_.has_value(); ~ [particles]
 files told apart by name and size alone ~ host/methods/scene_hash.cpp ~ digest_of_file(path) ~ std::string() ~ [xml][surfaces]
 samples lost where a moment cannot be made ready ~ host/render/session.cpp ~ if (job_.checkpoint) // what was rendered ~ if (job_.checkpoint && device_scene_) // what was rendered ~ [motion]

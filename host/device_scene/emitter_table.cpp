@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <glm/gtc/matrix_access.hpp>
+#include <limits>
 #include <numbers>
 
 #include "alias_table.h"
@@ -66,16 +67,34 @@ private:
     double sum_ = 0.0;
 };
 
-void place_glow(const shared::MediumParams& medium, shared::ParticleParams& params) {
+// A medium's box, in render space.
+struct GlowBox {
+    glm::dvec3 corner;
+    glm::dmat3 edges;
+
+    double volume() const { return std::abs(glm::determinant(edges)); }
+    glm::dvec3 at(int i) const { return corner + edges * glm::dvec3(i & 1, i >> 1 & 1, i >> 2); }
+};
+
+GlowBox box_of(const shared::MediumParams& medium) {
     const glm::dmat4 map = to_render(medium);
     const glm::dvec3 size = glm::dvec3(medium.bounds_max) - glm::dvec3(medium.bounds_min);
-    params.glow_corner = glm::vec3(map * glm::dvec4(medium.bounds_min, 1.0));
-    glm::dmat3 edges(map);
-    for (int i = 0; i < 3; ++i) {
-        edges[i] *= size[i];
-        params.glow_edges[i] = edges[i];
-    }
-    params.glow_volume = static_cast<float>(std::abs(glm::determinant(edges)));
+    GlowBox box{glm::dvec3(map * glm::dvec4(medium.bounds_min, 1.0)), glm::dmat3(map)};
+    for (int i = 0; i < 3; ++i)
+        box.edges[i] *= size[i];
+    return box;
+}
+
+// Along the axes, about all of them.
+GlowBox box_about(std::span<const GlowBox> boxes) {
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+    for (const GlowBox& box : boxes)
+        for (int i = 0; i < 8; ++i) {
+            low = glm::min(low, box.at(i));
+            high = glm::max(high, box.at(i));
+        }
+    const glm::dvec3 size = high - low;
+    return {low, glm::dmat3(glm::dvec3(size.x, 0.0, 0.0), glm::dvec3(0.0, size.y, 0.0), glm::dvec3(0.0, 0.0, size.z))};
 }
 
 // Of a domain that repeats along two axes, its faces along the third. World units^2: their area; 0 of other domains.
@@ -130,20 +149,28 @@ double brightest_of(const Scene& scene, const LightTable& lights, const SurfaceT
 
 Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumParams> rows) {
     Glow glow;
-    if (!emits(scene))
-        return glow;
-    for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+    std::vector<GlowBox> boxes;
+    for (std::size_t i = 0; emits(scene) && i < scene.volumes.size(); ++i) {
         const shared::EmissionParams& emission = rows[i].emission;
         const double even = channel_mean(emission.constant) + channel_mean(most_map_emission(scene.volumes[i]));
-        glow.usual += even + channel_mean(emission.color);
+        const double usual = even + channel_mean(emission.color);
+        if (!(usual > 0.0))
+            continue;
+        boxes.push_back(box_of(rows[i]));
+        glow.power += 4.0 * pi * boxes.back().volume() * rows[i].usual_sigma_t * usual;
         glow.most = std::max(glow.most, even + hottest_radiance(scene.volumes[i], loaded[i]));
     }
+    if (boxes.empty())
+        return glow;
+    const GlowBox about = boxes.size() == 1 ? boxes.front() : box_about(boxes);
+    glow.corner = about.corner;
+    glow.edges = about.edges;
     return glow;
 }
 
 EmitterTable make_emitter_table(const Scene& scene, const Method& method, const LightTable& lights,
-                                const SurfaceTable& surfaces, const shared::MediumParams& medium, const Glow& glow,
-                                const shared::PeriodParams& period, double radius, glm::dvec3 origin) {
+                                const SurfaceTable& surfaces, const Glow& glow, const shared::PeriodParams& period,
+                                double radius, glm::dvec3 origin) {
     EmitterTable table;
     const bool bounded = std::isfinite(radius);
     table.params.radius = bounded ? static_cast<float>(radius * 1.0001) : 0.0f;
@@ -159,10 +186,11 @@ EmitterTable make_emitter_table(const Scene& scene, const Method& method, const 
         for (std::size_t i = 0; i < surfaces.primitives.size(); ++i)
             if (const auto& piece = surfaces.primitives[i]; i < surfaces.met)
                 emitters.add_primitive(piece, surfaces.rows[piece.surface], static_cast<std::uint32_t>(i));
-        if (emits(scene)) {
-            place_glow(medium, table.params);
-            emitters.add(SOURCE_GLOW, 4.0 * pi * table.params.glow_volume * medium.usual_sigma_t * glow.usual);
-        }
+        table.params.glow_corner = glow.corner;
+        for (int i = 0; i < 3; ++i)
+            table.params.glow_edges[i] = glow.edges[i];
+        table.params.glow_volume = static_cast<float>(std::abs(glm::determinant(glow.edges)));
+        emitters.add(SOURCE_GLOW, glow.power);
     }
     emitters.finish();
     const double reach = bounded && radius > 0.0 ? radius : 1.0;

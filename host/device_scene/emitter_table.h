@@ -14,19 +14,21 @@ struct EmitterTable {
     shared::ParticleParams params{};
 };
 
-// Of all media, per unit of extinction: what they send out, roughly, and the most anywhere [radiance].
+// Of all media that glow: their power, roughly, the most radiance per unit of extinction, and a box about them in
+// render space.
 struct Glow {
-    double usual = 0.0, most = 0.0;
+    double power = 0.0, most = 0.0;
+    glm::dvec3 corner{0.0};
+    glm::dmat3 edges{0.0};
 };
 // `rows`: as many as the scene has volumes.
 Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumParams> rows);
 
 // What a scene sends out, in render space. Each kind of source is chosen in proportion to its power, roughly, and never
-// with less than a tenth of an even chance. `medium`: the frame's, or of several that of all. `radius`: of a ball about
-// the origin that holds all there is, and a sensor that counts particles; not finite where nothing does. `origin` of
-// render space.
+// with less than a tenth of an even chance. `radius`: of a ball about the origin that holds all there is, and a sensor
+// that counts particles; not finite where nothing does. `origin` of render space.
 EmitterTable make_emitter_table(const Scene& scene, const Method& method, const LightTable& lights,
-                                const SurfaceTable& surfaces, const shared::MediumParams& medium, const Glow& glow,
-                                const shared::PeriodParams& period, double radius, glm::dvec3 origin);
+                                const SurfaceTable& surfaces, const Glow& glow, const shared::PeriodParams& period,
+                                double radius, glm::dvec3 origin);
 
 } // namespace vkvol

@@ -319,6 +319,16 @@ shared::SensorParams make_sensor(const Scene& scene, glm::dvec3 origin, double r
         params.position += start * rays.forward;
         params.start = static_cast<float>(start);
     }
+    // A sensor in a surface's plane lies before it, as particles have it (count.glsl), by more than places on surfaces
+    // err.
+    if (rays.projection == Projection::irradiance && !scene.surfaces.empty()) {
+        const SensorBox box = sensor_box(scene.camera, scene.picture);
+        double reach = glm::length(glm::max(glm::abs(box.low - origin), glm::abs(box.high - origin)));
+        if (const std::optional<SurfaceBounds> bounds = bounds_of(scene.surfaces)) // planes add nothing
+            reach =
+                std::max(reach, glm::length(glm::max(glm::abs(bounds->low - origin), glm::abs(bounds->high - origin))));
+        params.position += 2.0 * 3.8147e-6 * reach * rays.forward;
+    }
     params.forward = rays.forward;
     params.corner = rays.forward;
     params.right = rays.right;

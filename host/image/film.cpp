@@ -44,7 +44,8 @@ std::optional<glm::dvec3> variance_of_sum(const Film& film) {
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
         if (film.samples[i] == 1)
             return std::nullopt;
-        variance += glm::dvec3(film.variance[i]);
+        if (film.samples[i] > 1)
+            variance += glm::dvec3(film.variance[i]);
     }
     return variance;
 }

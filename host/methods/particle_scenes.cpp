@@ -37,6 +37,8 @@ glm::dvec2 sensor_size(const Scene& scene) {
 
 // In domains that repeat particles are counted, and the sensor, which repeats as well, is passed once in each.
 const char* why_no_particles_in_domain(const Scene& scene) {
+    if (!has_plain_pixels(scene.settings))
+        return "a pixel filter reaches beyond a sensor that counts particles in a domain that repeats";
     if (!reads_flux(scene.camera))
         return "a camera sees all domains that repeat, and particles look for it from one";
     const glm::dvec3 size = scene.periodic->size();

@@ -290,8 +290,7 @@ double Session::paths_per_second(Wavefront& wavefront, const Plan& plan) {
     Stopwatch watch;
     double counted_from = 0.0;
     std::uint64_t paths = 0;
-    // A slow device's first submits may take longer than that.
-    for (bool resting = false; !resting && watch.seconds() < std::max(enough, 3.0 * counted_from);) {
+    for (bool resting = false; !resting && watch.seconds() < enough;) {
         resting = wavefront.advance();
         paths += wavefront.counters().paths;
         if (!resting && counted_from == 0.0 && watch.seconds() > start_up) {

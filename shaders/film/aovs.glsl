@@ -11,6 +11,7 @@
 
 const uint GROUP_BIT = 2u;
 const uint MEDIUM_BIT = 10u;
+const uint SOLID = 0x80000000u; // light of a surface that shines: it is there, as what it hides is not
 
 // Of light that has been scattered so often, or been sent out by a medium and not been scattered since.
 uint kind_label(uint scatterings) {
@@ -42,14 +43,14 @@ void note_light(uint record, uint label, vec3 light) {
     if ((LAYERS & LAYERS_GROUPS) != 0)
         note_in(record, frame.layers.groups + (label >> GROUP_BIT & 255u), light);
     if ((LAYERS & LAYERS_MEDIA) != 0)
-        if (label >> MEDIUM_BIT != 0u)
-            note_in(record, frame.layers.media + (label >> MEDIUM_BIT) - 1u, light);
+        if ((label & ~SOLID) >> MEDIUM_BIT != 0u)
+            note_in(record, frame.layers.media + ((label & ~SOLID) >> MEDIUM_BIT) - 1u, light);
 }
 
 // What of a path's light is in the picture.
 vec3 held_out(vec3 light, uint label) {
     if ((LAYERS & LAYERS_HOLDOUT) != 0)
-        light = (label & 3u) == LIGHT_OF_SOURCES ? vec3(0.0) : light;
+        light = (label & 3u) == LIGHT_OF_SOURCES && (label & SOLID) == 0u ? vec3(0.0) : light;
     return light;
 }
 

@@ -93,23 +93,25 @@ SensorLook toward_panorama(SensorParams s, vec3 from, out vec2 p) {
     return SensorLook(-normalize(q), length(q), 0.0, dot(q, q) > 0.0 ? 0u : NO_PIXEL);
 }
 
-// One of the places at which a panorama has a point that filters carry across its seam or a pole: camera_ray goes on beyond both. `count`: of
-// those. Of filters that reach less than half around.
-vec2 image_in_panorama(SensorParams s, vec2 p, vec2 u, out float count) {
-    vec2 whole = abs(vec2(2.0 * PI, PI) / s.angle_step);
-    float reach = frame_block.filter_quantiles[FILTER_QUANTILES];
+// A panorama's plane has a point many times, once in every turn, and beyond a pole once more: filters reach across, and camera_ray goes on
+// there. One of those that pixels of the window may count, of `count`; false if there is none. Of filters that reach less than from pole to
+// pole.
+bool image_in_panorama(SensorParams s, vec2 u, inout vec2 p, out float count) {
+    float turn = 2.0 * PI / abs(s.angle_step.x);
+    float reach = PIXEL_FILTER != PIXEL_EVEN ? frame_block.filter_quantiles[FILTER_QUANTILES] : 0.0;
+    float latitude = s.first_angle.y + p.y * s.angle_step.y;
+    float to_pole = ((latitude > 0.0 ? 0.5 : -0.5) * PI - latitude) / s.angle_step.y; // pixels downwards
     count = 1.0;
-    if (min(p.y, whole.y - p.y) < reach) {
-        count *= 2.0;
+    if (abs(to_pole) < reach) {
+        count = 2.0;
         if (u.y < 0.5)
-            p = vec2(p.x + (p.x < 0.5 * whole.x ? 0.5 : -0.5) * whole.x, p.y < reach ? -p.y : 2.0 * whole.y - p.y);
+            p += vec2(0.5 * turn, 2.0 * to_pole);
     }
-    if (min(p.x, whole.x - p.x) < reach) {
-        count *= 2.0;
-        if (u.x < 0.5)
-            p.x += p.x < 0.5 * whole.x ? whole.x : -whole.x;
-    }
-    return p;
+    float low = float(frame.crop_x) - reach, high = float(frame.crop_x + frame.crop_width) + reach;
+    float first = ceil((low - p.x) / turn), turns = floor((high - p.x) / turn) - first + 1.0;
+    p.x += turn * (first + min(floor(u.x * turns), turns - 1.0));
+    count *= turns;
+    return turns > 0.0;
 }
 
 SensorLook toward_sensor(vec3 from, inout Rng rng) {
@@ -125,9 +127,8 @@ SensorLook toward_sensor(vec3 from, inout Rng rng) {
         look = toward_eye(s, from, SENSOR == SENSOR_LENS ? aperture_point(s, u.xy) : vec2(0.0), p);
     if (look.pixel != NO_PIXEL) {
         float filtered, images = 1.0;
-        if (SENSOR == SENSOR_EQUIRECTANGULAR && PIXEL_FILTER != PIXEL_EVEN)
-            p = image_in_panorama(s, p, u.xy, images);
-        look.pixel = pixel_at(p, u.zw, filtered);
+        bool is_in_window = SENSOR != SENSOR_EQUIRECTANGULAR || image_in_panorama(s, u.xy, p, images);
+        look.pixel = is_in_window ? pixel_at(p, u.zw, filtered) : NO_PIXEL;
         filtered *= images;
         look.weight = look.pixel != NO_PIXEL ? filtered * seen_weight(from, -look.direction, look.distance) : 0.0;
     }

@@ -7,7 +7,8 @@
 
 // A look from the sensor comes before the first flight.
 void look_first(MediumParams v, LightSample seen, uint row, inout Lane lane) {
-    uint label = kind_label(0u) | group_label(light_at(row).group);
+    bool is_solid = light_at(row).body != NO_SURFACE;
+    uint label = (is_solid ? SOLID : 0u) | kind_label(0u) | group_label(light_at(row).group);
     if (LOOKS) {
         look_straight(seen, light_at(row).body, to_spectrum(vec3(1.0)), label, TODO_DEPART, lane);
     } else {

@@ -16,7 +16,7 @@ void arrive_at_surface(MediumParams v, inout Lane lane, inout Rng rng, inout Tal
     SurfaceRow row = row_at(at);
     if (!is_particle(lane))
         add_light(lane, lane.beta * surface_emission(row, at.normal, lane.path.direction),
-                  kind_label(lane.path.depth) | lane.first_label);
+                  SOLID | kind_label(lane.path.depth) | lane.first_label);
     uvec4 key = takes_walks() ? next_words(rng) : uvec4(0u);
     Bsdf bsdf = bsdf_of(row, at, -lane.path.direction, key);
     if (HAS_LAYERS)

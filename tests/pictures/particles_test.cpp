@@ -118,6 +118,11 @@ std::vector<Case> cases() {
         point_of_map.albedo = {0.8, 0.6, 0.7};
     layered.map.points[1].emission = {0.4, 0.3, 0.1};
     all.push_back({"layers that glow", seen(layered, 4.0, {})});
+    // In thin air of which a millionth glows.
+    Scene ember_in_air = seen(ember, 4.0, {});
+    ember_in_air.volumes.push_back(medium(Box{glm::dvec3(0.0), {300.0, 300.0, 300.0}}, 1e-9, 1.0));
+    ember_in_air.background = Rgb(0.0); // else most particles come from there
+    all.push_back({"what glows in a wide haze", ember_in_air});
     Scene several = seen(smoke(), 5.0, {point});
     several.volumes.push_back(medium(Box{{-0.9, -0.5, -0.5}, {1.4, 0.6, 0.7}}, 2.0, 0.9));
     several.volumes.back().sigma_s = {1.9, 1.5, 1.8}; // of an extinction that is grey, as the reference wants it
@@ -206,6 +211,15 @@ TEST_CASE("particles are seen by every camera through every filter", "[gpu][part
     scene.settings.pixel_filter = PixelFilter::tent; // goes on across its seam and the poles
     scene.settings.pixel_filter_radius = 1.0;
     all.push_back({"panorama, filtered", scene});
+    // A part of it that begins away from the pole, and one that goes round once and a half.
+    scene.picture.start_y = 2.0;
+    scene.picture.reference_height = 12.0;
+    all.push_back({"part of a panorama, filtered", scene});
+    scene = usual;
+    scene.camera.projection = Projection::equirectangular;
+    scene.camera.position = {0.4, 0.3, 2.4};
+    scene.picture.reference_width = 5.0;
+    all.push_back({"more than a panorama", scene});
     // From so far away that rays begin before the eye.
     scene = usual;
     scene.camera.position *= 200.0;
