@@ -256,7 +256,7 @@ TEST_CASE("particles from an even sky leave it even", "[gpu][particles]") {
 
 // A particle is in several pixels, or in one of those that count it. Of 48 pictures, the variance of their means over
 // the mean of what they say it is: a chi-square of 47 degrees over 47, beyond 0.40 or 1.96 once in 10^4 each (Wilson
-// and Hilferty). As if pixels were independent it would be 2.6 of the lamp, and 0.02 of the slab.
+// and Hilferty).
 TEST_CASE("pixels of particles are parts of a sum whose error is known", "[gpu][particles]") {
     Scene lamp =
         by(seen(medium(Box{glm::dvec3(0.0), glm::dvec3(2.0)}, 10.0, 0.9), 4.0, {PointLight{{0.0, 0.0, 0.0}, Rgb(9.0)}}),

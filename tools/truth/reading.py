@@ -20,7 +20,9 @@ class Reader:
         self.count = 0
 
     def read(self, scene, samples, seed, is_map=False, options=()):
-        """Of each column its mean and standard error, or of each pixel: of the middle channel, since all are alike."""
+        """Of each column its mean and standard error, or of each pixel: of the middle channel, since all are alike. A column's pixels
+        are taken for independent. Those that count particles are not: each is in one of them, so that the error stated of a flux is
+        too large, and a z of it too small."""
         self.count += 1
         file = self.folder / f"case{self.count}.xml"
         table = file.with_suffix(".csv")
