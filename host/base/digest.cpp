@@ -50,9 +50,7 @@ std::string read_digest(const std::filesystem::path& file, std::uint64_t size) {
     std::vector<char> bytes(each);
     Digest digest;
     for (std::uint64_t i = 0; i < count; ++i) {
-        const std::uint64_t at =
-            size > whole ? (size - part) / (parts - 1) * i + (i == parts - 1 ? (size - part) % (parts - 1) : 0)
-                         : each * i;
+        const std::uint64_t at = size > whole ? (size - part) * i / (parts - 1) : each * i;
         const std::uint64_t length = std::min(each, size - at);
         stream.seekg(static_cast<std::streamoff>(at));
         if (!stream.read(bytes.data(), static_cast<std::streamsize>(length)))

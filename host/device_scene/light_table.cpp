@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -32,6 +33,7 @@ struct Entry {
     enum class Place { sky, far, lamp, point } place = Place::far; // sky: met by flights that leave
     float reach = 0.0f;                                            // from its middle
     double power = 0.0;                                            // see LightTable
+    double cone = pi; // radians, the most that its light is off its direction
 };
 
 bool is_somewhere(const Entry& entry) {
@@ -41,8 +43,11 @@ bool is_somewhere(const Entry& entry) {
 // One light as a row.
 class Rows {
 public:
-    Rows(const Assets& assets, const glm::dvec3& origin, double radius)
-        : assets_(assets), origin_(origin), radius_(radius) {}
+    Rows(const Scene& scene, const Assets& assets, const glm::dvec3& origin, double radius)
+        : assets_(assets), origin_(origin), radius_(radius),
+          reach_(scene.surfaces.empty() && !any_medium(scene, is_everywhere)
+                     ? radius
+                     : std::numeric_limits<double>::infinity()) {}
 
     Entry operator()(const DirectionalLight& light) const {
         Entry entry = begin(LIGHT_DIRECTIONAL, light.irradiance);
@@ -78,6 +83,7 @@ public:
         entry.row.none_beyond = static_cast<float>(versine(half));
         entry.fluence = channel_mean(light.intensity) / square_distance(light.position);
         entry.place = Entry::Place::point;
+        aim(entry, light.position, light.direction, half);
         return entry;
     }
 
@@ -97,8 +103,10 @@ public:
         const glm::dvec3 u = glm::normalize(glm::cross(light.normal, aside));
         entry.row.edge_u = light.radius * u;
         entry.row.edge_v = light.radius * glm::cross(light.normal, u);
-        return lamp(entry, light.radiance, light.center, pi * light.radius * light.radius,
-                    static_cast<float>(light.radius));
+        entry = lamp(entry, light.radiance, light.center, pi * light.radius * light.radius,
+                     static_cast<float>(light.radius));
+        aim(entry, light.center, light.normal, 0.5 * pi);
+        return entry;
     }
 
     Entry operator()(const RectangleLight& light) const {
@@ -107,8 +115,10 @@ public:
         entry.row.direction = light.normal();
         entry.row.edge_u = light.edge_u;
         entry.row.edge_v = light.edge_v;
-        return lamp(entry, light.radiance, light.center, 4.0 * glm::length(light.edge_u) * glm::length(light.edge_v),
-                    static_cast<float>(glm::length(light.edge_u + light.edge_v)));
+        entry = lamp(entry, light.radiance, light.center, 4.0 * glm::length(light.edge_u) * glm::length(light.edge_v),
+                     static_cast<float>(glm::length(light.edge_u + light.edge_v)));
+        aim(entry, light.center, light.normal(), 0.5 * pi);
+        return entry;
     }
 
     Entry operator()(const SkyLight&) const {
@@ -119,6 +129,18 @@ public:
     }
 
 private:
+    // A light whose cone passes all there is gives nothing there. `half`: radians, from the cone's axis.
+    void aim(Entry& entry, const glm::dvec3& from, const glm::dvec3& axis, double half) const {
+        entry.cone = half;
+        const glm::dvec3 apart = origin_ - from;
+        const double distance = glm::length(apart);
+        if (distance <= reach_)
+            return;
+        const double off = std::acos(std::clamp(glm::dot(apart, axis) / distance, -1.0, 1.0));
+        if (off > half + std::asin(reach_ / distance))
+            entry.fluence = 0.0;
+    }
+
     static Entry begin(int kind, const Rgb& radiance) {
         Entry entry;
         entry.row.kind = static_cast<std::uint32_t>(kind);
@@ -143,7 +165,8 @@ private:
 
     const Assets& assets_;
     glm::dvec3 origin_;
-    double radius_;
+    double radius_; // of a ball about the media
+    double reach_;  // of one about all that lights may shine on
 };
 
 // What it sends out; of what is far, through a unit of area.
@@ -182,12 +205,19 @@ std::vector<glm::vec3> find_suns(std::vector<Entry> entries, double fluence) {
     return suns;
 }
 
-// Power as seen from a unit of distance, and never none: every light is to have a chance.
+// Power as seen from a unit of distance, and never none: every light is to have a chance, if little where it passes all
+// there is.
 PlacedLight placed(const Entry& entry, std::uint32_t row) {
     const glm::vec3 radiance = entry.row.radiance;
     const float mean = (radiance.x + radiance.y + radiance.z) / 3.0f;
-    const float power = mean * (entry.place == Entry::Place::lamp ? entry.row.area : 1.0f);
-    return {entry.row.position - entry.reach, entry.row.position + entry.reach, std::max(power, 1e-30f), row};
+    const float power =
+        mean * (entry.place == Entry::Place::lamp ? entry.row.area : 1.0f) * (entry.fluence > 0.0 ? 1.0f : 1e-6f);
+    PlacedLight light{entry.row.position - entry.reach, entry.row.position + entry.reach, std::max(power, 1e-30f), row};
+    if (entry.row.kind == LIGHT_SPOT || entry.row.kind > LIGHT_SPHERE) {
+        light.axis = entry.row.direction;
+        light.reach = entry.cone;
+    }
+    return light;
 }
 
 } // namespace
@@ -202,8 +232,14 @@ int lights_kind(const Scene& scene) {
         return sky && sky->mapping == SkyMapping::equal_area;
     };
     const auto somewhere = std::count_if(lights.begin(), lights.end(), has_place);
-    return LIGHTS_TABLE | (any(is_met_by_chance) ? LIGHTS_SKY : 0) | (any(is_lamp) ? LIGHTS_LAMPS : 0) |
-           (somewhere > 1 ? LIGHTS_TREE : 0) | (any(is_square) ? LIGHTS_EQUAL_AREA : 0);
+    const auto is_aimed = [](const Light& light) {
+        return std::holds_alternative<SpotLight>(light) || std::holds_alternative<DiskLight>(light) ||
+               std::holds_alternative<RectangleLight>(light);
+    };
+    const bool asks_where = !scene.surfaces.empty() && any(is_aimed);
+    const int tree = somewhere > 1 ? LIGHTS_TREE | (asks_where ? LIGHTS_AIMED : 0) : 0;
+    return LIGHTS_TABLE | (any(is_met_by_chance) ? LIGHTS_SKY : 0) | (any(is_lamp) ? LIGHTS_LAMPS : 0) | tree |
+           (any(is_square) ? LIGHTS_EQUAL_AREA : 0);
 }
 
 std::uint32_t loop_iterations(const Scene& scene) {
@@ -237,7 +273,7 @@ LightTable make_light_table(const Scene& scene, const Assets& assets, const glm:
     std::vector<Entry> entries;
     const std::vector<std::string> groups = plan_layers(scene).groups;
     for (const Light& light : scene.lights) {
-        entries.push_back(std::visit(Rows(assets, origin, radius), light));
+        entries.push_back(std::visit(Rows(scene, assets, origin, radius), light));
         entries.back().power = power_of(light, entries.back());
         entries.back().row.group = group_layer(groups, group_of(light));
         entries.back().row.body = body_of(light) == no_body ? NO_SURFACE : static_cast<std::uint32_t>(body_of(light));

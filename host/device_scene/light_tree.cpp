@@ -1,6 +1,7 @@
 #include "light_tree.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "shared/constants.h"
@@ -9,8 +10,33 @@ namespace vkvol {
 
 namespace {
 
+// Radians, by which light from flat lamps and spots may seem to leave beyond its cone, by rounding.
+constexpr double spare = 2e-3;
+
+// Of a node over all of them.
+void set_cone(std::span<const PlacedLight> lights, shared::LightNode& node) {
+    using std::numbers::pi;
+    glm::dvec3 axis(0.0);
+    double reach = 0.0;
+    for (const PlacedLight& light : lights) {
+        axis += glm::dvec3(light.axis);
+        reach = std::max(reach, light.reach);
+    }
+    const double length = glm::length(axis);
+    axis = length > 1e-6 ? axis / length : glm::dvec3(0.0, 0.0, 1.0);
+    double spread = length > 1e-6 ? 0.0 : pi;
+    for (const PlacedLight& light : lights)
+        spread = std::max(spread, std::acos(std::clamp(glm::dot(axis, glm::dvec3(light.axis)), -1.0, 1.0)));
+    reach += spare;
+    const bool everywhere = spread + reach >= pi;
+    node.axis = axis;
+    node.spread = everywhere ? -1.0f : static_cast<float>(std::cos(spread));
+    node.reach = everywhere ? -1.0f : static_cast<float>(std::cos(reach));
+}
+
 void append(std::vector<shared::LightNode>& nodes, std::span<PlacedLight> lights) {
-    shared::LightNode node{lights[0].low, lights[0].high, 0.0f, NO_LIGHT, 0};
+    shared::LightNode node{lights[0].low, lights[0].high, 0.0f, NO_LIGHT, 0, {}, 0.0f, 0.0f};
+    set_cone(lights, node);
     glm::vec3 low(lights[0].low + lights[0].high), high(low); // of twice the middles
     for (const PlacedLight& light : lights) {
         node.low = glm::min(node.low, light.low);

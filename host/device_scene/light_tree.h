@@ -1,6 +1,7 @@
 // The tree by which the kernels choose among lights that are somewhere: see shaders/lights/tree.glsl.
 #pragma once
 
+#include <numbers>
 #include <vector>
 
 #include "shared/frame.h"
@@ -11,6 +12,8 @@ struct PlacedLight {
     glm::vec3 low, high; // of the box around it
     float power = 0.0f;  // > 0, in any unit
     std::uint32_t row = 0;
+    glm::vec3 axis{0.0f, 0.0f, 1.0f}; // unit, about which it shines
+    double reach = std::numbers::pi;  // radians, the most that its light is off that
 };
 
 // In depth-first order, the root first; of one light or more.

@@ -20,9 +20,20 @@ struct Range {
     }
 };
 
+// What rounding leaves of a turn by half a circle is nothing, which without bounds would be far.
+glm::dmat4 without_rounding(glm::dmat4 map) {
+    for (int column = 0; column < 3; ++column) {
+        const glm::dvec3 size = glm::abs(glm::dvec3(map[column]));
+        for (int row = 0; row < 3; ++row)
+            if (size[row] < 1e-9 * std::max({size.x, size.y, size.z}))
+                map[column][row] = 0.0;
+    }
+    return map;
+}
+
 void take_in(const Volume& volume, const LoadedMedium& loaded, Range& range) {
     const MediumBounds bounds = medium_bounds(loaded);
-    const glm::dmat4 to_world = medium_to_world(volume, loaded);
+    const glm::dmat4 to_world = without_rounding(medium_to_world(volume, loaded));
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 pick(corner & 1, corner >> 1 & 1, corner >> 2);
         range.take_in(glm::dvec3(to_world * glm::dvec4(glm::mix(bounds.low, bounds.high, pick), 1.0)));

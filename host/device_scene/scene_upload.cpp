@@ -327,7 +327,7 @@ shared::SensorParams make_sensor(const Scene& scene, glm::dvec3 origin, double r
         if (const std::optional<SurfaceBounds> bounds = bounds_of(scene.surfaces)) // planes add nothing
             reach =
                 std::max(reach, glm::length(glm::max(glm::abs(bounds->low - origin), glm::abs(bounds->high - origin))));
-        params.position += 2.0 * 3.8147e-6 * reach * rays.forward;
+        params.position += 2.0 * SURFACE_SPARE * reach * rays.forward;
     }
     params.forward = rays.forward;
     params.corner = rays.forward;

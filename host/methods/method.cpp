@@ -480,7 +480,7 @@ Scene with_preset(Scene scene) {
     const int scattering = scene.settings.choices.scattering.value_or(integrator.scattering);
     const bool glows = emits(scene);
     for (Volume& volume : scene.volumes) {
-        if (adjusts(adjust_no_scattering) && scattering == SCATTERING_NONE)
+        if (adjusts(adjust_no_scattering) && scattering == SCATTERING_NONE && !volume.map.is_transfer) // which has all
             volume.sigma_s = Rgb(0.0);
         if (adjusts(adjust_isotropic) && (volume.g != 0.0 || volume.phase != PhaseFunction::henyey_greenstein)) {
             warn("scatters isotropically and leaves heyneygreenstein_g and phase out; homogeneousRayMarcherImproved "

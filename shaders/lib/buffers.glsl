@@ -103,6 +103,7 @@ const bool SEES_SKY = (LIGHTS & LIGHTS_SKY) != 0;
 const bool EQUAL_AREA = (LIGHTS & LIGHTS_EQUAL_AREA) != 0;
 const bool SEES_LAMPS = (LIGHTS & LIGHTS_LAMPS) != 0;
 const bool HAS_TREE = (LIGHTS & LIGHTS_TREE) != 0;
+const bool SOME_AIMED = (LIGHTS & LIGHTS_AIMED) != 0;
 const bool HAS_LAYERS = LAYERS != 0;
 const bool HAS_PARTICLES = PATHS != PATHS_CAMERA;
 const bool REPEATS = PERIODIC != 0;

@@ -56,6 +56,12 @@ Particle from_afar(vec3 toward, vec3 light, vec2 u) {
                     PI * all.radius * all.radius * light, SHINES_UNSEEN);
 }
 
+// From a point, which may lie in a surface's plane: it begins beyond where rounding might have that before it.
+Particle from_point(vec3 position, vec3 direction, vec3 light) {
+    float apart = HAS_SURFACES ? 2.0 * spare_at(position) : 0.0;
+    return particle(position + apart * direction, direction, light, SHINES_UNSEEN);
+}
+
 // Off the surface that it may be: see SurfacePoint.
 Particle from_surface(vec3 position, vec3 normal, vec3 light, vec2 u) {
     float apart = HAS_SURFACES ? spare_at(position) : 0.0;
@@ -67,8 +73,7 @@ Particle from_surface(vec3 position, vec3 normal, vec3 light, vec2 u) {
 Particle from_spot(LightRow light, vec2 u) {
     float x = light.none_beyond * u.x;
     vec3 direction = turned(light.direction, x, u.y);
-    return particle(light.position, direction,
-                    2.0 * PI * light.none_beyond * spot_falloff(light, x) * light.radiance, SHINES_UNSEEN);
+    return from_point(light.position, direction, 2.0 * PI * light.none_beyond * spot_falloff(light, x) * light.radiance);
 }
 
 Particle from_light(LightRow light, vec2 where, vec2 u, inout Rng rng) {
@@ -80,7 +85,7 @@ Particle from_light(LightRow light, vec2 where, vec2 u, inout Rng rng) {
     } else if (SEES_LAMPS && light.kind > LIGHT_SPHERE) {
         p = from_surface(flat_point(light, where), light.direction, PI * light.area * light.radiance, u);
     } else if (light.kind == LIGHT_POINT) {
-        p = particle(light.position, in_any_direction(u), 4.0 * PI * light.radiance, SHINES_UNSEEN);
+        p = from_point(light.position, in_any_direction(u), 4.0 * PI * light.radiance);
     } else if (light.kind == LIGHT_SPOT) {
         p = from_spot(light, u);
     } else {

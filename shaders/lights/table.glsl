@@ -24,13 +24,13 @@ float weight_of_flight(float phase_pdf, float pdf) {
 }
 
 // The row of a light, and the chance with which it was chosen.
-uint choose_light(vec3 from, uvec4 words, inout Rng rng, out float chance) {
+uint choose_light(vec3 from, bool on_surface, uvec4 words, inout Rng rng, out float chance) {
     uint i = below(frame.choices, words.x);
     i = choose(light_at(i).alias, i, words.y);
     chance = light_at(i).chance;
     if (HAS_TREE && i == frame.choices - 1u) {
         float of_leaf;
-        i = descend(from, rng, of_leaf);
+        i = descend(from, on_surface, rng, of_leaf);
         chance *= of_leaf;
     }
     return i;
@@ -74,7 +74,7 @@ LightSample over_density(LightSample drawn, float chance) {
 LightSample look_for_light(Scatterer s, vec3 from, vec3 travel, inout Rng rng, out LightRow light) {
     uvec4 words = next_words(rng);
     float chance;
-    light = light_at(choose_light(from, words, rng, chance));
+    light = light_at(choose_light(from, is_surface(s), words, rng, chance));
     return over_density(sample_light(s, light, from, travel, words, rng), chance);
 }
 

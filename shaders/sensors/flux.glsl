@@ -27,7 +27,7 @@ LightSample look_from_sensor(vec3 from, vec3 ray, inout Rng rng, out uint row) {
     uvec4 words = next_words(rng);
     vec2 u = to_uniform(words).zw;
     float chance;
-    row = choose_light(from, words, rng, chance);
+    row = choose_light(from, true, words, rng, chance);
     LightRow light = light_at(row);
     LightSample drawn;
     if (SEES_LAMPS && light.kind >= LIGHT_SPHERE)

@@ -5,10 +5,10 @@
 
 const float FAR = 3.0e38;
 
-// 64 ulps of the largest coordinate, world units: more than places on surfaces err by, see mesh.glsl.
+// Of the largest coordinate, world units: more than places on surfaces err by, see mesh.glsl.
 float spare_at(vec3 place) {
     vec3 reach = abs(place);
-    return 3.8147e-6 * max(reach.x, max(reach.y, reach.z));
+    return SURFACE_SPARE * max(reach.x, max(reach.y, reach.z));
 }
 
 // A ray in medium space; `direction` is what one world unit of travel becomes there, so t is a world distance.

@@ -199,6 +199,7 @@
 #define LIGHTS_SKY 2   // some that flights meet by themselves when they leave
 #define LIGHTS_LAMPS 4 // some that have a shape and a place
 #define LIGHTS_TREE 8  // several that have a place
+#define LIGHTS_AIMED 32 // of those that have a place, some that do not shine into all directions
 #define LIGHTS_EQUAL_AREA 16 // a map of the sky, and that a square one; see equal_area.glsl
 
 #define LIGHT_DIRECTIONAL 0
@@ -324,6 +325,7 @@
 #define LAST_OF_LIST 0x80000000u // of media in a cell: set in the last one's word
 
 #define LIGHT_ROW_TEXELS 7u
+#define SURFACE_SPARE 3.8147e-6 // 64 ulps of 1: see surfaces/surface_point.glsl
 #define NO_LIGHT 0xffffffffu
 
 #define NO_PIXEL 0xffffffffu

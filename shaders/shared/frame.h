@@ -265,6 +265,9 @@ struct LightNode {
     float power; // of all of them
     uint light;  // its row; NO_LIGHT of a branch
     uint right;
+    vec3 axis;    // unit, about which they shine
+    float spread; // cosine of the most that a light's own axis is off it; -1: some shine into all directions
+    float reach;  // cosine of the most that light is off its light's axis
 };
 
 // What sends out particles: see emit.glsl.

@@ -58,6 +58,7 @@
     ROW(uint, label, looking && has_layers)    /* of what it brings: see aovs.glsl */                                 \
     ROW(uint, first_label, has_layers)         /* part of it that is the same for all that comes later */             \
     ROW(uint, is_particle, has_particles)      /* 1: it comes from a light, and looks toward the sensor */            \
+    ROW(float, begun_with, has_particles) /* its largest throughput at first, which roulette compares with */ \
     ROW(uint, target, looking && has_particles) /* the film entry that what it lights is seen in */                   \
     ROW(vec2, shares, weighs_families)         /* what its first segment has to say in its weights: see families.glsl */ \
     ROW(PartSearch, search, under_way && SHAPE == SHAPE_MESH)                                                         \

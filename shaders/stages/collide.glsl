@@ -12,6 +12,7 @@
 // Of a particle: what it scatters toward the sensor.
 void show_to_sensor(MediumParams v, Scatterer s, vec3 position, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
     SensorLook look = toward_sensor(position, rng);
+    s = as_shown_along(s, look.direction);
     vec3 value = vec3(scatter_value(s, lane.path.direction, look.direction)) *
                  adjoint(s, lane.path.direction, look.direction);
     show(v, look, lit_position(s, position, look.direction), value, lit, next, lane);

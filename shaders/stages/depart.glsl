@@ -10,13 +10,14 @@
 #include "stages/show.glsl"
 #include "surfaces/nearest.glsl"
 
-// Russian roulette on the throughput: unbiased, survivors are raised to the threshold.
-bool survives(inout Spectrum beta, float u) {
-    float m = largest(beta);
-    if (m >= frame.roulette_threshold)
+// Russian roulette on the throughput: unbiased, survivors are raised to the threshold. Of particles it is what they have left of what
+// they began with that counts: those of a weak light beside a strong one begin with little.
+bool survives(inout Lane lane, float u) {
+    float m = largest(lane.beta), threshold = frame.roulette_threshold * (HAS_PARTICLES ? lane.begun_with : 1.0);
+    if (m >= threshold)
         return true;
-    bool alive = u * frame.roulette_threshold < m;
-    beta *= alive ? frame.roulette_threshold / m : 0.0;
+    bool alive = u * threshold < m;
+    lane.beta *= alive ? threshold / m : 0.0;
     return alive;
 }
 
@@ -35,7 +36,7 @@ void scatter(MediumParams v, vec4 u, inout Lane lane) {
     lane.path.direction = phase_sample(v, before, u.yz);
     if (SEES_SKY)
         lane.phase_pdf = phase_eval(v, before, lane.path.direction);
-    lane.todo = survives(lane.beta, u.w) ? TODO_FLY : TODO_END;
+    lane.todo = survives(lane, u.w) ? TODO_FLY : TODO_END;
     if (LIGHTS == LIGHTS_SUN) // in an `if` of its own, as below
         if (LOOKS && NEE == NEE_CACHED && PHASE_HAS_TWICE && lane.path.depth < frame.max_depth)
             add_light(lane,
@@ -63,6 +64,11 @@ void scatter_at_surface(uvec4 words, inout Lane lane, inout Rng rng) {
     vec4 u = to_uniform(words);
     uvec4 key = takes_walks() ? next_words(rng) : uvec4(0u);
     Bsdf bsdf = bsdf_of(row_at(at), at, wo, key);
+    float draws = 1.0;
+    bool chooses_normal = HAS_SMOOTH_FACES && is_particle(lane);
+    if (HAS_SMOOTH_FACES && HAS_PARTICLES)
+        if (chooses_normal)
+            bsdf = particle_bsdf(bsdf, wo, u.w, draws);
     BsdfSample drawn = bsdf_sample(bsdf, wo, u.yzx);
     bool crosses = dot(drawn.direction, bsdf.face) < 0.0;
     lane.path.position = at.position + (crosses ? -at.apart : at.apart) * bsdf.face;
@@ -73,8 +79,10 @@ void scatter_at_surface(uvec4 words, inout Lane lane, inout Rng rng) {
     lane.beta *= drawn.weight;
     if (is_particle(lane))
         lane.beta *= bsdf_adjoint(bsdf, wo, drawn.direction);
+    if (HAS_SMOOTH_FACES && HAS_PARTICLES)
+        lane.beta *= !chooses_normal ? 1.0 : has_drawn_as_seen(bsdf, drawn.direction) ? draws : 0.0;
     bool goes_on = goes_on_within(is_glass(bsdf.material) && dot(at.normal, wo) < 0.0 && !crosses, lane.path.depth, lane.beta, u.w);
-    lane.todo = goes_on && survives(lane.beta, u.w) ? TODO_FLY : TODO_END;
+    lane.todo = goes_on && survives(lane, u.w) ? TODO_FLY : TODO_END;
 }
 
 // What mirrors and glass show of lamps is seen as the camera sees them.
@@ -118,9 +126,16 @@ uint begins_at(bool looks, Lane lane) {
     return REPEATS && lane.seams != 0u ? NO_SURFACE : from;
 }
 
+// How far surfaces may be in the way of a look: not as far as a light, or sensor, that lies in a surface's plane.
+float seeking_as_far_as(Lane lane) {
+    float reach = looking_as_far_as(lane);
+    vec3 from = looking_from(lane), to = from + reach * looking_along(lane);
+    return REPEATS || reach >= FAR ? reach : reach - 2.0 * spare_at(max(abs(from), abs(to)));
+}
+
 void begin_seeking(bool looks, inout Lane lane) {
     Ray ray = Ray(looks ? looking_from(lane) : lane.path.position, looks ? looking_along(lane) : lane.path.direction);
-    lane.seek = begin_seek(ray, looks ? looking_as_far_as(lane) : FAR, begins_at(looks, lane));
+    lane.seek = begin_seek(ray, looks ? seeking_as_far_as(lane) : FAR, begins_at(looks, lane));
     lane.todo = looks ? TODO_CHECK : lane.todo == TODO_FLY ? TODO_SEEK : lane.todo;
 }
 #endif

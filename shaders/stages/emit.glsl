@@ -12,6 +12,7 @@ void emit(MediumParams v, inout Lane lane, inout Rng rng) {
     lane.path.depth = 0u;
     lane.path.medium = p.medium;
     lane.beta = to_spectrum(p.light);
+    lane.begun_with = largest(p.light);
     lane.shares = p.shares;
     lane.todo = largest(p.light) > 0.0 ? TODO_DEPART : TODO_END;
     if (PATHS == PATHS_LIGHT && !COUNTS && lane.todo != TODO_END && p.shines != SHINES_UNSEEN) {

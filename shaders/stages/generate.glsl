@@ -62,6 +62,7 @@ void generate(MediumParams v, inout Lane lane, out Rng rng) {
     lane.todo = TODO_DEPART;
     lane.first_label = 0u;
     lane.is_particle = 0u;
+    lane.begun_with = 1.0;
     if (HAS_LAYERS)
         begin_record(lane.record);
     rng = pixel_rng(lane.path.place, lane.path.sample_index, 0u);

@@ -16,7 +16,7 @@ LightRow choose_placed(MediumParams v, vec3 position, vec3 direction, float reac
         if (!medium_interval(v, to_medium(v, position, direction), t))
             t = vec2(0.0);
         float flown = min(t.x - log(1.0 - u) / v.usual_sigma_t, min(t.y, reach));
-        i = descend(position + flown * direction, rng, chance);
+        i = descend(position + flown * direction, false, rng, chance);
     }
     return light_at(i);
 }

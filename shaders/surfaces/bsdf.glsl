@@ -10,6 +10,7 @@ struct Bsdf {
     uint material;
     vec3 normal; // unit, on wo's side
     vec3 face;   // likewise, of the face itself, where it stands for something smooth
+    vec3 smooth_normal; // likewise, of what it stands for
     vec3 color;
     vec3 eta; // beyond the surface over before it
     vec3 k;   // of what is coated, x: share of diffuse light that the coat throws back at it
@@ -36,21 +37,29 @@ bool is_glass(uint material) {
     return material == MATERIAL_DIELECTRIC || material == MATERIAL_ROUGH_DIELECTRIC;
 }
 
-// Where the smooth surface would be seen from behind, as at edges, the face is what it is.
+// Whether w is before the face and behind what it stands for, or the other way.
+bool is_between(Bsdf b, vec3 normal, vec3 w) {
+    return HAS_SMOOTH_FACES && (dot(normal, w) > 0.0) != (dot(b.face, w) > 0.0);
+}
+
+// As it is for a path that comes along -w: where the smooth surface would be seen from behind, as at edges, the face is what it is.
+Bsdf as_seen_along(Bsdf b, vec3 w) {
+    b.normal = is_between(b, b.smooth_normal, w) ? b.face : b.smooth_normal;
+    return b;
+}
+
 Bsdf bsdf_of(SurfaceRow row, SurfacePoint at, vec3 wo, uvec4 key) {
     bool inside = dot(at.normal, wo) < 0.0;
     bool turns = inside && is_glass(row.material);
     float side = inside ? -1.0 : 1.0;
-    vec3 face = side * at.normal, normal = face;
-    if (HAS_SMOOTH_FACES)
-        normal = mix(face, side * at.smooth_normal, step(0.0, side * dot(at.smooth_normal, wo)));
-    return Bsdf(row.material, normal, face, row.color, turns ? 1.0 / row.eta : row.eta, row.k, row.roughness, key);
+    vec3 face = side * at.normal;
+    Bsdf b = Bsdf(row.material, face, face, side * at.smooth_normal, row.color, turns ? 1.0 / row.eta : row.eta, row.k, row.roughness, key);
+    return HAS_SMOOTH_FACES ? as_seen_along(b, wo) : b;
 }
 
-// Whether wi is before the face and behind what it stands for, or the other way: none of the light goes there, else it would go
-// through.
-bool is_between(Bsdf b, vec3 wi) {
-    return HAS_SMOOTH_FACES && (dot(b.normal, wi) > 0.0) != (dot(b.face, wi) > 0.0);
+// Whether light does not go from one to the other, since it would come out on another side of the face than of what that stands for.
+bool is_barred(Bsdf b, vec3 wo, vec3 wi) {
+    return is_between(b, b.normal, wo) || is_between(b, b.normal, wi);
 }
 
 bool has_facets(Bsdf b) {
@@ -100,7 +109,7 @@ vec3 bsdf_value(Bsdf b, vec3 wo, vec3 wi) {
     if (has_facets(b))
         value = b.color * facets_value(facets_of(b), to_frame(b.normal, wo), to_frame(b.normal, wi),
                                        Rng(b.key.x, b.key.y, b.key.z, b.key.w));
-    return is_between(b, wi) ? vec3(0.0) : value;
+    return is_barred(b, wo, wi) ? vec3(0.0) : value;
 }
 
 // What decides between ways to find light, which may be any density; with this one bsdf_guess draws.
@@ -129,6 +138,26 @@ float bsdf_adjoint(Bsdf b, vec3 wo, vec3 wi) {
     if (HAS_SMOOTH_FACES)
         factor *= abs(dot(wo, b.normal) * dot(wi, b.face)) / max(abs(dot(wo, b.face) * dot(wi, b.normal)), 1.0e-6);
     return factor;
+}
+
+// Which normal counts, the path from the camera decides: it comes along -wi where a particle comes along -wo. So a particle draws one
+// before it draws wi: the face's with this chance, the cosine-weighted part of all directions that do not see the other; or the other, if
+// light comes to it.
+float face_chance(Bsdf b, vec3 wo) {
+    return is_between(b, b.smooth_normal, wo) ? 1.0 : 0.5 - 0.5 * dot(b.smooth_normal, b.face);
+}
+
+// `weight`: of what is then drawn with it, if that does see it.
+Bsdf particle_bsdf(Bsdf b, vec3 wo, inout float u, out float weight) {
+    float chance = face_chance(b, wo);
+    bool is_face = u < chance;
+    b.normal = is_face ? b.face : b.smooth_normal;
+    weight = 1.0 / max(is_face ? chance : 1.0 - chance, 1.0e-6);
+    u = (is_face ? u : u - chance) * weight;
+    return b;
+}
+bool has_drawn_as_seen(Bsdf b, vec3 wi) {
+    return b.normal == as_seen_along(b, wi).normal;
 }
 
 // Mirrored, or refracted with chance 1 - F. Radiance goes with the square of the index, hence eta^2 where it crosses.
@@ -194,7 +223,7 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec3 u) {
             drawn = sample_coated(b, wo, u);
     if (has_facets(b))
         drawn = sample_facets(b, wo);
-    drawn.weight *= is_between(b, drawn.direction) ? 0.0 : 1.0;
+    drawn.weight *= is_barred(b, wo, drawn.direction) ? 0.0 : 1.0;
     return drawn;
 }
 

@@ -57,6 +57,13 @@ float adjoint(Scatterer s, vec3 before, vec3 after) {
     return s.is_surface ? bsdf_adjoint(s.bsdf, -before, after) : 1.0;
 }
 
+// Of a particle's vertex, where it is shown along `after`.
+Scatterer as_shown_along(Scatterer s, vec3 after) {
+    if (HAS_SMOOTH_FACES && s.is_surface)
+        s.bsdf = as_seen_along(s.bsdf, after);
+    return s;
+}
+
 // The most that scatter_pdf may be, roughly.
 float scatter_peak(Scatterer s) {
     vec3 along = vec3(0.0, 1.0, 0.0);
@@ -72,6 +79,7 @@ float scatter_peak(Scatterer s) {
 #define scatter_direction phase_sample
 #define lit_position(s, position, to_light) (position)
 #define adjoint(s, before, after) 1.0
+#define as_shown_along(s, after) (s)
 
 float scatter_peak(MediumParams v) {
     vec3 along = vec3(0.0, 1.0, 0.0);

@@ -1,4 +1,5 @@
 // The choice of a light: what the kernels draw, against the chances they state.
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -28,16 +29,26 @@ std::vector<Light> many_lights(int points) {
         const auto at = [&](std::uint32_t which) { return 20.0 * random(std::uint32_t(i), which) - 10.0; };
         lights.push_back(PointLight{{at(0), at(1), at(2)}, Rgb(std::pow(10.0, 3.0 * random(std::uint32_t(i), 3)))});
     }
+    for (int i = 0; i < points / 4; ++i) { // aimed
+        const auto at = [&](std::uint32_t which) { return 20.0 * random(std::uint32_t(i), which) - 10.0; };
+        const glm::dvec3 position(at(4), at(5), at(6)), axis = glm::normalize(glm::dvec3(at(7), at(8), at(9)));
+        if (i % 2 == 0)
+            lights.push_back(SpotLight{position, axis, Rgb(30.0), 10.0 + 170.0 * random(std::uint32_t(i), 10), 0.5});
+        else
+            lights.push_back(DiskLight{position, axis, 0.3, Rgb(50.0)});
+    }
     lights.push_back(SphereLight{{1.0, 2.0, 3.0}, 0.5, Rgb(30.0)});
     lights.push_back(SpotLight{{-3.0, 4.0, 0.0}, {0.0, -1.0, 0.0}, Rgb(100.0), 60.0, 0.5});
     lights.push_back(DirectionalLight{{0.0, 1.0, 0.0}, Rgb(2.0)});
     return lights;
 }
 
-std::vector<shared::LookOutput> look(const std::vector<Light>& lights, const glm::vec3& from, std::uint32_t count) {
+std::vector<shared::LookOutput> look(const std::vector<Light>& lights, const glm::vec3& from, std::uint32_t count,
+                                     bool on_surface = false) {
     Scene scene;
     scene.lights = lights;
-    const LightTable table = make_light_table(scene, Assets{}, glm::dvec3(0.0), 10.0);
+    scene.surfaces.resize(on_surface ? 1 : 0);
+    const LightTable table = make_light_table(scene, Assets{}, glm::dvec3(0.0), 60.0);
     KernelScene kernel;
     kernel.frame.choices = table.choices;
     kernel.frame.sky_count = table.sky_count;
@@ -50,7 +61,7 @@ std::vector<shared::LookOutput> look(const std::vector<Light>& lights, const glm
     constants[SPEC_NEE] = NEE_COLLISIONS;
     std::vector<shared::LookInput> inputs;
     for (std::uint32_t i = 0; i < count; ++i)
-        inputs.push_back({i, from});
+        inputs.push_back({i, from, on_surface ? 1u : 0u});
     return KernelRunner(lights_spv, constants, kernel).run<shared::LookOutput>(inputs);
 }
 
@@ -61,7 +72,7 @@ TEST_CASE("lights are chosen with the chances that are stated", "[gpu][lights]")
     for (const int points : {0, 1, 7, 1000})
         for (const glm::vec3 from : {glm::vec3(0.0f), glm::vec3(9.0f, -9.0f, 9.0f), glm::vec3(60.0f, 0.0f, 0.0f)}) {
             std::map<std::uint32_t, double> observed, chance;
-            for (const shared::LookOutput& o : look(many_lights(points), from, count)) {
+            for (const shared::LookOutput& o : look(many_lights(points), from, count, points == 1000)) {
                 observed[o.index] += 1.0;
                 const auto [found, is_new] = chance.emplace(o.index, o.chance);
                 REQUIRE(found->second == o.chance); // the same whenever it is drawn
@@ -101,6 +112,36 @@ TEST_CASE("looks at a thousand lights find the light of all", "[gpu][lights]") {
         CHECK(t_test_p(mean, expected) > 1e-4);
         const double of_an_even_choice = 1000.0 * squares - expected * expected;
         CHECK(mean.variance() < of_an_even_choice / 5.0);
+    }
+}
+
+// Likewise of lamps that shine into halves and cones of all directions, where there are surfaces: no light is lost
+// beside the cones of the tree's nodes, and less is looked for where there is none.
+TEST_CASE("looks from a surface at a thousand lamps find the light of all that shine there", "[gpu][lights]") {
+    std::vector<Light> lights;
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+        const auto at = [&](std::uint32_t which) { return 20.0 * random(i, which) - 10.0; };
+        const glm::dvec3 position(at(4), at(5), at(6)), axis = glm::normalize(glm::dvec3(at(7), at(8), at(9)));
+        if (i % 2 == 0)
+            lights.push_back(SpotLight{position, axis, Rgb(30.0), 10.0 + 170.0 * random(i, 10), random(i, 11)});
+        else
+            lights.push_back(DiskLight{position, axis, 0.02, Rgb(3e4)});
+    }
+    for (const glm::dvec3 from : {glm::dvec3(0.5, 0.2, 0.1), glm::dvec3(-9.0, 4.0, 8.0), glm::dvec3(30.0, 0.0, 0.0)}) {
+        double expected = 0.0; // lamps are so small that four of their points are enough
+        for (const Light& light : lights)
+            for (const double u : {0.25, 0.75})
+                for (const double v : {0.25, 0.75})
+                    if (const auto toward = reference::towards(light, from, u, v))
+                        expected += 0.25 * toward->light.x;
+        std::array<RunningMean, 2> means;
+        for (const bool on_surface : {false, true}) {
+            for (const shared::LookOutput& o : look(lights, glm::vec3(from), 1 << 17, on_surface))
+                means[on_surface].add(o.light.x);
+            CAPTURE(from.x, on_surface, means[on_surface].mean(), means[on_surface].standard_error(), expected);
+            CHECK(t_test_p(means[on_surface], expected) > 1e-4);
+        }
+        CHECK(means[1].variance() < 0.7 * means[0].variance());
     }
 }
 

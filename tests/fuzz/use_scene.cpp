@@ -239,6 +239,8 @@ void use_scene(const Scene& authored) {
             expect(std::isfinite(node.power) && node.power > 0.0f, "a light's power is none");
             expect_finite(node.low, "a light's bounds are not finite");
             expect_finite(node.high, "a light's bounds are not finite");
+            expect_finite(node.axis, "a light's axis is not finite");
+            expect(std::abs(node.spread) <= 1.0f && node.reach >= -1.0f && node.reach < 1.0f, "a light's cone is none");
         }
     }
     check_frame(frame, static_cast<int>(constants[SPEC_SHAPE]));

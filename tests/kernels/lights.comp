@@ -11,12 +11,14 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.lanes)
         return;
-    Rng rng = Rng(inputs[i].key, 0u, 0u, frame.seed);
-    LightRow light;
-    LightSample drawn = look_for_light(frame.media[0], inputs[i].position, vec3(0.0, 0.0, -1.0), rng, light);
-    Rng again = Rng(inputs[i].key, 0u, 0u, frame.seed);
-    uvec4 words = next_words(again);
+    vec3 from = inputs[i].position, travel = vec3(0.0, 0.0, -1.0);
+    Rng rng = Rng(inputs[i].key, 0u, 0u, frame.seed), again = rng;
+    uvec4 words = next_words(rng);
     float chance;
-    uint index = choose_light(inputs[i].position, words, again, chance);
+    uint index = choose_light(from, inputs[i].on_surface != 0u, words, rng, chance);
+    LightSample drawn = over_density(sample_light(frame.media[0], light_at(index), from, travel, words, rng), chance);
+    LightRow light;
+    if (inputs[i].on_surface == 0u)
+        drawn = look_for_light(frame.media[0], from, travel, again, light);
     outputs[i] = LookOutput(index, chance, drawn.direction, drawn.distance, drawn.light, drawn.pdf);
 }

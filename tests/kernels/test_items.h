@@ -149,6 +149,7 @@ struct SkyOutput {
 struct LookInput {
     uint key;
     vec3 position;
+    uint on_surface; // 1: it is, 0: it is in matter
 };
 
 struct LookOutput {

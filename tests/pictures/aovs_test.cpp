@@ -373,6 +373,25 @@ TEST_CASE("what is behind the media is held out for compositing", "[gpu][image][
     CHECK_AGREEMENT(agree(over, whole, "over a plate"));
 }
 
+TEST_CASE("surfaces that shine are before a plate", "[gpu][image][aovs]") {
+    Scene scene = busy("ratioTracking", 64);
+    scene.volumes.clear();
+    scene.lights.clear();
+    scene.layers = layer_alpha;
+    scene.holds_out = true;
+    scene.background = Rgb(1.0);
+    scene.surfaces.resize(1);
+    Surface& ball = scene.surfaces.front(); // it fills the picture, and reflects half of the background
+    ball = {};
+    ball.shape = BallSurface{glm::dvec3(0.0), 14.0};
+    ball.material = {MaterialKind::diffuse, Rgb(0.5)};
+    ball.emission = {2.0, 1.0, 0.5};
+    const Film film = render_here(scene, 3).film;
+    CHECK_AGREEMENT(agree_with_means(film, everywhere(film, Rgb{2.5, 1.5, 1.0}), "shining"));
+    for (const glm::vec3& alpha : layer_of(film, "alpha").mean)
+        CHECK(alpha.x == 1.0f);
+}
+
 TEST_CASE("layers of flux: the beam, and what was scattered", "[gpu][image][aovs][flux]") {
     const double tau = 0.7;
     Scene scene;

@@ -89,6 +89,13 @@ TEST_CASE("uniform radiance is read as pi and as 4 pi of it, exactly", "[gpu][im
                 for (int channel = 0; channel < 3; ++channel)
                     CHECK(pixel[channel] == Approx(unit * scene.background[channel]).epsilon(1e-6));
         }
+    // In the plane of a surface it is before that.
+    Scene scene = rectangle({0.1, 0.0, 0.0}, {0.0, 1.0, 0.0}, {2.0, 2.0}, 4, 64);
+    scene.background = Rgb(1.0);
+    scene.surfaces.emplace_back();
+    scene.surfaces.back().shape = RectangleSurface{glm::dvec3(0.0), {2.5, 0.0, 0.0}, {0.0, 0.0, -2.5}};
+    for (const glm::vec3& pixel : render_here(scene, 1).film.mean)
+        CHECK(pixel.x == Approx(pi).epsilon(1e-6));
 }
 
 // What is known at once has no noise: exp in single precision errs by some 1e-6 of these depths.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
+#include <tuple>
 
 #include "method.h"
 #include "scene_hash.h"
@@ -123,6 +124,11 @@ std::vector<Case> cases() {
     ember_in_air.volumes.push_back(medium(Box{glm::dvec3(0.0), {300.0, 300.0, 300.0}}, 1e-9, 1.0));
     ember_in_air.background = Rgb(0.0); // else most particles come from there
     all.push_back({"what glows in a wide haze", ember_in_air});
+    // A lamp, and a spot of a million times its power that shines past all of it.
+    Scene faint = seen(medium(Sphere{{0.0, 0.0, 0.0}, 1.5}, 3.0, 0.9), 4.0, {point});
+    faint.lights.push_back(SpotLight{{0.0, 3.0, 0.0}, {0.0, 1.0, 0.0}, Rgb(1e8), 20.0, 0.5});
+    faint.background = Rgb(0.0);
+    all.push_back({"a weak light beside a strong one", faint});
     Scene several = seen(smoke(), 5.0, {point});
     several.volumes.push_back(medium(Box{{-0.9, -0.5, -0.5}, {1.4, 0.6, 0.7}}, 2.0, 0.9));
     several.volumes.back().sigma_s = {1.9, 1.5, 1.8}; // of an extinction that is grey, as the reference wants it
@@ -134,8 +140,10 @@ std::vector<Case> cases() {
     all.push_back({"rough surfaces", still({with_material(left, MaterialKind::dielectric, 0.3),
                                             with_material(right, MaterialKind::conductor, 0.4)},
                                            {ball, point, SphereLight{left.center, 0.2, {20.0, 15.0, 10.0}}})});
-    all.push_back({"faces that stand for something round",
-                   still({with_material(smooth_stone(), MaterialKind::diffuse)}, {rectangle})});
+    for (const auto& [name, kind, roughness] :
+         {std::tuple("faces that stand for something round", MaterialKind::diffuse, 0.0),
+          std::tuple("likewise, rough", MaterialKind::conductor, 0.4)})
+        all.push_back({name, still({with_material(smooth_stone(), kind, roughness)}, {rectangle})});
     Surface shining = with_material(smooth_stone(), MaterialKind::diffuse);
     std::get<TriangleSurface>(shining.shape).normals.clear();
     shining.emission = {2.0, 3.0, 1.0};
@@ -288,6 +296,27 @@ TEST_CASE("pixels of particles are parts of a sum whose error is known", "[gpu][
         const double found = (squares - sum * sum / pictures) / (pictures - 1);
         CAPTURE(found, said);
         CHECK((found / said > 0.40 && found / said < 1.96));
+    }
+}
+
+// A lamp in a ceiling: a black one takes nothing of what comes from its lower side, whichever way rounding has it.
+TEST_CASE("lamps that lie in the plane of a surface shine before it", "[gpu][particles]") {
+    const glm::dvec3 down = glm::normalize(glm::dvec3(-0.13, -1.0, 0.21)), middle(0.37, 1.7, 0.41);
+    const glm::dvec3 x = glm::normalize(glm::cross(down, glm::dvec3(0.3, 0.2, 1.0))), z = glm::cross(down, x);
+    const std::vector<Light> lamps = {
+        PointLight{middle + 0.2 * x, Rgb(5.0)}, SpotLight{middle - 0.3 * z, down, Rgb(9.0), 60.0, 0.5},
+        DiskLight{middle + 0.4 * z, down, 0.3, Rgb(6.0)}, RectangleLight{middle, 0.3 * x, 0.2 * z, Rgb(8.0)}};
+    Surface ceiling = with_material(DiskSurface{middle, down, 1.5}, MaterialKind::diffuse);
+    ceiling.material.color = Rgb(0.0);
+    for (const Light& lamp : in_turn(lamps, 2)) {
+        Scene scene = still({}, {lamp});
+        scene.volumes.clear();
+        scene.background = Rgb(0.0);
+        const Film open = render_here(scene, 1).film;
+        scene.surfaces.push_back(ceiling);
+        for (const char* integrator : {"ratioTracking", "lightTracing"})
+            CHECK_AGREEMENT(agree(render_here(by(scene, integrator), 2).film, open,
+                                  fmt::format("lamp {} in a ceiling, {}", lamp.index(), integrator)));
     }
 }
 

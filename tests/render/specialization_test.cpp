@@ -154,6 +154,7 @@ TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "
     lights_touch(LIGHTS_SUN, {});
     lights_touch(LIGHTS_TABLE, {BINDING_LIGHTS});
     lights_touch(LIGHTS_TABLE | LIGHTS_TREE, {BINDING_LIGHTS, BINDING_LIGHT_TREE});
+    lights_touch(LIGHTS_TABLE | LIGHTS_TREE | LIGHTS_AIMED, {BINDING_LIGHTS, BINDING_LIGHT_TREE});
     lights_touch(LIGHTS_TABLE | LIGHTS_SKY, {BINDING_LIGHTS, BINDING_SKY, BINDING_SKY_ALIAS});
     lights_touch(LIGHTS_TABLE | LIGHTS_SKY | LIGHTS_EQUAL_AREA, {BINDING_LIGHTS, BINDING_SKY, BINDING_SKY_ALIAS});
 }

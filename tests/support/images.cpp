@@ -50,6 +50,18 @@ public:
         add(pixel, channel, difference, variance, scale, normal_p(z));
     }
 
+    // Of the difference of the sums over all pixels, which need not be independent of each other.
+    void know_variance_of_sum(std::initializer_list<const Film*> films) {
+        glm::dvec3 variance(0.0);
+        for (const Film* film : films) {
+            const std::optional<glm::dvec3> one = variance_of_sum(*film);
+            if (!one)
+                return;
+            variance += *one;
+        }
+        variance_ = variance;
+    }
+
     Agreement judge(const std::string& name, const Film& film, const Film* other) const {
         // Half of the share for the pixels, half for the means.
         const double share = sidak(significance, most_comparisons);
@@ -156,6 +168,7 @@ Agreement agree(const Film& film, const Film& other, const std::string& name) {
             judge.add(i, channel, a - b, double(film.variance[i][channel]) + other.variance[i][channel],
                       std::max(std::abs(a), std::abs(b)));
         }
+    judge.know_variance_of_sum({&film, &other});
     return judge.judge(name, film, &other);
 }
 
@@ -169,6 +182,7 @@ Agreement agree_with_means(const Film& film, const std::vector<Rgb>& means, cons
             judge.add(i, channel, film.mean[i][channel] - means[i][channel], film.variance[i][channel],
                       std::abs(means[i][channel]));
     }
+    judge.know_variance_of_sum({&film});
     return judge.judge(name, film, &expected);
 }
 
