@@ -140,10 +140,13 @@ std::vector<Case> cases() {
     all.push_back({"rough surfaces", still({with_material(left, MaterialKind::dielectric, 0.3),
                                             with_material(right, MaterialKind::conductor, 0.4)},
                                            {ball, point, SphereLight{left.center, 0.2, {20.0, 15.0, 10.0}}})});
+    // All but these are lit by way of them alone.
+    const glm::dvec3 aside(2.6, 0.4, 2.2);
+    const SpotLight at_stone{aside, glm::normalize(glm::dvec3(0.0, -0.4, 0.9) - aside), Rgb(200.0), 22.0, 0.5};
     for (const auto& [name, kind, roughness] :
          {std::tuple("faces that stand for something round", MaterialKind::diffuse, 0.0),
           std::tuple("likewise, rough", MaterialKind::conductor, 0.4)})
-        all.push_back({name, still({with_material(smooth_stone(), kind, roughness)}, {rectangle})});
+        all.push_back({name, still({with_material(smooth_stone(), kind, roughness)}, {at_stone})});
     Surface shining = with_material(smooth_stone(), MaterialKind::diffuse);
     std::get<TriangleSurface>(shining.shape).normals.clear();
     shining.emission = {2.0, 3.0, 1.0};
@@ -306,7 +309,11 @@ TEST_CASE("lamps that lie in the plane of a surface shine before it", "[gpu][par
     const std::vector<Light> lamps = {
         PointLight{middle + 0.2 * x, Rgb(5.0)}, SpotLight{middle - 0.3 * z, down, Rgb(9.0), 60.0, 0.5},
         DiskLight{middle + 0.4 * z, down, 0.3, Rgb(6.0)}, RectangleLight{middle, 0.3 * x, 0.2 * z, Rgb(8.0)}};
-    Surface ceiling = with_material(DiskSurface{middle, down, 1.5}, MaterialKind::diffuse);
+    TriangleSurface square;
+    for (const auto& [u, w] : {std::pair(-1.5, -1.5), std::pair(1.5, -1.5), std::pair(1.5, 1.5), std::pair(-1.5, 1.5)})
+        square.vertices.push_back(middle + u * x + w * z);
+    square.triangles = {{0, 1, 2}, {0, 2, 3}};
+    Surface ceiling = with_material(square, MaterialKind::diffuse);
     ceiling.material.color = Rgb(0.0);
     for (const Light& lamp : in_turn(lamps, 2)) {
         Scene scene = still({}, {lamp});
