@@ -2,6 +2,7 @@
 # Heavier validation than tools/test.sh, in parts; names choose among them, and without any all are run.
 #   hard        scenes/hard on the device and by the reference, against the means that their files derive (2 minutes)
 #   scenes      every file under scenes/ by its name alone, small (2 minutes): tools/all_scenes.sh
+#   crossed     150 scenes whose features are crossed at random, each by unlike estimators (15 minutes): tools/crossed_scenes.py
 #   large       a grid of 342 MiB, larger than a storage buffer of Mesa's software driver, against its Fp8 form (1 minute)
 #   tests       tests on the device, of which many take a share of what they could combine, with all of it
 #   python      `pip install .` in a fresh environment: types, tests, the notebook (5 minutes; PyPI has to be there)
@@ -14,7 +15,7 @@
 #               `vkvol compare` (per-pixel z-test, Sidak-corrected, and a test of the means; a significance of 0.001 per
 #               scene, so that a table of this length raises a false alarm once in a hundred runs)
 # All but `tests` takes about an hour on two cores. Each part ends with a table; fails if anything differs.
-#   tools/validate.sh [--driver NAME] [hard|scenes|large|tests|python|view|pbrt|denoise|farm|estimators|pictures ...] [FILE.nvdb ...]
+#   tools/validate.sh [--driver NAME] [hard|scenes|crossed|large|tests|python|view|pbrt|denoise|farm|estimators|pictures ...] [FILE.nvdb ...]
 #       a driver as in tools/test.sh; further grids for pictures: in the thesis' bunny scenes
 set -eu
 source "$(dirname "$0")/setup.sh"
@@ -28,12 +29,12 @@ if [ "${1:-}" = --driver ]; then
 fi
 for argument in "$@"; do
     case $argument in
-    hard | scenes | large | tests | python | view | pbrt | denoise | farm | estimators | pictures) parts+=("$argument") ;;
+    hard | scenes | crossed | large | tests | python | view | pbrt | denoise | farm | estimators | pictures) parts+=("$argument") ;;
     *.nvdb) grids+=("$argument") ;;
-    *) die "'$argument' is neither a part (hard, scenes, large, tests, python, view, pbrt, denoise, farm, estimators, pictures) nor a .nvdb file" ;;
+    *) die "'$argument' is neither a part (hard, scenes, crossed, large, tests, python, view, pbrt, denoise, farm, estimators, pictures) nor a .nvdb file" ;;
     esac
 done
-[ ${#parts[@]} -gt 0 ] || parts=(hard scenes large tests python view pbrt denoise farm estimators pictures)
+[ ${#parts[@]} -gt 0 ] || parts=(hard scenes crossed large tests python view pbrt denoise farm estimators pictures)
 
 install_packages
 [ -z "$driver" ] || use_driver "$driver"
@@ -53,6 +54,11 @@ run_hard() {
 run_scenes() {
     say "Every scene by its name alone"
     "$vkvol_root/tools/all_scenes.sh" || failed=1
+}
+
+run_crossed() {
+    say "Features crossed at random"
+    python3 "$vkvol_root/tools/crossed_scenes.py" "$vkvol_root/build/vkvol" --scenes 1..150 || failed=1
 }
 
 # Fp8 keeps a leaf's values to half of 1/255 of their range, here 7/440: 3.1e-5. Over the longest ray, 762 voxels of
