@@ -4,7 +4,8 @@
 What fails is not what a scene has, but what it has beside what else: a table of layers in a box that begins above the lowest of
 them, a map that glows with particles, a lamp in the plane of a mesh. Of such pairs there are more than anyone writes tests for.
 So here a scene takes of every kind of thing some or none: media (shapes, fields, maps, phase functions, places), lights,
-surfaces, a sensor, filters, domains. `ratioTracking` renders it, and others that share neither draws nor directions with that.
+surfaces, a sensor, filters, domains. `ratioTracking` renders it, and so do the scalar reference of the tests, which shares no code
+with it, particles, which share neither draws nor directions, and one more estimator.
 
 Two pictures differ if, in the mean of any channel, they are apart by more standard errors than chance has it once in a thousand
 scenes; then both are rendered again, with sixteen times the samples and other seeds, and have to agree to the same degree. Of what
@@ -25,7 +26,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-OTHERS = ["lightTracing", "bidirectional", "ratioTracking:distance=flights", "ratioTracking:distance=mixed", "ratioTracking:mis=light",
+UNLIKE = ["reference", "lightTracing", "bidirectional"]
+OTHERS = ["ratioTracking:distance=flights", "ratioTracking:distance=mixed", "ratioTracking:mis=light",
           "ratioTracking:mis=phase", "ratioTracking:mis=power", "ratioTracking:emission=steps", "ratioTracking:nee=none", "ratioNEE",
           "cachedRatioTracking", "deltaTrackingNEE", "residualRatioTracking", "weightedTracking", "decompositionTracking", "spectralTracking",
           "unbiasedRayMarching", "regularTracking", "ratioTracking:transmittance=jackknife", "deltaTracking",
@@ -36,7 +38,7 @@ FIELDS = {"cumulus": (("cumulus", "--size", "32"), (1, 20, 1), 60), "broken": ((
           "checker": (("checker",), (1, 0, 4), 10), "ramp": (("ramp",), (8, 8, 8), 16), "voxel": (("voxel",), (-14, -6, -22), 3),
           "sheared": (("sheared",), (1.2, 1.2, 1.2), 8), "glow": (("glow",), (1.2, 1.2, 1.2), 8), "tiles": (("tiles",), (-2, 15, 15), 36),
           "eight": (("ramp", "--type", "fp8"), (8, 8, 8), 16)}
-PIXELS, SAMPLES = 8, 256
+PIXELS, SAMPLES = 8, 1024
 
 
 class Writer:
@@ -189,12 +191,16 @@ class Writer:
         inside = ""
         if self.some(0.2) and material != "dielectric":
             inside = f'<emission {self.color(0.2, 1.5)} sides="{self.r.choice([1, 1, 2])}"/>'
+        smooth = kind == "mesh" and self.some(0.5) # of a file
         shape = {"sphere": f'<sphere {self.place(1.2)} radius="{self.number(0.3, 0.7)}" ',
                  "disk": f'<disk {self.place(1.2)} {facing} radius="{self.number(0.3, 1)}" ',
                  "rectangle": f'<rectangle {self.place(1.2)} {facing} width="{self.number(0.3, 2)}" height="{self.number(0.3, 2)}" ',
                  "box": f'<box {self.place(1.2)} width="{self.number(0.3, 1)}" height="{self.number(0.3, 1)}" depth="{self.number(0.3, 1)}" ',
                  "plane": f'<plane y="{self.number(-2.5, -1)}" ',
-                 "mesh": f'<mesh file="{self.r.choice(["cube", "stone"])}.obj" normals="{self.r.choice(["flat", "smooth"])}" '}[kind]
+                 "mesh": '<mesh ' + (f'file="{self.r.choice(["cube", "stone"])}.obj" normals="smooth" ' if smooth else "")}[kind]
+        if kind == "mesh" and not smooth:
+            corners, faces = self.r.choice([cube, stone])()
+            inside += f"<vertices>{' '.join('%.6g' % x for v in corners for x in v)}</vertices><triangles>{' '.join(str(i) for f in faces for i in f)}</triangles>"
         if kind in ("box", "mesh"):
             inside += self.transform(1.2)
         return f"{shape}{attributes}>{inside}</{kind}>"
@@ -257,17 +263,17 @@ class Writer:
         return "<options>\n" + "\n".join(parts) + "\n</options>\n"
 
 
-def write_files(folder, make_field):
-    """What scenes refer to."""
-    for name, (arguments, _, _) in FIELDS.items():
-        subprocess.run([make_field, *arguments, "--if-missing", "-o", folder / f"{name}.nvdb"], check=True, stdout=subprocess.DEVNULL)
-    cube = [(x, y, z) for x in (-0.7, 0.7) for y in (-0.7, 0.7) for z in (-0.7, 0.7)]
+def cube():
+    corners = [(x, y, z) for x in (-0.7, 0.7) for y in (-0.7, 0.7) for z in (-0.7, 0.7)]
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    lines = ["v %g %g %g" % v for v in cube] + ["f " + " ".join(str(i + 1) for i in quad) for quad in quads]
-    (folder / "cube.obj").write_text("\n".join(lines) + "\n")
+    return corners, [half for a, b, c, d in quads for half in ((a, b, c), (a, c, d))]
+
+
+def stone():
+    """An icosahedron."""
     golden = (1 + math.sqrt(5)) / 2
-    corners = [v for a in (-1, 1) for b in (-golden, golden) for v in ((0, a, b), (a, b, 0), (b, 0, a))]
-    near = lambda p, q: abs(sum((a - b) ** 2 for a, b in zip(p, q)) - 4) < 1e-6
+    corners = [tuple(0.45 * x for x in v) for a in (-1, 1) for b in (-golden, golden) for v in ((0, a, b), (a, b, 0), (b, 0, a))]
+    near = lambda p, q: abs(math.dist(p, q) - 0.9) < 1e-6
     faces = []
     for i, p in enumerate(corners):
         for j, q in enumerate(corners):
@@ -276,8 +282,16 @@ def write_files(folder, make_field):
                     u, v = [b - a for a, b in zip(p, q)], [b - a for a, b in zip(p, s)]
                     n = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
                     faces.append((i, j, k) if sum(a * b for a, b in zip(n, p)) > 0 else (i, k, j))
-    lines = ["v %.9g %.9g %.9g" % tuple(0.45 * c for c in v) for v in corners] + ["f %d %d %d" % tuple(i + 1 for i in face) for face in faces]
-    (folder / "stone.obj").write_text("\n".join(lines) + "\n")
+    return corners, faces
+
+
+def write_files(folder, make_field):
+    """What scenes refer to."""
+    for name, (arguments, _, _) in FIELDS.items():
+        subprocess.run([make_field, *arguments, "--if-missing", "-o", folder / f"{name}.nvdb"], check=True, stdout=subprocess.DEVNULL)
+    for name, (corners, faces) in (("cube", cube()), ("stone", stone())):
+        lines = ["v %.9g %.9g %.9g" % v for v in corners] + ["f %d %d %d" % tuple(i + 1 for i in face) for face in faces]
+        (folder / f"{name}.obj").write_text("\n".join(lines) + "\n")
     (folder / "phase.txt").write_text("".join(f"{angle} {0.3 + math.exp(-angle / 20):.6g}\n" for angle in range(0, 181, 5)))
     texels = bytes(byte for row in range(8) for column in range(16)
                    for byte in ((250, 230, 200, 131) if (row, column) == (2, 5) else (60 + 10 * row, 80, 160 - 12 * row + column, 128)))
@@ -288,10 +302,31 @@ class Refused(Exception):
     pass
 
 
+def reference(vkvol, scene, samples, seed):
+    """Of what it knows; slow."""
+    report = scene.with_suffix(".json")
+    report.unlink(missing_ok=True)
+    command = [str(Path(vkvol).resolve().with_name("reference_render")), str(scene), "--integrator", "ratioTracking", *size_of(scene),
+               "--spp", str(samples // 4), "--seed", str(seed), "-o", str(scene.with_suffix(".exr")), "--report", str(report)]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=samples / 20)
+    except subprocess.TimeoutExpired:
+        raise Refused("too slow")
+    if done.returncode != 0:
+        raise Refused(done.stderr.strip())
+    return command, json.loads(report.read_text()), ""
+
+
+def size_of(scene):
+    one_reading_each = "<fluence" in scene.read_text() or "<absorption" in scene.read_text()
+    return [] if one_reading_each else ["--width", str(PIXELS), "--height", str(PIXELS)]
+
+
 def render(vkvol, scene, integrator, samples, seed, schedule):
     report = scene.with_suffix(".json")
-    size = [] if "<fluence" in scene.read_text() or "<absorption" in scene.read_text() else ["--width", str(PIXELS), "--height", str(PIXELS)]
-    command = [vkvol, str(scene), "--integrator", integrator, *size, "--spp", str(samples), "--seed", str(seed), "--schedule", schedule,
+    if integrator == "reference":
+        return reference(vkvol, scene, samples, seed)
+    command = [vkvol, str(scene), "--integrator", integrator, *size_of(scene), "--spp", str(samples), "--seed", str(seed), "--schedule", schedule,
                "-o", str(scene.with_suffix(".exr")), "--report", str(report), "--progress", "none"]
     report.unlink(missing_ok=True)
     done = subprocess.run(command, capture_output=True, text=True, timeout=900)
@@ -304,14 +339,14 @@ def render(vkvol, scene, integrator, samples, seed, schedule):
 
 def is_judged(report):
     """All estimators end paths at the same depth."""
-    return not report["biased"] or re.fullmatch(r"[0-9]+ paths ended at maxDepth", report["biased"])
+    return "biased" not in report or not report["biased"] or re.fullmatch(r"[0-9]+ paths ended at maxDepth", report["biased"])
 
 
 def apart(a, b):
     """The largest z of the three means."""
     largest = 0.0
     for one, other, e, f in zip(a["mean"]["value"], b["mean"]["value"], a["mean"]["standardError"], b["mean"]["standardError"]):
-        if not all(map(math.isfinite, (one, other, e, f))):
+        if None in (one, other, e, f): # not finite
             return math.inf
         # Single precision: some 1e-5 of the values are rounding.
         excess = max(abs(one - other) - 1e-5 * max(abs(one), abs(other)), 0.0)
@@ -324,7 +359,6 @@ def main():
     parser.add_argument("vkvol")
     parser.add_argument("--scenes", default="1..20", help="numbers, as 1..20 or 7")
     parser.add_argument("--keep", type=Path, help="where scenes that differ stay")
-    parser.add_argument("--others", type=int, default=2, help="estimators that each scene is rendered by, besides ratioTracking")
     arguments = parser.parse_args()
     first, _, last = arguments.scenes.partition("..")
     keep = arguments.keep or Path(tempfile.mkdtemp(prefix="crossed"))
@@ -339,6 +373,7 @@ def main():
         counts = "<absorption" in scene.read_text() # particles alone
         usual, pool = ("lightTracing", PARTICLES[:]) if counts else ("ratioTracking", OTHERS[:])
         writer.r.shuffle(pool)
+        pool = pool if counts else UNLIKE + pool
         bad = []
         try:
             command, base, error = render(arguments.vkvol, scene, usual, SAMPLES, 1, "fused")
@@ -352,7 +387,7 @@ def main():
         compared = 0
         unjudged += 1 if base and not is_judged(base) else 0
         for integrator in pool if base and is_judged(base) else []:
-            if compared == arguments.others or bad:
+            if compared == 4 or bad:
                 break
             schedule = writer.r.choice(["fused", "staged"])
             try:
@@ -362,7 +397,8 @@ def main():
             if error:
                 bad.append((command, command, error))
                 break
-            if not is_judged(other) or other["sceneHash"] != base["sceneHash"] or other["integrator"] == base["integrator"] and other["specialization"] == base["specialization"]:
+            is_alike = integrator != "reference" and (other["sceneHash"] != base["sceneHash"] or other["integrator"] == base["integrator"] and other["specialization"] == base["specialization"])
+            if not is_judged(other) or is_alike:
                 continue
             compared += 1
             pairs += 1

@@ -2,7 +2,7 @@
 # Heavier validation than tools/test.sh, in parts; names choose among them, and without any all are run.
 #   hard        scenes/hard on the device and by the reference, against the means that their files derive (2 minutes)
 #   scenes      every file under scenes/ by its name alone, small (2 minutes): tools/all_scenes.sh
-#   crossed     150 scenes whose features are crossed at random, each by unlike estimators (15 minutes): tools/crossed_scenes.py
+#   crossed     150 scenes whose features are crossed at random, each by unlike estimators (20 minutes): tools/crossed_scenes.py
 #   large       a grid of 342 MiB, larger than a storage buffer of Mesa's software driver, against its Fp8 form (1 minute)
 #   tests       tests on the device, of which many take a share of what they could combine, with all of it
 #   python      `pip install .` in a fresh environment: types, tests, the notebook (5 minutes; PyPI has to be there)

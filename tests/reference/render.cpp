@@ -34,6 +34,8 @@ vkvol::Film render(const World& world, vkvol::Crop crop, std::uint32_t spp, std:
     if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > picture.width || crop.y1 > picture.height || crop.x0 >= crop.x1 ||
         crop.y0 >= crop.y1)
         throw std::runtime_error("the crop is empty or reaches beyond the picture");
+    if (world.scene.periodic && !world.scene.surfaces.empty())
+        throw std::runtime_error("the reference knows no surfaces that repeat");
 
     vkvol::Film film;
     film.picture_width = picture.width;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "mapped.h"
 #include "medium.h"
 
 namespace reference {
@@ -75,8 +76,12 @@ Interval unfolded_support(const Medium& medium, const Ray& ray) {
 
 double unfolded_density(const Medium& medium, const glm::dvec3& world) {
     const glm::dvec3 place = folded(medium, world);
-    if (const Grid* grid = medium.grid())
-        return medium.density(grid->to_index(place));
+    if (const Grid* grid = medium.grid()) {
+        const glm::dvec3 index = grid->to_index(place), within = index - glm::dvec3(grid->lower);
+        const bool inside = !glm::any(glm::lessThan(within, glm::dvec3(0.0))) &&
+                            !glm::any(glm::greaterThan(within, glm::dvec3(grid->size - 1)));
+        return inside ? medium.density(index) : 0.0; // a map may have more than nothing where there is no value
+    }
     const glm::dvec3 p(medium.to_unmoved * glm::dvec4(place, 1.0));
     const auto* sphere = std::get_if<vkvol::Sphere>(&medium.shape);
     const auto* box = std::get_if<vkvol::Box>(&medium.shape);
@@ -87,7 +92,11 @@ double unfolded_density(const Medium& medium, const glm::dvec3& world) {
 
 double largest_density(const Medium& medium) {
     if (const Grid* grid = medium.grid())
-        return *std::max_element(grid->values.begin(), grid->values.end());
+        return mapped_extremes(medium.map, 0.0, *std::max_element(grid->values.begin(), grid->values.end())).most;
+    if (medium.layers && medium.layers->scale_height > 0.0)
+        return std::exp((medium.layers->reference - medium.layers->bottom) / medium.layers->scale_height);
+    if (medium.layers)
+        return mapped_extremes(medium.map, 0.0, medium.layers->top - medium.layers->bottom).most;
     return medium.noise ? noise_bound(*medium.noise) : 1.0;
 }
 
