@@ -1,6 +1,7 @@
 """Readings by vkvol, with as many samples as they need."""
 
 import csv
+import json
 import math
 import pathlib
 import statistics
@@ -20,15 +21,15 @@ class Reader:
         self.count = 0
 
     def read(self, scene, samples, seed, is_map=False, options=()):
-        """Of each column its mean and standard error, or of each pixel: of the middle channel, since all are alike. A column's pixels
-        are taken for independent. Those that count particles are not: each is in one of them, so that the error stated of a flux is
-        too large, and a z of it too small."""
+        """Of each column its mean and standard error, or of each pixel: of the middle channel, since all are alike. Of one column it
+        is the picture's mean, whose error the report knows. Pixels of several are taken for independent; those that count particles are not:
+        each is in one of them, so that the errors stated of such fluxes are too large, and a z of them too small."""
         self.count += 1
         file = self.folder / f"case{self.count}.xml"
-        table = file.with_suffix(".csv")
+        table, report = file.with_suffix(".csv"), file.with_suffix(".json")
         file.write_text(f"<options>{scene}<rayPerPixelCount>{samples}</rayPerPixelCount></options>\n")
-        done = subprocess.run([self.vkvol, file, "-q", "--seed", str(seed), "--schedule", self.schedule, "-o", table, *options],
-                              capture_output=True, text=True)
+        command = [self.vkvol, file, "-q", "--seed", str(seed), "--schedule", self.schedule, "-o", table, "--report", report, *options]
+        done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode != 0:
             raise SystemExit(f"{file}: {done.stderr.strip()}")
         with open(table, newline="") as stream:
@@ -36,6 +37,9 @@ class Reader:
             for row in csv.DictReader(stream):
                 place = int(row["row"]) if is_map else 0, int(row["column"])
                 columns.setdefault(place, []).append((float(row["G"]), float(row["standardError.G"] or "inf")))
+        if len(columns) == 1:
+            mean = json.loads(report.read_text())["mean"]
+            return [(mean["value"][1], mean["standardError"][1] or math.inf)]
         return [(sum(mean for mean, _ in column) / len(column), math.sqrt(sum(error**2 for _, error in column)) / len(column))
                 for _, column in sorted(columns.items())]
 
