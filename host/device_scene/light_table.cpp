@@ -45,7 +45,7 @@ class Rows {
 public:
     Rows(const Scene& scene, const Assets& assets, const glm::dvec3& origin, double radius)
         : assets_(assets), origin_(origin), radius_(radius),
-          reach_(scene.surfaces.empty() && !any_medium(scene, is_everywhere)
+          reach_(scene.surfaces.empty() && !any_medium(scene, is_everywhere) && !reads_flux(scene.camera)
                      ? radius
                      : std::numeric_limits<double>::infinity()) {}
 
