@@ -89,7 +89,8 @@ std::uint64_t checksum(std::string_view bytes) {
 template <class T> void take(std::string_view& bytes, std::span<T> values) {
     if (bytes.size() < values.size_bytes())
         throw std::length_error("it is too short");
-    std::memcpy(values.data(), bytes.data(), values.size_bytes());
+    if (!values.empty())
+        std::memcpy(values.data(), bytes.data(), values.size_bytes());
     bytes.remove_prefix(values.size_bytes());
 }
 

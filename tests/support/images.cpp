@@ -209,7 +209,7 @@ Agreement agree_with_escapes(const Film& film, const std::vector<double>& p, con
 
 bool same_bits(const Film& a, const Film& b) {
     const auto same = [](const auto& x, const auto& y) {
-        return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0;
+        return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0);
     };
     const auto same_layer = [&](const FilmLayer& x, const FilmLayer& y) {
         return x.name == y.name && same(x.mean, y.mean) && same(x.variance, y.variance);
