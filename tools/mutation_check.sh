@@ -9,8 +9,8 @@
 #   tools/mutation_check.sh --dry-run    only whether every text to be replaced is there, and how many rows are of now
 #   MUTATION_DIR=DIR                     where the copy and its build are kept
 #
-# A row is of now as long as the row itself, the file with the error and the files of its tests are the same; others are
-# made again, those that were never made first. All takes some hours on two cores.
+# A row is of now as long as the row itself, the code around the error and the test that caught it are the same
+# (tools/mutation_keys.py); others are made again, those that were never made first. All takes some hours on two cores.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -320,32 +320,9 @@ for line in sys.stdin:
             print(f"{name}: {path} does not contain \"{text}\"; bring the table in tools/mutation_check.sh up to date")
 sys.exit(missing > 0)'
 }
-# What a row rests on: itself, the file with the error, and the files of its tests, which are those that have its tag or, of
-# tests that are named, their name. What tests share, tests/support and tests/reference, does not count.
 source=$root
-key() { # ROW
-    local name file text replacement tests
-    IFS=$tab read -r name file text replacement tests <<<"${1// ~ /$tab}"
-    {
-        printf '%s\n' "$1"
-        cat "$source/$file"
-        grep -rlF --include='*_test.cpp' -- "${tests%%[~*]*}" "$source/tests" | sort | xargs cat
-    } | sha256sum | cut -c1-12
-}
-
-# Of the results, the line that has this key: "error | caught by | commit | key".
-# An error that nothing caught is never done with.
-kept() { awk -F ' *[|] *' -v name="$1" -v key="$2" '$1 == name && $4 == key && $2 !~ /^(NOTHING|NOT |NO TEST)/ { found = 1 } END { exit !found }' "$results"; }
-
 stale() { # rows that are not of now, those that have no line at all first
-    local line name known=() unknown=()
-    while IFS= read -r line; do
-        name=${line%% ~ *}
-        [[ "$name" == *"$only"* ]] || continue
-        kept "$name" "$(key "$line")" >/dev/null && continue
-        if grep -qF "$name " "$results"; then known+=("$line"); else unknown+=("$line"); fi
-    done < <(mutations)
-    printf '%s\n' "${unknown[@]}" "${known[@]}" | sed '/^$/d'
+    mutations | awk -F ' ~ ' -v word="$only" 'index($1, word)' | python3 "$source/tools/mutation_keys.py" "$source" "$results"
 }
 
 if [ -n "$dry_run" ]; then
@@ -492,7 +469,7 @@ for line in "${selected[@]}"; do
     NO[T\ ]*) ;;
     *) check_sound "$tests" ;;
     esac
-    keep "$name" "$verdict" "$(key "$line")"
+    keep "$name" "$verdict" "$(python3 "$source/tools/mutation_keys.py" "$source" --key "$line" "$verdict")"
     printf '%-56s %s\n' "$name" "$verdict"
     made=$((made + 1))
     [[ "$verdict" != NO[T\ ]* ]] || bad=1
