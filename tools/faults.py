@@ -52,7 +52,7 @@ def device_rows(lab, table, quick):
         return check_resume(run, place) if checkpoint else run
 
     for function in ("vkQueueSubmit", "vkWaitForFences"):
-        numbers = spread(calls[function], 3 if quick else 15)
+        numbers = spread(calls[function], 2 if quick else 15)
         for checkpoint in (False, True):
             name = f"device lost in {function}" + (", with checkpoints" if checkpoint else "")
             table.row(name, lambda n, f=function, c=checkpoint: lose_device(f, n, c), numbers)
@@ -116,7 +116,7 @@ def signal_rows(lab, table, quick, seed):
         return run
 
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        runs = 5 if quick else 10 if number == signal.SIGHUP else 50
+        runs = 3 if quick else 10 if number == signal.SIGHUP else 50
         table.row(f"{number.name} at random moments", lambda i, n=number: interrupt(n, i), range(runs))
 
     def twice(i):
@@ -130,7 +130,7 @@ def signal_rows(lab, table, quick, seed):
             run.lose(f"it took {run.seconds - second:.1f} s to end")
         return judge_signalled(run, place, signal.SIGINT, True)
 
-    table.row("SIGINT twice: ends at once", twice, range(3 if quick else 25))
+    table.row("SIGINT twice: ends at once", twice, range(2 if quick else 25))
 
     kills = []
 
@@ -151,7 +151,7 @@ def signal_rows(lab, table, quick, seed):
         run.losses = losses + [l for l in run.losses if l not in losses]
         return run
 
-    if table.row("kill -9 at random moments, up to four times, and --resume", kill, range(4 if quick else 20)):
+    if table.row("kill -9 at random moments, up to four times, and --resume", kill, range(3 if quick else 20)):
         table.note(f"{len(kills)} kills; temporary files left behind: {sum(kills)}")
 
 
@@ -192,7 +192,7 @@ def file_rows(lab, table, quick, seed):
             data[bit // 8] ^= 1 << bit % 8
             return refuse(bytes(data))
 
-        bits = [*range(0, 24 * 8, 38 if quick else 19), *(rng.randrange(8 * len(good)) for _ in range(3 if quick else 20))]
+        bits = [*range(0, 24 * 8, 64 if quick else 19), *(rng.randrange(8 * len(good)) for _ in range(2 if quick else 20))]
         table.row("checkpoint with a flipped bit", flipped, bits)
         others = [["--seed", "7"], ["--width", "319"], ["--spp", "1"], ["--sample-offset", "3"], ["--integrator", "deltaTracking"],
                   ["--crop", "0,9,0,9"], ["--grid", lab.grid.with_name("other.nvdb")]]
@@ -271,7 +271,7 @@ def limit_rows(lab, table, quick):
     if lab.sanitized:
         table.skip("ulimit -v", "the sanitizer needs its address space")
         return
-    steps = range(100, 2600, 500 if quick else 100)
+    steps = range(100, 2600, 800 if quick else 100)
     # The driver may give up in its own way: an abort in LLVM, a crash in a thread that could not be made.
     driver = (-signal.SIGABRT, -signal.SIGSEGV, 127)
     runs = table.row("ulimit -v", lambda n: limited("as", n << 20, [0, 1, 2, 3, *driver]), steps)

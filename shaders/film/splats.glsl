@@ -19,6 +19,8 @@ uint splat_place(uint pixel, uint sample_index) {
 }
 
 void add_whole(uint at, float x) {
+    if (x == 0.0)
+        return;
     float size = abs(x);
     uint high = uint(size / WORD);
     uint low = uint(size - WORD * float(high));
@@ -52,6 +54,8 @@ void add_to_sum(uint at, uint sum) {
     for (uint c = 0u; c < uint(SPLAT_WORDS); c += 2u) {
         uint low = splats[at + c] >> COARSE | splats[at + c + 1u] << (32u - COARSE);
         uint high = uint(int(splats[at + c + 1u]) >> COARSE);
+        if ((low | high) == 0u) // of most pixels, where little is lit
+            continue;
         uint before = atomicAdd(splats[sum + c], low);
         atomicAdd(splats[sum + c + 1u], high + (before + low < before ? 1u : 0u));
     }

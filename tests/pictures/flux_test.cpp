@@ -340,7 +340,7 @@ TEST_CASE("flux equals the reference's", "[gpu][image][flux]") {
 }
 
 TEST_CASE("flux among several media equals the reference's", "[gpu][image][flux]") {
-    Scene scene = at_points({{0.0, 0.0, 0.0}, {2.0, -1.0, 1.0}}, 1 << 15);
+    Scene scene = at_points({{0.0, 0.0, 0.0}, {2.0, -1.0, 1.0}}, 1 << 14);
     scene.volumes = {medium(write_grid(cloud_grid()), 1.0, 0.7, 0.4), medium(Sphere{{1.0, 0.0, 0.0}, 2.0}, 0.5, 0.9)};
     scene.lights = {sunlight(), SphereLight{{4.5, 5.5, 2.0}, 1.2, {14.0, 10.0, 6.0}}};
     check_agreement(scene, "points in several media");

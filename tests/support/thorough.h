@@ -20,11 +20,11 @@ inline bool has_its_turn() {
     return asked++ % 4 == 0 || thorough();
 }
 
-// These, or the third of them whose turn it is.
-template <class T> std::vector<T> in_turn(const std::vector<T>& all, std::size_t turn) {
+// These, or the third of them whose turn it is, or another part.
+template <class T> std::vector<T> in_turn(const std::vector<T>& all, std::size_t turn, std::size_t parts = 3) {
     std::vector<T> chosen;
     for (std::size_t i = 0; i < all.size(); ++i)
-        if (thorough() || i % 3 == turn % 3)
+        if (thorough() || i % parts == turn % parts)
             chosen.push_back(all[i]);
     return chosen;
 }
