@@ -17,6 +17,10 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 dry_run= only= minutes=1000000 share=1/1
 while [ $# -gt 0 ]; do
     case $1 in
+    -h | --help)
+        sed -n '2,/^set /s/^# \?//p' "$0"
+        exit
+        ;;
     --dry-run) dry_run=yes ;;
     --minutes) minutes=${2:?--minutes needs a number}; shift ;;
     --share) share=${2:?--share needs K/N}; shift ;;
@@ -33,6 +37,20 @@ build=$work/build
 # name ~ file ~ text ~ replacement ~ tests (a Catch2 specification). "^" parts several texts and their replacements.
 mutations() {
     cat <<'END'
+depths up an exponential from its thin end ~ shaders/field/layers.glsl ~ return exp(f.log_density + (f.rate < 0.0 ? x : 0.0)) * t * mean; ~ return exp(f.log_density) * t * (f.rate < 0.0 ? (exp(x) - 1.0) / x : mean); ~ [layers]
+distances up an exponential from what its thin end has ~ shaders/field/layers.glsl ~ if (f.rate < 0.0 && log_y > 0.0) ~ if (false) ~ [layers]
+edges' products without numbers ~ shaders/surfaces/surface_point.glsl ~ return 1.0 / max(max(longest.x, longest.y), max(longest.z, 1.0e-30)); ~ return 1.0; ~ [surfaces]
+rays begin at the eye for the sake of planes ~ host/device_scene/sensor_params.cpp ~ return plane && cuts_off( ~ return plane && !cuts_off( ~ [precision]
+cosines at a panorama's poles by rounding ~ shaders/sensors/toward_sensor.glsl ~ max(level, 1.0e-12 * distance) ~ sqrt(max(1.0 - dot(ray, s.down) * dot(ray, s.down), 1.0e-12)) * distance ~ [particles]
+what holds nothing has no end ~ host/device_scene/scene_upload.cpp ~ (whole && whole->unbounded) ~ any_medium(scene, is_everywhere) ~ [several]
+voxels of what holds nothing ~ host/device_scene/overlap_words.cpp ~ row.kinds.field == FIELD_GRID && row.kinds.shape != SHAPE_NONE ~ row.kinds.field == FIELD_GRID ~ [several]
+colours of what holds nothing ~ host/device_scene/scene_upload.cpp ~ has_chromatic_extinction(scene) && largest(sigma_t) > 0.0 ~ has_chromatic_extinction(scene) ~ [several]
+maps in no checkpoint ~ host/render/checkpoint.cpp ~ digest.add_all(medium.map_knots); ~ ; ~ [checkpoint]
+lamps of surfaces where no look is left ~ host/methods/method.cpp ~ looks && scattering_of(scene.settings, integrator) != SCATTERING_NONE ~ looks && scattering != SCATTERING_NONE ~ [surfaces]
+no far light where filters alone count it ~ host/device_scene/device_scene.cpp ~ beyond * (glm::length ~ 0.0 * beyond * (glm::length ~ [counted]
+lamps not seen where nothing scatters ~ host/methods/method.cpp ~ has_steps ? NEE_TENTATIVE : NEE_COLLISIONS ~ has_steps ? NEE_TENTATIVE : NEE_NONE ~ [lights]
+what mirrors throw and show taken for found ~ host/methods/method.cpp ~ has_thrown_light() && method_.paths == PATHS_BOTH ~ false ~ [particles]
+distances of looks toward what is far by rounding ~ shaders/lights/equiangular.glsl ~ if (s.mass.x + s.mass.y < 1.0e-5 * ~ if (s.mass.x + s.mass.y < 0.0 * ~ [lights]
 kernels that hang on the frame alone ~ shaders/lib/buffers.glsl ~ return number + (gl_GlobalInvocationID.x >> 31u); ~ return number; ~ [command]
 moments at the same times for all seeds ~ host/scene/motion_blur.cpp ~ + turn_of(seed); ~ + turn_of(0u * seed); ~ [motion]
 moments that last twice as long ~ host/scene/motion_blur.cpp ~ together *= 2; ~ together *= 4; ~ [motion]
@@ -70,7 +88,7 @@ files told apart by name and size alone ~ host/methods/scene_hash.cpp ~ digest_o
 samples lost where a moment cannot be made ready ~ host/render/session.cpp ~ if (job_.checkpoint) // what was rendered ~ if (job_.checkpoint && device_scene_) // what was rendered ~ [motion]
 depth of single samples merged as if exact ~ host/cli/merge.cpp ~ * apart * apart ~ * 0.0 * apart ~ [merge]
 sums over pixels without a variance ~ host/cli/compare.cpp ~ if (is_correlated || a.samples[i] != 1 || b.samples[i] != 1) ~ if (true) ~ [compare]
-splats without room for what is seen ~ host/device_scene/emitter_table.cpp ~ brightest_of(scene, lights, surfaces, glow) ~ 0.0 ~ [particles]
+splats without room for what is seen ~ host/device_scene/emitter_table.cpp ~ brightest_of(scene, lights, surfaces, glow, sky) ~ 0.0 ~ [particles]
 maps that glow without particles ~ host/device_scene/emitter_table.cpp ~ channel_mean(emission.constant) + channel_mean(most_map_emission(scene.volumes[i])) ~ channel_mean(emission.constant) ~ [particles]
 places on textures not in the hash ~ host/methods/scene_hash.cpp ~ writer.add("place", glm::dvec3(places[corner], 0.0)); ~ (void)places; ~ [xml][surfaces]
 frames that are exposed otherwise passed over ~ host/report/requested_scene.cpp ~ if (const auto& exposure = scene.camera.exposure) ~ if (const auto& exposure = scene.camera.exposure; false) ~ [command]
@@ -216,7 +234,7 @@ null collisions lit in full ~ shaders/estimators/free_flight.glsl ~ : c.sigma_t 
 march without albedo ~ shaders/stages/collide.glsl ~ deposit * to_spectrum(albedo_at(met, position)), ~ deposit, ~ [agreement]
 known light not added ~ shaders/stages/collide.glsl ~ add_light(lane, lit * lane.cached * light, label); ~ ; ~ [light_cache]
 cache of one direction only ~ host/device_scene/light_cache.cpp ~ push.towards = directions_[i]; ~ push.towards = directions_[0]; ~ [light_cache]
-rays begin at far eyes ~ host/device_scene/scene_upload.cpp ~ return depth > 16.0 * radius ? depth : 0.0; ~ return 0.0 * depth; ~ [precision]
+rays begin at far eyes ~ host/device_scene/sensor_params.cpp ~ !(depth > 16.0 * radius) ~ true ~ [precision]
 far indices stay far ~ host/assets/placement.cpp ~ longest(middle) < std::max(4096, 4 * size) ~ longest(middle) >= -size ~ [precision]
 faces a millionth too far ~ shaders/majorants/majorant.glsl ~ return max(w.t, min( ~ return max(w.t, 1.000001 * min( ~ [precision]
 thin media at 24 bits ~ shaders/lib/rng.glsl ~ word < small ? series ~ false ? series ~ [rng]

@@ -2,6 +2,14 @@
 # Sourced by the other scripts: brings a machine with Debian 12 or 13 to where vkvol can be built, and builds it.
 # Every function is quick when there is nothing left to do. Run by itself, it installs what a build needs.
 
+# What the script that begins with this says of itself.
+case ${1:-} in
+-h | --help)
+    sed -n '2,/^set /s/^# \?//p' "$0"
+    exit
+    ;;
+esac
+
 vkvol_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 packages=(

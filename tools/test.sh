@@ -12,10 +12,6 @@ preset=release
 driver=
 while true; do
     case ${1:-} in
-    -h | --help)
-        sed -n '2,/^set /s/^# \?//p' "$0"
-        exit
-        ;;
     --sanitize) preset=sanitize ;;
     --driver)
         driver=${2:?--driver needs a name: lavapipe or swiftshader}

@@ -408,7 +408,8 @@ Superposition superpose(const Scene& scene, Media media, const Method& method) {
         return {};
     PieceStore pieces(scene.settings.majorant_scale);
     Superposition whole = lay_out(members, scene.camera.position, pieces);
-    whole.unbounded = any_medium(scene, is_everywhere);
+    whole.unbounded =
+        std::any_of(members.begin(), members.end(), [](const Member& m) { return is_everywhere(m.volume); });
     fill(members, pieces, whole);
     // Worth the look at how far they reach where there are some.
     const auto empty = std::count(whole.cells.bounds.begin(), whole.cells.bounds.end(), 0.0f) +

@@ -162,12 +162,16 @@ std::optional<SurfaceBounds> bounds_of(const std::vector<Surface>& surfaces) {
     return bounds.low.x <= bounds.high.x ? std::optional(bounds) : std::nullopt;
 }
 
+double reach_of(const SurfaceBounds& bounds, const glm::dvec3& origin) {
+    return glm::length(glm::max(glm::abs(bounds.low - origin), glm::abs(bounds.high - origin)));
+}
+
 double reach_of_surfaces(const std::vector<Surface>& surfaces, const glm::dvec3& origin) {
     for (const Surface& surface : surfaces)
         if (std::holds_alternative<PlaneSurface>(surface.shape))
             return std::numeric_limits<double>::infinity();
     const std::optional<SurfaceBounds> bounds = bounds_of(surfaces);
-    return bounds ? glm::length(glm::max(glm::abs(bounds->low - origin), glm::abs(bounds->high - origin))) : 0.0;
+    return bounds ? reach_of(*bounds, origin) : 0.0;
 }
 
 } // namespace vkvol

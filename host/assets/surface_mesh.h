@@ -14,7 +14,9 @@ Scene with_surface_files(Scene scene);
 struct SurfaceBounds {
     glm::dvec3 low, high;
 };
-std::optional<SurfaceBounds> bounds_of(const std::vector<Surface>& surfaces);
+std::optional<SurfaceBounds> bounds_of(const std::vector<Surface>& surfaces); // of planes there are none
+// The distance from `origin` to the farthest corner.
+double reach_of(const SurfaceBounds& bounds, const glm::dvec3& origin);
 
 // The distance from `origin` to the end of what is farthest away; infinite for planes.
 double reach_of_surfaces(const std::vector<Surface>& surfaces, const glm::dvec3& origin);

@@ -37,6 +37,13 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
     // Names longer than any known one by far are not misspellings; the cut also bounds the work on garbage.
     if (name.size() > 64)
         return "";
+    // All names of one letter are as near to each other: one that it begins is meant.
+    if (name.size() == 1) {
+        const auto begun = std::find_if(known.begin(), known.end(), [&](const std::string& candidate) {
+            return !candidate.empty() && lower(candidate[0]) == lower(name[0]);
+        });
+        return begun == known.end() ? "" : *begun;
+    }
     std::string best;
     std::size_t best_distance = std::max<std::size_t>(1, name.size() / 3) + 1;
     for (const std::string& candidate : known) {

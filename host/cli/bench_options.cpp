@@ -59,7 +59,8 @@ std::string command_text(const std::vector<std::string>& arguments) {
 }
 
 void add_options(CLI::App& app, BenchRequest& bench, BenchTexts& texts) {
-    app.add_option("scene", bench.render.scene, "Scene file; see scenes/README.md")->option_text("SCENE.xml");
+    app.add_option("scene", bench.render.scene, "Scene file; see scenes/README.md")
+        ->option_text("SCENE.xml|SCENE.pbrt");
     app.add_option("-o,--output", bench.name, "What the results' names begin with")
         ->option_text("NAME [the scene's, here]")
         ->group("Picture");

@@ -48,7 +48,7 @@ std::vector<std::string> evenly(const std::string& key, const std::string& text)
 void add_options(CLI::App& app, MeasureOptions& measure, MeasureTexts& texts) {
     RenderRequest& request = measure.request;
     app.add_option("scene", request.scene, "Scene file, see scenes/README.md, or a scene of pbrt-v4")
-        ->option_text("SCENE.xml|SCENE.pbrt");
+        ->option_text("SCENE.xml|SCENE.pbrt|FILE.nvdb|FILE.vdb");
     app.add_option("-o,--output", texts.output, "Write the table as .csv in place of printing it")
         ->option_text("FILE.csv")
         ->group("Picture");

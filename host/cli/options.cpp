@@ -109,9 +109,9 @@ void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
     app.add_flag("--no-cache", render.no_cache, "Neither read nor write the pipeline cache")->group("Device");
     app.add_option("--schedule", texts.schedule,
                    "fused: one pass takes pixels through all stages; staged: passes of their own over queues of paths; "
-                   "auto: what is faster on the device. slots: pixels, or paths, in work; steps: of tracking between "
-                   "two looks at what they led to")
-        ->option_text("NAME[:slots=N][:steps=N] [auto]")
+                   "auto: what is faster on the device. slots: pixels, or paths, in work; lanes: that work on them; "
+                   "steps: of tracking between two looks at what they led to; budget: looks in one go")
+        ->option_text("NAME[:slots=N][:lanes=N][:steps=N][:budget=N] [auto]")
         ->group("Device");
 
     app.add_option("--report", render.report, "Write what was done and how long it took, as JSON")
@@ -251,18 +251,12 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
     check_integrator_option(render);
 }
 
-void parse_render(const std::vector<std::string>& arguments, Options& options) {
-    CLI::App app(render_description, "vkvol");
+void parse_render(CLI::App& app, const std::vector<std::string>& arguments, Options& options) {
     RenderTexts texts;
-    app.add_option(
-           "scene", options.render.scene,
-           "Scene file, see scenes/README.md, or a scene of pbrt-v4; or a density file, for which a scene is made")
-        ->option_text("SCENE.xml|SCENE.pbrt|FILE.nvdb|FILE.vdb");
     add_picture_options(app, options.render, texts);
     add_sampling_options(app, options.render, texts);
     add_run_options(app, options.render, texts);
     add_trace_options(app, options.render, texts);
-    app.footer(render_footer);
     if (!run_parser(app, arguments, options))
         return;
     if (texts.version) {
@@ -273,18 +267,36 @@ void parse_render(const std::vector<std::string>& arguments, Options& options) {
     finish_render(options.render, texts);
 }
 
+void add_scene(CLI::App& app, RenderOptions& render) {
+    app.add_option(
+           "scene", render.scene,
+           "Scene file, see scenes/README.md, or a scene of pbrt-v4; or a density file, for which a scene is made")
+        ->option_text("SCENE.xml|SCENE.pbrt|FILE.nvdb|FILE.vdb");
+}
+
+void parse_scene_render(const std::vector<std::string>& arguments, Options& options) {
+    CLI::App app(render_description, "vkvol");
+    add_scene(app, options.render);
+    app.footer(render_footer);
+    parse_render(app, arguments, options);
+}
+
 // A render of the scene that comes with the program.
 void parse_demo(const std::vector<std::string>& arguments, Options& options) {
+    CLI::App app(demo_description, "vkvol demo");
+    app.footer(demo_footer);
     std::vector<std::string> with_scene = arguments;
     const bool asks = std::any_of(arguments.begin(), arguments.end(),
                                   [](const std::string& word) { return word == "--help" || word == "-h"; });
-    if (!asks)
+    if (!asks) {
+        add_scene(app, options.render);
         with_scene.insert(with_scene.begin(), demo_scene().string());
+    }
     const bool has_curve = std::any_of(arguments.begin(), arguments.end(),
                                        [](const std::string& word) { return word.starts_with("--tonemap"); });
     if (!asks && !has_curve)
         with_scene.push_back("--tonemap=aces");
-    parse_render(with_scene, options);
+    parse_render(app, with_scene, options);
 }
 
 void parse_devices(const std::vector<std::string>& arguments, Options& options) {
@@ -399,15 +411,21 @@ Options parse_options(int argc, const char* const* argv) {
     std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
     using Parser = void (*)(const std::vector<std::string>&, Options&);
     const std::vector<std::pair<std::string, std::pair<Command, Parser>>> commands = {
-        {"render", {Command::render, parse_render}},    {"devices", {Command::devices, parse_devices}},
-        {"info", {Command::info, parse_info}},          {"integrators", {Command::integrators, parse_integrators}},
-        {"compare", {Command::compare, parse_compare}}, {"merge", {Command::merge, parse_merge}},
-        {"develop", {Command::develop, parse_develop}}, {"convert", {Command::convert, parse_convert}},
-        {"bench", {Command::bench, parse_bench}},       {"demo", {Command::render, parse_demo}},
-        {"measure", {Command::measure, parse_measure}}, {"view", {Command::view, parse_view}},
+        {"render", {Command::render, parse_scene_render}},
+        {"devices", {Command::devices, parse_devices}},
+        {"info", {Command::info, parse_info}},
+        {"integrators", {Command::integrators, parse_integrators}},
+        {"compare", {Command::compare, parse_compare}},
+        {"merge", {Command::merge, parse_merge}},
+        {"develop", {Command::develop, parse_develop}},
+        {"convert", {Command::convert, parse_convert}},
+        {"bench", {Command::bench, parse_bench}},
+        {"demo", {Command::render, parse_demo}},
+        {"measure", {Command::measure, parse_measure}},
+        {"view", {Command::view, parse_view}},
         {"init", {Command::init, parse_init}}};
     Options options;
-    Parser parse = parse_render;
+    Parser parse = parse_scene_render;
     if (!arguments.empty()) {
         std::vector<std::string> names;
         bool found = false;

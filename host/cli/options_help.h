@@ -37,6 +37,16 @@ Exit codes: 0 done; 1 the render failed; 2 bad command line, scene or asset; 3 n
 4 compare found a difference; 5 caps hit or non-finite samples under --strict; 130 interrupted
 (what was rendered so far is written).)";
 
+inline constexpr const char* demo_description =
+    "Renders the cloud that comes with the program, to see that all is well: cumulus.exr and cumulus.png here.";
+
+inline constexpr const char* demo_footer =
+    R"(It is scenes/cumulus.xml with --tonemap aces; all options of a render change that.
+
+Examples:
+  vkvol demo
+  vkvol demo --width 320 --spp 16 -o look.png)";
+
 inline constexpr const char* integrators_description =
     "Lists the integrators: which estimators each combines, whether it is unbiased, and where it comes from.";
 

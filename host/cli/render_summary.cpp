@@ -18,6 +18,12 @@ std::string samples_text(const Film& film) {
     return *most == 1 ? "1 sample" : fmt::format("{} samples", *most);
 }
 
+// Scenes that name no number of samples have one.
+const char* more_samples(const RenderOptions& options, const Film& film) {
+    const bool has_one = *std::max_element(film.samples.begin(), film.samples.end()) == 1;
+    return has_one && !options.spp && !options.time_limit ? " (more by --spp)" : "";
+}
+
 // Nothing of single samples, and of a black picture that it has none to speak of.
 std::string noise_text(const Film& film) {
     if (const std::optional<double> noise = relative_noise(film))
@@ -39,8 +45,9 @@ void print_summary(const RenderOptions& options, const Device& device, const Ren
     for (const std::filesystem::path& output : options.outputs)
         outputs += (outputs.empty() ? "" : ", ") + output.string();
     const std::string told = tone_text(tone);
-    tell(stdout, "{}: {} per pixel, {:.2f} s{}{}, on {}{}\n", outputs, samples_text(result.film), result.render_seconds,
-         noise_text(result.film), told.empty() ? "" : ", " + told, of_all_devices(device, result, &DeviceInfo::name),
+    tell(stdout, "{}: {} per pixel{}, {:.2f} s{}{}, on {}{}\n", outputs, samples_text(result.film),
+         more_samples(options, result.film), result.render_seconds, noise_text(result.film),
+         told.empty() ? "" : ", " + told, of_all_devices(device, result, &DeviceInfo::name),
          device.is_cpu() ? " (software)" : "");
 }
 

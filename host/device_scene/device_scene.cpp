@@ -103,15 +103,19 @@ double DeviceScene::reach_of_all(const Scene& scene, const Assets& assets) const
     double reach = std::max(lit_radius(scene, assets, frame_.media[0]), reach_of_surfaces(scene.surfaces, origin_));
     if (scene.camera.projection == Projection::irradiance) {
         const SensorBox box = sensor_box(scene.camera, scene.picture);
-        reach = std::max(reach, glm::length(glm::max(glm::abs(box.low - origin_), glm::abs(box.high - origin_))));
+        const CameraRays rays = camera_rays(scene.camera, scene.picture);
+        const double beyond = std::max(scene.settings.pixel_filter_radius - 0.5, 0.0); // pixels that filters reach
+        reach = std::max(reach, reach_of({box.low, box.high}, origin_) +
+                                    beyond * (glm::length(rays.right) + glm::length(rays.down)));
     }
     return reach;
 }
 
 void DeviceScene::make_emitters(const Scene& scene, const Method& method, const Assets& assets) {
     const std::span<const shared::MediumParams> rows = media_.empty() ? std::span(frame_.media, 1) : media();
-    const EmitterTable table = make_emitter_table(scene, method, lights_, surfaces_, glow_of(scene, assets.media, rows),
-                                                  frame_.period, reach_of_all(scene, assets), origin_);
+    const EmitterTable table =
+        make_emitter_table(scene, method, lights_, surfaces_, glow_of(scene, assets.media, rows),
+                           assets.sky ? &*assets.sky : nullptr, frame_.period, reach_of_all(scene, assets), origin_);
     frame_.particles = table.params;
     text_ += method.paths == PATHS_LIGHT ? ", by particles" : ", and by particles";
     buffers_.upload_emitters(device_, commands_, table);

@@ -4,6 +4,7 @@
 #include <glm/gtc/matrix_access.hpp>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "alias_table.h"
 #include "camera_rays.h"
@@ -135,11 +136,15 @@ double unit_of_splats(double power, double across, double brightest) {
     return std::exp2(std::floor(std::log2(usual)) - 34.0);
 }
 
-// Radiance, of lights that have a place their intensity.
-double brightest_of(const Scene& scene, const LightTable& lights, const SurfaceTable& surfaces, const Glow& glow) {
+// Of what is seen itself, or mirrored: lights without extent are not.
+double brightest_of(const Scene& scene, const LightTable& lights, const SurfaceTable& surfaces, const Glow& glow,
+                    const SkyMap* sky) {
     double brightest = std::max(channel_mean(scene.background), glow.most);
     for (const shared::LightRow& light : lights.rows)
-        brightest = std::max(brightest, channel_mean(light.radiance));
+        if (light.kind != LIGHT_POINT && light.kind != LIGHT_SPOT)
+            brightest = std::max(brightest, channel_mean(light.radiance));
+    for (const glm::vec4& texel : sky ? std::span<const glm::vec4>(sky->texels) : std::span<const glm::vec4>())
+        brightest = std::max(brightest, channel_mean(Rgb(texel)));
     for (const shared::SurfaceRow& surface : surfaces.rows)
         brightest = std::max(brightest, channel_mean(surface.emission));
     return brightest;
@@ -151,6 +156,8 @@ Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumPar
     Glow glow;
     std::vector<GlowBox> boxes;
     for (std::size_t i = 0; emits(scene) && i < scene.volumes.size(); ++i) {
+        if (rows[i].kinds.shape == SHAPE_NONE)
+            continue;
         const shared::EmissionParams& emission = rows[i].emission;
         const double even = channel_mean(emission.constant) + channel_mean(most_map_emission(scene.volumes[i]));
         const double usual = even + channel_mean(emission.color);
@@ -169,8 +176,8 @@ Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumPar
 }
 
 EmitterTable make_emitter_table(const Scene& scene, const Method& method, const LightTable& lights,
-                                const SurfaceTable& surfaces, const Glow& glow, const shared::PeriodParams& period,
-                                double radius, glm::dvec3 origin) {
+                                const SurfaceTable& surfaces, const Glow& glow, const SkyMap* sky,
+                                const shared::PeriodParams& period, double radius, glm::dvec3 origin) {
     EmitterTable table;
     const bool bounded = std::isfinite(radius);
     table.params.radius = bounded ? static_cast<float>(radius * 1.0001) : 0.0f;
@@ -196,7 +203,7 @@ EmitterTable make_emitter_table(const Scene& scene, const Method& method, const 
     const double reach = bounded && radius > 0.0 ? radius : 1.0;
     table.params.unit =
         static_cast<float>(unit_of_splats(table.params.power, counts ? sensor : 4.0 * pi * pi * reach * reach,
-                                          brightest_of(scene, lights, surfaces, glow)));
+                                          brightest_of(scene, lights, surfaces, glow, sky)));
     return table;
 }
 

@@ -5,6 +5,7 @@
 
 #include "light_table.h"
 #include "method.h"
+#include "sky_map.h"
 #include "surface_table.h"
 
 namespace vkvol {
@@ -26,9 +27,9 @@ Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumPar
 
 // What a scene sends out, in render space. Each kind of source is chosen in proportion to its power, roughly, and never
 // with less than a tenth of an even chance. `radius`: of a ball about the origin that holds all there is, and a sensor
-// that counts particles; not finite where nothing does. `origin` of render space.
+// that counts particles; not finite where nothing does. `sky`: its map, if any. `origin` of render space.
 EmitterTable make_emitter_table(const Scene& scene, const Method& method, const LightTable& lights,
-                                const SurfaceTable& surfaces, const Glow& glow, const shared::PeriodParams& period,
-                                double radius, glm::dvec3 origin);
+                                const SurfaceTable& surfaces, const Glow& glow, const SkyMap* sky,
+                                const shared::PeriodParams& period, double radius, glm::dvec3 origin);
 
 } // namespace vkvol

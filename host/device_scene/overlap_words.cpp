@@ -31,7 +31,7 @@ OverlapWords overlap_words(std::span<const shared::MediumParams> rows, const Sup
         member.kinds = static_cast<std::uint32_t>(row.kinds.shape | row.kinds.field << 8 | row.kinds.grid_type << 16 |
                                                   row.kinds.map << 24);
         member.first_knot = row.first_knot;
-        if (row.kinds.field == FIELD_GRID) {
+        if (row.kinds.field == FIELD_GRID && row.kinds.shape != SHAPE_NONE) {
             const auto next = static_cast<std::uint32_t>(texels * (rows.size() + grids.size()));
             const auto [found, is_new] = grid_rows.try_emplace(row.density.first_word, next);
             if (is_new)

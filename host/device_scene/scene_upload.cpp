@@ -5,7 +5,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
-#include <numbers>
 #include <set>
 
 #include "camera_rays.h"
@@ -15,11 +14,13 @@
 #include "layers.h"
 #include "light_cache.h"
 #include "light_table.h"
+#include "medium_pieces.h"
 #include "noise.h"
 #include "period.h"
 #include "phase_params.h"
 #include "pixel_filter.h"
 #include "placement.h"
+#include "sensor_params.h"
 #include "shared/estimators.h"
 #include "shared/items.h"
 #include "surface_mesh.h"
@@ -195,7 +196,8 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
     params.bvh_nodes = loaded.bvh ? static_cast<std::uint32_t>(loaded.bvh->nodes.size()) : 0;
     const Rgb sigma_t = world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr);
     params.sigma_t = static_cast<float>(largest(sigma_t));
-    params.sigma_ratio = has_chromatic_extinction(scene) ? sigma_t / largest(sigma_t) : Rgb(1.0);
+    params.sigma_ratio =
+        has_chromatic_extinction(scene) && largest(sigma_t) > 0.0 ? sigma_t / largest(sigma_t) : Rgb(1.0);
     params.usual_sigma_t = static_cast<float>(std::max(largest(sigma_t) * usual_density(volume, loaded), 1e-30));
     params.albedo = albedo_of(volume);
     if (loaded.albedo) {
@@ -268,78 +270,6 @@ double lit_radius(const Scene& scene, const Assets& assets, const shared::Medium
 }
 
 namespace {
-
-// How far before the eye rays begin. In single precision a point at distance D is known to D * 6e-8, and so is where a
-// ray of unit direction from the eye comes to be there. From afar rays therefore begin on a plane before the medium,
-// one radius away from it; from nearer than 16 radii, where the eye itself is as good, at the eye.
-double ray_start(const Scene& scene, glm::dvec3 forward, glm::dvec3 center, double radius) {
-    const double depth = glm::dot(forward, center - scene.camera.position) - 2.0 * radius;
-    return depth > 16.0 * radius ? depth : 0.0;
-}
-
-// `origin`: of render space, the middle of the medium. `radius`: of a ball about it that holds the medium.
-shared::SensorParams make_pinhole(const Scene& scene, const CameraRays& rays, glm::dvec3 origin, double radius) {
-    const double start = scene.periodic ? 0.0 : ray_start(scene, rays.forward, origin, radius);
-    shared::SensorParams params{};
-    params.position = rays.position - origin + start * rays.corner;
-    params.start = static_cast<float>(start);
-    params.corner = rays.corner;
-    params.right = rays.right;
-    params.down = rays.down;
-    params.forward = rays.forward;
-    const Lens& lens = scene.camera.lens;
-    if (lens.radius > 0.0) {
-        const glm::dmat3 rotation = camera_rotation(scene.camera);
-        params.lens_u = lens.radius / lens.focus * rotation[0];
-        params.lens_v = lens.radius / lens.focus * rotation[1];
-        params.lens_lever = static_cast<float>(lens.focus - start);
-        params.blades = static_cast<std::uint32_t>(lens.blades);
-        const double turn = 360.0 / std::max(lens.blades, 1); // after which the aperture is the same
-        params.blade_rotation = static_cast<float>(glm::radians(std::remainder(lens.rotation, turn)));
-    }
-    return params;
-}
-
-shared::SensorParams make_sensor(const Scene& scene, glm::dvec3 origin, double radius) {
-    const CameraRays rays = camera_rays(scene.camera, scene.picture);
-    if (rays.projection == Projection::perspective)
-        return make_pinhole(scene, rays, origin, radius);
-    shared::SensorParams params{};
-    if (rays.projection == Projection::absorption) {
-        params.position = scene.camera.cell_low({0, 0, 0}) - origin;
-        params.corner = scene.camera.cell_size();
-        params.right = {params.corner.x, 0.0f, 0.0f};
-        params.down = {0.0f, -params.corner.y, 0.0f};
-        params.cells = scene.camera.cells;
-        return params;
-    }
-    params.position = rays.origin(0.0, 0.0) - origin;
-    if (rays.projection == Projection::orthographic) {
-        const double start = scene.periodic ? 0.0 : ray_start(scene, rays.forward, origin, radius);
-        params.position += start * rays.forward;
-        params.start = static_cast<float>(start);
-    }
-    // A sensor in a surface's plane lies before it, as particles have it (count.glsl), by more than places on surfaces
-    // err.
-    if (rays.projection == Projection::irradiance && !scene.surfaces.empty()) {
-        const SensorBox box = sensor_box(scene.camera, scene.picture);
-        double reach = glm::length(glm::max(glm::abs(box.low - origin), glm::abs(box.high - origin)));
-        if (const std::optional<SurfaceBounds> bounds = bounds_of(scene.surfaces)) // planes add nothing
-            reach =
-                std::max(reach, glm::length(glm::max(glm::abs(bounds->low - origin), glm::abs(bounds->high - origin))));
-        params.position += 2.0 * SURFACE_SPARE * reach * rays.forward;
-    }
-    params.forward = rays.forward;
-    params.corner = rays.forward;
-    params.right = rays.right;
-    params.down = rays.down;
-    // What turns around once more is left out: single precision would have nothing left for the angle.
-    params.first_angle = {std::remainder(rays.first_angle.x, 2.0 * std::numbers::pi),
-                          std::remainder(rays.first_angle.y, 2.0 * std::numbers::pi)};
-    params.angle_step = rays.angle_step;
-    params.row = static_cast<std::uint32_t>(scene.picture.width);
-    return params;
-}
 
 int sensor_kind(const Camera& camera) {
     switch (camera.projection) {
@@ -436,7 +366,9 @@ Specialization specialize(const Scene& scene, Media media, const Method& method,
     for (const LoadedMedium& medium : media)
         if (!medium.map_knots.empty())
             constants[SPEC_MAP_HALVINGS] = std::bit_width(medium.map_knots.size()) - 1;
-    constants[SPEC_UNBOUNDED] = any_medium(scene, is_everywhere) ? 1 : 0;
+    const bool lone = !whole && !scene.volumes.empty() && is_everywhere(scene.volumes.front()) &&
+                      has_matter(scene.volumes.front(), media.front());
+    constants[SPEC_UNBOUNDED] = lone || (whole && whole->unbounded) ? 1 : 0;
     constants[SPEC_FIELD] = density_kind(scene);
     constants[SPEC_FILTER] = method.filter == Filter::nearest     ? FILTER_NEAREST
                              : method.filter == Filter::trilinear ? FILTER_TRILINEAR
@@ -565,9 +497,7 @@ shared::FrameParams make_frame(const Scene& scene, Media media, const Method& me
         if (method.nee == NEE_CACHED)
             frame.lattice = make_lattice_of(scene.volumes.front(), media.front(), nodes);
     }
-    frame.sensors[0] = make_sensor(
-        scene, origin,
-        std::max({0.5 * diagonal, reach_of_lamps(scene.lights, origin), reach_of_surfaces(scene.surfaces, origin)}));
+    frame.sensors[0] = sensor_params(scene, origin, std::max(0.5 * diagonal, reach_of_lamps(scene.lights, origin)));
     const LayerPlan layers = plan_layers(scene);
     frame.layers = layers.params;
     frame.lights[LIGHT_BACKGROUND].radiance = scene.background;

@@ -52,7 +52,7 @@ private:
     template <class Is> bool any_surface(Is is) const {
         return std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(), is);
     }
-    bool loses_thrown_light() const;
+    bool has_thrown_light() const;
     void find_chances();
     void choose_paths();
     void choose_scattering();
@@ -117,15 +117,18 @@ void Resolution::choose_paths() {
                                      for_particles ? "" : "; integrator ratioTracking renders it"));
 }
 
+// Single scattering is one event, of which maxDepth allows none.
+int scattering_of(const RenderSettings& settings, const Integrator& integrator) {
+    const int scattering = settings.choices.scattering.value_or(integrator.scattering);
+    return scattering == SCATTERING_SINGLE && settings.max_depth == 0u ? SCATTERING_NONE : scattering;
+}
+
 void Resolution::choose_scattering() {
-    method_.scattering = choices_.scattering.value_or(preset_.scattering);
+    method_.scattering = scattering_of(scene_.settings, preset_);
     if (method_.paths != PATHS_CAMERA && method_.scattering != SCATTERING_MULTIPLE) {
         warn("scattering is multiple, as particles have it");
         method_.scattering = SCATTERING_MULTIPLE;
     }
-    // Single scattering is one event, of which maxDepth allows none.
-    if (method_.scattering == SCATTERING_SINGLE && scene_.settings.max_depth == 0u)
-        method_.scattering = SCATTERING_NONE;
 }
 
 void Resolution::choose_flight() {
@@ -186,15 +189,15 @@ void Resolution::choose_nee() {
         method_.scattering != SCATTERING_NONE && (!scene_.surfaces.empty() || any_medium(scene_, can_scatter));
     // The camera sees lamps by shadow rays, and a sensor of flux all lights, whether or not anything scatters.
     const bool looks_first =
-        (reads_flux(scene_.camera) || std::any_of(scene_.lights.begin(), scene_.lights.end(), is_lamp)) &&
-        !(is_through(method_) && method_.scattering == SCATTERING_NONE);
+        reads_flux(scene_.camera) || std::any_of(scene_.lights.begin(), scene_.lights.end(), is_lamp);
     if (scene_.lights.empty() || (!scatters && !looks_first)) {
         if (choices_.nee.value_or(NEE_NONE) != NEE_NONE)
             warn(scene_.lights.empty() ? "nee is without effect: the scene has no light"
                                        : "nee is without effect: nothing scatters");
         nee = NEE_NONE;
     } else if (!scatters) { // the camera's looks are all there are
-        nee = nee == NEE_NONE ? NEE_NONE : is_through(method_) ? NEE_TENTATIVE : NEE_COLLISIONS;
+        const bool has_steps = is_through(method_) && method_.scattering != SCATTERING_NONE;
+        nee = nee == NEE_NONE ? NEE_NONE : has_steps ? NEE_TENTATIVE : NEE_COLLISIONS;
     } else if (is_through(method_)) {
         if (choices_.nee == NEE_COLLISIONS || choices_.nee == NEE_CACHED)
             warn("a march through the medium has no collisions; shadow rays start at every step");
@@ -334,11 +337,16 @@ bool is_smooth(const Surface& surface) {
     return surface.material.kind != MaterialKind::diffuse && surface.material.roughness == 0.0;
 }
 
-// Caustics, but for those of lights that a path may meet.
-bool Resolution::loses_thrown_light() const {
+bool is_clear(const Surface& surface) {
+    return surface.material.kind == MaterialKind::thin_dielectric ||
+           (surface.material.kind == MaterialKind::dielectric && is_smooth(surface));
+}
+
+// Whether there are caustics of lights that no path may meet.
+bool Resolution::has_thrown_light() const {
     const auto has_no_extent = [](const Light& light) { return !is_lamp(light) && !is_met_by_chance(light); };
-    return method_.paths == PATHS_CAMERA && method_.scattering == SCATTERING_MULTIPLE && method_.nee != NEE_NONE &&
-           any_surface(is_smooth) && std::any_of(scene_.lights.begin(), scene_.lights.end(), has_no_extent);
+    return method_.scattering == SCATTERING_MULTIPLE && method_.nee != NEE_NONE && any_surface(is_smooth) &&
+           std::any_of(scene_.lights.begin(), scene_.lights.end(), has_no_extent);
 }
 
 void Resolution::find_chances() {
@@ -374,9 +382,18 @@ void Resolution::find_biases() {
         add(bias_majorant, "the majorant is scaled below the density");
     if (any_surface(is_smooth) && method_.paths == PATHS_LIGHT && !reads_flux(scene_.camera))
         add(bias_shown, "what smooth mirrors, coats and glass show is missing, which no particle finds");
-    if (loses_thrown_light())
+    if (has_thrown_light() && method_.paths == PATHS_CAMERA) {
+        if (any_surface(is_clear))
+            warn("no path from the camera finds what directional lights, points and spots send through glass, which "
+                 "casts their shadow; integrator bidirectional does, and a sun, sphere, disk or rectangle shines "
+                 "through");
         add(bias_thrown, "what smooth mirrors, coats and glass throw of points, spots and directional lights is "
                          "missing, which no path from the camera finds; integrator bidirectional does");
+    } else if (has_thrown_light() && method_.paths == PATHS_BOTH) {
+        add(bias_between, "what smooth mirrors, coats and glass throw of points, spots and directional lights and then "
+                          "show is missing, which neither particles nor paths from the camera find; lights with an "
+                          "extent have it");
+    }
     method_.biased = fmt::format("{}", fmt::join(reasons, "; "));
 }
 
@@ -503,7 +520,9 @@ Scene with_preset(Scene scene) {
     if (adjusts(adjust_no_emission) && glows)
         warn("leaves emission out; nanoVDBEmission renders it");
     const bool looks = scene.settings.choices.nee.value_or(integrator.nee) != NEE_NONE;
-    return looks && scattering != SCATTERING_NONE ? with_lamps_of_surfaces(std::move(scene)) : scene;
+    return looks && scattering_of(scene.settings, integrator) != SCATTERING_NONE
+               ? with_lamps_of_surfaces(std::move(scene))
+               : scene;
 }
 
 } // namespace vkvol

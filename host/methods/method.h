@@ -15,7 +15,8 @@ enum Bias : unsigned {
     bias_shadow_steps = 2, // depends on March::shadow_step and jitter
     bias_majorant = 4,     // depends on RenderSettings::majorant_scale
     bias_shown = 8,        // what smooth mirrors, coats and glass show is missing
-    bias_thrown = 16       // what they throw of lights without extent is
+    bias_thrown = 16,      // what they throw of lights without extent is
+    bias_between = 32      // what they throw of these and show as well is
 };
 
 struct Method {
@@ -31,7 +32,7 @@ struct Method {
     bool jitter = true;
     bool material_colour = false;      // the mesh's diffuse colour, once loaded, takes the place of Volume::Le
     std::string integrator;            // name and explicit choices, as on the command line
-    std::vector<std::string> warnings; // what was chosen explicitly and gave way
+    std::vector<std::string> warnings; // what was chosen explicitly and gave way, and light that is lost
     unsigned biases = bias_none;       // sum of Bias
     std::string biased;                // why, in words; empty if unbiased
     std::string by_chance;             // which light nothing but chance finds; empty: none

@@ -308,8 +308,8 @@ void add_method(Writer& writer, const RenderSettings& settings, const Method& me
         writer.add("majorant", glm::dvec3(settings.majorant_scale, settings.majorant_cell, method.nee));
         writer.add("tracking", glm::dvec3(method.free_flight, method.transmittance, 0));
     }
-    if (method.biases & (bias_shown | bias_thrown))
-        writer.add("smooth", method.biases & bias_shown ? 1 : 2);
+    if (method.biases & (bias_shown | bias_thrown | bias_between))
+        writer.add("smooth", method.biases & bias_shown ? 1 : method.biases & bias_thrown ? 2 : 3);
     const March& march = settings.march;
     if (method.biases & bias_flight_steps) {
         writer.add("flight", glm::dvec3(method.free_flight, march.step, method.emission_at));
@@ -353,11 +353,15 @@ std::string scene_hash(const Scene& authored) {
         if (method.uses_lights() || is_met_by_chance(light))
             std::visit([&writer](const auto& kind) { add_light(writer, kind); }, light);
     // Where light scatters but once, what flights meet is scattered by looks alone.
+    const auto shines = [](const Surface& surface) { return surface.emission != Rgb(0.0); };
     if (method.scattering == SCATTERING_SINGLE &&
-        std::any_of(scene.lights.begin(), scene.lights.end(), is_met_by_chance))
+        (std::any_of(scene.lights.begin(), scene.lights.end(), is_met_by_chance) ||
+         std::any_of(shining.surfaces.begin(), shining.surfaces.end(), shines)))
         writer.add("looks", method.uses_lights() ? 1 : 0);
+    if (method.biases & (bias_flight_steps | bias_shadow_steps))
+        writer.add("mis", glm::dvec3(method.mis, method.nee, 0.0));
     if (method.biases & bias_shadow_steps)
-        writer.add("mis", method.mis);
+        writer.add("shadows", method.transmittance);
     if (scene.periodic) {
         writer.add("periodic", scene.periodic->low);
         writer.add("size", scene.periodic->size());

@@ -148,6 +148,7 @@ RenderIdentity identify(const shared::FrameParams& frame, const Specialization& 
         digest.add_all(medium.controls);
         add(std::span(medium.blackbody.begin(), medium.blackbody.end()));
         add(std::span(medium.phase_nodes.begin(), medium.phase_nodes.end()));
+        digest.add_all(medium.map_knots);
         if (medium.bvh)
             digest.add_all(medium.bvh->triangles);
     }

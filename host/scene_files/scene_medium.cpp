@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
+#include <sstream>
 
 #include "scene_reader.h"
 
@@ -25,6 +27,10 @@ std::optional<Volume> SceneReader::volume(const std::string& integrator) const {
 Rgb SceneReader::coefficient(const char* name, const Rgb& fallback) const {
     const XmlElement element = one(name);
     element.allow({"unit", "r", "g", "b"}, true);
+    if (std::istringstream words(element.text()); std::distance(std::istream_iterator<std::string>(words), {}) > 1)
+        element.fail_text(fmt::format("<{}> has several numbers; one for each channel is <{} r=\"...\" g=\"...\" "
+                                      "b=\"...\"/>",
+                                      name, name));
     if (!element.has("r") && !element.has("g") && !element.has("b"))
         return element.exists() ? Rgb(element.number(0.0, not_negative)) : fallback;
     if (!element.text().empty())

@@ -36,11 +36,6 @@ const Metal metals[] = {{"aluminium", {1.657, 0.880, 0.521}, {9.224, 6.270, 4.83
                         {"gold", {0.143, 0.375, 1.442}, {3.983, 2.386, 1.603}},
                         {"silver", {0.155, 0.117, 0.138}, {4.828, 3.122, 2.147}}};
 
-// Met by no ray.
-bool is_without_extent(const Light& light) {
-    return !is_met_by_chance(light) && !is_lamp(light);
-}
-
 Rgb three(const XmlElement& element, const char* attribute, const Limits& limits) {
     const std::vector<double> numbers = element.attribute_numbers(attribute, limits);
     if (numbers.size() != 1 && numbers.size() != 3)
@@ -345,8 +340,6 @@ Surface SceneReader::surface(const XmlElement& element) const {
 void SceneReader::read_surfaces(Scene& scene) {
     one("surfaces").allow({}, false, shapes);
     const pugi::xml_node root = document_.root();
-    const bool has_points = std::any_of(scene.lights.begin(), scene.lights.end(), is_without_extent);
-    bool warned = false;
     for (const pugi::xml_node node : root.child("surfaces").children()) {
         if (node.type() != pugi::node_element)
             continue;
@@ -354,16 +347,6 @@ void SceneReader::read_surfaces(Scene& scene) {
         const XmlElement element(document_, node);
         scene.surfaces.push_back(surface(element));
         scopes_ = {root};
-        const Material& material = scene.surfaces.back().material;
-        const bool is_clear = material.kind == MaterialKind::thin_dielectric ||
-                              (material.kind == MaterialKind::dielectric && material.roughness == 0.0);
-        if (has_points && !warned && is_clear) {
-            element.warn(fmt::format("<{}> is of glass: no path finds what directional lights, points and spots send "
-                                     "through it, and they cast its shadow; a sun, sphere, disk or rectangle shines "
-                                     "through",
-                                     element.name()));
-            warned = true;
-        }
     }
 }
 

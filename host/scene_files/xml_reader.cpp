@@ -11,6 +11,7 @@
 
 #include "error.h"
 #include "nearest_name.h"
+#include "other_words.h"
 
 namespace vkvol {
 
@@ -56,7 +57,8 @@ std::string read_number(const std::string& text, const Limits& limits, double& v
     if (error == std::errc::result_out_of_range)
         return fmt::format("{} is out of range; expected {}", quoted(text), limits.expected);
     if (error != std::errc() || end != last || !std::isfinite(value))
-        return fmt::format("{} is not a number; expected {}", quoted(text), limits.expected);
+        return fmt::format("{} is not a number; expected {}{}", quoted(text), limits.expected,
+                           text.find(',') != std::string::npos ? "; between numbers stand spaces, no commas" : "");
     if (limits.device && std::abs(value) < smallest_number)
         value = 0.0;
     if (!inside(value, limits))
@@ -80,6 +82,8 @@ std::string read_integer(const std::string& text, long long low, long long high,
 }
 
 std::string element_hint(const std::string& name, const std::string& parent, std::vector<std::string> known) {
+    if (const std::string here = said_here(name); !here.empty())
+        return "; " + here;
     if (known.empty())
         return fmt::format("; <{}> has no elements inside", parent);
     for (std::string& candidate : known)
@@ -228,7 +232,10 @@ void XmlElement::allow(const std::vector<std::string>& attributes, bool text,
     for (const pugi::xml_attribute attribute : node_.attributes()) {
         if (std::find(attributes.begin(), attributes.end(), attribute.name()) != attributes.end())
             continue;
-        const std::string hint = attributes.empty() ? "; it has none" : name_hint(attribute.name(), attributes);
+        const std::string here = said_here(name(), attribute.name());
+        const std::string hint = !here.empty()        ? "; " + here
+                                 : attributes.empty() ? "; it has none"
+                                                      : name_hint(attribute.name(), attributes);
         fail_at(document_->place(attribute),
                 fmt::format("unknown attribute {} of <{}>{}", quoted(attribute.name()), name(), hint));
     }

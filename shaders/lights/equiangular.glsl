@@ -69,6 +69,9 @@ Stretch stretch_of(MediumParams v, LightRow light, vec3 position, vec3 direction
     vec2 x = (s.t - s.foot) / s.off;
     s.y = 1.0 / (1.0 + abs(x));
     s.mass = vec2(x.x < 0.0 ? (x.y < 0.0 ? s.y.y : 1.0) - s.y.x : 0.0, x.y > 0.0 ? (x.x > 0.0 ? s.y.x : 1.0) - s.y.y : 0.0);
+    // Of what is so far away that its light is even here, the differences are rounding.
+    if (s.mass.x + s.mass.y < 1.0e-5 * max(s.y.x, s.y.y))
+        s.mass = vec2(0.0);
     return s;
 }
 

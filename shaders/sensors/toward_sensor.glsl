@@ -48,10 +48,11 @@ float seen_weight(vec3 position, vec3 ray, float distance) {
     SensorParams s = frame.sensors[0];
     float weight;
     if (SENSOR == SENSOR_ORTHOGRAPHIC) {
-        weight = 1.0 / length(cross(s.right, s.down));
+        weight = 1.0 / (length(s.right) * length(s.down)); // at right angles
     } else if (SENSOR == SENSOR_EQUIRECTANGULAR) {
-        float up = dot(ray, s.down);
-        weight = 1.0 / (sqrt(max(1.0 - up * up, 1.0e-12)) * abs(s.angle_step.x * s.angle_step.y) * distance * distance);
+        vec3 q = position - s.position;
+        float level = length(vec2(dot(q, s.corner), dot(q, s.right))); // beside the poles' axis
+        weight = 1.0 / (max(level, 1.0e-12 * distance) * abs(s.angle_step.x * s.angle_step.y) * distance);
     } else {
         float depth = s.start + dot(position - s.position, s.forward);
         weight = 1.0 / (dot(ray, s.forward) * abs(dot(s.corner, cross(s.right, s.down))) * depth * depth);

@@ -45,6 +45,7 @@ void begin_part(MediumParams v, Ray ray, vec2 t, bool seeing, inout Walk w) {
     w.t_end = t.y - t.x;
     w.t = 0.0;
     w.at = 0.0;
+    w.met = 0u;
     if (LOOKS && seeing)
         begin_transmittance_part(v, w);
     else

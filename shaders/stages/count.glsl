@@ -25,7 +25,7 @@ uint pixel_passed(vec3 position, Lane lane, out float weight) {
         u = to_uniform(pcg4d(uvec4(floatBitsToUint(position), lane.path.place ^ lane.path.sample_index))).xy;
     vec3 q = position - s.position;
     uint pixel = pixel_at(vec2(dot(q, s.right) / dot(s.right, s.right), dot(q, s.down) / dot(s.down, s.down)), u, weight);
-    weight /= length(cross(s.right, s.down));
+    weight /= length(s.right) * length(s.down); // at right angles
     return pixel;
 }
 

@@ -73,11 +73,19 @@ struct SurfacePoint {
     uint row;
 };
 
-// The areas, but for a factor, of the parts into which the point divides the triangle: those across from a, b and c.
+// Edges times this are about 1, so that no power of theirs is beyond what has numbers.
+float edge_scale(SurfacePrimitive p) {
+    vec3 longest = max(abs(p.b - p.a), abs(p.c - p.a));
+    return 1.0 / max(max(longest.x, longest.y), max(longest.z, 1.0e-30));
+}
+
+// The parts of the triangle's area into which the point divides it: those across from a, b and c.
 vec3 parts_of(SurfacePrimitive p, vec3 at) {
-    vec3 across = cross(p.b - p.a, p.c - p.a);
-    float u = dot(cross(p.c - p.b, at - p.b), across), v = dot(cross(p.a - p.c, at - p.c), across);
-    return vec3(u, v, dot(across, across) - u - v);
+    float scale = edge_scale(p);
+    vec3 across = cross(scale * (p.b - p.a), scale * (p.c - p.a));
+    vec2 parts = vec2(dot(cross(scale * (p.c - p.b), scale * (at - p.b)), across), dot(cross(scale * (p.a - p.c), scale * (at - p.c)), across));
+    parts /= dot(across, across);
+    return vec3(parts, 1.0 - parts.x - parts.y);
 }
 
 vec3 smooth_normal(SurfacePrimitive p, vec3 at, vec3 flat_normal) {
@@ -103,7 +111,7 @@ vec2 texture_place(SurfacePrimitive p, vec3 at, vec3 normal) {
         place = place_on_ball(details, normal);
     if (p.shape == SURFACE_TRIANGLES) {
         vec3 parts = parts_of(p, at);
-        place = (parts.x * details.a.xy + parts.y * details.b.xy + parts.z * details.c.xy) / (parts.x + parts.y + parts.z);
+        place = parts.x * details.a.xy + parts.y * details.b.xy + parts.z * details.c.xy;
     }
     return place;
 }
@@ -115,7 +123,8 @@ SurfacePoint surface_point(uint i, vec3 near) {
     uint shape = p.shape;
     SurfacePoint at;
     at.row = p.surface;
-    at.normal = shape == SURFACE_TRIANGLES ? normalize(cross(p.b - p.a, p.c - p.a)) : p.b;
+    float scale = edge_scale(p);
+    at.normal = shape == SURFACE_TRIANGLES ? normalize(cross(scale * (p.b - p.a), scale * (p.c - p.a))) : p.b;
     at.position = near - at.normal * dot(at.normal, near - p.a);
     vec3 reach = max(abs(p.a), abs(near));
     if (shape == SURFACE_TRIANGLES)

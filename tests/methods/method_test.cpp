@@ -364,6 +364,14 @@ TEST_CASE("the hash tells expectations apart, not estimators", "[cpu][method]") 
     CHECK(hash("rayMarching:transmittance=residual", keep) == hash("rayMarching:transmittance=ratio", keep));
     CHECK(hash("rayMarching:transmittance=residual", keep) != march);
 
+    CHECK(hash("ratioTracking:transmittance=march", keep) != hash("ratioTracking:transmittance=jackknife", keep));
+    const auto glowing = [](Scene& scene) {
+        scene.surfaces.emplace_back().shape = BallSurface{{3.0, 0.0, 0.0}, 0.5};
+        scene.surfaces.back().emission = Rgb(1.0);
+    };
+    // Where light scatters once, looks alone bring what shines to what scatters.
+    CHECK(hash("ratioTracking:scattering=single", glowing) != hash("deltaTracking:scattering=single", glowing));
+
     Scene noise = scene_of("ratioTracking", FIELD_NOISE), other = noise;
     other.volumes[0].noise->octaves = 3;
     CHECK(scene_hash(noise) != scene_hash(other));

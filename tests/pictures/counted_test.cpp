@@ -130,6 +130,9 @@ std::vector<Case> cases() {
     filtered.settings.pixel_filter = PixelFilter::tent;
     filtered.settings.pixel_filter_radius = 0.9;
     all.push_back({"a tent about each pixel", filtered});
+    filtered.lights = {beam};
+    filtered.settings.pixel_filter_radius = 1.5; // beyond all that there is
+    all.push_back({"a wide tent under far light", filtered});
     // Turned away, from the other side, and larger than all that there is to be lit.
     Scene large = among(smoke(), {sun, point});
     look_along(large.camera, {0.1, -1.0, 0.0}, {0.0, 0.0, 1.0});

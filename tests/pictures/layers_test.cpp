@@ -105,6 +105,29 @@ TEST_CASE("rays through an exponential atmosphere have its optical depth", "[gpu
     }
 }
 
+TEST_CASE("an exponential is what it is hundreds of scale heights up", "[gpu][image][layers]") {
+    for (const double top : {30.0, 80.0, 88.0, 300.0}) {
+        CAPTURE(top);
+        Volume air = medium(Box{{0.0, 0.5 * top, 0.0}, {1e4, top, 1e4}}, 1.0, 0.0, 0.3);
+        air.layers = {1, 0.0, top, 1.0, 0.0};
+        check_transmittance(parallel_rays(air, {3.0, top + 5.0, -2.0}, -50.0), 1.0 / std::sin(glm::radians(50.0)),
+                            "through all of it");
+        // In closed forms, and by null collisions, of one channel and of three.
+        for (const Rgb& albedo : {Rgb(0.8), Rgb(0.9, 0.6, 0.3)}) {
+            air.sigma_s = albedo;
+            air.sigma_a = Rgb(1.0) - albedo;
+            Scene scene = parallel_rays(air, {3.0, top + 5.0, -2.0}, -70.0);
+            scene.lights = {sunlight()};
+            scene.settings.spp = 256;
+            Scene tracked = scene;
+            tracked.settings.integrator = "ratioTracking";
+            tracked.settings.choices.free_flight = FREE_FLIGHT_DELTA;
+            tracked.settings.choices.transmittance = TRANSMITTANCE_RATIO;
+            CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_here(tracked, 2).film, "lit from above"));
+        }
+    }
+}
+
 TEST_CASE("rays through layers of a table have the sum of its slabs", "[gpu][image][layers]") {
     const double sigma_t = 0.8;
     // Trapezes: 1 high from 0.2 to 1, 1.5 high from 0.4 to 0.1, 1.5 high from 0.1 to 0.

@@ -181,6 +181,21 @@ TEST_CASE("looks from along flights find what lights of a place give", "[gpu][li
 
 // Of a flight only what is in the cone, or before the lamp, is drawn: rays across a cone, along it toward the lamp and
 // away from it, within it and past its back. The rims are hard where light would be missed first.
+// Whose part of a flight, as single precision has it, is rounding.
+TEST_CASE("looks from along flights leave what is far away to collisions", "[gpu][lights]") {
+    Scene scene = lit_by(medium(Box{{0.0, 0.0, 0.0}, {4.0, 3.0, 3.0}}, 0.4, 0.9, 0.2), 5.0, {}, 512);
+    scene.background = Rgb(0.0);
+    scene.settings.integrator = "ratioTracking";
+    for (const double apart : {1e6, 1e7, 5e7, 1e9}) {
+        const glm::dvec3 place = apart * glm::normalize(glm::dvec3(0.9, 0.5, 0.1));
+        scene.lights = {PointLight{place, Rgb(2.0 * apart * apart)}};
+        scene.settings.choices.distance = DISTANCE_FLIGHTS;
+        const Film flights = render_here(scene, 41).film;
+        scene.settings.choices.distance = DISTANCE_MIXED;
+        CHECK_AGREEMENT(agree(render_here(scene, 42).film, flights, fmt::format("a point {} away", apart)));
+    }
+}
+
 TEST_CASE("looks from along flights know what a spot or a flat lamp lights", "[gpu][lights]") {
     const glm::dvec3 across = glm::normalize(glm::dvec3(0.3, -1.0, 0.2)), along(0.05, 0.02, -1.0);
     const std::pair<const char*, Light> lights[] = {
@@ -342,6 +357,8 @@ TEST_CASE("lamps are seen", "[gpu][lights]") {
     }
     Scene absorbing = lit_by(medium(Sphere{{0, 0, 0}, 2.0}, 0.7, 0.0), 12.0, lamps, 64);
     CHECK_AGREEMENT(agree(render_here(absorbing, 33).film, render_reference(absorbing, 34), "lamps and an absorber"));
+    absorbing.settings.choices.scattering = SCATTERING_NONE; // flights go through at once
+    CHECK_AGREEMENT(agree(render_here(absorbing, 35).film, render_reference(absorbing, 36), "lamps, straight on"));
     const Mesh cube = make_box({-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}, 1);
     Scene mesh = lit_by(medium(write_mesh(cube), 1.0, 0.5), 12.0, lamps, 64);
     mesh.camera = scene_of(cloud(), 12.0, 16, 25.0).camera; // the first lamp is before the cube

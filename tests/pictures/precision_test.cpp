@@ -140,7 +140,13 @@ TEST_CASE("a camera a million radii away sees its window exactly", "[gpu][precis
     scene.background = Rgb(1.0);
     scene.lights = {sunlight()};
     scene.settings.spp = 1024;
-    CHECK_AGREEMENT(agree(render_here(scene, 61).film, render_reference(scene, 62), "ball from a million radii"));
+    const Film reference = render_reference(scene, 62);
+    CHECK_AGREEMENT(agree(render_here(scene, 61).film, reference, "ball from a million radii"));
+    Scene beside = scene; // of a plane below all there is, which shines as what it hides
+    beside.surfaces.emplace_back().shape = PlaneSurface{{0.0, -1e9, 0.0}, {0.0, 1.0, 0.0}};
+    beside.surfaces.back().material.color = Rgb(0.0);
+    beside.surfaces.back().emission = scene.background;
+    CHECK_AGREEMENT(agree(render_here(beside, 61).film, reference, "with a plane"));
     scene.volumes = {medium(write_grid(cloud_grid()), 1.0, 0.8, 0.3)};
     scene.camera.position *= 10.0; // the cloud is ten wide
     scene.settings.spp = 512;

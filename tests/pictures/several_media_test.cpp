@@ -222,6 +222,30 @@ TEST_CASE("what is nothing beside a medium changes nothing", "[gpu][image][sever
     Scene beside = whole;
     beside.volumes.push_back(medium(Sphere{{0.0, 0.0, 0.0}, 9.0}, 0.0, 0.0));
     CHECK_AGREEMENT(agree(render_here(beside, 1).film, render_here(whole, 2).film, "nothing"));
+    beside.volumes.push_back(medium(Everywhere{}, 0.3, 0.5)); // which has no matter, and so no cells without end
+    beside.volumes.back().density_scale = 0.0;
+    CHECK_AGREEMENT(agree(render_here(beside, 1).film, render_here(whole, 2).film, "and nothing everywhere"));
+    Scene boxed = lit_scene(medium(Box{{0.1, 0.0, 0.0}, {2.0, 1.5, 1.0}}, 1.5, 0.9, 0.2));
+    beside.volumes.front() = boxed.volumes.front();
+    const RenderResult box = render_here(beside, 1);
+    CHECK(box.counts.step_caps == 0);
+    CHECK_AGREEMENT(agree(box.film, render_here(boxed, 2).film, "beside a box"));
+    Scene grids = lit_scene(cloud());
+    Scene before = grids;
+    GridRecipe dense{{-3, -4, -5}, {6, 7, 8}, [](glm::ivec3) { return 3.0f; }};
+    before.volumes.insert(before.volumes.begin(), medium(write_grid(dense), 2.0, 0.5));
+    before.volumes.front().density_scale = 0.0;
+    CHECK_AGREEMENT(agree(render_here(before, 1).film, render_here(grids, 2).film, "a grid that fades in"));
+    // Of colours, beside what is seen through it.
+    Scene colored = whole;
+    colored.volumes = {medium(Sphere{{0.0, 0.0, 0.0}, 1.5}, 0.0, 0.0)};
+    colored.volumes.front().sigma_a = {0.1, 0.2, 0.4};
+    colored.volumes.front().density_scale = 0.0;
+    colored.surfaces.emplace_back().shape = BallSurface{{0.5, 0.2, -1.0}, 0.7};
+    Scene without = colored;
+    without.volumes.clear();
+    CHECK_AGREEMENT(agree(render_here(colored, 1).film, render_here(without, 2).film, "before a ball"));
+    beside.volumes.resize(2);
     beside.volumes.front().sigma_a = beside.volumes.front().sigma_s = Rgb(0.0);
     const Film empty = render_here(beside, 1).film;
     for (const glm::vec3& pixel : empty.mean)

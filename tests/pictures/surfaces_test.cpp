@@ -224,6 +224,43 @@ TEST_CASE("faces that stand for something round equal the reference", "[gpu][ima
     check_by_both_schedules(scene, "smooth faces");
 }
 
+// Products of edges are of the fourth power of a scene's size.
+TEST_CASE("smooth faces are as smooth in scenes of any size", "[gpu][image][surfaces]") {
+    const auto at_scale = [](double scale) {
+        Scene scene = empty_scene();
+        scene.camera.position *= scale;
+        scene.camera.lens.focus *= scale;
+        TriangleSurface mesh = round_mesh(4, scale);
+        for (const auto& triangle : mesh.triangles) {
+            glm::mat3 normals;
+            for (int corner = 0; corner < 3; ++corner)
+                normals[corner] = glm::normalize(mesh.vertices[triangle[corner]]);
+            mesh.normals.push_back(normals);
+        }
+        scene.surfaces = {ball(grey(0.8))};
+        scene.surfaces.front().shape = mesh;
+        scene.lights = {sunlight()};
+        scene.background = Rgb(0.2);
+        return scene;
+    };
+    const Film usual = render_here(at_scale(1.0), 1).film;
+    for (const double scale : {1e-7, 1e6, 1e10})
+        CHECK_AGREEMENT(agree(render_here(at_scale(scale), 2).film, usual, fmt::format("scale {}", scale)));
+}
+
+TEST_CASE("what shines is seen where no scattering is left", "[gpu][surfaces]") {
+    Scene scene = empty_scene();
+    scene.volumes = {medium(Sphere{{0.0, 0.0, 0.0}, 1.2}, 0.5, 0.0)};
+    scene.surfaces = {ball(grey(0.5))};
+    scene.surfaces.front().emission = Rgb(2.0);
+    scene.settings.max_depth = 0;
+    scene.settings.choices.scattering = SCATTERING_NONE;
+    const Film none = render_here(scene, 1).film;
+    CHECK(image_mean(none).value.x > 0.1);
+    scene.settings.choices.scattering = SCATTERING_SINGLE;
+    CHECK_AGREEMENT(agree(render_here(scene, 2).film, none, "single scattering, of depth 0"));
+}
+
 TEST_CASE("looks and flights share a map of the sky on surfaces as in matter", "[gpu][image][surfaces]") {
     Scene scene = empty_scene();
     scene.lights = {write_sky(make_map(8, 4, [](int, int) { return Rgb(1.0); }))};
@@ -532,10 +569,19 @@ TEST_CASE("surfaces are read, moved and refused by name", "[xml][surfaces]") {
     CHECK(scene.surfaces[7].material.ior == 1.4);
 
     const std::string glass = "<surfaces><box material=\"dielectric\"/></surfaces>";
-    CHECK(warns(parse(glass + "<lights><point/><sphere/></lights>"), "no path finds what directional lights"));
-    CHECK_FALSE(warns(parse(glass + "<lights><sun y=\"1\"/><sphere/></lights>"), "no path finds"));
+    const auto shadowed = [](const std::string& text, const char* integrator) {
+        Scene scene = parse(text);
+        scene.settings.integrator = integrator;
+        const std::vector<std::string> warnings = choose_method(with_preset(scene)).warnings;
+        return std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+            return warning.find("no path from") != std::string::npos;
+        });
+    };
+    CHECK(shadowed(glass + "<lights><point/><sphere/></lights>", "ratioTracking"));
+    CHECK_FALSE(shadowed(glass + "<lights><point/><sphere/></lights>", "bidirectional"));
+    CHECK_FALSE(shadowed(glass + "<lights><sun y=\"1\"/><sphere/></lights>", "ratioTracking"));
     const std::string frosted_glass = "<surfaces><box material=\"dielectric\" roughness=\".1\"/></surfaces>";
-    CHECK_FALSE(warns(parse(frosted_glass + "<lights><point/></lights>"), "no path finds"));
+    CHECK_FALSE(shadowed(frosted_glass + "<lights><point/></lights>", "ratioTracking"));
 
     const auto refused = [](const std::string& surface) { return error_of("<surfaces>" + surface + "</surfaces>"); };
     CHECK_THAT(refused("<sphere material=\"gold\"/>"), Contains("2:19") && Contains("'gold' is unknown"));

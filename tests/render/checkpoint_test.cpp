@@ -158,6 +158,12 @@ TEST_CASE("a checkpoint is continued by its own render alone", "[gpu][checkpoint
         albedo.value = [](glm::ivec3 voxel) { return 0.5f + 0.5f * cloud_noise(voxel + 1); };
         other.volumes.front().shape = write_grids({cloud_grid(), albedo});
     }
+    SECTION("of what a map's points emit") {
+        other.volumes.front().map.is_transfer = true;
+        other.volumes.front().map.points = {{0.0, 0.0}, {1.0, 1.0, Rgb(0.5), Rgb(1.0)}};
+        render_part(other, job);
+        other.volumes.front().map.points.back().emission = Rgb(5.0);
+    }
     SECTION("of one of several media") {
         other.volumes.push_back(medium(Sphere{{0.0, 0.0, 0.0}, 3.0}, 0.5, 0.5));
         render_part(other, job);

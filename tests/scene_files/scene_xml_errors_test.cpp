@@ -51,6 +51,11 @@ TEST_CASE("a scene that is rendered as asked warns of nothing", "[cpu][xml]") {
 TEST_CASE("unknown names are errors with the nearest known name", "[cpu][xml]") {
     CHECK(error_of("    <sigma_b>1</sigma_b>") == "s.xml:2:5: unknown element <sigma_b>; did you mean <sigma_a>?");
     CHECK(error_of("<Camera/>") == "s.xml:2:1: unknown element <Camera>; did you mean <camera>?");
+    CHECK_THAT(error_of("<sigma_t>1</sigma_t>"), Catch::Contains("unknown element <sigma_t>; extinction is sigma_a"));
+    CHECK_THAT(error_of("<phase g=\".5\">rayleigh</phase>"), Catch::Contains("mean cosine is <heyneygreenstein_g>"));
+    CHECK_THAT(error_of("<sigma_s>1 2 3</sigma_s>"), Catch::Contains("one for each channel"));
+    CHECK_THAT(error_of("<camera lookAt=\"0, 1, 0\"/>"), Catch::Contains("stand spaces, no commas"));
+    CHECK_THAT(error_of("<sphere r=\"2\"/>"), Catch::Contains("did you mean radius?"));
     CHECK_THAT(error_of("<zzz/>"), Catch::StartsWith("s.xml:2:1: unknown element <zzz>; known are <densityField>, "));
     CHECK(error_of(R"(<camera x="1" pich="2"/>)") ==
           "s.xml:2:15: unknown attribute 'pich' of <camera>; did you mean pitch?");

@@ -290,6 +290,8 @@ TEST_CASE("nearest names", "[cpu][xml]") {
     CHECK(edit_distance("ab", "ba") == 1);
     CHECK(nearest_name("hight", {"width", "height"}) == "height");
     CHECK(nearest_name("xyz", {"width", "height"}).empty());
+    CHECK(nearest_name("r", {"x", "y", "radius"}) == "radius");
+    CHECK(nearest_name("q", {"x", "y", "radius"}).empty());
 }
 
 TEST_CASE("the scene hash follows what the picture depends on", "[cpu][xml]") {

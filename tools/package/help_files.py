@@ -10,13 +10,13 @@ import subprocess
 import sys
 from pathlib import Path
 
-FILES = {"image": "exr", "scene": "xml pbrt nvdb vdb", "grid": "nvdb vdb"}  # endings, by what a command takes
+FILES = {"image": "exr", "scene": "xml pbrt nvdb vdb", "scene file": "xml pbrt", "pbrt": "pbrt", "grid": "nvdb vdb"}  # endings, by what a command takes
 COMMANDS = {"render": "scene", "devices": "", "info": "grid", "integrators": "", "compare": "image", "merge": "image",
-            "develop": "image", "convert": "scene", "init": "grid", "measure": "scene", "view": "scene", "bench": "scene", "demo": ""}
+            "develop": "image", "convert": "pbrt", "init": "grid", "measure": "scene", "view": "scene", "bench": "scene file", "demo": ""}
 CHOICES = {"--tonemap": "srgb aces agx reinhard", "--progress": "auto json none", "--schedule": "auto fused staged",
            "--up": "y z", "--exposure": "auto", "--device": "auto cpu"}
-VALUES = {"--integrator": "integrators"}  # words that the program itself lists
-OF_FILES = {"-o", "--output", "--report", "--grid", "--reference"}
+VALUES = {"--integrator": "integrators", "--integrators": "integrators"}  # words that the program itself lists
+OF_FILES = {"-o", "--output", "--report", "--grid", "--reference", "--bands"}
 
 
 class Option:
@@ -37,7 +37,7 @@ def options_of(help_text):
         if not match:
             continue
         text = match[3] or (lines[at + 1].strip() if at + 1 < len(lines) and lines[at + 1].startswith("    ") else "")
-        found.append(Option(match[1].split(","), bool(match[2]), re.split(r"[;.] ", text)[0].rstrip(".")))
+        found.append(Option(match[1].split(","), bool(match[2]), re.split(r"[;.] ", text.replace("e.g. ", "e.g.\u00a0"))[0].replace("\u00a0", " ").rstrip(".")))
     return found
 
 
@@ -45,7 +45,7 @@ def bash(commands, integrators):
     cases = "\n".join(f"    {name}) options='{' '.join(n for o in options for n in o.names)}' endings='{FILES.get(COMMANDS[name], '')}' ;;"
                       for name, options in commands.items())
     values = "\n".join(f"    {name}) COMPREPLY=($(compgen -W '{words}' -- \"$word\")); return ;;"
-                       for name, words in {**CHOICES, "--integrator": " ".join(integrators)}.items())
+                       for name, words in {**CHOICES, **{option: " ".join(integrators) for option in VALUES}}.items())
     plain = "|".join(sorted({n for options in commands.values() for o in options for n in o.names
                              if o.takes_value and n not in CHOICES and n not in VALUES and n not in OF_FILES}))
     return f"""# Completion of vkvol's words in bash; made from vkvol --help.

@@ -6,7 +6,7 @@ uint analytic_flight(MediumParams v, inout Walk w, inout Spectrum beta, out Spec
         return EVENT_LEFT;
     float rest = w.t_end - w.t;
     float mean = 1.0, tau = w.tau;
-    Fading fading = Fading(1.0, 0.0);
+    Fading fading = Fading(0.0, 0.0);
     if (LAYERED) {
         fading = fading_along(v, w.origin, w.direction);
         mean = faded_depth(fading, rest) / rest;
