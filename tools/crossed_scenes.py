@@ -145,7 +145,7 @@ class Writer:
         if shape in ("layers", "everywhere"):
             up = self.r.choice(["x", "y", "z"])
             if self.some(0.5):
-                text += f'<layers up="{up}" scaleHeight="{self.number(0.3, 2)}" height="{self.number(-1, 0.5)}"/>'
+                text += f'<layers up="{up}" scaleHeight="{self.number(0.3, 2) if self.some(0.8) else self.number(0.01, 0.04)}" height="{self.number(-1, 0.5) if self.some(0.5) else -1}"/>'
             else:
                 transfer = self.some(0.5)
                 text += f'<layers up="{up}">{self.layers(transfer)}</layers>'
@@ -153,6 +153,8 @@ class Writer:
             text = "<everywhere/>" + text
         if not transfer:
             text += self.coefficients()
+        if self.some(0.15) and not alone:
+            text += f'<lightRayDensityMultiplier>{self.r.choice([0, 0.5])}</lightRayDensityMultiplier>'
         text += self.phase()
         if self.some(0.25):
             text += f"<medium {self.color(0, 0.5)}/>"

@@ -44,6 +44,16 @@ std::string box_text(const WorldBox& box) {
     return fmt::format("{} to {}", text_of(box.low), text_of(box.high));
 }
 
+// Of all media.
+std::pair<double, double> least_and_most_albedo(const Scene& scene) {
+    double low = 1.0, high = 0.0;
+    for (const Volume& volume : scene.volumes) {
+        low = std::min(low, least(albedo_of(volume)));
+        high = std::max(high, largest(most_map_albedo(volume) * albedo_of(volume)));
+    }
+    return {low, high};
+}
+
 // The emission that the scene asks for, whether there will be any or not.
 bool wants_glow(const Evidence& e) {
     const Volume* volume = volume_of(e.authored);
@@ -128,6 +138,9 @@ Answer no_medium(const Evidence& e) {
     if (!shows_nothing(e) || !e.result || e.result->outline.exists)
         return {};
     const Volume* volume = volume_of(e.authored);
+    if (e.authored.volumes.size() > 1)
+        return "none of the media holds anything: of each either sigma_a and sigma_s are 0, or the density is, or "
+               "lightRayDensityMultiplier";
     if (!volume)
         return "the scene has no medium; add a <densityField>, <sphere>, <box> or <models>";
     if (volume->density_scale == 0.0)
@@ -201,8 +214,8 @@ Answer too_thin(const Evidence& e) {
     constexpr double thin = 0.02; // a screen shows half a per cent of contrast
     if (!shows_nothing(e) || !e.sight || e.sight->most_depth > thin)
         return {};
-    const Volume& volume = *volume_of(e.scene);
-    const bool by_voxel = e.result->outline.voxel > 0.0 && volume.unit == CoefficientUnit::voxel;
+    const Volume* volume = volume_of(e.scene);
+    const bool by_voxel = volume && e.result->outline.voxel > 0.0 && volume->unit == CoefficientUnit::voxel;
     const std::string unit =
         by_voxel ? fmt::format(" (sigma_a and sigma_s are per voxel, of {:.3g} world units)", e.result->outline.voxel)
                  : "";
@@ -212,9 +225,10 @@ Answer too_thin(const Evidence& e) {
 }
 
 Answer cold_glow(const Evidence& e) {
-    if (e.odd != Odd::black || !e.result || !e.result->outline.has_temperature || sees_light(e))
+    const Volume* volume = volume_of(e.scene);
+    if (e.odd != Odd::black || !volume || !e.result || !e.result->outline.has_temperature || sees_light(e))
         return {};
-    const TemperatureEmission& emission = volume_of(e.scene)->temperature;
+    const TemperatureEmission& emission = volume->temperature;
     const double hottest = e.result->outline.hottest;
     // Of the luminance at the reference temperature, six tenths of it have 1e-5.
     const bool faint = hottest < 0.6 * emission.reference;
@@ -239,15 +253,15 @@ Answer depth_limit(const Evidence& e) {
 
 Answer absorbs_all(const Evidence& e) {
     constexpr double soot = 0.01;
-    const Volume* volume = volume_of(e.scene);
     if (e.odd != Odd::black || !e.sight || e.emits || e.sight->most_depth < deep / 2.0)
         return {};
     const bool scatters = e.method.scattering != SCATTERING_NONE;
-    if (scatters && largest(albedo_of(*volume)) > soot)
+    const double albedo = least_and_most_albedo(e.scene).second;
+    if (scatters && albedo > soot)
         return {};
     return fmt::format("the medium absorbs whatever enters it, {}, and its optical depth reaches {:.3g}; lower "
                        "sigma_a, {}",
-                       scatters ? fmt::format("with an albedo of {:.2g}", largest(albedo_of(*volume)))
+                       scatters ? fmt::format("with an albedo of {:.2g}", albedo)
                                 : fmt::format("since {} scatters nothing", e.method.integrator),
                        e.sight->most_depth, scatters ? "or raise sigma_s" : "or use --integrator ratioTracking");
 }
@@ -275,22 +289,22 @@ glm::dvec3 light_direction(const Evidence& e) {
 
 // What Henyey and Greenstein's phase function makes of light that goes straight from the light to the camera, to that
 // of isotropic scattering.
-double phase_to_camera(const Evidence& e) {
-    const double g = volume_of(e.scene)->g;
+double phase_to_camera(const Evidence& e, double g) {
     const double mu = glm::dot(light_direction(e), e.sight->forward); // of the angle of scattering
     return (1.0 - g * g) / std::pow(1.0 + g * g - 2.0 * g * mu, 1.5);
 }
 
 Answer phase_peak(const Evidence& e) {
-    if (e.odd != Odd::black || !e.sight || !sees_light(e) || e.emits)
+    const Volume* volume = volume_of(e.scene);
+    if (e.odd != Odd::black || !volume || !e.sight || !sees_light(e) || e.emits)
         return {};
-    const double g = volume_of(e.scene)->g;
-    if (volume_of(e.scene)->phase != PhaseFunction::henyey_greenstein || std::abs(g) < 0.8 ||
-        phase_to_camera(e) > 0.05 || !only_directional(e.scene.lights))
+    const double g = volume->g;
+    if (volume->phase != PhaseFunction::henyey_greenstein || std::abs(g) < 0.8 || phase_to_camera(e, g) > 0.05 ||
+        !only_directional(e.scene.lights))
         return {};
     return fmt::format("the medium scatters the light past the camera: with heyneygreenstein_g {:g}, {:.1g} of what "
                        "it would be by even scattering comes this way; lower it, or let the light shine {} the camera",
-                       g, phase_to_camera(e), g > 0.0 ? "towards" : "from behind");
+                       g, phase_to_camera(e, g), g > 0.0 ? "towards" : "from behind");
 }
 
 Answer backlit(const Evidence& e) {
@@ -334,17 +348,16 @@ Answer dim(const Evidence& e) {
 Answer unlit(const Evidence& e) {
     if (e.odd != Odd::black || !e.sight)
         return {};
-    const Volume& volume = *volume_of(e.scene);
+    const bool is_most = e.scene.volumes.size() > 1 || any_medium(e.scene, has_albedo_of_place);
     return fmt::format(
         "none of its {} paths met light; the optical depth in view reaches {:.3g}, the albedo is {:.3g}{}",
-        e.result->counts.paths, e.sight->most_depth, largest(most_map_albedo(volume) * albedo_of(volume)),
-        has_albedo_of_place(volume) ? " at most" : "");
+        e.result->counts.paths, e.sight->most_depth, least_and_most_albedo(e.scene).second, is_most ? " at most" : "");
 }
 
 Answer furnace(const Evidence& e) {
     if (e.odd != Odd::background || !e.sight || e.emits || sees_light(e))
         return {};
-    if (least(albedo_of(*volume_of(e.scene))) < 0.98 || e.method.scattering != SCATTERING_MULTIPLE)
+    if (least_and_most_albedo(e.scene).first < 0.98 || e.method.scattering != SCATTERING_MULTIPLE)
         return {};
     return "a medium that absorbs next to nothing cannot be told from a background that is the same everywhere; add a "
            "<light>, or raise sigma_a";

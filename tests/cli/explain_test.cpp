@@ -310,6 +310,24 @@ TEST_CASE("light that the medium does not scatter is explained", "[gpu][explain]
     CHECK(explanation_of(blue).cause == "");
 }
 
+TEST_CASE("pictures of several media explain themselves as well", "[gpu][explain]") {
+    const auto two = [](const std::string& sigmas, const std::string& more) {
+        return explanation_of("<volumes><volume><sphere/>" + sigmas + "</volume><volume><box x=\"0.5\"/>" + sigmas +
+                              "<heyneygreenstein_g>0.9</heyneygreenstein_g></volume></volumes><camera z=\"6\" "
+                              "fov=\"40\"/>" +
+                              picture + more)
+            .cause;
+    };
+    const std::string behind = "<backgroundColor r=\"1\" g=\"1\" b=\"1\"/>",
+                      sun = "<light y=\"1\" r=\"9\" g=\"9\" b=\"9\"/>";
+    CHECK(two("<sigma_a>0</sigma_a><sigma_s>1e-4</sigma_s>", behind) == "tooThin");
+    CHECK(two("<sigma_a>0</sigma_a><sigma_s>2</sigma_s>", behind) == "furnace");
+    CHECK(two("<sigma_a>9</sigma_a><sigma_s>0</sigma_s>", sun) == "absorbsAll");
+    CHECK(two("<sigma_a>0</sigma_a><sigma_s>0</sigma_s>", behind) == "noMedium");
+    CHECK(two("<sigma_a>1</sigma_a><sigma_s>1</sigma_s>", sun) == "");
+    CHECK(two("<sigma_a>1</sigma_a><sigma_s>1</sigma_s>", sun + "<integrator>deltaTracking</integrator>") != "");
+}
+
 TEST_CASE("what is seen may be white before black", "[gpu][explain]") {
     const Found white = explanation_of(with(lit_ball, "r=\"5\" g=\"5\" b=\"5\"", "r=\"5e9\" g=\"5e9\" b=\"5e9\""));
     CHECK(white.cause == "overexposed");
