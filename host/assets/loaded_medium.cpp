@@ -396,6 +396,8 @@ Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
         try {
             assets.media.push_back(loader.load(volume));
             check_limits(scene, volume, assets.media.back(), method);
+            if (const std::string trouble = too_short_paths(scene, volume, assets.media.back()); !trouble.empty())
+                assets.media.back().warnings.push_back(volume.place.empty() ? trouble : volume.place + ": " + trouble);
         } catch (const InputError& error) { // of the file, say; the scene says who asked for it
             if (volume.place.empty())
                 throw;

@@ -133,6 +133,27 @@ void check_glow(const Volume& volume, const LoadedMedium& loaded) {
 
 } // namespace
 
+// A ball of optical depth 1e6 across, of albedo 0.9 in an even sky, shines by 3 % too little, one of 1e7 by 6 %, and
+// all beyond by 20 %: a path that collides nearer to the face than places are known to leaves by chance.
+std::string too_short_paths(const Scene& scene, const Volume& volume, const LoadedMedium& loaded) {
+    constexpr double most = 3e5; // mean free paths in half of the medium's diagonal
+    const bool empty_grid = std::holds_alternative<GridFile>(volume.shape) && !loaded.field;
+    if (empty_grid || is_everywhere(volume) || volume.sigma_s * most_map_albedo(volume) == Rgb(0.0))
+        return "";
+    const double sigma_t = largest(world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr));
+    const double densest = loaded.majorants ? loaded.majorants->most / scene.settings.majorant_scale
+                           : volume.noise   ? noise_bound(*volume.noise)
+                                            : 1.0;
+    const double size = 0.5 * extent_of(volume, loaded).diagonal, paths = sigma_t * densest * size;
+    if (!(paths > most))
+        return "";
+    return fmt::format(
+        "where the medium is densest a mean free path is {:.1e} world units, of the size that single "
+        "precision tells places apart by in a medium of this size, and light that scatters near its faces "
+        "is wrong by some per cent; {:.0e} of the density looks the same, and is right",
+        1.0 / (sigma_t * densest), most / paths);
+}
+
 void check_limits(const Scene& scene, const Volume& volume, const LoadedMedium& loaded, const Method& method) {
     const bool empty_grid = std::holds_alternative<GridFile>(volume.shape) && !loaded.field;
     if (empty_grid)

@@ -190,9 +190,15 @@ private:
         const Pieces& pieces = pieces_.of(member.volume, member.loaded, finest);
         const glm::dmat4 map = to_cells_ * member.to_world;
         const glm::ivec3 dims = whole_.dims();
+        // A grid's pieces are of whole cells, of which some is beyond its voxels.
+        const MediumBounds bounds = medium_bounds(member.loaded);
         for (const Pieces::Piece& piece : pieces.parts) {
+            const glm::dvec3 from = glm::max(piece.middle - pieces.half, glm::dvec3(bounds.low)),
+                             to = glm::min(piece.middle + pieces.half, glm::dvec3(bounds.high));
+            if (glm::any(glm::greaterThan(from, to)))
+                continue;
             // A point on the device may be as far aside as single precision lets it be.
-            const AxisBox box = around(map, piece.middle, pieces.half);
+            const AxisBox box = around(map, 0.5 * (from + to), 0.5 * (to - from));
             const glm::dvec3 margin = 1e-4 + 1e-6 * glm::max(glm::abs(box.low), glm::abs(box.high));
             const glm::ivec3 low =
                 glm::clamp(glm::ivec3(glm::floor(box.low - margin)) - whole_.cells.origin, glm::ivec3(0), dims - 1);

@@ -26,9 +26,17 @@ path behind_links(const path& name) {
     return error ? name : real;
 }
 
+// A stream of this process, even if it ends in a file: who sent it there wants it gone on with.
+bool is_stream(const path& target) {
+    const std::string name = target.lexically_normal().string();
+    return name == "/dev/stdout" || name == "/dev/stderr" || name.starts_with("/dev/fd/") ||
+           name.starts_with("/proc/self/fd/");
+}
+
 // To open a pipe waits for its reader, and no signal would end that.
 int open_special(const path& target) {
-    constexpr int flags = O_WRONLY | O_CLOEXEC, milliseconds = 50;
+    constexpr int milliseconds = 50;
+    const int flags = O_WRONLY | O_CLOEXEC | (is_stream(target) ? O_APPEND : 0);
     std::error_code error;
     if (!std::filesystem::is_fifo(target, error))
         return open(target.c_str(), flags);
@@ -57,6 +65,8 @@ path temporary_name(const path& target) {
 }
 
 bool is_special(const path& target) {
+    if (is_stream(target))
+        return true;
     std::error_code ignored;
     const std::filesystem::file_status status = std::filesystem::status(target, ignored);
     return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
@@ -64,8 +74,8 @@ bool is_special(const path& target) {
 }
 
 AtomicFile::AtomicFile(const path& name)
-    : target_(behind_links(name)), temporary_(temporary_name(target_)), special_(is_special(target_)),
-      interrupted_before_(interrupted()) {
+    : target_(is_stream(name) ? name : behind_links(name)), temporary_(temporary_name(target_)),
+      special_(is_special(target_)), interrupted_before_(interrupted()) {
     if (special_)
         descriptor_ = open_special(target_);
     else

@@ -164,6 +164,13 @@ Reference read_reference(const std::filesystem::path& file, const std::vector<Es
     if (const auto most = std::max_element(reference.film.samples.begin(), reference.film.samples.end()); *most == 1)
         throw InputError(fmt::format("{}: one sample per pixel tells no variance, and makes no reference; render more",
                                      file.string()));
+    const auto is_exact = [](const glm::vec3& v) { return v == glm::vec3(0.0f); };
+    const std::vector<glm::vec3>& variance = reference.film.variance;
+    if (const std::string biased = text_of(metadata, "vkvol/biased");
+        !biased.empty() && std::all_of(variance.begin(), variance.end(), is_exact)) // as of denoised ones
+        throw InputError(fmt::format("{}: does not know its variance, and is biased: {}; a render as it was makes a "
+                                     "reference",
+                                     file.string(), biased));
     reference.file = file.string();
     reference.cached = true;
     return reference;

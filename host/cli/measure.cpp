@@ -13,6 +13,7 @@
 #include "input_file.h"
 #include "interrupt.h"
 #include "messages.h"
+#include "render_notes.h"
 #include "render_scene.h"
 #include "requested_scene.h"
 #include "session.h"
@@ -209,6 +210,7 @@ int run_measure(const MeasureOptions& options) {
     std::vector<Values> rows;
     bool was_interrupted = false;
     std::size_t added = 0; // bands of one reading
+    RenderResult told;     // what all readings together were cut short by
     const auto measure_band = [&](const Values& values, std::size_t band, Film& sum) {
         of_values(options.sweeps, values, bands[band], [&] {
             const RenderScene loaded = load_render_scene(request_of(options, values, bands[band]), workshop.fields());
@@ -219,6 +221,15 @@ int run_measure(const MeasureOptions& options) {
                 if (!options.quiet)
                     tell(stderr, "vkvol: warning: {}\n", warning);
             was_interrupted = result.interrupted;
+            told.counts.depth_caps += result.counts.depth_caps;
+            told.counts.step_caps += result.counts.step_caps;
+            told.counts.abandoned += result.counts.abandoned;
+            told.counts.majorant_violations += result.counts.majorant_violations;
+            told.counts.non_finite += result.counts.non_finite;
+            told.counts.cleaned_voxels = std::max(told.counts.cleaned_voxels, result.counts.cleaned_voxels);
+            if (!result.biased.empty() && !options.quiet)
+                for (const std::string& why : workshop.new_warnings({"the readings are biased: " + result.biased}))
+                    tell(stderr, "vkvol: note: {}\n", why);
             if (result.samples == 0 && !was_interrupted)
                 throw RenderError("ended before any sample was done");
             if (result.samples > 0) {
@@ -244,6 +255,8 @@ int run_measure(const MeasureOptions& options) {
         throw;
     }
     write(options, rows);
+    if (!options.quiet)
+        print_caps(options.request, told);
     return was_interrupted ? exit_interrupted : exit_done;
 }
 

@@ -203,7 +203,7 @@ std::optional<glm::dvec3> merged_sum_variance(const std::vector<MergeInput>& inp
             return std::nullopt;
         const Crop& crop = input.film.crop;
         Window& window = windows[{crop.x0, crop.x1, crop.y0, crop.y1}];
-        const double n = input.film.samples.front();
+        const double n = *std::max_element(input.film.samples.begin(), input.film.samples.end()); // elsewhere are holes
         window.weighted += n * n * *input.film.sum_variance;
         window.samples += n;
     }

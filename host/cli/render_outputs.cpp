@@ -47,7 +47,11 @@ void RenderOutputs::write(const Device& device, const RenderResult& result, cons
     const Metadata metadata = make_metadata(options_, scene_, device, result);
     std::string failures, written;
     bool exr_written = false;
-    for (const std::filesystem::path& output : options_.outputs)
+    // The others are made of what is in an EXR, and are not older: see rendered_before.cpp.
+    std::vector<std::filesystem::path> outputs = options_.outputs;
+    std::stable_partition(outputs.begin(), outputs.end(),
+                          [](const std::filesystem::path& output) { return file_ending(output) == ".exr"; });
+    for (const std::filesystem::path& output : outputs)
         try {
             if (is_reading_grid(output))
                 write_text(output, reading_grid(result.film, scene_.camera));

@@ -1,5 +1,7 @@
 #include "rendered_before.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <string>
 
 #include "checkpoint_file.h"
@@ -46,11 +48,18 @@ std::optional<int> rendered_before(const RenderOptions& options, const Scene& sc
     FileUses uses;
     uses.reads_files_of(scene);
     std::optional<int> code;
+    auto first = std::filesystem::file_time_type::min(); // of what is made of an EXR
+    for (const std::filesystem::path& output : outputs)
+        if (file_ending(output) == ".exr")
+            first = std::max(first, std::filesystem::last_write_time(output, error));
     for (const std::filesystem::path& output : outputs) {
         if (!std::filesystem::is_regular_file(output, error) || !uses.is_newer_than_inputs(output))
             return std::nullopt;
-        if (file_ending(output) != ".exr")
+        if (file_ending(output) != ".exr") {
+            if (std::filesystem::last_write_time(output, error) < first)
+                return std::nullopt;
             continue;
+        }
         code = code_of(output, options, scene);
         if (!code)
             return std::nullopt;

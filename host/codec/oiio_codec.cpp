@@ -109,7 +109,9 @@ OIIO::ImageSpec png_spec(const PictureHeader& header) {
 class OiioCodec : public PictureCodec {
 public:
     std::unique_ptr<PictureReader> open(const std::filesystem::path& file, std::string& reason) const override {
-        std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
+        OIIO::ImageSpec as_stored; // a PNG's colours are not multiplied by its alpha
+        as_stored.attribute("oiio:UnassociatedAlpha", 1);
+        std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), &as_stored);
         if (input)
             return std::make_unique<OiioReader>(std::move(input));
         reason = reason_of(OIIO::geterror());

@@ -74,6 +74,10 @@ struct GlowBox {
     glm::dmat3 edges;
 
     double volume() const { return std::abs(glm::determinant(edges)); }
+    double area() const {
+        return 2.0 * (glm::length(glm::cross(edges[0], edges[1])) + glm::length(glm::cross(edges[1], edges[2])) +
+                      glm::length(glm::cross(edges[2], edges[0])));
+    }
     glm::dvec3 at(int i) const { return corner + edges * glm::dvec3(i & 1, i >> 1 & 1, i >> 2); }
 };
 
@@ -164,7 +168,9 @@ Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumPar
         if (!(usual > 0.0))
             continue;
         boxes.push_back(box_of(rows[i]));
-        glow.power += 4.0 * pi * boxes.back().volume() * rows[i].usual_sigma_t * usual;
+        const double power = 4.0 * pi * boxes.back().volume() * rows[i].usual_sigma_t * usual;
+        glow.power += power;
+        glow.hidden += std::max(power - pi * boxes.back().area() * usual, 0.0);
         glow.most = std::max(glow.most, even + hottest_radiance(scene.volumes[i], loaded[i]));
     }
     if (boxes.empty())
@@ -200,10 +206,11 @@ EmitterTable make_emitter_table(const Scene& scene, const Method& method, const 
         emitters.add(SOURCE_GLOW, glow.power);
     }
     emitters.finish();
+    // What a sensor counts is absorbed, too; a camera sees what leaves.
+    const double shown = table.params.power - (method.paths == PATHS_LIGHT && !counts ? glow.hidden : 0.0);
     const double reach = bounded && radius > 0.0 ? radius : 1.0;
-    table.params.unit =
-        static_cast<float>(unit_of_splats(table.params.power, counts ? sensor : 4.0 * pi * pi * reach * reach,
-                                          brightest_of(scene, lights, surfaces, glow, sky)));
+    table.params.unit = static_cast<float>(unit_of_splats(shown, counts ? sensor : 4.0 * pi * pi * reach * reach,
+                                                          brightest_of(scene, lights, surfaces, glow, sky)));
     return table;
 }
 

@@ -19,6 +19,7 @@ struct EmitterTable {
 // render space.
 struct Glow {
     double power = 0.0, most = 0.0;
+    double hidden = 0.0; // of the power what a black body's face would not let out
     glm::dvec3 corner{0.0};
     glm::dmat3 edges{0.0};
 };

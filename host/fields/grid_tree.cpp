@@ -112,7 +112,11 @@ public:
         field_.voxel_min = {box.min()[0], box.min()[1], box.min()[2]};
         field_.voxel_max = {box.max()[0], box.max()[1], box.max()[2]};
         field_.background = most(root->mBackground);
-        if (field_.active_voxels == 0 || box.empty()) {
+        if (field_.active_voxels > 0 && box.empty())
+            throw InputError(fmt::format("{}: the grid does not say where its voxels are, since it was written without "
+                                         "statistics; write it with NanoVDB's default of StatsMode, or as .vdb",
+                                         place_));
+        if (field_.active_voxels == 0) {
             field_.active_voxels = 0;
             return;
         }

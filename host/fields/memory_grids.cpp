@@ -26,6 +26,15 @@ GridBytes build(const std::string& name, glm::ivec3 dims, const GridPlace& place
             for (int x = 0; x < dims.x; ++x, ++i)
                 if (const Value value = value_at(i); value != nothing)
                     accessor.setValue({x, y, z}, value);
+    // Where colours are looked up beyond the outermost voxels these go on: zeros at the array's ends are some. Of
+    // densities they are nothing.
+    const auto mark = [&](glm::ivec3 voxel, std::size_t at) {
+        accessor.setValue({voxel.x, voxel.y, voxel.z}, value_at(at));
+    };
+    if (i > 0 && name != "density") {
+        mark({0, 0, 0}, 0);
+        mark(dims - 1, i - 1);
+    }
     glm::dmat4 to_world(1.0);
     for (int axis = 0; axis < 3; ++axis)
         to_world[axis][axis] = place.voxel_size[axis];

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <limits>
+#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -115,22 +117,74 @@ std::vector<std::uint32_t> find_bodies(std::size_t triangles, const std::vector<
     return parent;
 }
 
-// Makes every body's volume positive, by the divergence theorem the sum of tetrahedra from any point: here a vertex of
-// its own, so that nothing large cancels far from the origin.
-void turn_outward(Polygons& obj, const std::vector<std::uint32_t>& bodies) {
-    std::vector<double> volumes(obj.triangles.size(), 0.0); // those at the bodies' own numbers count
-    for (std::size_t i = 0; i < obj.triangles.size(); ++i) {
-        const glm::dvec3 apex = obj.vertices[obj.triangles[bodies[i]].x];
+// A body's triangles, what they enclose by the divergence theorem, and the box about it. The volume is the sum of
+// tetrahedra from a vertex of its own, so that nothing large cancels far from the origin.
+struct Body {
+    std::vector<std::uint32_t> triangles;
+    double volume = 0.0; // times 6; < 0: faces point inwards
+    glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+    bool is_cavity = false;
+};
+
+std::vector<Body> bodies_of(const Polygons& obj, const std::vector<std::uint32_t>& numbers) {
+    std::map<std::uint32_t, Body> bodies;
+    for (std::uint32_t i = 0; i < obj.triangles.size(); ++i) {
+        Body& body = bodies[numbers[i]];
         const glm::uvec3 t = obj.triangles[i];
+        const glm::dvec3 apex = obj.vertices[obj.triangles[numbers[i]].x];
         const glm::dvec3 a = obj.vertices[t.x] - apex, b = obj.vertices[t.y] - apex, c = obj.vertices[t.z] - apex;
-        volumes[bodies[i]] += glm::dot(a, glm::cross(b, c));
-    }
-    for (std::size_t i = 0; i < obj.triangles.size(); ++i)
-        if (volumes[bodies[i]] < 0.0) {
-            std::swap(obj.triangles[i].y, obj.triangles[i].z);
-            if (!obj.normals.empty())
-                std::swap(obj.normals[i][1], obj.normals[i][2]);
+        body.volume += glm::dot(a, glm::cross(b, c));
+        body.triangles.push_back(i);
+        for (int corner = 0; corner < 3; ++corner) {
+            body.low = glm::min(body.low, obj.vertices[t[corner]]);
+            body.high = glm::max(body.high, obj.vertices[t[corner]]);
         }
+    }
+    std::vector<Body> all;
+    for (auto& [number, body] : bodies)
+        all.push_back(std::move(body));
+    return all;
+}
+
+// By how many faces a ray of no special direction crosses.
+bool is_within(const Polygons& obj, const Body& body, const glm::dvec3& point) {
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(0.3718, 0.7391, 0.5623));
+    bool within = false;
+    for (const std::uint32_t i : body.triangles) {
+        const glm::uvec3 t = obj.triangles[i];
+        const glm::dvec3 a = obj.vertices[t.x] - point, b = obj.vertices[t.y] - point, c = obj.vertices[t.z] - point;
+        const double u = glm::dot(direction, glm::cross(b, c)), v = glm::dot(direction, glm::cross(c, a)),
+                     w = glm::dot(direction, glm::cross(a, b));
+        const bool crosses = (u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0);
+        within ^= crosses && glm::dot(a, glm::cross(b, c)) * (u + v + w) > 0.0;
+    }
+    return within;
+}
+
+// Turns every body's faces outward, but for cavities, whose faces point the other way than those of the smallest body
+// about them.
+void turn_outward(Polygons& obj, const std::vector<std::uint32_t>& numbers) {
+    std::vector<Body> bodies = bodies_of(obj, numbers);
+    std::sort(bodies.begin(), bodies.end(),
+              [](const Body& a, const Body& b) { return std::abs(a.volume) > std::abs(b.volume); });
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        Body& body = bodies[i];
+        for (std::size_t k = i; k-- > 0;) {
+            const Body& about = bodies[k];
+            if (!glm::all(glm::lessThan(about.low, body.low)) || !glm::all(glm::greaterThan(about.high, body.high)) ||
+                !is_within(obj, about, obj.vertices[obj.triangles[body.triangles.front()].x]))
+                continue;
+            body.is_cavity = (body.volume < 0.0) != (about.volume < 0.0) && !about.is_cavity;
+            break;
+        }
+    }
+    for (const Body& body : bodies)
+        if ((body.volume < 0.0) != body.is_cavity)
+            for (const std::uint32_t i : body.triangles) {
+                std::swap(obj.triangles[i].y, obj.triangles[i].z);
+                if (!obj.normals.empty())
+                    std::swap(obj.normals[i][1], obj.normals[i][2]);
+            }
 }
 
 // Only the vertices that a triangle uses.

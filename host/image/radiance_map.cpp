@@ -34,9 +34,13 @@ RadianceMap read_radiance_map(const std::filesystem::path& file) {
     std::vector<float> values(std::size_t(header.width) * header.height * channels);
     if (!reader->read(values.data()))
         fail_to_read(file, *reader);
-    RadianceMap map{header.width, header.height, {}, 0};
-    map.texels.reserve(std::size_t(header.width) * header.height);
+    RadianceMap map{header.full_width, header.full_height, {}, 0};
+    map.texels.resize(std::size_t(map.width) * map.height); // black where the file has no pixels
     for (std::size_t i = 0; i < values.size(); i += channels) {
+        const int x = header.x - header.full_x + int(i / channels % header.width),
+                  y = header.y - header.full_y + int(i / channels / header.width);
+        if (x < 0 || y < 0 || x >= map.width || y >= map.height)
+            continue;
         glm::vec3 texel = channels < 3 ? glm::vec3(values[i]) : glm::vec3(values[i], values[i + 1], values[i + 2]);
         bool fine = true;
         for (int c = 0; c < 3; ++c) {
@@ -45,7 +49,7 @@ RadianceMap read_radiance_map(const std::filesystem::path& file) {
             texel[c] = !good ? 0.0f : header.is_whole_numbers ? from_srgb(texel[c]) : texel[c];
         }
         map.mended += fine ? 0 : 1;
-        map.texels.push_back(texel);
+        map.texels[std::size_t(y) * map.width + x] = texel;
     }
     return map;
 }

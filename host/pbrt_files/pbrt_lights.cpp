@@ -89,7 +89,10 @@ void PbrtTranslator::write_light(const PbrtThing& light) {
         xml_.element("point", attributes, "", light.place.text());
         return;
     }
-    const double angle = p.number("coneangle", 30.0), falls = p.number("conedeltaangle", 5.0);
+    const double angle = p.number("coneangle", 30.0);
+    double falls = p.number("conedeltaangle", 5.0);
+    if (falls > angle && falls <= 2.0 * angle) // past the axis, and as far again on its other side
+        falls = 2.0 * angle - falls;
     if (!(angle > 0.0) || angle > 90.0 || !(falls >= 0.0) || falls > angle)
         fail_at(light.place, fmt::format("a cone of {:g} degrees, {:g} of them its rim; expected at most 90, and a rim "
                                          "within",

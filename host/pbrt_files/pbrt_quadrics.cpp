@@ -38,12 +38,13 @@ glm::dvec2 heights_of_sphere(const PbrtThing& shape) {
 }
 
 // A lattice over (u, v), both in [0, 1]; pbrt's normal is on the side from which u and then v go counter-clockwise.
-PbrtTriangles lattice(int columns, int rows, const std::function<Point(double, double)>& at) {
+// What goes all around ends where it began, to the last digit.
+PbrtTriangles lattice(double turn, int columns, int rows, const std::function<Point(double, double)>& at) {
     PbrtTriangles mesh;
     for (int row = 0; row <= rows; ++row)
         for (int column = 0; column <= columns; ++column) {
             const double u = double(column) / columns, v = double(row) / rows;
-            const Point point = at(u, v);
+            const Point point = at(u == 1.0 && turn == 2.0 * pi ? 0.0 : u, v);
             mesh.points.push_back(point.position);
             mesh.normals.push_back(point.normal);
             mesh.places.emplace_back(u, v);
@@ -73,9 +74,9 @@ PbrtTriangles sphere(const PbrtThing& shape) {
     const glm::dvec2 heights = heights_of_sphere(shape);
     const double low = std::acos(heights.x), high = std::acos(heights.y); // angles from the upper pole
     const int rows = std::max(2, static_cast<int>(std::ceil(along * (low - high) / pi)));
-    return lattice(columns_of(turn), rows, [&](double u, double v) {
+    return lattice(turn, columns_of(turn), rows, [&](double u, double v) {
         const double theta = low + v * (high - low), phi = u * turn;
-        const double across = std::max(std::sin(theta), 0.0); // 0 at the poles
+        const double across = theta > 0.0 && theta < pi ? std::sin(theta) : 0.0;
         const glm::dvec3 outward(across * std::cos(phi), across * std::sin(phi), std::cos(theta));
         return Point{radius * outward, outward};
     });
@@ -85,7 +86,7 @@ PbrtTriangles cylinder(const PbrtThing& shape) {
     const PbrtParameters& p = *shape.parameters;
     const double radius = radius_of(shape), turn = turn_of(shape);
     const double a = p.number("zmin", -1.0), b = p.number("zmax", 1.0);
-    return lattice(columns_of(turn), 1, [&](double u, double v) {
+    return lattice(turn, columns_of(turn), 1, [&](double u, double v) {
         const glm::dvec3 outward(std::cos(u * turn), std::sin(u * turn), 0.0);
         return Point{radius * outward + glm::dvec3(0.0, 0.0, std::min(a, b) + v * std::abs(b - a)), outward};
     });
@@ -95,7 +96,7 @@ PbrtTriangles disk(const PbrtThing& shape) {
     const PbrtParameters& p = *shape.parameters;
     const double radius = radius_of(shape), turn = turn_of(shape), height = p.number("height", 0.0);
     const double inner = std::clamp(p.number("innerradius", 0.0), 0.0, radius);
-    return lattice(columns_of(turn), 1, [&](double u, double v) {
+    return lattice(turn, columns_of(turn), 1, [&](double u, double v) {
         const double r = radius + v * (inner - radius);
         return Point{{r * std::cos(u * turn), r * std::sin(u * turn), height}, {0.0, 0.0, 1.0}};
     });

@@ -352,8 +352,21 @@ void PbrtTranslator::write_triangles(const PbrtShape& shape, const PbrtTriangles
     xml_.close();
 }
 
+namespace {
+
+// Glass whose normals point inwards has its inside around it, as pbrt sees it: a bubble.
+void turn_inside_out(XmlAttributes& material) {
+    const auto is_glass = [](const auto& attribute) { return attribute.second == "dielectric"; };
+    if (std::any_of(material.begin(), material.end(), is_glass))
+        for (auto& [name, value] : material)
+            if (name == "ior")
+                value = xml_number(1.0 / std::stod(value));
+}
+
+} // namespace
+
 void PbrtTranslator::write_surface(const PbrtShape& shape) {
-    const std::optional<XmlAttributes> material = material_of(shape);
+    std::optional<XmlAttributes> material = material_of(shape);
     if (!material) {
         if (shape.light)
             note(shape.thing.place,
@@ -367,6 +380,8 @@ void PbrtTranslator::write_surface(const PbrtShape& shape) {
     PbrtShape turned = shape; // as its triangles would be
     if (thing.type == "sphere" || thing.type == "cylinder")
         turned.is_reversed = faces_inwards(shape);
+    if (thing.type != "disk" && thing.type != "plymesh" && faces_inwards(shape))
+        turn_inside_out(*material);
     const bool shines_inwards = thing.type == "sphere" && turned.is_reversed && shape.light;
     const bool is_polar = thing.type == "disk" && has_texture(*material); // there
     const bool is_quadric = thing.type == "sphere" || thing.type == "disk" || thing.type == "cylinder";

@@ -45,6 +45,9 @@ constexpr std::uint32_t longest_batch = most_iterations / 2;
 
 constexpr std::uint32_t waiting_per_slot = 4;
 
+// Per submit: some 70 ms on two cores of a software driver. Lights are asked one by one.
+constexpr std::uint64_t sky_samples = 1u << 22;
+
 // Paths of a staged render on a GPU: as many as have room in one buffer. Of layers, what waits has a record each, in
 // the buffer of each band.
 std::uint32_t slots_that_fit(const Device& device, std::uint32_t layers, std::uint64_t most_film_bytes) {
@@ -78,6 +81,7 @@ Plan make_plan(const Device& device, const LoopSizes& loops, std::uint64_t pixel
     const std::uint32_t longest = longest_budget(loops, plan.steps);
     plan.budget = std::min(pick(wish.budget, wide ? 32u : longest), longest);
     plan.step_limit = pick(wish.step_limit, 1u << 26);
+    plan.sky_samples = sky_samples / (1 + loops.lights / 16);
     plan.most_batch = std::min(pick(wish.most_batch, longest_batch),
                                longest_batch / (1 + loops.lights + loops.layers)); // each looks at them
     plan.waiting = staged ? std::max(wish.waiting, waiting_per_slot * plan.slots) : 0;

@@ -31,6 +31,7 @@ struct Plan {
     std::uint64_t most_texel_bytes = 0; // what has more is read as storage
     int majorant_cell = 0;              // voxels along an edge of a majorant cell; 0 as well where there are none
     bool leaps = false;                 // walks pass empty ones together
+    std::uint64_t sky_samples = 0;      // per submit of the passes over pixels
 };
 
 // Dispatches over slots, and over samples that wait, keep to the 65535 groups that every device allows.

@@ -72,8 +72,13 @@ void Session::render(std::uint32_t samples) {
         if (batch_ == 0)
             batch_ = std::min({next_, wanted_ - done_, until_next_look(), until_next_moment()});
         const double begun = watch_.seconds();
-        while (band_ < bands_.size() && !stopped_)
-            run_band(bands_[band_]);
+        try {
+            while (band_ < bands_.size() && !stopped_)
+                run_band(bands_[band_]);
+        } catch (...) { // of this batch the film has some, and nobody knows what
+            gave_up_ = true;
+            throw;
+        }
         if (band_ == bands_.size()) {
             const std::uint32_t after = next_batch(batch_, watch_.seconds() - begun);
             const bool was_cut = batch_ < next_ && after >= batch_; // to be looked at, not to be quick
@@ -87,6 +92,8 @@ void Session::render(std::uint32_t samples) {
         save_checkpoint();
     result_.render_seconds += watch_.lap();
     result_.samples = done_;
+    if (done_ >= wanted_) // what ended it came too late
+        result_.interrupted = false;
 }
 
 void Session::begin_again() {

@@ -26,9 +26,9 @@ using Words = std::span<const std::uint32_t>;
 
 constexpr std::uint32_t most_rounds = 64; // per submit
 constexpr VkDeviceSize queue_bytes = QUEUE_COUNT * sizeof(shared::QueueHeader);
-constexpr std::uint64_t sky_samples = 1u << 22; // per submit: some 70 ms on two cores of a software driver
-constexpr std::uint32_t first_budget = 64;      // on a device of unknown speed
-constexpr std::uint32_t no_end = 0xffffffffu;   // of the work handed out
+constexpr double longest_submit = 0.5;        // seconds, on a GPU
+constexpr std::uint32_t first_budget = 64;    // on a device of unknown speed
+constexpr std::uint32_t no_end = 0xffffffffu; // of the work handed out
 constexpr std::uint32_t no_queue = QUEUE_COUNT;
 
 // Nothing left of what the last pass saw, and nothing pushed since.
@@ -233,7 +233,7 @@ void Wavefront::over_pixels(ComputePass& pass, std::uint32_t begin, std::uint32_
     const std::uint32_t samples = push_.sample_end - push_.sample_begin;
     const std::uint64_t most = std::uint64_t{device_.limits().maxComputeWorkGroupCount[0]} * WORKGROUP_SIZE;
     const auto chunk = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
-        sky_samples / samples, WORKGROUP_SIZE, std::max<std::uint64_t>(most, WORKGROUP_SIZE)));
+        plan_.sky_samples / samples, WORKGROUP_SIZE, std::max<std::uint64_t>(most, WORKGROUP_SIZE)));
     for (std::uint32_t first = begin; first < end; first += chunk) {
         push_.pixel_begin = first;
         push_.pixel_end = std::min(end, first + chunk);
@@ -359,6 +359,7 @@ void Wavefront::read_figures() {
 // Only where a round alone takes far too long, as a slow device's driver would not suffer, lanes work for less long
 // again.
 void Wavefront::adapt(double seconds) {
+    worst_turn_ = std::max(worst_turn_, seconds / (double(rounds_) * push_.budget));
     const double factor = std::clamp(plan_.submit_seconds / std::max(seconds, 1e-6), 0.5, 2.0);
     if (factor > 1.0 && push_.budget < plan_.budget)
         push_.budget = std::min(2 * push_.budget, plan_.budget);
@@ -366,6 +367,10 @@ void Wavefront::adapt(double seconds) {
         push_.budget = std::min(std::max(push_.budget / 2, 16u), plan_.budget);
     else
         rounds_ = std::clamp(static_cast<std::uint32_t>(rounds_ * factor + 0.5), 1u, most_rounds);
+    // What comes next may be as dear as anything was, and a GPU's driver waits for a second or two at most.
+    const double dearest = worst_turn_ * push_.budget;
+    if (!device_.is_cpu())
+        rounds_ = std::min(rounds_, static_cast<std::uint32_t>(std::max(longest_submit / dearest, 1.0)));
 }
 
 } // namespace vkvol

@@ -104,6 +104,7 @@ private:
     double sky_seconds_ = 0.0;         // of this batch, told with its first submit
     std::uint64_t finished_ = 0;       // paths of the batch
     std::uint32_t sorted_ = 0;         // pixels of which those that miss the medium never were paths
+    double worst_turn_ = 0.0;          // seconds of a round over its budget, at most
     std::uint32_t rounds_ = 1, rounds_run_ = 0;
 };
 

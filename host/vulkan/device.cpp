@@ -49,14 +49,17 @@ std::optional<std::uint32_t> find_compute_family(VkPhysicalDevice physical, std:
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+    // Rather one that draws nothing: what does is the desktop's as well, which would wait for each submit.
+    std::optional<std::uint32_t> found;
     for (std::uint32_t i = 0; i < count; ++i) {
-        if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) {
-            if (timestamp_bits)
-                *timestamp_bits = families[i].timestampValidBits;
-            return i;
-        }
+        const VkQueueFlags flags = families[i].queueFlags;
+        if ((flags & VK_QUEUE_COMPUTE_BIT) && (!found || !(flags & VK_QUEUE_GRAPHICS_BIT)))
+            if (!found || (families[*found].queueFlags & VK_QUEUE_GRAPHICS_BIT))
+                found = i;
     }
-    return std::nullopt;
+    if (found && timestamp_bits)
+        *timestamp_bits = families[*found].timestampValidBits;
+    return found;
 }
 
 VkPhysicalDeviceVulkan12Features features_of(VkPhysicalDevice physical) {

@@ -3,11 +3,10 @@
 #define STAGE_COUNT_GLSL
 #include "stages/show.glsl"
 
-// World units before the sensor's plane. Where there are surfaces, of a plane a little before it: particles that come to a surface
-// in the sensor's plane have passed then, and those that leave it, from a little off it, have not: see SurfacePoint.
+// World units before the sensor's plane, which is a little before that of a surface that it lies in (sensor_params.cpp): particles that
+// come to the surface have passed then, and those that leave it, from a little off it, have not.
 float before_sensor(vec3 position) {
-    float apart = HAS_SURFACES ? 2.0 * spare_at(position) : 0.0;
-    return dot(position - frame.sensors[0].position, frame.sensors[0].corner) - apart;
+    return dot(position - frame.sensors[0].position, frame.sensors[0].corner);
 }
 
 // Where a domain repeats so does the sensor, which is in one of them: see particle_scenes.h.

@@ -195,7 +195,7 @@ TEST_CASE("one output that fails takes no other with it", "[gpu][command]") {
     const Run picture = folder.vkvol("ball.xml -q -o full.exr -o a.png -o b.exr --report r.json");
     CHECK(picture.code == exit_render_failed);
     CHECK_THAT(picture.text, Contains("full.exr: cannot be written: No space left") && Contains("with -o") &&
-                                 Contains("; written: a.png, b.exr, r.json"));
+                                 Contains("; written: b.exr, a.png, r.json"));
     CHECK(fs::exists(folder.file("a.png")));
     CHECK(read_exr(folder.file("b.exr")).width() == 16);
     const auto json = report_of(folder, "r.json");

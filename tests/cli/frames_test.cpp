@@ -243,6 +243,11 @@ TEST_CASE("a sequence that is gone on with passes over the frames that are there
     CHECK_THAT(scene.vkvol("ball.xml -f 1..1 -o t.#.exr -o t.#.png --exposure 1 --resume").text, Contains("is there"));
     CHECK_THAT(scene.vkvol("ball.xml -f 1..1 -o t.#.exr --resume").text, Contains("is there"));
     CHECK_THAT(scene.vkvol("ball.xml -f 1..1 -o t.#.exr -o t.#.png --exposure 2 --resume").text, !Contains("is there"));
+    // Nor one that is older than the samples it would be of.
+    REQUIRE(scene.vkvol("ball.xml -f 1..1 -o u.#.exr -o v.#.png -q").code == exit_done);
+    std::filesystem::last_write_time(scene.file("v.1.png"),
+                                     std::filesystem::last_write_time(scene.file("u.1.exr")) - std::chrono::seconds(9));
+    CHECK_THAT(scene.vkvol("ball.xml -f 1..1 -o u.#.exr -o v.#.png --resume").text, !Contains("is there"));
     // Nor is one that the camera exposes otherwise, or whose layers are of other lights.
     const auto write_with = [&](const char* iso, const char* group) {
         std::ofstream(scene.file("lit.xml"))

@@ -123,6 +123,12 @@ TEST_CASE("readings are a table, a row for each point and combination of values"
     }
     // The same random numbers: three times the glow is three times the reading, bit for bit.
     CHECK(std::stof(lines[3][7]) == Approx(3.0 * std::stof(lines[1][7])).epsilon(1e-6));
+    // What was cut short is told.
+    folder.write("deep.xml", "<options><sphere/><sigma_a>0</sigma_a><sigma_s>9</sigma_s><maxDepth>2</maxDepth>"
+                             "<light y='1' r='1' g='1' b='1'/><fluence>0 0 0</fluence></options>");
+    const Run deep = folder.vkvol("measure deep.xml --spp 64");
+    CHECK(deep.code == exit_done);
+    CHECK_THAT(deep.text, Contains("paths ended at maxDepth"));
     const Run means = folder.vkvol("measure glow.xml -D sigma=1 -D glow=1 --spp 64 --mean");
     CHECK(means.code == exit_done);
     CHECK_THAT(means.text, Contains("sigma  glow") && Contains("standardError.R") && Contains("128\n"));

@@ -74,6 +74,19 @@ TEST_CASE("vertices at one position are welded, faces turned outward, slivers dr
     CHECK(volume(directory.load(as_obj(turned))) == Approx(6.0));
     // Each body by itself.
     CHECK(volume(directory.load(as_obj(join(turned, make_box(glm::dvec3(0.0), glm::dvec3(1.0), 1))))) == Approx(7.0));
+    // Inside another, turned the other way, it is a cavity; whichever way they are turned together.
+    const Mesh shell = make_box(glm::dvec3(-1.0), glm::dvec3(1.0), 2),
+               core = make_box(glm::dvec3(-0.5), glm::dvec3(0.5), 1),
+               grain = make_box(glm::dvec3(-0.25), glm::dvec3(0.25), 1);
+    const auto inside_out = [](Mesh mesh) {
+        for (glm::uvec3& t : mesh.triangles)
+            std::swap(t.x, t.y);
+        return mesh;
+    };
+    CHECK(volume(directory.load(as_obj(join(shell, inside_out(core))))) == Approx(7.0));
+    CHECK(volume(directory.load(as_obj(join(inside_out(shell), core)))) == Approx(7.0));
+    CHECK(volume(directory.load(as_obj(join(shell, core)))) == Approx(9.0));
+    CHECK(volume(directory.load(as_obj(join(inside_out(core), join(shell, grain))))) == Approx(7.125));
     // A face of two corners in one place, and one of three on a line that fills a gap.
     const std::string shared_edge = cube_vertices + "v 0 0 0\nf 4 3 2 1\nf 5 6 7 8\n" + cube_sides + "f 1 9 2\n";
     CHECK(directory.load(shared_edge).triangles.size() == 12);

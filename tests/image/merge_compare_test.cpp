@@ -246,6 +246,11 @@ TEST_CASE("variances of sums are merged, and compared by", "[cpu][merge][compare
     for (std::size_t i = 0; i < some.pixel_count(); ++i)
         sum += double(some.mean[i].x) - film_of(draw(3, 4)).mean[i].x;
     CHECK(result.mean_z[0] == Approx(std::abs(sum) / std::sqrt(8.001)).epsilon(1e-3));
+    // Where pixels have no sample the others' number counts.
+    Film holed = some;
+    holed.samples.front() = 0;
+    CHECK(merge_films({input("a", holed, 0, 4), input("b", more, 4, 12)}).film.sum_variance->x ==
+          Approx(merged.film.sum_variance->x));
     Film unknown = some;
     unknown.sum_variance.reset();
     CHECK_FALSE(compare_films(some, unknown, options_at()).has_mean_z);

@@ -11,6 +11,7 @@
 #include "pbrt_scenes.h"
 #include "pbrt_triangles.h"
 #include "support/scenes.h"
+#include "surface_mesh.h"
 
 using namespace vkvol;
 using Catch::Contains;
@@ -40,6 +41,11 @@ TEST_CASE("pbrt's lights shine as pbrt's do", "[cpu][pbrt]") {
     const auto powerful = only_light<SpotLight>(
         world_of(R"(LightSource "spot" "float power" 5 "float coneangle" 40 "float conedeltaangle" 10)"));
     CHECK(power_per_unit(powerful) * powerful.intensity.x == Approx(5.0).epsilon(0.02)); // its rim counts by half
+
+    // A rim wider than the cone goes past the axis, and counts as far again on its other side.
+    const auto narrow = only_light<SpotLight>(world_of(R"(LightSource "spot" "float coneangle" 4)"));
+    CHECK(narrow.angle == Approx(8.0));
+    CHECK(narrow.blend == Approx(0.75));
 
     const auto distant = only_light<DirectionalLight>(world_of(
         R"(LightSource "distant" "rgb L" [ 1 1 1 ] "float illuminance" 7 "point3 from" [ 1 1 1 ] "point3 to" [ 0 0 1 ])"));
@@ -130,6 +136,9 @@ TEST_CASE("pbrt's materials and textures", "[cpu][pbrt]") {
     CHECK(material(R"(Material "dielectric" "float roughness" 0.04 "bool remaproughness" false)").roughness ==
           Approx(0.04));
     CHECK(material(R"(Material "dielectric")").roughness == 0.0);
+    // A bubble: its normals say that glass is around it.
+    CHECK(material("Material \"dielectric\" ReverseOrientation").ior == Approx(1.0 / 1.5));
+    CHECK(material("ReverseOrientation Material \"dielectric\" Scale -1 1 1").ior == Approx(1.5));
     const Material pane = material(R"(Material "thindielectric" "float eta" 1.4)");
     CHECK((pane.kind == MaterialKind::thin_dielectric && pane.ior == 1.4));
     const Material copper = material(R"(Material "conductor")");
@@ -365,6 +374,10 @@ TEST_CASE("pbrt's quadrics that are none here are triangles", "[cpu][pbrt]") {
     CHECK(part_in_front(pipe, [](const glm::dvec3& p) { return glm::dvec3(p.x, p.y, 0.0); }) == 1.0);
     CHECK(part_in_front(mesh_of("ReverseOrientation Shape \"cylinder\""),
                         [](const glm::dvec3& p) { return glm::dvec3(-p.x, -p.y, 0.0); }) == 1.0);
+    // Of glass they enclose something.
+    for (const char* closed :
+         {"Scale 1 2 1 Shape \"sphere\"", "Scale 1 1 3 Rotate 40 1 1 0 Shape \"sphere\" \"float radius\" 0.7"})
+        CHECK_NOTHROW(with_surface_files(world_of(std::string("Material \"dielectric\" ") + closed)));
     const TriangleSurface ellipsoid = mesh_of("Scale 1 2 3 Shape \"sphere\" \"float radius\" 0.5");
     for (const glm::dvec3& p : ellipsoid.vertices)
         CHECK(glm::length(p / glm::dvec3(0.5, 1.0, 1.5)) == Approx(1.0));

@@ -131,7 +131,7 @@ std::vector<Case> cases() {
     filtered.settings.pixel_filter_radius = 0.9;
     all.push_back({"a tent about each pixel", filtered});
     filtered.lights = {beam};
-    filtered.settings.pixel_filter_radius = 1.5; // beyond all that there is
+    filtered.settings.pixel_filter_radius = 4.0; // beyond all that there is
     all.push_back({"a wide tent under far light", filtered});
     // Turned away, from the other side, and larger than all that there is to be lit.
     Scene large = among(smoke(), {sun, point});

@@ -1,9 +1,13 @@
 // Images on surfaces: by closed form, against the reference on every shape, and as files have them.
 #include <catch2/catch.hpp>
+#include <cstring>
 #include <fmt/format.h>
 #include <fstream>
 
 #include "error.h"
+#include "image_io.h"
+#include "picture_codec.h"
+#include "radiance_map.h"
 #include "scene_hash.h"
 #include "support/images.h"
 #include "support/scene_text.h"
@@ -153,6 +157,37 @@ TEST_CASE("textures on every shape equal the reference", "[gpu][image][surfaces]
         map.texels.emplace_back(0.2f + 0.1f * float(i), 0.5f, 0.9f - 0.1f * float(i));
     scene.lights.push_back(write_sky(map));
     CHECK_AGREEMENT(agree(render_here(scene, 3).film, render_reference(scene, 4), "textures under a sky"));
+}
+
+TEST_CASE("maps cover their display window, and are not multiplied by alpha", "[cpu][xml][surfaces]") {
+    const TestDirectory directory;
+    // The upper half of a picture.
+    Film film;
+    film.crop = {0, 4, 0, 2};
+    film.picture_width = film.picture_height = 4;
+    film.mean.assign(8, glm::vec3(0.5f, 0.25f, 1.0f));
+    film.variance.assign(8, glm::vec3(0.0f));
+    film.samples.assign(8, 1);
+    write_exr(directory.path / "half.exr", film, {});
+    const RadianceMap half = read_radiance_map(directory.path / "half.exr");
+    REQUIRE((half.width == 4 && half.height == 4));
+    CHECK(half.texels[7] == glm::vec3(0.5f, 0.25f, 1.0f));
+    CHECK(half.texels[8] == glm::vec3(0.0f));
+    // White, of alpha 1/2.
+    const std::uint8_t pixels[] = {255, 255, 255, 128};
+    PictureHeader header;
+    header.width = header.height = header.full_width = header.full_height = 1;
+    header.channels = {"R", "G", "B", "A"};
+    struct TextSink : PictureSink {
+        std::string bytes;
+        bool write(const void* data, std::size_t size, std::int64_t at) override {
+            bytes.resize(std::max(bytes.size(), std::size_t(at) + size));
+            std::memcpy(bytes.data() + at, data, size);
+            return true;
+        }
+    } sink;
+    REQUIRE(picture_codec().write(PictureFormat::png, header, pixels, sink).empty());
+    CHECK(read_radiance_map(directory.write("leaf.png", sink.bytes)).texels[0] == glm::vec3(1.0f));
 }
 
 TEST_CASE("places on textures are those of the file", "[cpu][mesh][surfaces]") {

@@ -216,7 +216,8 @@ Rgb flux(const World& world, int x, int y, const Draw& draw, Rng& rng) {
     const glm::dvec3 direction = turned({0.0, 0.0, 1.0}, 1.0 - 2.0 * toward.x(), toward.y());
     glm::dvec3 from, normal(0.0);
     if (is_rectangle) {
-        const Ray middle = rectangle_point(camera, world.scene.picture, x + draw.x(), y + draw.y());
+        const glm::dvec2 aside = in_pixel(world.scene.settings, draw.x(), draw.y());
+        const Ray middle = rectangle_point(camera, world.scene.picture, x + 0.5 + aside.x, y + 0.5 + aside.y);
         from = middle.origin;
         normal = middle.direction;
     } else {
