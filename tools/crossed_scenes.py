@@ -365,7 +365,7 @@ def render(vkvol, scene, integrator, samples, seed, schedule):
 
 def is_judged(report):
     """All estimators end paths at the same depth. Of mean free paths as short as rounding they know little, each in its way."""
-    if any("a mean free path is" in warning for warning in report["warnings"]):
+    if any("a mean free path is" in warning for warning in report.get("warnings", [])):
         return False
     return "biased" not in report or not report["biased"] or re.fullmatch(r"[0-9]+ paths ended at maxDepth", report["biased"])
 
