@@ -43,7 +43,9 @@ make_tar() {
         is_of_the_machine "$(basename "$file")" && continue
         cp -L "$file" "$folder/$name/lib/"
         # Whose it is, and on which terms.
-        package=$(dpkg-query -S "$(realpath "$file")" 2>/dev/null | head -n 1 | cut -d : -f 1) || continue
+        # Debian 12 knows files of /lib by that name, and those of alternatives by where they lead.
+        package=$(dpkg-query -S "$file" "$(realpath "$file")" "${file#/usr}" "$(realpath "$file" | sed 's|^/usr||')" 2>/dev/null | head -n 1 | cut -d : -f 1)
+        [ -n "$package" ] || die "no package of Debian's has $file, so its licence is not known"
         [ ! -f "/usr/share/doc/$package/copyright" ] || cp -L "/usr/share/doc/$package/copyright" "$folder/$name/share/doc/libraries/$package"
     done
     # RPATH and not RUNPATH, which libraries do not hand on to those that they load in turn.

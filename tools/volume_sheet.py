@@ -23,7 +23,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 def render(vkvol, file, options, folder):
     """The picture, or None, and what was said about it."""
-    picture = folder / (file.name + ".png")
+    picture = pathlib.Path(tempfile.mkdtemp(dir=folder)) / (file.name + ".png") # of files of one name each has its own
     run = subprocess.run([vkvol, file, "-o", picture, "--progress", "none", *options], capture_output=True, text=True)
     said = run.stdout.strip() if run.returncode == 0 else run.stderr.strip()
     print(said, flush=True)

@@ -3,6 +3,7 @@
 #   merge_frame.sh FRAME PARTS NAME
 #   VKVOL=PROGRAM  in place of vkvol
 set -euo pipefail
+export LC_ALL=C # numbers have points
 
 [ $# -eq 3 ] || { echo "merge_frame.sh: expected FRAME PARTS NAME" >&2; exit 2; }
 frame=$1 parts=$2 name=$3

@@ -7,6 +7,7 @@
 # A part that is there was rendered to its end and is not rendered again; of one that was killed what its last checkpoint has
 # is gone on from. Windows of a picture have the bits that they have in the whole: ranges of samples would not, to the last.
 set -euo pipefail
+export LC_ALL=C # numbers have points
 
 [ $# -ge 5 ] || { echo "render_part.sh: expected SCENE FRAME PART PARTS NAME" >&2; exit 2; }
 scene=$1 frame=$2 part=$3 parts=$4 name=$5

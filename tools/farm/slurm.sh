@@ -7,6 +7,7 @@
 # Prints the number of the job that merges. A part that fails is tried three times more, and goes on where it ended, also when
 # its node is lost and Slurm begins it again. NAME has to be in a directory that all nodes see.
 set -euo pipefail
+export LC_ALL=C # numbers have points
 
 [ $# -ge 4 ] || { echo "slurm.sh: expected SCENE FRAMES PARTS NAME" >&2; exit 2; }
 scene=$1 frames=$2 parts=$3 name=$4
@@ -34,7 +35,7 @@ done
 exit 1
 END
 )
-sbatch "${sbatch[@]}" --parsable --job-name="vkvol $name, merge" --output="$name.merge.log" --dependency="afterok:$render" <<END
+sbatch "${sbatch[@]}" --parsable --job-name="vkvol $name, merge" --output="$name.merge.log" --dependency="afterok:$render" --kill-on-invalid-dep=yes <<END
 #!/usr/bin/env bash
 set -e
 export VKVOL=$(printf %q "${VKVOL:-vkvol}")

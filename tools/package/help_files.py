@@ -6,6 +6,7 @@
 import gzip
 import json
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -129,8 +130,9 @@ def write_man_pages(vkvol, folder):
     folder.mkdir(parents=True, exist_ok=True)
     version = subprocess.run([vkvol, "--version"], check=True, capture_output=True, text=True).stdout.strip()
     for name in COMMANDS:
-        command, page = (vkvol, "vkvol") if name == "render" else (f"{vkvol} {name}", f"vkvol-{name}")
-        purpose = help_of(*command.split()).splitlines()[0].split(". ")[0].rstrip(".")
+        words, page = ([], "vkvol") if name == "render" else ([name], f"vkvol-{name}")
+        command = " ".join([shlex.quote(str(vkvol)), *words])  # help2man has a shell run it
+        purpose = help_of(vkvol, *words).splitlines()[0].split(". ")[0].rstrip(".")
         text = subprocess.run(["help2man", "--no-info", f"--name={purpose[0].lower()}{purpose[1:]}", "--version-string=" + version,
                                "--manual=vkvol", f"--source={version}", command], check=True, capture_output=True).stdout
         text = text.replace(str(vkvol).encode(), b"vkvol")

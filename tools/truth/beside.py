@@ -45,9 +45,8 @@ def timed(reader, scene, seconds):
     """Readings by vkvol that take about so long, and the seconds of rendering."""
     samples = 1 << 4
     while True:
-        report = reader.folder / "report.json"
-        rows = reader.read(scene, samples, 1, options=("--report", str(report)))
-        took = json.loads(report.read_text())["seconds"]["render"]
+        rows = reader.read(scene, samples, 1)
+        took = json.loads(reader.report.read_text())["seconds"]["render"]
         if took >= .6 * seconds or samples >= reading.MOST_SAMPLES:
             return took, rows
         samples = min(reading.MOST_SAMPLES, int(samples * min(16.0, max(2.0, seconds / took))))
@@ -101,6 +100,7 @@ def by_mitsuba(variant, seconds):
         return time.time() - start, values
 
     once(16)  # kernels are compiled
+    start = statistics.median(once(1)[0] for _ in range(3))  # of a render for each column, which vkvol has once and does not count
     # A pass with few samples is mostly its starting: as many more until one takes most of its share.
     samples, took = 64, once(64)[0]
     while took < .6 * seconds / PASSES:
@@ -108,7 +108,7 @@ def by_mitsuba(variant, seconds):
         took = once(samples)[0]
     passes = [once(samples) for _ in range(PASSES)]
     columns = list(zip(*(values for _, values in passes)))
-    return sum(took for took, _ in passes), [(statistics.mean(c), statistics.stdev(c) / PASSES**.5) for c in columns]
+    return sum(took - start for took, _ in passes), [(statistics.mean(c), statistics.stdev(c) / PASSES**.5) for c in columns]
 
 
 def options():

@@ -18,7 +18,7 @@ def mean_of(readings):
 class Reader:
     def __init__(self, vkvol, folder, schedule):
         self.vkvol, self.folder, self.schedule = vkvol, pathlib.Path(folder), schedule
-        self.count = 0
+        self.count, self.report = 0, None
 
     def read(self, scene, samples, seed, is_map=False, options=()):
         """Of each column its mean and standard error, or of each pixel: of the middle channel, since all are alike. Of one column it
@@ -27,6 +27,7 @@ class Reader:
         self.count += 1
         file = self.folder / f"case{self.count}.xml"
         table, report = file.with_suffix(".csv"), file.with_suffix(".json")
+        self.report = report  # of the latest
         file.write_text(f"<options>{scene}<rayPerPixelCount>{samples}</rayPerPixelCount></options>\n")
         command = [self.vkvol, file, "-q", "--seed", str(seed), "--schedule", self.schedule, "-o", table, "--report", report, *options]
         done = subprocess.run(command, capture_output=True, text=True)
