@@ -37,6 +37,9 @@ build=$work/build
 # name ~ file ~ text ~ replacement ~ tests (a Catch2 specification). "^" parts several texts and their replacements.
 mutations() {
     cat <<'END'
+layers of a viewer by parts of names ~ host/cli/view.cpp ~ ("," + all + ",").find("," + wanted + ",") ~ all.find(wanted) ~ [live]
+refused layers of a viewer stay ~ host/cli/view.cpp ~ if (all == wanted) ~ if (true) ~ [live]
+keys that a viewer's camera takes away missed ~ host/cli/watched_scene.cpp ~ overrides.may_be_unused.insert(key); ~ (void)key; ~ [live]
 sensors in the planes of surfaces ~ host/device_scene/sensor_params.cpp ~ params.position += 2.0 * SURFACE_SPARE ~ params.position += 0.0 * SURFACE_SPARE ~ [counted]
 pieces of grids beyond their voxels ~ host/assets/superposition.cpp ~ glm::min(piece.middle + pieces.half, glm::dvec3(bounds.high)) ~ piece.middle + pieces.half ~ [layers]
 cavities filled ~ host/fields/mesh.cpp ~ if ((body.volume < 0.0) != body.is_cavity) ~ if (body.volume < 0.0) ~ [mesh]
@@ -97,7 +100,7 @@ files told apart by name and size alone ~ host/methods/scene_hash.cpp ~ digest_o
 samples lost where a moment cannot be made ready ~ host/render/session.cpp ~ if (job_.checkpoint) // what was rendered ~ if (job_.checkpoint && device_scene_) // what was rendered ~ [motion]
 depth of single samples merged as if exact ~ host/cli/merge.cpp ~ * apart * apart ~ * 0.0 * apart ~ [merge]
 sums over pixels without a variance ~ host/cli/compare.cpp ~ if (is_correlated || a.samples[i] != 1 || b.samples[i] != 1) ~ if (true) ~ [compare]
-splats without room for what is seen ~ host/device_scene/emitter_table.cpp ~ brightest_of(scene, lights, surfaces, glow, sky) ~ 0.0 ~ [particles]
+splats without room for what is seen ~ host/device_scene/emitter_table.cpp ~ brightest_of(scene, lights, surfaces, glow, sky, reach) ~ 0.0 ~ [particles]
 maps that glow without particles ~ host/device_scene/emitter_table.cpp ~ channel_mean(emission.constant) + channel_mean(most_map_emission(scene.volumes[i])) ~ channel_mean(emission.constant) ~ [particles]
 places on textures not in the hash ~ host/methods/scene_hash.cpp ~ writer.add("place", glm::dvec3(places[corner], 0.0)); ~ (void)places; ~ [xml][surfaces]
 frames that are exposed otherwise passed over ~ host/report/requested_scene.cpp ~ if (const auto& exposure = scene.camera.exposure) ~ if (const auto& exposure = scene.camera.exposure; false) ~ [command]
@@ -429,7 +432,7 @@ try_error() { # NAME FILE TEXT REPLACEMENT TESTS
         verdict="NOT BUILT"
     elif [ -n "$caught" ] && ! run_tests "$caught" && verdict=$(first_failure); then
         : # nothing else need be asked
-    elif run_tests "$5" && VKVOL_THOROUGH=1 run_tests "$5"; then # of long lists of cases the first has a third
+    elif run_tests "$5" && VKVOL_THOROUGH=1 run_tests "$5"; then # of long lists of cases the first has a part
         verdict="NOTHING: $5 passed"
     else
         verdict=$(first_failure) || verdict="NO TEST: the program failed, $work/tests.log"

@@ -5,7 +5,7 @@
 # What the script that begins with this says of itself.
 case ${1:-} in
 -h | --help)
-    sed -n '2,/^set /s/^# \?//p' "$0"
+    sed -n '2,/^set \|^$/s/^# \?//p' "$0"
     exit
     ;;
 esac

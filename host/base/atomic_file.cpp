@@ -1,9 +1,11 @@
 #include "atomic_file.h"
 
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <optional>
 #include <poll.h>
 #include <system_error>
 #include <unistd.h>
@@ -27,16 +29,31 @@ path behind_links(const path& name) {
 }
 
 // A stream of this process, even if it ends in a file: who sent it there wants it gone on with.
-bool is_stream(const path& target) {
+std::optional<int> stream_of(const path& target) {
     const std::string name = target.lexically_normal().string();
-    return name == "/dev/stdout" || name == "/dev/stderr" || name.starts_with("/dev/fd/") ||
-           name.starts_with("/proc/self/fd/");
+    if (name == "/dev/stdout" || name == "/dev/stderr")
+        return name == "/dev/stdout" ? STDOUT_FILENO : STDERR_FILENO;
+    for (const std::string folder : {"/dev/fd/", "/proc/self/fd/"})
+        if (int number = -1; name.starts_with(folder)) {
+            const auto [end, error] = std::from_chars(name.data() + folder.size(), name.data() + name.size(), number);
+            if (error == std::errc() && end == name.data() + name.size())
+                return number;
+        }
+    return std::nullopt;
+}
+
+// Behind what was written to it so far, and before what comes: where it stands is one with the stream's own place.
+int open_stream(int stream) {
+    std::fflush(nullptr);
+    return fcntl(stream, F_DUPFD_CLOEXEC, 0);
 }
 
 // To open a pipe waits for its reader, and no signal would end that.
 int open_special(const path& target) {
     constexpr int milliseconds = 50;
-    const int flags = O_WRONLY | O_CLOEXEC | (is_stream(target) ? O_APPEND : 0);
+    constexpr int flags = O_WRONLY | O_CLOEXEC;
+    if (const std::optional<int> stream = stream_of(target))
+        return open_stream(*stream);
     std::error_code error;
     if (!std::filesystem::is_fifo(target, error))
         return open(target.c_str(), flags);
@@ -65,7 +82,7 @@ path temporary_name(const path& target) {
 }
 
 bool is_special(const path& target) {
-    if (is_stream(target))
+    if (stream_of(target))
         return true;
     std::error_code ignored;
     const std::filesystem::file_status status = std::filesystem::status(target, ignored);
@@ -74,7 +91,7 @@ bool is_special(const path& target) {
 }
 
 AtomicFile::AtomicFile(const path& name)
-    : target_(is_stream(name) ? name : behind_links(name)), temporary_(temporary_name(target_)),
+    : target_(stream_of(name) ? name : behind_links(name)), temporary_(temporary_name(target_)),
       special_(is_special(target_)), interrupted_before_(interrupted()) {
     if (special_)
         descriptor_ = open_special(target_);

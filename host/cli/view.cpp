@@ -86,9 +86,7 @@ private:
         const ViewWish wish = board_.wish(&wish_number_);
         if (std::exchange(has_new_file_, false)) // whatever comes of it: what cannot be read is not read again
             see_file_camera();
-        if (wish.layer != "picture" && wish.layer != "noise" && layers_.find(wish.layer) == std::string::npos)
-            layers_ += (layers_.empty() ? "" : ",") + wish.layer;
-        WatchedScene::Read read = source_.read(board_.wish().edits, layers_, workshop_.fields());
+        WatchedScene::Read read = read_with_layers(wish.layer);
         const std::string what = read.xml + '\n' + layers_ + asked_text(options_.request, read.scene);
         if (what != rendering_ || !session_) {
             begin(std::move(read), what);
@@ -99,9 +97,37 @@ private:
         return go_on(wish);
     }
 
-    // The viewer's camera gives way to one that the file has got meanwhile.
+    // With all layers that were asked for so far, so that going back to one renders nothing anew; if the scene as it is
+    // now cannot have some of them, with this one alone.
+    WatchedScene::Read read_with_layers(const std::string& layer) {
+        const std::string wanted = layer == "picture" || layer == "noise" ? "" : layer;
+        std::string all = layers_;
+        if (!wanted.empty() && ("," + all + ",").find("," + wanted + ",") == std::string::npos)
+            all += (all.empty() ? "" : ",") + wanted;
+        const SceneEdits edits = board_.wish().edits;
+        try {
+            WatchedScene::Read read = source_.read(edits, all, workshop_.fields());
+            layers_ = all;
+            return read;
+        } catch (const InputError&) {
+            if (all == wanted)
+                throw;
+        }
+        WatchedScene::Read read = source_.read(edits, wanted, workshop_.fields());
+        layers_ = wanted;
+        return read;
+    }
+
+    // The viewer's camera and lights give way to those that the file has got meanwhile.
     void see_file_camera() {
-        const Camera camera = source_.read({}, "", workshop_.fields()).scene.camera;
+        const WatchedScene::Read file = source_.read({}, "", workshop_.fields());
+        std::string lights;
+        for (const Shining& light : what_shines(file.xml))
+            lights += light.name + (light.direction ? " far\n" : "\n");
+        if (lights != file_lights_)
+            board_.forget_lights();
+        file_lights_ = lights;
+        const Camera& camera = file.scene.camera;
         const auto key = [](const Camera& c) {
             return fmt::format("{} {} {} {} {} {} {} {}", c.position.x, c.position.y, c.position.z, c.pitch, c.yaw,
                                c.roll, c.fov, c.view_height);
@@ -234,7 +260,8 @@ private:
     bool has_new_file_ = true;
     std::string file_trouble_; // of the file as it is now; or empty
     Camera file_camera_;
-    std::string layers_; // all that were asked for so far
+    std::string file_lights_; // what shines, by name
+    std::string layers_;      // all that were asked for so far
     Scene scene_;
     RenderJob job_;
     std::shared_ptr<const ViewedScene> viewed_;

@@ -70,8 +70,11 @@ WatchedScene::Read WatchedScene::read(const SceneEdits& edits, const std::string
         request.aov += (request.aov.empty() ? "" : ",") + layers;
     Read result;
     result.xml = edited(xml_, edits);
-    result.scene =
-        parse_scene(result.xml, file_, request.defines, {request.grid, request.integrator, options_.strict, grids_});
+    SceneOverrides overrides{request.grid, request.integrator, options_.strict, grids_};
+    if (edits.camera || !edits.integrator.empty()) // which may have stood where a $key was
+        for (const auto& [key, value] : request.defines)
+            overrides.may_be_unused.insert(key);
+    result.scene = parse_scene(result.xml, file_, request.defines, overrides);
     result.scene.warnings.insert(result.scene.warnings.begin(), notes_.begin(), notes_.end());
     apply_request(request, has_view_ || edits.camera.has_value(), result.scene, fields);
     return result;

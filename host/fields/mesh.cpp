@@ -167,7 +167,10 @@ void turn_outward(Polygons& obj, const std::vector<std::uint32_t>& numbers) {
     std::vector<Body> bodies = bodies_of(obj, numbers);
     std::sort(bodies.begin(), bodies.end(),
               [](const Body& a, const Body& b) { return std::abs(a.volume) > std::abs(b.volume); });
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const auto is_inward = [](const Body& body) { return body.volume < 0.0; };
+    const bool are_alike =
+        std::all_of(bodies.begin(), bodies.end(), is_inward) || std::none_of(bodies.begin(), bodies.end(), is_inward);
+    for (std::size_t i = 0; i < bodies.size() && !are_alike; ++i) {
         Body& body = bodies[i];
         for (std::size_t k = i; k-- > 0;) {
             const Body& about = bodies[k];

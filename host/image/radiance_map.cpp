@@ -34,6 +34,11 @@ RadianceMap read_radiance_map(const std::filesystem::path& file) {
     std::vector<float> values(std::size_t(header.width) * header.height * channels);
     if (!reader->read(values.data()))
         fail_to_read(file, *reader);
+    constexpr std::size_t most_beyond = 64; // times the pixels that there are
+    if (std::size_t(header.full_width) * header.full_height > most_beyond * header.width * header.height)
+        throw InputError(
+            fmt::format("{}: has {}x{} pixels of a display window of {}x{}, which is hardly meant; crop it",
+                        file.string(), header.width, header.height, header.full_width, header.full_height));
     RadianceMap map{header.full_width, header.full_height, {}, 0};
     map.texels.resize(std::size_t(map.width) * map.height); // black where the file has no pixels
     for (std::size_t i = 0; i < values.size(); i += channels) {

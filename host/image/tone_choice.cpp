@@ -74,6 +74,10 @@ bool has_recorded(const ToneRequest& request, const Metadata& metadata) {
     return recorded(metadata) == request;
 }
 
+double camera_exposure(const Metadata& metadata) {
+    return stops_in(metadata, camera_exposure_key).value_or(0.0);
+}
+
 Tone choose_tone(const ToneRequest& request, const Film& film, const Metadata& metadata) {
     const ToneRequest before = recorded(metadata);
     const ToneRequest& exposing = says_exposure(request) ? request : before;
@@ -84,7 +88,7 @@ Tone choose_tone(const ToneRequest& request, const Film& film, const Metadata& m
         tone.for_glow = text_of(metadata, glow_key) == "1";
         tone.mapping.curve = tone.for_glow ? ToneCurve::agx : ToneCurve::srgb;
     }
-    const double camera = stops_in(metadata, camera_exposure_key).value_or(0.0);
+    const double camera = camera_exposure(metadata);
     tone.mapping.exposure = exposing.automatic_exposure ? suitable_exposure(film, tone.mapping.curve)
                                                         : camera + exposing.exposure.value_or(0.0);
     tone.clipped = clipped_pixels(film, tone.mapping);

@@ -32,6 +32,9 @@ std::optional<ToneCurve> find_tone_curve(const std::string& name);
 // Metadata: stops, as text, by which a camera's settings raise radiance; those that are asked for come on top.
 inline constexpr const char* camera_exposure_key = "vkvol/cameraExposure";
 
+// Stops; 0 without such settings.
+double camera_exposure(const Metadata& metadata);
+
 // Whether the medium glows, and what was asked for, so that the image can be developed again as it was.
 void record_tone(const ToneRequest& request, bool glows, Metadata& metadata);
 // What was asked for in addition; the rest is as it was.

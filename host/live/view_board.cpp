@@ -44,6 +44,11 @@ void ViewBoard::forget_camera() {
     wish_.edits.camera.reset();
 }
 
+void ViewBoard::forget_lights() {
+    const std::scoped_lock lock(mutex_);
+    wish_.edits.lights.clear();
+}
+
 double ViewBoard::seconds_unwatched() const {
     const std::scoped_lock lock(mutex_);
     return std::chrono::duration<double>(Clock::now() - watched_).count();

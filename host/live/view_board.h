@@ -59,6 +59,7 @@ public:
     ViewWish wish(std::uint64_t* number = nullptr) const;
     std::uint64_t wish_number() const;
     void forget_camera(); // the file has another
+    void forget_lights();
     double seconds_unwatched() const;
     // Until there is another wish than `number`, or the time is over.
     void wait_for_wish(std::uint64_t number, std::chrono::milliseconds time) const;

@@ -8,6 +8,7 @@
 #include "camera_view.h"
 #include "error.h"
 #include "integrators.h"
+#include "tone_choice.h"
 
 namespace vkvol {
 
@@ -95,6 +96,16 @@ Json lights_json(const ViewedScene& scene, const ViewWish& wish) {
     return lights;
 }
 
+// As wish_of() reads them.
+Json wished_lights(const SceneEdits& edits) {
+    Json lights = Json::array();
+    for (const auto& [place, edit] : edits.lights)
+        lights.push_back({{"place", place},
+                          {"factor", edit.factor},
+                          {"direction", edit.direction ? json_of(*edit.direction) : Json()}});
+    return lights;
+}
+
 void add_scene(const ViewedScene& scene, const ViewWish& wish, Json& state) {
     state["scene"] = scene.name;
     state["device"] = scene.device;
@@ -157,6 +168,8 @@ std::string state_json(const Shot* shot, const ShownLayer& shown, const ViewWish
                   {"paused", wish.paused},
                   {"density", wish.edits.density},
                   {"wishedIntegrator", wish.edits.integrator},
+                  {"wishesCamera", wish.edits.camera.has_value()},
+                  {"wishedLights", wished_lights(wish.edits)},
                   {"version", 0},
                   {"width", 0},
                   {"height", 0}};
@@ -170,7 +183,8 @@ std::string state_json(const Shot* shot, const ShownLayer& shown, const ViewWish
         state["sketch"] = shot->is_sketch;
         state["done"] = shot->is_done;
         state["scale"] = shown.scale;
-        state["exposure"] = shown.mapping.exposure;
+        if (shown.scale.empty()) // stops besides the camera's, as a wish has them
+            state["exposure"] = shown.mapping.exposure - camera_exposure(shot->metadata);
         state["curve"] = name_of(shown.mapping.curve);
         state["clipped"] = shown.clipped;
         // Amid the first samples, pixels that are done would speak for all.

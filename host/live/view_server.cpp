@@ -82,7 +82,9 @@ std::string image_file(const Shot& shot, const char* name, const ToneRequest& re
     std::string bytes, failure;
     try {
         const Tone tone = choose_tone(request, shot.film, shot.metadata);
-        write_image(file, shot.film, shot.metadata, tone.mapping);
+        Metadata metadata = shot.metadata;
+        record_tone(request, metadata);
+        write_image(file, shot.film, metadata, tone.mapping);
         std::ifstream in(file, std::ios::binary);
         bytes.assign(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
     } catch (const std::exception& error) {

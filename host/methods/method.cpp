@@ -371,7 +371,8 @@ void Resolution::find_biases() {
     // At constant density a march knows its optical depths exactly, but not the light between its sample points.
     if (method_.flights_have(TRAIT_MARCH) && field_ != FIELD_CONSTANT)
         add(bias_flight_steps, "flights take the density of one point for that of a whole step");
-    else if (method_.flights_have(TRAIT_MARCH) && is_through(method_) && method_.nee != NEE_NONE)
+    else if (method_.flights_have(TRAIT_MARCH) && is_through(method_) && method_.nee != NEE_NONE &&
+             method_.scattering != SCATTERING_NONE)
         add(bias_flight_steps, "the march takes the light of one point for that of a whole step");
     if (method_.shadow_rays_have(TRAIT_MARCH) && method_.transmittance != TRANSMITTANCE_TELESCOPING &&
         field_ != FIELD_CONSTANT)

@@ -355,12 +355,15 @@ void PbrtTranslator::write_triangles(const PbrtShape& shape, const PbrtTriangles
 namespace {
 
 // Glass whose normals point inwards has its inside around it, as pbrt sees it: a bubble.
-void turn_inside_out(XmlAttributes& material) {
-    const auto is_glass = [](const auto& attribute) { return attribute.second == "dielectric"; };
-    if (std::any_of(material.begin(), material.end(), is_glass))
-        for (auto& [name, value] : material)
-            if (name == "ior")
-                value = xml_number(1.0 / std::stod(value));
+void turn_inside_out(XmlAttributes& glass) {
+    for (auto& [name, value] : glass)
+        if (name == "ior")
+            value = xml_number(1.0 / std::stod(value));
+}
+
+bool is_glass(const XmlAttributes& material) {
+    return std::any_of(material.begin(), material.end(),
+                       [](const auto& attribute) { return attribute.second == "dielectric"; });
 }
 
 } // namespace
@@ -380,7 +383,7 @@ void PbrtTranslator::write_surface(const PbrtShape& shape) {
     PbrtShape turned = shape; // as its triangles would be
     if (thing.type == "sphere" || thing.type == "cylinder")
         turned.is_reversed = faces_inwards(shape);
-    if (thing.type != "disk" && thing.type != "plymesh" && faces_inwards(shape))
+    if (is_glass(*material) && thing.type != "disk" && thing.type != "plymesh" && faces_inwards(shape))
         turn_inside_out(*material);
     const bool shines_inwards = thing.type == "sphere" && turned.is_reversed && shape.light;
     const bool is_polar = thing.type == "disk" && has_texture(*material); // there

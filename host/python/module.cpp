@@ -1,5 +1,6 @@
 // The Python module vkvol._vkvol: what vkvol/__init__.py is made of, which has the documentation. A thin layer: nothing
 // is decided here but what Python's objects come to.
+#include <cxxabi.h>
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -190,6 +191,8 @@ private:
             const py::gil_scoped_release release;
             try {
                 work();
+            } catch (abi::__forced_unwind&) { // a daemon thread, at the interpreter's end
+                throw;
             } catch (...) {
                 failure = std::current_exception();
             }

@@ -359,7 +359,7 @@ void Wavefront::read_figures() {
 // Only where a round alone takes far too long, as a slow device's driver would not suffer, lanes work for less long
 // again.
 void Wavefront::adapt(double seconds) {
-    worst_turn_ = std::max(worst_turn_, seconds / (double(rounds_) * push_.budget));
+    worst_turn_ = std::max(0.9 * worst_turn_, seconds / (double(rounds_) * push_.budget));
     const double factor = std::clamp(plan_.submit_seconds / std::max(seconds, 1e-6), 0.5, 2.0);
     if (factor > 1.0 && push_.budget < plan_.budget)
         push_.budget = std::min(2 * push_.budget, plan_.budget);

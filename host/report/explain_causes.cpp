@@ -14,7 +14,7 @@ namespace {
 
 using Answer = std::optional<std::string>;
 
-// Null where there are several: their pictures are none that this explains.
+// Null where there are several, whose coefficients and grids are not told apart.
 const Volume* volume_of(const Scene& scene) {
     return scene.volumes.size() == 1 ? &scene.volumes.front() : nullptr;
 }

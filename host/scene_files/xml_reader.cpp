@@ -82,7 +82,9 @@ std::string read_integer(const std::string& text, long long low, long long high,
 }
 
 std::string element_hint(const std::string& name, const std::string& parent, std::vector<std::string> known) {
-    if (const std::string here = said_here(name); !here.empty())
+    const bool holds_many_kinds =
+        parent == "options" || parent == "volume" || parent == "lights" || parent == "surfaces";
+    if (const std::string here = said_here(name); holds_many_kinds && !here.empty())
         return "; " + here;
     if (known.empty())
         return fmt::format("; <{}> has no elements inside", parent);

@@ -317,6 +317,37 @@ TEST_CASE("looks that take long are had nevertheless", "[gpu][live]") {
     CHECK(at[4] >= 100 * (4 * 0.08 - 0.3)); // those beyond 0.3 s are a hundredth of the time
 }
 
+TEST_CASE("what a viewer asks for in vain does not stay asked for", "[gpu][live]") {
+    const Folder folder("");
+    folder.write("turn.xml", "<options><sphere/><sigma_s>1</sigma_s><width>16</width><height>16</height>"
+                             "<camera z=\"${= 4 + distance + F}\" fov=\"${angle}\"/><motionBlur/>"
+                             "<backgroundColor r=\"1\" g=\"1\" b=\"1\"/></options>");
+    Watched watched(folder, "turn.xml --spp 8 -D distance=1 -D angle=40 -D F=0");
+    const auto [root, key, port] = watched.address();
+    httplib::Client client(root);
+    const auto wish = [&, &key = key](const Json& json) {
+        const auto answer = client.Post(("/wish?key=" + key).c_str(), json.dump(), "application/json");
+        REQUIRE(answer->status == 200);
+        return Json::parse(answer->body)["wish"].get<std::uint64_t>();
+    };
+    const auto done = [&, &key = key](std::uint64_t number) {
+        return until(client, key, [&](const Json& state) {
+            return state.value("done", false) && state["wish"] == number && state["sceneWish"] == number &&
+                   state["message"] == "";
+        });
+    };
+    const Json first = until(client, key, [](const Json& state) { return state.value("done", false); });
+    wish({{"layer", "position"}}); // of what moves there is none
+    until(client, key, [](const Json& state) { return state["message"] != ""; });
+    done(wish({{"layer", "depth"}}));
+    // A camera that takes the place of the keys that stood there.
+    Json camera = first["camera"];
+    camera["position"] = {2.0, 1.0, 4.0};
+    const Json turned = done(wish({{"camera", camera}, {"lights", Json::array()}}));
+    CHECK(turned["wishesCamera"] == true);
+    CHECK(done(wish(Json::object()))["wishesCamera"] == false);
+}
+
 TEST_CASE("a scene is viewed, changed and kept", "[gpu][live]") {
     const Folder folder("<light x=\"1\" y=\"1\" z=\"0\" r=\"3\" g=\"2\" b=\"1\"/>");
     Watched watched(folder, "ball.xml --spp 8");
@@ -358,8 +389,10 @@ TEST_CASE("a scene is viewed, changed and kept", "[gpu][live]") {
     REQUIRE(folder.vkvol("kept-scene.xml --spp 8 -q -o changed.exr").code == exit_done);
     CHECK(read_exr(folder.file("kept-picture.exr")).mean == read_exr(folder.file("changed.exr")).mean);
     CHECK(read_exr(folder.file("changed.exr")).mean != read_exr(folder.file("plain.exr")).mean);
-    // A layer, of the same samples; the scene as it was.
+    // A layer, of the same samples; the scene as it was. One whose name ends another's is one by itself.
     CHECK(wish({{"layer", "depth"}})["width"] == 16);
+    CHECK(wish({{"layer", "indirect"}})["width"] == 16);
+    CHECK(wish({{"layer", "direct"}})["width"] == 16);
     wish(Json::object());
     kept("picture.exr");
     CHECK(read_exr(folder.file("kept-picture.exr")).mean == read_exr(folder.file("plain.exr")).mean);

@@ -179,8 +179,6 @@ TEST_CASE("looks from along flights find what lights of a place give", "[gpu][li
     }
 }
 
-// Of a flight only what is in the cone, or before the lamp, is drawn: rays across a cone, along it toward the lamp and
-// away from it, within it and past its back. The rims are hard where light would be missed first.
 // Whose part of a flight, as single precision has it, is rounding.
 TEST_CASE("looks from along flights leave what is far away to collisions", "[gpu][lights]") {
     Scene scene = lit_by(medium(Box{{0.0, 0.0, 0.0}, {4.0, 3.0, 3.0}}, 0.4, 0.9, 0.2), 5.0, {}, 512);
@@ -196,6 +194,8 @@ TEST_CASE("looks from along flights leave what is far away to collisions", "[gpu
     }
 }
 
+// Of a flight only what is in the cone, or before the lamp, is drawn: rays across a cone, along it toward the lamp and
+// away from it, within it and past its back. The rims are hard where light would be missed first.
 TEST_CASE("looks from along flights know what a spot or a flat lamp lights", "[gpu][lights]") {
     const glm::dvec3 across = glm::normalize(glm::dvec3(0.3, -1.0, 0.2)), along(0.05, 0.02, -1.0);
     const std::pair<const char*, Light> lights[] = {

@@ -203,6 +203,27 @@ TEST_CASE("particles and paths share what mirrors and glass show and throw", "[g
     CHECK(scene_hash(by(scene, "bidirectional")) != scene_hash(by(scene, "ratioTracking")));
 }
 
+// Of splats as bright as what is seen from a three-thousandth of a scene's size, and of a lamp as near to the ground.
+TEST_CASE("particles light what is small in a large scene", "[gpu][particles]") {
+    Scene scene =
+        still({}, {PointLight{{0.5, 4.0, -20.0}, Rgb(1.0)}}); // by a lamp, which a larger ground changes little
+    scene.volumes.clear();
+    scene.background = Rgb(0.0);
+    Surface ground;
+    ground.shape = RectangleSurface{{0.0, 0.0, 0.0}, {1e4, 0.0, 0.0}, {0.0, 0.0, -1e4}};
+    scene.surfaces = {ground};
+    scene.camera = Camera{};
+    scene.camera.position = {0.0, 5.0, -12.0};
+    scene.camera.pitch = -35.0;
+    scene.camera.fov = 40.0;
+    scene.picture = {8, 8, 0.0, 0.0, 8.0, 8.0};
+    scene.settings.spp = 1 << 15;
+    const RenderResult particles = render_here(by(scene, "lightTracing"), 2);
+    CHECK(particles.counts.non_finite == 0);
+    scene.surfaces.front().shape = RectangleSurface{{0.0, 0.0, 0.0}, {1e2, 0.0, 0.0}, {0.0, 0.0, -1e2}};
+    CHECK_AGREEMENT(agree(particles.film, render_here(by(scene, "lightTracing"), 1).film, "the ground below a lamp"));
+}
+
 // Single precision does not tell the cosine with the poles' axis from 1 there.
 TEST_CASE("particles at a panorama's pole count as much as paths there", "[gpu][particles]") {
     Scene scene = still({}, {SpotLight{{0.0, -0.01, 0.0}, {0.0, 1.0, 0.0}, Rgb(1.0), 0.1}});

@@ -33,7 +33,7 @@ class Grids:
         arrays = ({} if density is None else {"density": density}) | others
         if not arrays:
             raise _vkvol.InputError("Grids: there is no array; e.g. Grids(density=array)")
-        self._grids = _vkvol.Grids([(name, np.asarray(array, np.float32)) for name, array in arrays.items()],
+        self._grids = _vkvol.Grids([(name, np.asarray(np.ma.filled(array, 0), np.float32)) for name, array in arrays.items()],
                                    tuple(float(x) for x in np.broadcast_to(voxel_size, 3)), tuple(float(x) for x in origin))
 
     def write(self, file: StrPath) -> None:
