@@ -319,9 +319,13 @@ TEST_CASE("looks that take long are had nevertheless", "[gpu][live]") {
 
 TEST_CASE("what a viewer asks for in vain does not stay asked for", "[gpu][live]") {
     const Folder folder("");
-    folder.write("turn.xml", "<options><sphere/><sigma_s>1</sigma_s><width>16</width><height>16</height>"
-                             "<camera z=\"${= 4 + distance + F}\" fov=\"${angle}\"/><motionBlur/>"
-                             "<backgroundColor r=\"1\" g=\"1\" b=\"1\"/></options>");
+    const auto write = [&](const std::string& more) {
+        folder.write("turn.xml", "<options><sphere/><sigma_s>1</sigma_s><width>16</width><height>16</height>"
+                                 "<camera z=\"${= 4 + distance + F}\" fov=\"${angle}\"/>"
+                                 "<backgroundColor r=\"1\" g=\"1\" b=\"1\"/>" +
+                                     more + "</options>");
+    };
+    write("");
     Watched watched(folder, "turn.xml --spp 8 -D distance=1 -D angle=40 -D F=0");
     const auto [root, key, port] = watched.address();
     httplib::Client client(root);
@@ -337,7 +341,8 @@ TEST_CASE("what a viewer asks for in vain does not stay asked for", "[gpu][live]
         });
     };
     const Json first = until(client, key, [](const Json& state) { return state.value("done", false); });
-    wish({{"layer", "position"}}); // of what moves there is none
+    done(wish({{"layer", "position"}}));
+    write("<motionBlur/>"); // of what moves there is none
     until(client, key, [](const Json& state) { return state["message"] != ""; });
     done(wish({{"layer", "depth"}}));
     // A camera that takes the place of the keys that stood there.
