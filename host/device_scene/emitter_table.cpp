@@ -140,14 +140,16 @@ double unit_of_splats(double power, double across, double brightest) {
     return std::exp2(std::floor(std::log2(usual)) - 34.0);
 }
 
-// Of what is seen itself, or mirrored; and points light what is near them without bound: as far as from a
-// ten-thousandth of `reach`, with 24 bits for what they light from that far.
+// Of what is seen itself, or mirrored; and points light what is near them without bound: so that light as from a
+// ten-thousandth of `reach` fits, and what is lit from all of it has 24 bits. Where nothing bounds the scene, 0, as
+// from a unit of length.
 double brightest_of(const Scene& scene, const LightTable& lights, const SurfaceTable& surfaces, const Glow& glow,
                     const SkyMap* sky, double reach) {
     double brightest = std::max(channel_mean(scene.background), glow.most);
     for (const shared::LightRow& light : lights.rows)
         brightest = std::max(brightest, light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT
-                                            ? std::ldexp(channel_mean(light.radiance) / (reach * reach), 30)
+                                            ? channel_mean(light.radiance) *
+                                                  (reach > 0.0 ? std::ldexp(1.0 / (reach * reach), 30) : 1.0)
                                             : channel_mean(light.radiance));
     for (const glm::vec4& texel : sky ? std::span<const glm::vec4>(sky->texels) : std::span<const glm::vec4>())
         brightest = std::max(brightest, channel_mean(Rgb(texel)));
@@ -211,8 +213,9 @@ EmitterTable make_emitter_table(const Scene& scene, const Method& method, const 
     // What a sensor counts is absorbed, too; a camera sees what leaves.
     const double shown = table.params.power - (method.paths == PATHS_LIGHT && !counts ? glow.hidden : 0.0);
     const double reach = bounded && radius > 0.0 ? radius : 1.0;
-    table.params.unit = static_cast<float>(unit_of_splats(shown, counts ? sensor : 4.0 * pi * pi * reach * reach,
-                                                          brightest_of(scene, lights, surfaces, glow, sky, reach)));
+    table.params.unit =
+        static_cast<float>(unit_of_splats(shown, counts ? sensor : 4.0 * pi * pi * reach * reach,
+                                          brightest_of(scene, lights, surfaces, glow, sky, bounded ? reach : 0.0)));
     return table;
 }
 

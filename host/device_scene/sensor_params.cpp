@@ -94,8 +94,8 @@ shared::SensorParams sensor_params(const Scene& scene, const glm::dvec3& origin,
         params.position += start * rays.forward;
         params.start = static_cast<float>(start);
     }
-    // A sensor in a surface's plane lies before it, as particles have it (count.glsl), by more than places on surfaces
-    // err.
+    // A sensor in a surface's plane lies before it, by more than places on surfaces err: so particles that come to the
+    // surface pass it, and those that leave it do not (count.glsl).
     if (rays.projection == Projection::irradiance && !scene.surfaces.empty()) {
         const SensorBox box = sensor_box(scene.camera, scene.picture);
         const double reach = std::max(reach_of({box.low, box.high}, origin), bounds ? reach_of(*bounds, origin) : 0.0);

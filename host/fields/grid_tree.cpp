@@ -116,10 +116,8 @@ public:
             throw InputError(fmt::format("{}: the grid does not say where its voxels are, since it was written without "
                                          "statistics; write it with NanoVDB's default of StatsMode, or as .vdb",
                                          place_));
-        if (field_.active_voxels == 0) {
-            field_.active_voxels = 0;
+        if (field_.active_voxels == 0)
             return;
-        }
         check_box(*root, root_offset);
         size_table();
         bytes_left_ = field_.bytes.size();
