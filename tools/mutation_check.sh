@@ -45,7 +45,7 @@ pieces of grids beyond their voxels ~ host/assets/superposition.cpp ~ glm::min(p
 cavities filled ~ host/fields/mesh.cpp ~ if ((body.volume < 0.0) != body.is_cavity) ~ if (body.volume < 0.0) ~ [mesh]
 maps over their data alone ~ host/image/radiance_map.cpp ~ header.y - header.full_y + ~ header.full_height - header.height + ~ [xml][surfaces]
 colours multiplied by alpha ~ host/codec/oiio_codec.cpp ~ as_stored.attribute("oiio:UnassociatedAlpha", 1); ~ ; ~ [xml][surfaces]
-what readings lost not told ~ host/cli/measure.cpp ~ told.counts.depth_caps += result.counts.depth_caps; ~ ; ~ [command]
+what readings lost not told ~ host/cli/measure.cpp ~ add_counts(told.counts, result.counts); ~ ; ~ [command]
 sums weighted by the first pixel ~ host/cli/merge.cpp ~ *std::max_element(input.film.samples.begin(), input.film.samples.end()) ~ input.film.samples.front() ~ [merge]
 pictures older than their samples passed over ~ host/cli/rendered_before.cpp ~ std::filesystem::last_write_time(output, error) < first ~ false ~ [command]
 bubbles of glass as balls of it ~ host/pbrt_files/pbrt_surfaces.cpp ~ thing.type != "plymesh" && faces_inwards(shape) ~ thing.type != "plymesh" && false ~ [pbrt]

@@ -221,11 +221,7 @@ int run_measure(const MeasureOptions& options) {
                 if (!options.quiet)
                     tell(stderr, "vkvol: warning: {}\n", warning);
             was_interrupted = result.interrupted;
-            told.counts.depth_caps += result.counts.depth_caps;
-            told.counts.step_caps += result.counts.step_caps;
-            told.counts.abandoned += result.counts.abandoned;
-            told.counts.majorant_violations += result.counts.majorant_violations;
-            told.counts.non_finite += result.counts.non_finite;
+            add_counts(told.counts, result.counts);
             told.counts.cleaned_voxels = std::max(told.counts.cleaned_voxels, result.counts.cleaned_voxels);
             if (!result.biased.empty() && !options.quiet)
                 for (const std::string& why : workshop.new_warnings({"the readings are biased: " + result.biased}))

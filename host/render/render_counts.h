@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 
 namespace vkvol {
 
@@ -22,6 +23,16 @@ struct RenderCounts {
                0;
     }
 };
+
+// Of voxels that were cleaned each says all.
+inline void add_counts(RenderCounts& total, const RenderCounts& c) {
+    for (const auto count :
+         {&RenderCounts::paths, &RenderCounts::real_collisions, &RenderCounts::null_collisions, &RenderCounts::lookups,
+          &RenderCounts::cells, &RenderCounts::shadow_rays, &RenderCounts::depth_caps, &RenderCounts::step_caps,
+          &RenderCounts::majorant_violations, &RenderCounts::non_finite, &RenderCounts::queue_overflows,
+          &RenderCounts::room, &RenderCounts::steps, &RenderCounts::abandoned})
+        total.*count += c.*count;
+}
 
 constexpr std::size_t most_examples = 16; // of them that are named
 struct NonFiniteSample {

@@ -18,15 +18,6 @@ namespace vkvol {
 
 namespace {
 
-void add_counts(RenderCounts& total, const RenderCounts& c) {
-    for (const auto count :
-         {&RenderCounts::paths, &RenderCounts::real_collisions, &RenderCounts::null_collisions, &RenderCounts::lookups,
-          &RenderCounts::cells, &RenderCounts::shadow_rays, &RenderCounts::depth_caps, &RenderCounts::step_caps,
-          &RenderCounts::majorant_violations, &RenderCounts::non_finite, &RenderCounts::queue_overflows,
-          &RenderCounts::room, &RenderCounts::steps, &RenderCounts::abandoned})
-        total.*count += c.*count;
-}
-
 std::vector<std::uint32_t> rows_of_bands(const std::vector<Band>& bands) {
     std::vector<std::uint32_t> rows;
     for (const Band& band : bands)
