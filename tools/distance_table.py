@@ -9,7 +9,6 @@ estimate could be trusted with, and a few pixels may decide. Read them as orders
 
 import json
 import pathlib
-import statistics
 import subprocess
 import tempfile
 
@@ -49,16 +48,9 @@ def main():
                 device = report["device"]
                 print(f"{device['name']}, {device['driver']}; a point light in fog, {options.spp} samples; means of "
                       f"{options.runs} errors, medians of as many seconds, in alternation")
-                print(f"{'':24} {'error':>8} {'seconds':>8} {'efficiency':>10}   mixed over flights")
-            errors, seconds = {"flights": [], "mixed": []}, {"flights": [], "mixed": []}
-            for run in range(options.runs):
-                for way in errors:
-                    report = table_runs.render(vkvol, scene, WAYS[way], run + 1, options.spp, picture)
-                    seconds[way].append(report["seconds"]["render"])
-                    errors[way].append(error(vkvol, picture, reference))
-            less = statistics.mean(errors["flights"]) / statistics.mean(errors["mixed"])
-            longer = statistics.median(seconds["mixed"]) / statistics.median(seconds["flights"])
-            print(f"{case:24} {1 / less:8.4f} {longer:8.2f} {less / longer:10.2f}", flush=True)
+                print(f"{'':24} {'error':>10} {'seconds':>6} {'efficiency':>10}   mixed over flights")
+            means = table_runs.in_alternation(options, scene, WAYS, picture, lambda made: error(vkvol, made, reference))
+            print(f"{case:24}{table_runs.against(means, 'flights')('mixed')}", flush=True)
 
 
 if __name__ == "__main__":

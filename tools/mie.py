@@ -45,10 +45,14 @@ def main():
     parser.add_argument("--wavelength", type=float, default=0.55, help="[micrometres]")
     parser.add_argument("--index", type=complex, default=1.333, help="of refraction, relative to what is around")
     options = parser.parse_args()
+    if not (options.diameter > 0 and options.spread >= 0 and options.wavelength > 0):
+        parser.error("--diameter and --wavelength are lengths above 0, and --spread is not below 0")
     # Close together where the peak is, and where bows are.
     angles = np.unique(np.concatenate([np.geomspace(0.01, 10, 160), np.arange(10, 180.01, 0.25), [0.0]]))
     mu = np.cos(np.radians(angles))
-    sizes = np.linspace(max(1 - 3 * options.spread, 0.05), 1 + 4 * options.spread, 120 if options.spread > 0 else 1)
+    # Light goes with the square of the size, and straight on with its fourth power: so far does the tail count.
+    sizes = np.linspace(max(1 - 3 * options.spread, 0.02), 1 + 5 * options.spread + 8 * options.spread**2,
+                        round(120 + 400 * options.spread) if options.spread > 0 else 1)
     shape = 1 / max(options.spread, 1e-6) ** 2
     density = np.exp((shape - 1) * np.log(sizes) - shape * (sizes - 1)) if options.spread > 0 else np.ones(1)
     value = np.zeros_like(mu)

@@ -2,7 +2,7 @@
 """What a row of tools/mutation_check.sh rests on, as a key, and which rows were not made since it changed.
 
 A row rests on itself, on the code around the error (of its file, what stands between two lines that begin with a closing
-brace: a function, a struct), and on the test that caught it. What else is in those files does not count, as other files
+brace: a function, a struct), and on the test that caught it, but for comments and line breaks. What else is in those files does not count, as other files
 do not: nothing is as sure as to make all errors anew, which takes hours.
 
     tools/mutation_keys.py SOURCE RESULTS < TABLE       the rows to be made, those that have no result first
@@ -35,6 +35,10 @@ def pieces_of(path):
     return re.split(r"(?m)^(?=\})", path.read_text()) if path.exists() else []
 
 
+def code(text):
+    return re.sub(r"\s+", " ", re.sub(r"//[^\n]*", "", text)).strip()
+
+
 def key(source, row, caught_by):
     _, file, texts = row.split(" ~ ")[:3]
     wanted = texts.split(" ^ ")
@@ -43,7 +47,7 @@ def key(source, row, caught_by):
     around = around or pieces_of(Path(source, file))
     # Long names are cut off in Catch2's output.
     caught = [text for name, text in tests_of(source) if name.startswith(caught_by)]
-    return hashlib.sha256("\n".join([row, *around, *caught]).encode()).hexdigest()[:12]
+    return hashlib.sha256("\n".join([row, *map(code, around), *map(code, caught)]).encode()).hexdigest()[:12]
 
 
 def stale(source, results, rows):

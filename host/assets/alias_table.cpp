@@ -8,7 +8,7 @@ namespace vkvol {
 
 namespace {
 
-// Of a probability, so that a word below it is drawn with that.
+// The 32-bit number that a random word is below with this probability.
 std::uint32_t threshold(double probability) {
     return static_cast<std::uint32_t>(std::clamp(std::round(probability * 4294967296.0), 0.0, 4294967295.0));
 }

@@ -94,14 +94,15 @@ glm::dvec3 direction_of(int column, int row) {
 Rgb sun_irradiance(const Daylight& daylight) {
     constexpr double kelvin = 5778.0, illuminance = 133.0;
     const double degrees = std::acos(std::clamp(daylight.sun.y, 0.0, 1.0)) * 180.0 / pi;
-    // Kasten's optical mass of the air, and the transmittances of appendix A.1 of air and haze.
+    // Kasten's optical mass of the air, and the transmittances of appendix A.1 of air, haze and 0.35 cm of ozone, whose
+    // absorption per cm Iqbal has ("An Introduction to Solar Radiation", 1983, p. 127).
     const double mass = 1.0 / (std::max(daylight.sun.y, 0.0) + 0.15 * std::pow(93.885 - degrees, -1.253));
     const double haze = 0.04608 * daylight.turbidity - 0.04586;
-    constexpr double micrometres[3] = {0.610, 0.550, 0.465};
+    constexpr double micrometres[3] = {0.610, 0.550, 0.465}, ozone[3] = {0.12, 0.085, 0.008};
     Rgb irradiance = illuminance * blackbody_rgb(kelvin, kelvin);
     for (int c = 0; c < 3; ++c)
         irradiance[c] *= std::exp(-mass * (0.008735 * std::pow(micrometres[c], -4.08) +
-                                           std::max(haze, 0.0) * std::pow(micrometres[c], -1.3)));
+                                           haze * std::pow(micrometres[c], -1.3) + 0.35 * ozone[c]));
     return irradiance;
 }
 

@@ -8,12 +8,12 @@
 
 namespace vkvol {
 
-// Of the sky without the sun's disc. The model has none below the horizon: there is the light that a ground of
+// Radiance of the sky without the sun's disc. The model has none below the horizon: there is the light that a ground of
 // `ground`'s albedo gives back.
 RadianceMap make_daylight(const Daylight& daylight);
 
-// Of the sun, on a plane that faces it: a black body of 5778 kelvin and 133 klx beyond the atmosphere, seen through air
-// and haze at three wavelengths.
+// Irradiance of the sun on a plane that faces it: a black body of 5778 kelvin and 133 klx beyond the atmosphere, seen
+// through air, haze and ozone at three wavelengths.
 Rgb sun_irradiance(const Daylight& daylight);
 
 } // namespace vkvol

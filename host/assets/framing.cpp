@@ -6,8 +6,10 @@
 
 #include "camera_view.h"
 #include "error.h"
+#include "layers.h"
 #include "loaded_medium.h"
-#include "supported.h"
+#include "render_limits.h"
+#include "surface_mesh.h"
 
 namespace vkvol {
 
@@ -58,8 +60,14 @@ Corners moved(const Volume& volume, Corners corners) {
 }
 
 std::optional<Corners> corners_of(const Volume& volume, FieldCache& fields) {
+    if ((volume.sigma_a + volume.sigma_s) * volume.density_scale == Rgb(0.0))
+        return std::nullopt; // nothing is to be seen of it
     if (const auto* sphere = std::get_if<Sphere>(&volume.shape))
         return moved(volume, corners_between(sphere->center - sphere->radius, sphere->center + sphere->radius));
+    if (volume.layers && !is_everywhere(volume)) {
+        const LayerBox box = layer_box(volume);
+        return moved(volume, corners_between(box.low, box.low + box.size));
+    }
     if (const auto* box = std::get_if<Box>(&volume.shape))
         return moved(volume, corners_between(box->center - 0.5 * box->size, box->center + 0.5 * box->size));
     if (is_everywhere(volume))
@@ -72,7 +80,7 @@ std::optional<Corners> corners_of(const Volume& volume, FieldCache& fields) {
     return field.active_voxels > 0 ? std::optional(corners_of(field)) : std::nullopt;
 }
 
-// Of the box along the axes that holds both.
+// Corners of the box along the axes that holds both.
 Corners corners_around(const Corners& a, const Corners& b) {
     glm::dvec3 low = a.front(), high = a.front();
     for (const Corners& corners : {a, b})
@@ -86,7 +94,7 @@ Corners corners_around(const Corners& a, const Corners& b) {
 } // namespace
 
 std::optional<Corners> medium_corners(const Scene& scene, FieldCache& fields) {
-    check_supported(scene);
+    check_scene_limits(scene);
     fields.retain(grid_files(scene));
     std::optional<Corners> all;
     for (const Volume& volume : scene.volumes)
@@ -111,7 +119,7 @@ namespace {
 constexpr double filled = 0.94; // of the picture's width or height
 constexpr double nearest = 0.1; // diagonals of the medium, from the eye to the nearest corner
 
-// Of an orthographic view the height says how much is seen, and not the distance.
+// Frames an orthographic view: its height says how much is seen, and not the distance.
 void frame_flat(Camera& camera, const Picture& picture, const Corners& corners) {
     const glm::dmat3 rotation = camera_rotation(camera);
     const ViewWindow window = view_window(camera, picture);
@@ -195,9 +203,14 @@ void frame_medium(Scene& scene, FieldCache& fields) {
 std::string give_camera(Scene& scene, FieldCache& fields) {
     if (scene.has_camera)
         return "";
-    const std::optional<Corners> corners = medium_corners(scene, fields);
+    std::optional<Corners> corners = medium_corners(scene, fields);
+    const bool has_media = corners.has_value();
+    if (const std::optional<SurfaceBounds> bounds = has_media ? std::nullopt : bounds_of(scene.surfaces))
+        corners = corners_between(bounds->low, bounds->high);
     if (!corners)
-        return "";
+        return scene.surfaces.empty() ? ""
+                                      : "the scene has no <camera>, and nothing that could be framed: it is at the "
+                                        "origin and looks along -z";
     scene.camera.fov = usual_fov;
     Orbit orbit;
     orbit.azimuth = usual_azimuth;
@@ -207,9 +220,10 @@ std::string give_camera(Scene& scene, FieldCache& fields) {
     const glm::dvec3 forward = -camera_rotation(scene.camera)[2];
     const double distance = glm::dot(middle_of(*corners) - scene.camera.position, forward);
     const glm::dvec3 target = scene.camera.position + distance * forward;
-    return fmt::format("the scene has no <camera>: this one frames its media, <camera lookAt=\"{:.6g} {:.6g} {:.6g}\" "
+    return fmt::format("the scene has no <camera>: this one frames its {}, <camera lookAt=\"{:.6g} {:.6g} {:.6g}\" "
                        "distance=\"{:.6g}\" azimuth=\"{:g}\" elevation=\"{:g}\" fov=\"{:g}\"/>",
-                       target.x, target.y, target.z, distance, orbit.azimuth, orbit.elevation, scene.camera.fov);
+                       has_media ? "media" : "surfaces", target.x, target.y, target.z, distance, orbit.azimuth,
+                       orbit.elevation, scene.camera.fov);
 }
 
 } // namespace vkvol

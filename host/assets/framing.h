@@ -12,10 +12,10 @@ namespace vkvol {
 
 using Corners = std::array<glm::dvec3, 8>; // of a box, world space
 
-// Of the box that holds the grid's density.
+// Corners of the box that holds the grid's density.
 Corners corners_of(const DensityField& field);
 
-// Of the scene's medium; none without one, or if it is a grid without voxels. Opens its files, and leaves a grid among
+// Corners of the scene's medium; none without one, or if it holds nothing. Opens its files, and leaves a grid among
 // `fields` for what comes next; throws InputError.
 std::optional<Corners> medium_corners(const Scene& scene, FieldCache& fields);
 
@@ -30,8 +30,8 @@ void frame(Camera& camera, const Picture& picture, const Corners& corners);
 // The same for the scene's medium. Throws InputError if there is none, and where a lens cannot have sharp what it had.
 void frame_medium(Scene& scene, FieldCache& fields);
 
-// Gives a scene without a camera the usual view of all its media, framed so. In one line, which it is; empty where the
-// scene has a camera or no medium. Throws InputError for files that cannot be read.
+// Gives a scene without a camera the usual view of all its media, framed likewise. Returns one line that says which;
+// empty where the scene has a camera or no medium. Throws InputError for files that cannot be read.
 std::string give_camera(Scene& scene, FieldCache& fields);
 
 } // namespace vkvol

@@ -16,7 +16,6 @@
 #include "pilot_paths.h"
 #include "render_limits.h"
 #include "shared/estimators.h"
-#include "supported.h"
 #include "value_map.h"
 
 namespace vkvol {
@@ -47,7 +46,7 @@ double hottest_radiance(const Volume& volume, const LoadedMedium& loaded) {
     double most = loaded.largest_temperature;
     if (volume.temperature.model == TemperatureEmission::Model::blackbody) {
         most = 0.0;
-        for (const glm::vec3& color : loaded.blackbody)
+        for (const glm::vec4& color : loaded.blackbody)
             for (int i = 0; i < 3; ++i)
                 most = std::isfinite(color[i]) ? std::max(most, double(color[i]))
                                                : std::numeric_limits<double>::infinity();
@@ -141,7 +140,7 @@ private:
     std::map<const std::byte*, float> largest_; // likewise
     // By the bytes of grid and velocities, seconds, and whether it goes on.
     std::map<std::tuple<const std::byte*, const std::byte*, double, bool>, DensityField> drifted_;
-    std::map<std::pair<double, double>, SharedArray<glm::vec3>> blackbodies_;
+    std::map<std::pair<double, double>, SharedArray<glm::vec4>> blackbodies_;
     std::map<std::string, SharedArray<shared::PhaseNode>> phases_; // by their file
     std::set<std::string> said_;
 };
@@ -210,7 +209,7 @@ void Loader::load_temperature(const Volume& volume, const GridFile& file, Loaded
 }
 
 void Loader::load_blackbody(const TemperatureEmission& emission, const GridFile& file, LoadedMedium& loaded) {
-    loaded.hottest = std::max(emission.scale * loaded.largest_temperature, 0.0) + std::max(emission.offset, 0.0);
+    loaded.hottest = std::max({emission.scale * loaded.largest_temperature + emission.offset, emission.offset, 0.0});
     if (loaded.hottest < 500.0 || loaded.hottest > 40000.0)
         warn(loaded, fmt::format("{}: \"{}\" reaches {:.0f} kelvin by temperatureScale and "
                                  "temperatureOffset; flames have 1000 to 3000",
@@ -220,7 +219,7 @@ void Loader::load_blackbody(const TemperatureEmission& emission, const GridFile&
                                      "{:g} is the most; lower temperatureScale",
                                      file.path.string(), emission.grid, loaded.hottest, hottest_kelvin));
     loaded.hottest = std::max(loaded.hottest, 1.0);
-    SharedArray<glm::vec3>& table = blackbodies_[{loaded.hottest, emission.reference}];
+    SharedArray<glm::vec4>& table = blackbodies_[{loaded.hottest, emission.reference}];
     if (table.empty())
         table = make_blackbody_table(0.0, loaded.hottest, emission.reference, BLACKBODY_ENTRIES);
     loaded.blackbody = table;
@@ -381,7 +380,7 @@ void load_sky(const SkyLight& sky, Assets& assets) {
 } // namespace
 
 Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
-    check_supported(scene);
+    check_scene_limits(scene);
     FieldCache own;
     FieldCache& fields = kept ? *kept : own;
     std::vector<GridFile> files = grid_files(scene);

@@ -32,7 +32,7 @@ struct LoadedMedium {
     std::optional<DensityField> temperature;    // or colours, only if the scene wants their glow
     std::optional<DensityField> albedo;         // likewise of what multiplies the albedo
     float largest_temperature = 0.0f;           // or channel of a colour, as the grid has it
-    SharedArray<glm::vec3> blackbody;           // BLACKBODY_ENTRIES colours between 0 and the hottest kelvin, or none
+    SharedArray<glm::vec4> blackbody;           // BLACKBODY_ENTRIES colours between 0 and the hottest kelvin, or none
     double hottest = 0.0;                       // kelvin
     SharedArray<shared::PhaseNode> phase_nodes; // of a phase function that is a table
     SharedArray<shared::MapKnot> map_knots;     // of a map from the grid's values; all of a scene's are as long
@@ -45,15 +45,15 @@ struct LoadedMedium {
 // Those it has.
 std::vector<const DensityField*> grids_of(const LoadedMedium& medium);
 
-// Of each of the scene's volumes, in their order.
+// The scene's volumes as loaded, in their order.
 using Media = std::span<const LoadedMedium>;
 
 // What its grid of temperatures or colours reaches, in the brightest channel; 0 without one, infinite if single
 // precision has no such number.
 double hottest_radiance(const Volume& volume, const LoadedMedium& loaded);
 
-// Of each that any of them has one, in the order in which these first come: the same bytes are the same grid, wherever
-// media have put it.
+// Each grid that any of them has, once, in the order in which they first come: the same bytes are the same grid,
+// wherever media have put it.
 std::vector<const DensityField*> distinct_grids(Media media);
 
 struct Assets {
@@ -84,7 +84,7 @@ double largest(const Rgb& color);
 // residuals.
 bool leaps(const Method& method);
 
-// Of the box around a mesh, world space.
+// Lowest corner and middle of the box around a mesh, world space.
 glm::dvec3 lowest_corner(const Mesh& mesh);
 glm::dvec3 box_center(const Mesh& mesh);
 

@@ -26,7 +26,7 @@ struct MediumOutline {
 };
 
 MediumOutline make_outline(const Scene& scene, const Volume& volume, const LoadedMedium& loaded, bool emits);
-// Of several media.
+// Likewise, of several media.
 MediumOutline make_outline(const Superposition& whole, bool emits);
 
 struct WorldBox {

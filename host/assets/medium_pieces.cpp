@@ -27,7 +27,7 @@ Pieces pieces_of_cells(const MajorantGrid& grid, glm::ivec3 index_base) {
     return found;
 }
 
-// Of a ball or a cube, in so many along an edge.
+// Pieces of a ball or a cube, `count` along an edge.
 Pieces pieces_of_shape(bool is_ball, double bound, int count) {
     const glm::dvec3 half(1.0 / count);
     Pieces found{half, {}};

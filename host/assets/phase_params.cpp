@@ -9,7 +9,7 @@ namespace vkvol {
 
 namespace {
 
-// Of a share of Henyey and Greenstein's phase function and one of Draine's.
+// A mixture of Henyey and Greenstein's phase function and a share of Draine's.
 struct Mixture {
     double g, g2, alpha, share;
 };
@@ -34,9 +34,8 @@ Mixture fit_to_droplets(double d) {
             std::exp(3.62489 - 8.29288 / (d + 5.52825)), std::exp(-0.599085 / (d - 0.641583) - 0.665888)};
 }
 
-// Of Rayleigh's phase function: it is 3 / (4 (1 + 2 c)) (1 + 3 c + (1 - c) mu^2) / 4 pi with c = d / (2 - d) (Bucholtz,
-// "Rayleigh-scattering calculations for the terrestrial atmosphere", 1995, equation 12), of which this part is not
-// even.
+// The part that is not even of Rayleigh's phase function, 3 / (4 (1 + 2 c)) (1 + 3 c + (1 - c) mu^2) / 4 pi with
+// c = d / (2 - d) (Bucholtz, "Rayleigh-scattering calculations for the terrestrial atmosphere", 1995, equation 12).
 double directed_share(double depolarization) {
     const double c = depolarization / (2.0 - depolarization);
     return (1.0 - c) / (1.0 + 2.0 * c);
@@ -46,7 +45,7 @@ double draine_mean_cosine(double g, double alpha) {
     return g * (1.0 + alpha * (3.0 + 2.0 * g * g) / 5.0) / (1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0);
 }
 
-// Of densities linear between nodes: by 2 pi the integral of (1 - x) value.
+// Mean cosine of densities that are linear between nodes: 2 pi times the integral of (1 - x) value.
 double table_mean_cosine(std::span<const shared::PhaseNode> nodes) {
     double mean = 0.0;
     for (std::size_t i = 1; i < nodes.size(); ++i) {

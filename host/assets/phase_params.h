@@ -16,7 +16,7 @@ shared::PhaseParams phase_params(const Volume& volume, std::span<const shared::P
 // these.
 std::uint32_t phase_iterations(const Volume& volume, std::span<const shared::PhaseNode> nodes);
 
-// Of the cosine between the directions of travel before and after.
+// Mean of the cosine between the directions of travel before and after.
 double mean_cosine(const Volume& volume, std::span<const shared::PhaseNode> nodes);
 
 } // namespace vkvol

@@ -56,6 +56,20 @@ double series(const std::vector<double>& moments, double mu) {
     return sum;
 }
 
+// Even, and towards 0, where many moments may have a peak narrower than that, closer and closer together.
+std::vector<double> angles_of_series(std::size_t moments) {
+    constexpr double nearest = 1e-7, evenly_from = 0.01;
+    constexpr int close = 2048;
+    std::vector<double> angles{0.0};
+    if (moments > 1024)
+        for (int i = 0; i < close; ++i)
+            angles.push_back(nearest * std::pow(evenly_from / nearest, double(i) / close));
+    for (int i = 1; i <= moment_angles; ++i)
+        if (const double angle = pi * i / moment_angles; angle > angles.back())
+            angles.push_back(angle);
+    return angles;
+}
+
 // A series that ends too soon swings about what it is to be, below 0 as well.
 PhaseTable from_moments(const std::filesystem::path& file, const NumberTable& rows) {
     const std::vector<double>& moments = rows.numbers;
@@ -68,19 +82,29 @@ PhaseTable from_moments(const std::filesystem::path& file, const NumberTable& ro
                       fmt::format("moment {:g}; means of Legendre's polynomials are from -1 to 1 (without "
                                   "the factor 2 l + 1)",
                                   moments[i]));
-    std::vector<double> angles, values;
+    const std::vector<double> angles = angles_of_series(moments.size());
+    std::vector<double> values;
     double below = 0.0, above = 0.0;
-    for (int i = 0; i <= moment_angles; ++i) {
-        angles.push_back(pi * i / moment_angles);
-        const double value = series(moments, std::cos(angles.back()));
-        (value < 0.0 ? below : above) += std::abs(value) * std::sin(angles.back());
-        values.push_back(std::max(value, 0.0));
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+        values.push_back(series(moments, std::cos(angles[i])));
+        if (i > 0) {
+            const double part = 0.25 * (values[i - 1] + values[i]) * (std::cos(angles[i - 1]) - std::cos(angles[i]));
+            (part < 0.0 ? below : above) += std::abs(part);
+        }
     }
+    for (double& value : values)
+        value = std::max(value, 0.0);
     if (below > 0.05 * above)
         throw InputError(
             fmt::format("{}: the series of its {} moments is negative over {:.0f} percent of what it is in "
                         "all; give more moments, or angles and values",
                         file.string(), moments.size(), 100.0 * below / above));
+    if (std::abs(above - below - 1.0) > 0.01)
+        throw InputError(
+            fmt::format("{}: the series of its {} moments has a peak too narrow to be drawn from (between "
+                        "angles it comes to {:.3f} of what it should); give angles and values, or take the "
+                        "light that goes straight on out of the extinction",
+                        file.string(), moments.size(), above - below));
     PhaseTable table{make_phase_nodes(angles, values), {}};
     if (below > 1e-6 * above)
         table.warnings.push_back(fmt::format("{}: the series of its {} moments is negative at some angles, over {:.2g} "

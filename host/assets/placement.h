@@ -28,7 +28,7 @@ struct MediumBounds {
 };
 MediumBounds medium_bounds(const LoadedMedium& loaded);
 
-// Of the medium's box, in world units.
+// Diagonal of the medium's box, in world units.
 double diagonal_of(const Volume& volume, const LoadedMedium& loaded);
 // World units, from the box around the medium; 0 within.
 double distance_to(const Volume& volume, const LoadedMedium& loaded, const glm::dvec3& position);

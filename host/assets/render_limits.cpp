@@ -7,7 +7,9 @@
 
 #include "error.h"
 #include "layers.h"
+#include "method.h"
 #include "noise.h"
+#include "shared/constants.h"
 #include "shared/estimators.h"
 
 namespace vkvol {
@@ -18,7 +20,7 @@ namespace {
 constexpr double most_collisions = 1e7;
 // As of other marches.
 constexpr double most_steps = 1e6;
-// Of the sigmas in world units, times the largest density.
+// Limit to the sigmas in world units, times the largest density.
 constexpr double largest_extinction = 1e30;
 
 // The medium's box as a camera meets it, world space.
@@ -27,7 +29,8 @@ struct Extent {
     double diagonal = 0.0;
 };
 
-// Of a shape, before its volume's transform, which makes it longer along some axis.
+// Extent of a shape after its volume's transform; `center` and `diagonal` are those before it. The diagonal grows by as
+// much as the axis that grows most.
 Extent moved(const Volume& volume, glm::dvec3 center, double diagonal) {
     double stretch = 0.0;
     for (int axis = 0; axis < 3; ++axis)
@@ -131,7 +134,83 @@ void check_glow(const Volume& volume, const LoadedMedium& loaded) {
                                      most, volume.temperature.grid, brightest_light));
 }
 
+void check_periodic(const Scene& scene) {
+    const auto fail = [](const char* message) { throw InputError(std::string("<periodic>: ") + message); };
+    if (std::any_of(scene.lights.begin(), scene.lights.end(), has_place))
+        fail("a light that has a place would stand in every domain that there is; take directional lights, suns and "
+             "skies, or surfaces that shine");
+    for (const Surface& surface : scene.surfaces)
+        if (const auto* plane = std::get_if<PlaneSurface>(&surface.shape))
+            for (int axis = 0; axis < 3; ++axis)
+                if (scene.periodic->size()[axis] > 0.0 && plane->normal[axis] != 0.0)
+                    fail("a plane has to lie along all axes that repeat; turn it, or take a rectangle");
+}
+
+// How far a point is from what is neither a mesh nor a box, over the size of what rays from there go by.
+struct DistanceTo {
+    glm::dvec3 point;
+
+    double operator()(const PlaneSurface& plane) const {
+        return std::abs(glm::dot(plane.normal, point - plane.point)) / (1e-6 + glm::length(point - plane.point));
+    }
+    double operator()(const BallSurface& ball) const {
+        return std::abs(glm::length(point - ball.center) - ball.radius) / ball.radius;
+    }
+    double operator()(const DiskSurface& disk) const {
+        const double up = glm::dot(disk.normal, point - disk.center);
+        const double out = glm::length(point - disk.center - up * disk.normal) - disk.radius;
+        return std::hypot(up, std::max(out, 0.0)) / disk.radius;
+    }
+    double operator()(const RectangleSurface& r) const {
+        const glm::dvec3 aside = point - r.center;
+        const double u = glm::length(r.edge_u), v = glm::length(r.edge_v);
+        const glm::dvec3 at(glm::dot(aside, r.edge_u) / u, glm::dot(aside, r.edge_v) / v,
+                            glm::dot(aside, glm::normalize(glm::cross(r.edge_u, r.edge_v))));
+        return glm::length(glm::dvec3(std::max(std::abs(at.x) - u, 0.0), std::max(std::abs(at.y) - v, 0.0), at.z)) /
+               std::max(u, v);
+    }
+    template <class Shape> double operator()(const Shape&) const { return std::numeric_limits<double>::infinity(); }
+};
+
+// Rays from a point in a surface would read what is on both sides of it.
+void check_points(const Scene& scene) {
+    for (const glm::dvec3& point : scene.camera.points)
+        for (const Surface& surface : scene.surfaces)
+            if (std::visit(DistanceTo{point}, surface.shape) <= SURFACE_SPARE)
+                throw InputError(
+                    fmt::format("{}<fluence>: the point {:g} {:g} {:g} lies in this surface, and would read "
+                                "what is on both sides; lift it off, to the side that is meant",
+                                surface.place.empty() ? "" : surface.place + ": ", point.x, point.y, point.z));
+}
+
 } // namespace
+
+void check_scene_limits(const Scene& scene) {
+    if (scene.periodic)
+        check_periodic(scene);
+    check_points(scene);
+    const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
+    if (is_superposition(scene) && any_medium(scene, is_mesh))
+        throw InputError(
+            "models beside other volumes are not rendered by this version; keep them alone, or put spheres, "
+            "boxes and grids in their place");
+    const auto is_map = [](const Light& light) { return std::holds_alternative<SkyLight>(light); };
+    if (std::count_if(scene.lights.begin(), scene.lights.end(), is_map) > 1)
+        throw InputError("a scene with several maps of the sky is not rendered by this version; keep one");
+    const auto is_plane = [](const Surface& surface) { return std::holds_alternative<PlaneSurface>(surface.shape); };
+    if (const auto planes = std::count_if(scene.surfaces.begin(), scene.surfaces.end(), is_plane); planes > MOST_PLANES)
+        throw InputError(fmt::format("{} planes are more than the {} that are rendered; make rectangles of some",
+                                     planes, MOST_PLANES));
+    // Every camera ray asks all lamps, and every path that leaves all suns.
+    constexpr std::ptrdiff_t most_lamps = 4096, most_suns = 256;
+    if (const auto lamps = std::count_if(scene.lights.begin(), scene.lights.end(), is_lamp); lamps > most_lamps)
+        throw InputError(fmt::format("{} spheres, disks and rectangles of light are more than the {} that can be seen; "
+                                     "make most of them points",
+                                     lamps, most_lamps));
+    if (const auto suns = std::count_if(scene.lights.begin(), scene.lights.end(), is_met_by_chance); suns > most_suns)
+        throw InputError(fmt::format("{} suns are more than the {} that are rendered; make most of them directional",
+                                     suns, most_suns));
+}
 
 // A ball of optical depth 1e6 across, of albedo 0.9 in an even sky, shines by 3 % too little, one of 1e7 by 6 %, and
 // all beyond by 20 %: a path that collides nearer to the face than places are known to leaves by chance.

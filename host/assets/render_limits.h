@@ -1,9 +1,14 @@
-// What can be read but not rendered: media that no patience suffices for, and figures beyond single precision.
+// What can be read but not rendered: too many things of a kind, things that do not go together, media that no patience
+// suffices for, and figures beyond single precision.
 #pragma once
 
 #include "loaded_medium.h"
 
 namespace vkvol {
+
+// Throws InputError, in one line, for a scene of more media, maps of the sky, lamps or suns than the kernels have room
+// or time for, for what cannot be in a domain that repeats, and for points that lie in surfaces.
+void check_scene_limits(const Scene& scene);
 
 // Throws InputError with the figure and the remedy.
 void check_limits(const Scene& scene, const Volume& volume, const LoadedMedium& loaded, const Method& method);

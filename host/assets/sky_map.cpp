@@ -20,7 +20,7 @@ struct Layout {
     int width, height;
     SkyMapping mapping;
 
-    // Of a texel, or of the one that is next over the map's edge.
+    // Index of a texel, or of the one that is next over the map's edge.
     std::size_t at(int x, int y) const {
         if (mapping == SkyMapping::equal_area) {
             // Over an edge is the same edge again, the other way around.
@@ -39,14 +39,14 @@ struct Layout {
         return std::size_t(y) * width + x;
     }
 
-    // Of a texel in this row.
+    // Solid angle of a texel in this row.
     double solid_angle(int row) const {
         if (mapping == SkyMapping::equal_area)
             return largest_angle();
         return 2.0 * pi / width * (std::cos(pi * row / height) - std::cos(pi * (row + 1) / height));
     }
 
-    // Of a texel, as if it were where texels take most: at the horizon of an equirectangular map.
+    // Solid angle of a texel where texels take most: at the horizon of an equirectangular map.
     double largest_angle() const {
         return (mapping == SkyMapping::equal_area ? 4.0 * pi : 2.0 * pi * pi) / (double(width) * height);
     }
@@ -88,9 +88,11 @@ void check(const RadianceMap& map, const SkyLight& light) {
                                      "the multiplier",
                                      light.file.string(), most, brightest_light));
     if (light.mapping == SkyMapping::equal_area && map.width != map.height)
-        throw InputError(fmt::format("{}: has {} x {} texels, but a map of equal areas is square; leave out "
-                                     "mapping=\"equalArea\" if its columns are longitudes and its rows latitudes",
-                                     light.file.string(), map.width, map.height));
+        throw InputError(
+            fmt::format("{}: has {} x {} texels, but a map of equal areas, as .pbrt scenes have them, is square; "
+                        "pbrt's imgtool makeequiarea makes one, and in an .xml scene mapping=\"equalArea\" is "
+                        "to be left out if columns are longitudes and rows latitudes",
+                        light.file.string(), map.width, map.height));
 }
 
 } // namespace

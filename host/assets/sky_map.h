@@ -19,7 +19,7 @@ struct SkyMap {
 // Opens the file. Throws InputError, also for a map without light.
 SkyMap load_sky(const SkyLight& light);
 
-// Of a map with some light, times `scale`; of equal areas: a square one.
+// Makes the sky of a map that has some light, times `scale`; one of equal areas is square.
 SkyMap make_sky(const RadianceMap& map, const Rgb& scale, SkyMapping mapping = SkyMapping::equirectangular);
 
 } // namespace vkvol

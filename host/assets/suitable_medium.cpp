@@ -87,14 +87,14 @@ double typical_glow(const Rays& rays, const DensityField& density, const Density
                     const SuitableMedium& medium) {
     constexpr int entries = 1024;
     const Kelvin& kelvin = *medium.kelvin;
-    const std::vector<glm::vec3> colors = make_blackbody_table(0.0, kelvin.hottest, kelvin.hottest, entries);
+    const std::vector<glm::vec4> colors = make_blackbody_table(0.0, kelvin.hottest, kelvin.hottest, entries);
     const glm::dmat4 to_temperature = glm::inverse(temperature.index_to_world) * density.index_to_world;
     const auto luminance = [&](glm::dvec3 at) {
         constexpr double far = 1 << 25; // no grid reaches there
         const glm::dvec3 there = glm::clamp(glm::dvec3(to_temperature * glm::dvec4(at, 1.0)), -far, far);
         const double value = kelvin.scale * temperature.value(glm::ivec3(glm::round(there))) + kelvin.offset;
         const double entry = std::clamp(value / kelvin.hottest, 0.0, 1.0) * (entries - 1);
-        return double(glm::dot(colors[std::size_t(entry)], glm::vec3(0.2126f, 0.7152f, 0.0722f)));
+        return double(glm::dot(colors[std::size_t(entry)], glm::vec4(0.2126f, 0.7152f, 0.0722f, 0.0f)));
     };
     double sum = 0.0, squares = 0.0, seen = 0.0, transmittance = 1.0;
     rays.follow(

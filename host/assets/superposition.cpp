@@ -43,8 +43,8 @@ struct Member {
     double cell;    // world units, as it has them by itself
 };
 
-// Of a volume that is everywhere and has layers: as thick as the slabs that bound them, or thicker, as long as that
-// adds no more than a null collision for two cells.
+// Cell length of a volume that is everywhere and has layers: as thick as the slabs that bound them, or thicker, as long
+// as that adds no more than a null collision for two cells.
 double layered_cell(const Volume& volume, double slab, double sigma_t) {
     const Layers& layers = *volume.layers;
     const double most = sigma_t * layer_range(volume, layers.bottom, layers.top).most;
@@ -143,17 +143,18 @@ std::vector<double> layers_in_cells(const Volume& volume, const Upright& place, 
 // Cells of this edge [world units] over the box, all of them coarse if `bits` is not 0. There are no bricks yet. Where
 // walks go on for ever, `has_ring`, so do the outermost cells: then these are beyond the box, and what ends bounds none
 // of them. Else walks that left it would meet null collisions without end.
-Superposition empty_cells(const AxisBox& box, double edge, int bits, bool has_ring) {
+// `origin`: of render space, amid what is to be seen: air above it would have it high up, where single precision is
+// coarse.
+Superposition empty_cells(const AxisBox& box, const glm::dvec3& origin, double edge, int bits, bool has_ring) {
     Superposition whole;
-    whole.origin = 0.5 * (box.low + box.high);
+    whole.origin = origin;
     whole.edge = edge;
     whole.bits = bits;
     const int cell = 1 << bits;
-    const glm::dvec3 half = 0.5 * (box.high - box.low) / edge / double(cell);
+    const glm::dvec3 from = (box.low - origin) / (edge * cell), to = (box.high - origin) / (edge * cell);
     // A little more, for what rounding may do to a box's faces.
     const int ring = has_ring ? 1 : 0;
-    const glm::ivec3 low = glm::ivec3(glm::floor(-half - 1e-2)) - ring,
-                     high = glm::ivec3(glm::ceil(half + 1e-2)) + ring;
+    const glm::ivec3 low = glm::ivec3(glm::floor(from - 1e-2)) - ring, high = glm::ivec3(glm::ceil(to + 1e-2)) + ring;
     whole.cells.cell = cell;
     whole.cells.origin = low * cell;
     whole.cells.dims = high - low;
@@ -199,7 +200,9 @@ private:
                 continue;
             // A point on the device may be as far aside as single precision lets it be.
             const AxisBox box = around(map, 0.5 * (from + to), 0.5 * (to - from));
-            const glm::dvec3 margin = 1e-4 + 1e-6 * glm::max(glm::abs(box.low), glm::abs(box.high));
+            // Along any axis, since it may be turned.
+            const glm::dvec3 reach = glm::max(glm::abs(box.low), glm::abs(box.high));
+            const double margin = 1e-4 + 1e-6 * std::max({reach.x, reach.y, reach.z});
             const glm::ivec3 low =
                 glm::clamp(glm::ivec3(glm::floor(box.low - margin)) - whole_.cells.origin, glm::ivec3(0), dims - 1);
             const glm::ivec3 high =
@@ -290,6 +293,7 @@ Superposition lay_out(const std::vector<Member>& members, const glm::dvec3& came
         wanted = std::min(wanted, member.cell);
     if (!std::isfinite(wanted)) // all are everywhere, and the same there
         wanted = 1.0;
+    const glm::dvec3 origin = box.low.x > box.high.x ? camera : 0.5 * (box.low + box.high);
     take_in(members, camera, wanted, box);
     const bool has_ring =
         std::any_of(members.begin(), members.end(), [](const Member& m) { return is_everywhere(m.volume); });
@@ -301,13 +305,13 @@ Superposition lay_out(const std::vector<Member>& members, const glm::dvec3& came
                         "them measures; move them together, or leave some out",
                         longest));
     const double alike = std::max({wanted, std::cbrt(volume / most_cells), longest / 1024.0});
-    Superposition best = empty_cells(box, std::min(alike, longest / 4.0), 0, has_ring);
+    Superposition best = empty_cells(box, origin, std::min(alike, longest / 4.0), 0, has_ring);
     if (alike <= wanted)
         return best;
     const double finest_coarse = std::max(std::cbrt(volume / most_coarse_cells), longest / 512.0);
     for (int step = 0; step < 8; ++step) {
         const double coarse = finest_coarse * std::exp2(0.5 * step);
-        Superposition two_levels = empty_cells(box, coarse / (1 << most_bits), most_bits, has_ring);
+        Superposition two_levels = empty_cells(box, origin, coarse / (1 << most_bits), most_bits, has_ring);
         const double bricks = double(make_bricks(members, pieces, two_levels));
         int bits = 1;
         while (bits < most_bits && coarse / (1 << bits) > wanted && bricks * (8 << (3 * bits)) <= most_cells)
@@ -315,7 +319,7 @@ Superposition lay_out(const std::vector<Member>& members, const glm::dvec3& came
         const double edge = coarse / (1 << bits);
         if (bricks == 0.0 || bricks * (1 << (3 * bits)) > most_cells || edge >= 0.9 * best.edge)
             continue;
-        best = empty_cells(box, edge, bits, has_ring);
+        best = empty_cells(box, origin, edge, bits, has_ring);
         best.bricks = std::move(two_levels.bricks);
         best.brick_bounds.assign(std::size_t(bricks) << (3 * bits), 0.0f);
     }

@@ -19,21 +19,21 @@ struct LoadedMedium;
 // bricks, likewise. Where media are everywhere, its outermost cells go on for ever, and what bounds them bounds all
 // that is beyond.
 struct Superposition {
-    glm::dvec3 origin{0.0}; // of that space, world: amid the box
+    glm::dvec3 origin{0.0}; // of that space, world: amid the media
     double edge = 1.0;      // of a cell, world units
     int bits = 0;           // log2 of the cells along the edge of a coarse one; 0: there are no coarse ones
     MajorantGrid cells; // the coarse ones; bounds of the extinction of the channel where it is largest [1 / world unit]
     std::vector<std::uint32_t> bricks; // of each coarse cell 0, or 1 + the number of its brick; empty if there are none
     std::vector<float> brick_bounds;   // of their cells
-    // Of each entry where its list begins, counted from here, and where the last one ends; then the lists: media, by
-    // their number in the scene.
+    // Where each entry's list begins, counted from here, and where the last one ends; then the lists: media, by their
+    // number in the scene.
     std::vector<std::uint32_t> overlaps;
     std::uint32_t most_overlaps = 0; // of a cell
     bool unbounded = false;          // some medium is everywhere
 
     glm::ivec3 dims() const { return cells.dims << bits; } // cells
     std::size_t entries() const { return cells.bounds.size() + brick_bounds.size(); }
-    // Of a cell, counted from the first.
+    // A cell's entry; `cell` is counted from the first.
     std::size_t entry_of(glm::ivec3 cell) const;
     float bound(std::size_t entry) const {
         return entry < cells.bounds.size() ? cells.bounds[entry] : brick_bounds[entry - cells.bounds.size()];
@@ -50,8 +50,8 @@ struct Superposition {
     double mean_bound() const;                                             // over the box
 };
 
-// Of media that have been loaded for `scene`. None of them need have any matter; then there are no cells. Throws
-// InputError if they lie too far apart for their sizes.
+// Cells over the media that have been loaded for `scene`; none where no medium has any matter. Throws InputError if
+// they lie too far apart for their sizes.
 Superposition superpose(const Scene& scene, std::span<const LoadedMedium> media, const Method& method);
 
 // By entry, as walks have them: what is empty has minus its reach, in units of its own edge, if they leap. See

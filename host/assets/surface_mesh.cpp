@@ -29,7 +29,7 @@ TriangleSurface load(const MeshSurface& mesh, const glm::dmat4& transform, bool 
     return shape;
 }
 
-// Of its length twice the area; counterclockwise as seen from where it points to.
+// Normal of triangle `i`, twice its area long. It points to where the corners are seen counterclockwise.
 glm::dvec3 across(const TriangleSurface& mesh, std::size_t i) {
     const glm::uvec3 t = mesh.triangles[i];
     return glm::cross(mesh.vertices[t.y] - mesh.vertices[t.x], mesh.vertices[t.z] - mesh.vertices[t.x]);

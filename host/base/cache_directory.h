@@ -5,7 +5,7 @@
 
 namespace vkvol {
 
-// Of all programs; empty if there is none.
+// The folder in which all programs have theirs; empty if there is none.
 std::filesystem::path cache_home();
 
 // Our own in it, which need not exist yet; empty if there is none.

@@ -17,7 +17,7 @@ public:
     void add(std::span<const std::byte> bytes);
     template <class T> void add_all(const T& values) { add(std::as_bytes(std::span(values))); }
 
-    // Of all that was added so far.
+    // Digest of all that was added so far.
     std::uint64_t value() const;
     std::string text() const; // 16 hexadecimal digits
 
@@ -28,8 +28,8 @@ private:
 
 std::string digest_text(std::string_view bytes);
 
-// Of a regular file: of all of it up to 64 MiB, of larger ones of parts evenly apart that come to half as much. Read
-// once as long as its size and time are the same. Empty if it cannot be read.
+// Digest of a regular file: of all of it up to 64 MiB, of larger ones of parts evenly apart that come to half as much.
+// Read once as long as its size and time are the same. Empty if it cannot be read.
 std::string digest_of_file(const std::filesystem::path& file);
 
 } // namespace vkvol

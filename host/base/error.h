@@ -1,4 +1,5 @@
-// The kinds of failure a user can meet. main() alone catches them and turns them into exit codes.
+// The kinds of failure a user can meet. main() turns them into exit codes; others catch them only to add where it was,
+// or to save what there is.
 #pragma once
 
 #include <stdexcept>

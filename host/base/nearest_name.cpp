@@ -48,7 +48,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
     std::size_t best_distance = std::max<std::size_t>(1, name.size() / 3) + 1;
     for (const std::string& candidate : known) {
         const std::size_t distance = edit_distance(name, candidate);
-        // Of two equally near the one whose end is missing is meant.
+        // Where two are equally near, the one that begins with the name is meant.
         const bool completed = candidate.starts_with(name) && !best.starts_with(name);
         if (distance < best_distance || (distance == best_distance && !best.empty() && completed)) {
             best_distance = distance;

@@ -28,7 +28,7 @@ struct NumberTableForm {
 // Throws InputError, "file:line: what is wrong; what would be right".
 NumberTable read_number_table(const std::filesystem::path& file, const NumberTableForm& form);
 
-// Of its line.
+// Throws InputError that names the line.
 [[noreturn]] void fail_line(const std::filesystem::path& file, int line, const std::string& message);
 
 } // namespace vkvol

@@ -6,12 +6,12 @@
 
 namespace vkvol {
 
-double student_t(double freedom, double probability) {
+double student_two_sided(double freedom, double probability) {
     const boost::math::students_t distribution(std::max(freedom, 1.0));
     return quantile(complement(distribution, 0.5 * (1.0 - probability)));
 }
 
-double normal_limit(double tail) {
+double normal_upper(double tail) {
     return quantile(complement(boost::math::normal(), tail));
 }
 

@@ -92,7 +92,7 @@ void Bench::warm_up(const std::vector<Estimator>& estimators) {
     }
 }
 
-// Of those that nobody asked for, the slowest, as long as its share of the time does not suffice for a figure.
+// Leaves out the slowest that nobody asked for, as long as its share of the time does not suffice for a figure.
 void Bench::leave_out_slow() {
     std::vector<Measurement>& list = result_.measurements;
     while (request_.integrators.empty() && list.size() > 1) {

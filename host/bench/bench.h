@@ -17,7 +17,7 @@ struct Measurement {
     std::vector<BenchRun> runs;
     std::vector<RenderResult> results; // of the same runs, their films left out
     Film last;                         // of the last run
-    // Of a render before them: these found files in memory and kernels compiled.
+    // Seconds of a render before them: these found files in memory and kernels compiled.
     double load_seconds = 0.0, upload_seconds = 0.0, pipeline_seconds = 0.0;
 };
 

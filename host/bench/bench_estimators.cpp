@@ -65,8 +65,8 @@ bool marches(const Method& method) {
     return method.flights_have(TRAIT_MARCH) || method.shadow_rays_have(TRAIT_MARCH);
 }
 
-// Of estimators of one picture: whether kernels and their parameters are the same. Choices that nothing in the scene
-// asks about leave no trace there.
+// Whether two estimators of one picture have the same kernels and parameters. Choices that nothing in the scene asks
+// about leave no trace there.
 bool same_kernel(const Estimator& x, const Estimator& y) {
     const Method &a = x.method, &b = y.method;
     const bool same_shadows = a.nee == NEE_NONE || a.transmittance == b.transmittance;

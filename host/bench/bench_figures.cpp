@@ -53,7 +53,7 @@ void find_ratios(std::vector<Row>& rows) {
     const auto usual = std::find_if(rows.begin(), rows.end(), [](const Row& row) { return row.is_default(); });
     if (usual == rows.end() || !usual->figures.judged)
         return;
-    // Of many ratios the best is named: their intervals hold together.
+    // The best of many ratios is named: their intervals hold together.
     const auto others =
         std::count_if(rows.begin(), rows.end(), [](const Row& row) { return row.figures.judged && !row.is_default(); });
     for (Row& row : rows)

@@ -27,7 +27,7 @@ public:
                         std::optional<double> time_limit);
 
     bool keeps(const Estimator& estimator) const { return kept_.count(estimator.integrator) > 0; }
-    // Of what renders no more.
+    // Frees what the estimator has on the device: it renders no more.
     void forget(const Estimator& estimator);
 
 private:

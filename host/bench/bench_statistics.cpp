@@ -198,7 +198,7 @@ std::optional<Interval> bias_floor(std::span<const BenchRun> runs, double offset
     const double freedom = double(differences.size()) - 1.0;
     const double error = std::sqrt(squares / freedom / sum);
     const double half_width =
-        std::hypot(student_t(freedom, probability) * error, normal_quantile(probability) * offset_error);
+        std::hypot(student_two_sided(freedom, probability) * error, normal_two_sided(probability) * offset_error);
     return Interval{mean, mean - half_width, mean + half_width};
 }
 
@@ -217,7 +217,7 @@ std::optional<Interval> efficiency_ratio(std::span<const BenchRun> runs, std::sp
     const double variance = square(a->error) + square(b->error);
     const double spread = square(square(a->error)) / a->freedom + square(square(b->error)) / b->freedom;
     const double freedom = spread > 0.0 ? square(variance) / spread : std::min(a->freedom, b->freedom);
-    return exponential(a->mean - b->mean, student_t(freedom, probability) * std::sqrt(variance));
+    return exponential(a->mean - b->mean, student_two_sided(freedom, probability) * std::sqrt(variance));
 }
 
 double times_to_judge(std::span<const BenchRun> runs) {

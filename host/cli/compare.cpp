@@ -20,7 +20,7 @@ namespace {
 // |z| that all of `count` independent standard normals stay below with probability 1 - significance (Sidak).
 double sidak_bound(double significance, std::size_t count) {
     const double each = -std::expm1(std::log1p(-significance) / double(std::max<std::size_t>(1, count)));
-    return normal_limit(0.5 * each);
+    return normal_upper(0.5 * each);
 }
 
 bool finite(const glm::vec3& v) {
@@ -108,7 +108,7 @@ bool knows_samples(const Film& film) { // an image of unknown making has none an
     return std::any_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n > 0; });
 }
 
-// Of which pixels there is something in both images.
+// Tells for each pixel whether there is something in both images.
 std::vector<bool> sampled_pixels(const Film& a, const Film& b) {
     const bool a_knows = knows_samples(a), b_knows = knows_samples(b);
     std::vector<bool> sampled;
@@ -203,7 +203,7 @@ Comparison compare_films(const Film& a, const Film& b, const CompareOptions& opt
             continue;
         }
         add_pixel(a.mean[i], b.mean[i], sums, result);
-        // Of two single samples no variance is known, nor of a sum that has them.
+        // The variance of two single samples is not known, nor that of a sum that has them.
         if (is_correlated || a.samples[i] != 1 || b.samples[i] != 1)
             for (int c = 0; c < 3; ++c) {
                 sums.tested_a[c] += a.mean[i][c];
@@ -242,7 +242,8 @@ void print_text(const Comparison& result) {
             tell(stdout, "mean z          {:.2f} {:.2f} {:.2f}\n", result.mean_z[0], result.mean_z[1],
                  result.mean_z[2]);
         else
-            tell(stdout, "mean z          unknown: all pixels have the same moments of what moves\n");
+            tell(stdout,
+                 "mean z          unknown: pixels share moments of what moves, or particles of a single sample\n");
         tell(stdout, "|z| histogram   {} in steps of 1, the last is 6 and more\n", fmt::join(result.z_histogram, " "));
         tell(stdout, "beyond {:5.2f}    {} of {} values\n", result.z_bound, result.beyond_bound, result.tested);
     }

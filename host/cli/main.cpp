@@ -1,4 +1,4 @@
-// vkvol: command line in, exit code out. The only place that catches.
+// vkvol: command line in, exit code out. The only place where errors become exit codes.
 
 #include <csignal>
 #include <cstdio>

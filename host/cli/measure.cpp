@@ -79,7 +79,7 @@ std::string mean_table(const Film& film) {
     return text + fmt::format("{}\n", samples);
 }
 
-// Of texts with commas between, after a heading.
+// Rows of a text that has commas between its values; the first is the heading.
 std::vector<Values> rows_of(const std::string& table) {
     std::vector<Values> rows{{""}};
     for (const char c : table) {
@@ -225,6 +225,13 @@ int run_measure(const MeasureOptions& options) {
             told.counts.cleaned_voxels = std::max(told.counts.cleaned_voxels, result.counts.cleaned_voxels);
             if (!result.biased.empty() && !options.quiet)
                 for (const std::string& why : workshop.new_warnings({"the readings are biased: " + result.biased}))
+                    tell(stderr, "vkvol: note: {}\n", why);
+            if (options.request.noise_goal && !was_interrupted && result.samples > 1 && !relative_noise(result.film) &&
+                !options.quiet)
+                for (const std::string& why : workshop.new_warnings({fmt::format(
+                         "no light came in {} samples, and --noise has nothing to go by: such readings are 0 "
+                         "as far as these tell",
+                         result.samples)}))
                     tell(stderr, "vkvol: note: {}\n", why);
             if (result.samples == 0 && !was_interrupted)
                 throw RenderError("ended before any sample was done");

@@ -106,7 +106,7 @@ std::size_t place_in(const Crop& window, const Film& film, std::size_t i) {
     return y * std::size_t(window.x1 - window.x0) + x;
 }
 
-// Of the film's means, or of a layer's.
+// Adds the film's means, or those of a layer, to the moments.
 void add_means(const Film& film, const std::vector<glm::vec3>& mean, const std::vector<glm::vec3>& variance,
                const Crop& window, std::vector<Moments>& moments) {
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
@@ -124,7 +124,7 @@ void take_means(const std::vector<Moments>& moments, std::vector<glm::vec3>& mea
     }
 }
 
-// Of means over collisions: weighted by how many there were, and the variance is that of such a mean.
+// Merges means over collisions: weighted by how many there were; the variance is that of such a mean.
 FilmLayer merge_collisions(const std::vector<MergeInput>& inputs, std::size_t which, const Crop& window) {
     const std::size_t pixels = std::size_t(window.x1 - window.x0) * std::size_t(window.y1 - window.y0);
     std::vector<double> weights(pixels, 0.0);
@@ -191,7 +191,7 @@ Film film_of(const std::vector<Moments>& moments, const Film& like, const Crop& 
     return film;
 }
 
-// Of one window's samples the means count by their number; windows add up.
+// Variance of the sum: the means of one window's samples count by their number; windows add up.
 std::optional<glm::dvec3> merged_sum_variance(const std::vector<MergeInput>& inputs) {
     struct Window {
         glm::dvec3 weighted{0.0};

@@ -58,6 +58,11 @@ void merge_counts(const std::vector<MergeInput>& inputs, Metadata& metadata) {
                             "vkvol/abandonedPaths", "vkvol/nonFiniteSamples"})
         if (const std::optional<std::uint64_t> sum = sum_of(inputs, key))
             metadata[key] = metadata_int(*sum);
+    std::optional<std::uint64_t> cleaned; // of the same grids, of which each tells all
+    for (const MergeInput& input : inputs)
+        cleaned = std::max(cleaned, count_of(input.metadata, "vkvol/cleanedVoxels", input.name));
+    if (cleaned)
+        metadata["vkvol/cleanedVoxels"] = metadata_int(*cleaned);
     if (const std::optional<std::uint64_t> sum = sum_of(inputs, "vkvol/nullCollisions"))
         metadata["vkvol/nullCollisions"] = std::to_string(*sum); // often beyond 32 bits
     if (const std::optional<std::uint64_t> sum = sum_of(inputs, "vkvol/capsHit"))

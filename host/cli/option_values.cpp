@@ -124,7 +124,7 @@ double parse_duration(const std::string& text, const char* option) {
     const double seconds = parse_number(number, option) * unit;
     constexpr double longest = 1e9; // thirty years
     if (!(seconds > 0.0 && seconds <= longest))
-        fail_command_line(fmt::format("{}: '{}' is no time to render in; expected e.g. 30s, 5m or 2h", option, text));
+        fail_command_line(fmt::format("{}: '{}' is not a duration; expected e.g. 30s, 5m or 2h", option, text));
     return seconds;
 }
 

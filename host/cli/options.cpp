@@ -110,7 +110,7 @@ void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
     app.add_option("--schedule", texts.schedule,
                    "fused: one pass takes pixels through all stages; staged: passes of their own over queues of paths; "
                    "auto: what is faster on the device. slots: pixels, or paths, in work; lanes: that work on them; "
-                   "steps: of tracking between two looks at what they led to; budget: looks in one go")
+                   "steps: tracking steps in a turn; budget: turns before a lane lays its path aside")
         ->option_text("NAME[:slots=N][:lanes=N][:steps=N][:budget=N] [auto]")
         ->group("Device");
 
@@ -201,7 +201,7 @@ void finish_trace(RenderOptions& render, const RenderTexts& texts) {
             "--trace follows one path; --crop, --spp, --time, --noise, --sample-offset, --checkpoint and --resume "
             "are of no use with it");
     const auto [x, y] = parse_pixel(texts.pixel);
-    render.crop = CropRequest{{double(x), x + 1.0, double(y), y + 1.0}, false};
+    render.crop = CropRequest{{double(x), x + 1.0, double(y), y + 1.0}, false, true};
     render.sample_offset = *texts.sample;
     render.spp = 1;
 }
@@ -312,7 +312,7 @@ void parse_integrators(const std::vector<std::string>& arguments, Options& optio
 }
 
 void parse_info(const std::vector<std::string>& arguments, Options& options) {
-    CLI::App app("Says what is in a density file: grids, types, bounds, transform, value range; and a view and "
+    CLI::App app("Says what is in a density file: grids, types, bounds, value range; and a view and "
                  "coefficients that "
                  "suit it.",
                  "vkvol info");

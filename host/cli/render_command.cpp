@@ -91,7 +91,7 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
     if (!options.outputs.empty() && !options.dry_run)
         codec = picture_codec_ahead(); // after the driver, which is a library, too; kernels are compiled on one core
     if (!live.empty())
-        job.look = [&](const RenderResult& result) { live.show(device, result, &progress); };
+        job.preview = [&](const RenderResult& result) { live.show(device, result, &progress); };
     try {
         return render(device, scene, job);
     } catch (const RenderError& error) {

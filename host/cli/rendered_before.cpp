@@ -19,7 +19,7 @@ namespace vkvol {
 
 namespace {
 
-// Of the picture of this render; none if it is another one, or was interrupted.
+// Exit code of the render that made this picture; none if the picture is another one, or was interrupted.
 std::optional<int> code_of(const std::filesystem::path& exr, const RenderOptions& options, const Scene& scene) {
     Metadata metadata;
     try {

@@ -30,10 +30,15 @@ std::vector<std::string> words_of(const std::string& line) {
 }
 
 double weight_of(const std::filesystem::path& file, int line, const std::string& text) {
+    constexpr double most = 1e12; // whose square, times a variance, single precision holds
     double weight = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), weight);
-    if (error != std::errc() || end != text.data() + text.size() || !(std::abs(weight) <= 1e30))
-        fail_line(file, line, fmt::format("the weight is '{}'; expected a number", text));
+    if (error != std::errc() || end != text.data() + text.size() ||
+        !(weight == 0.0 || (std::abs(weight) >= 1.0 / most && std::abs(weight) <= most)))
+        fail_line(file, line,
+                  fmt::format("the weight is '{}'; expected a number, 0 or between {:g} and {:g} without its sign: of "
+                              "others choose another unit",
+                              text, 1.0 / most, most));
     return weight;
 }
 
@@ -90,13 +95,13 @@ void add_band(const Film& film, double weight, Film& sum) {
         sum = film;
         std::fill(sum.mean.begin(), sum.mean.end(), glm::vec3(0.0f));
         std::fill(sum.variance.begin(), sum.variance.end(), glm::vec3(0.0f));
-        if (sum.sum_variance)
-            sum.sum_variance = glm::dvec3(0.0);
+        sum.sum_variance = glm::dvec3(0.0);
     }
     if (sum.pixel_count() != film.pixel_count())
         throw InputError("bands are of pictures of one size; the values of some make it another");
-    if (sum.sum_variance && film.sum_variance)
-        *sum.sum_variance += weight * weight * *film.sum_variance;
+    const std::optional<glm::dvec3> of_band = variance_of_sum(film);
+    if (sum.sum_variance && of_band)
+        *sum.sum_variance += weight * weight * *of_band;
     else
         sum.sum_variance.reset();
     sum.is_correlated = sum.is_correlated || film.is_correlated;

@@ -27,7 +27,7 @@ namespace vkvol {
 
 namespace {
 
-constexpr double seconds_between_looks = 0.5; // at the scene's file
+constexpr double seconds_between_polls = 0.5; // at the scene's file
 constexpr double longest_unwatched = 10.0;    // seconds; then it waits until somebody looks again
 constexpr int sketch_pixels = 20'000;         // of the first picture of a view
 constexpr std::uint32_t sketch_samples = 2;
@@ -61,9 +61,9 @@ private:
 
     // What cannot be read is told until it can be, and the picture stays that of what could.
     bool file_changed() {
-        if (since_look_.seconds() < seconds_between_looks)
+        if (since_poll_.seconds() < seconds_between_polls)
             return has_new_file_;
-        since_look_.lap();
+        since_poll_.lap();
         try {
             if (source_.refresh()) {
                 has_new_file_ = true;
@@ -158,7 +158,7 @@ private:
         sketch();
         if (interrupted() || is_news())
             return;
-        job_.look = [this](const RenderResult& result) { publish(result, false); };
+        job_.preview = [this](const RenderResult& result) { publish(result, false); };
         session_.emplace(device_, scene_, job_);
         if (!options_.quiet)
             print_warnings(workshop_.new_warnings(session_->warnings()));
@@ -256,7 +256,7 @@ private:
     WatchedScene source_;
     const Device& device_;
     std::uint64_t wish_number_ = 0, begun_ = 0;
-    Stopwatch since_look_;
+    Stopwatch since_poll_;
     bool has_new_file_ = true;
     std::string file_trouble_; // of the file as it is now; or empty
     Camera file_camera_;

@@ -7,10 +7,11 @@
 
 #include "camera_rays.h"
 #include "emitter_table.h"
+#include "frame_params.h"
+#include "kernel_constants.h"
 #include "kernel_text.h"
 #include "light_table.h"
 #include "overlap_words.h"
-#include "scene_upload.h"
 #include "surface_mesh.h"
 
 namespace vkvol {
@@ -24,19 +25,14 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
       layers_(plan_layers(scene)), form_(is_chromatic(scene) || method.paths != PATHS_CAMERA ? form_chromatic : 0),
       text_(kernel_text(specialization_, assets, is_chromatic(scene))),
       origin_(render_origin(scene, assets.media, whole_of(assets))), cache_directions_(cache_layout(scene).directions) {
-    if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN)
+    if (specialization_[SPEC_LIGHTS] != LIGHTS_LONE)
         make_lights(scene, assets);
     if (assets.superposition)
         upload_media(scene, method, assets, most_texel_bytes);
-    // Of texels devices may allow as few as 65536 to a buffer.
+    // Devices may allow as few as 65536 texels to a buffer.
     const bool fits = cache_entries(frame_.lattice, cache_directions_.size()) <= device.limits().maxTexelBufferElements;
     specialization_[SPEC_TEXELS] = buffers_.texels() && fits ? 1 : 0;
-    if (specialization_[SPEC_LIGHTS] != LIGHTS_SUN || specialization_[SPEC_PHASE] != PHASE_HENYEY_GREENSTEIN ||
-        specialization_[SPEC_ALBEDO] != ALBEDO_CONSTANT || specialization_[SPEC_MAP] != MAP_NONE ||
-        specialization_[SPEC_UNBOUNDED] != 0 || specialization_[SPEC_FIELD] == FIELD_LAYERS ||
-        specialization_[SPEC_TEMPERATURE_TYPE] == GRID_COLOR || specialization_[SPEC_SENSOR] != SENSOR_PINHOLE ||
-        specialization_[SPEC_PIXEL_FILTER] != 0 || specialization_[SPEC_LAYERS] != 0 ||
-        specialization_[SPEC_PATHS] != PATHS_CAMERA || scene.periodic)
+    if (needs_full(specialization_))
         form_ |= form_full;
     if (!scene.surfaces.empty())
         make_surfaces(scene, assets);
@@ -57,8 +53,10 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
 
 void DeviceScene::make_lights(const Scene& scene, const Assets& assets) {
     double radius = lit_radius(scene, assets, frame_.media[0]);
-    if (const double reach = reach_of_surfaces(scene.surfaces, origin_); std::isfinite(reach))
-        radius = std::max(radius, reach);
+    if (const std::optional<SurfaceBounds> bounds = bounds_of(scene.surfaces)) {
+        const double reach = reach_of(*bounds, origin_);
+        radius = any_medium(scene, is_everywhere) ? std::min(radius, reach) : std::max(radius, reach);
+    }
     lights_ = make_light_table(scene, assets, origin_, radius);
     frame_.choices = lights_.choices;
     frame_.sky_count = lights_.sky_count;

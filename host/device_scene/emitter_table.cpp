@@ -25,7 +25,7 @@ glm::dmat4 to_render(const shared::MediumParams& medium) {
 
 class Emitters {
 public:
-    Emitters(EmitterTable& table, double across) : table_(table), across_(across) {}
+    explicit Emitters(EmitterTable& table) : table_(table) {}
 
     void add(std::uint32_t source, double power) {
         if (!(power > 0.0) || !std::isfinite(power))
@@ -44,7 +44,7 @@ public:
         add(AT_SURFACE | i, surface.sides * pi * area * channel_mean(surface.emission));
     }
 
-    double across() const { return across_; }
+    double power() const { return sum_; }
 
     void finish() {
         if (table_.rows.empty()) { // a black background
@@ -63,7 +63,6 @@ public:
 
 private:
     EmitterTable& table_;
-    double across_; // the ball, or a domain that repeats
     std::vector<double> powers_;
     double sum_ = 0.0;
 };
@@ -102,7 +101,8 @@ GlowBox box_about(std::span<const GlowBox> boxes) {
     return {low, glm::dmat3(glm::dvec3(size.x, 0.0, 0.0), glm::dvec3(0.0, size.y, 0.0), glm::dvec3(0.0, 0.0, size.z))};
 }
 
-// Of a domain that repeats along two axes, its faces along the third. World units^2: their area; 0 of other domains.
+// Places the faces that a domain which repeats along two axes has across the third. Returns a face's area in world
+// units^2; 0 for other domains.
 double place_faces(const shared::PeriodParams& period, shared::ParticleParams& params) {
     double area = 1.0;
     int open = 0;
@@ -118,7 +118,7 @@ double place_faces(const shared::PeriodParams& period, shared::ParticleParams& p
     return open == 1 ? area : 0.0;
 }
 
-// World units^2: its area; of a box its volume^(2/3). Light comes from beyond it.
+// World units^2: its area; of a box world units^3, its volume. Light comes from beyond it.
 double place_sensor(const Scene& scene, glm::dvec3 origin, shared::ParticleParams& params) {
     const SensorBox box = sensor_box(scene.camera, scene.picture);
     const glm::dvec3 low = box.low - origin, high = box.high - origin;
@@ -128,7 +128,7 @@ double place_sensor(const Scene& scene, glm::dvec3 origin, shared::ParticleParam
     params.below = static_cast<float>(std::min(double(params.below), glm::dot(open, low) - margin));
     params.above = static_cast<float>(std::max(double(params.above), glm::dot(open, high) + margin));
     if (scene.camera.projection == Projection::absorption)
-        return std::pow(scene.camera.edges.x * scene.camera.edges.y * scene.camera.edges.z, 2.0 / 3.0);
+        return scene.camera.edges.x * scene.camera.edges.y * scene.camera.edges.z;
     const CameraRays rays = camera_rays(scene.camera, scene.picture);
     return glm::length(glm::cross(rays.right, rays.down)) * scene.picture.width * scene.picture.height;
 }
@@ -140,17 +140,31 @@ double unit_of_splats(double power, double across, double brightest) {
     return std::exp2(std::floor(std::log2(usual)) - 34.0);
 }
 
-// Of what is seen itself, or mirrored; and points light what is near them without bound: so that light as from a
-// ten-thousandth of `reach` fits, and what is lit from all of it has 24 bits. Where nothing bounds the scene, 0, as
-// from a unit of length.
+// Part of what a light with a place sends out that may come to a ball about the origin, at most.
+double part_that_comes(const shared::LightRow& light, double radius) {
+    const double distance = glm::length(glm::dvec3(light.position));
+    if (light.kind < LIGHT_POINT || light.kind == LIGHT_MAP || distance <= radius)
+        return 1.0;
+    const double seen = radius * radius / (distance * distance); // over pi, the ball's solid angle
+    if (light.kind == LIGHT_SPOT)
+        return std::min(1.0, 0.5 * seen / light.none_beyond);
+    return light.kind > LIGHT_SPHERE ? seen : 0.25 * seen; // by the cosine, or alike into all directions
+}
+
+// The brightest value that a pixel may get: of sources seen themselves, or mirrored; and of points, which light what is
+// near them without bound, as from a thirty-thousandth of `reach`, so that what is lit from all of it has 24 bits.
+// `reach` 0, where nothing bounds the scene: as from a unit of length.
 double brightest_of(const Scene& scene, const LightTable& lights, const SurfaceTable& surfaces, const Glow& glow,
                     const SkyMap* sky, double reach) {
     double brightest = std::max(channel_mean(scene.background), glow.most);
-    for (const shared::LightRow& light : lights.rows)
-        brightest = std::max(brightest, light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT
-                                            ? channel_mean(light.radiance) *
-                                                  (reach > 0.0 ? std::ldexp(1.0 / (reach * reach), 30) : 1.0)
-                                            : channel_mean(light.radiance));
+    for (const shared::LightRow& light : lights.rows) {
+        double factor = 1.0;
+        if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
+            const double nearest = std::max(double(glm::length(light.position)) - reach, std::ldexp(reach, -15));
+            factor = reach > 0.0 ? 1.0 / (nearest * nearest) : 1.0;
+        }
+        brightest = std::max(brightest, factor * channel_mean(light.radiance));
+    }
     for (const glm::vec4& texel : sky ? std::span<const glm::vec4>(sky->texels) : std::span<const glm::vec4>())
         brightest = std::max(brightest, channel_mean(Rgb(texel)));
     for (const shared::SurfaceRow& surface : surfaces.rows)
@@ -194,12 +208,12 @@ EmitterTable make_emitter_table(const Scene& scene, const Method& method, const 
     const bool counts = reads_flux(scene.camera);
     const double face = scene.periodic ? place_faces(period, table.params) : 0.0;
     const double sensor = counts ? place_sensor(scene, origin, table.params) : 0.0;
-    Emitters emitters(table, scene.periodic ? face : bounded ? pi * radius * radius : 0.0);
+    const double across = scene.periodic ? face : bounded ? pi * radius * radius : 0.0; // what comes from afar
+    Emitters emitters(table);
     for (std::size_t i = 0; i < lights.rows.size(); ++i)
-        emitters.add(static_cast<std::uint32_t>(i),
-                     lights.powers[i] * (i < lights.lamp_first ? emitters.across() : 1.0));
+        emitters.add(static_cast<std::uint32_t>(i), lights.powers[i] * (i < lights.lamp_first ? across : 1.0));
     if (method.paths == PATHS_LIGHT) { // else paths from the camera find these
-        emitters.add(SOURCE_BACKGROUND, 4.0 * pi * channel_mean(scene.background) * emitters.across());
+        emitters.add(SOURCE_BACKGROUND, 4.0 * pi * channel_mean(scene.background) * across);
         for (std::size_t i = 0; i < surfaces.primitives.size(); ++i)
             if (const auto& piece = surfaces.primitives[i]; i < surfaces.met)
                 emitters.add_primitive(piece, surfaces.rows[piece.surface], static_cast<std::uint32_t>(i));
@@ -210,12 +224,17 @@ EmitterTable make_emitter_table(const Scene& scene, const Method& method, const 
         emitters.add(SOURCE_GLOW, glow.power);
     }
     emitters.finish();
-    // What a sensor counts is absorbed, too; a camera sees what leaves.
-    const double shown = table.params.power - (method.paths == PATHS_LIGHT && !counts ? glow.hidden : 0.0);
     const double reach = bounded && radius > 0.0 ? radius : 1.0;
+    // What a sensor counts is absorbed, too; a camera sees what leaves.
+    double shown = emitters.power() - (method.paths == PATHS_LIGHT && !counts ? glow.hidden : 0.0);
+    for (std::size_t i = 0; i < lights.rows.size() && bounded && !counts; ++i)
+        shown -= lights.powers[i] * (1.0 - part_that_comes(lights.rows[i], reach));
+    // Particles that come to it bring their part of all of it at once: numbers have to hold that.
+    shown = std::max(shown, emitters.power() * 0x1p-20);
+    // A sensor counts particles, and sees nothing itself.
+    const double brightest = counts ? 0.0 : brightest_of(scene, lights, surfaces, glow, sky, bounded ? reach : 0.0);
     table.params.unit =
-        static_cast<float>(unit_of_splats(shown, counts ? sensor : 4.0 * pi * pi * reach * reach,
-                                          brightest_of(scene, lights, surfaces, glow, sky, bounded ? reach : 0.0)));
+        static_cast<float>(unit_of_splats(shown, counts ? sensor : 4.0 * pi * pi * reach * reach, brightest));
     return table;
 }
 

@@ -15,7 +15,7 @@ struct EmitterTable {
     shared::ParticleParams params{};
 };
 
-// Of all media that glow: their power, roughly, the most radiance per unit of extinction, and a box about them in
+// All media that glow: their power, roughly, the most radiance per unit of extinction, and a box about them in
 // render space.
 struct Glow {
     double power = 0.0, most = 0.0;

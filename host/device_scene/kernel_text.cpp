@@ -29,7 +29,7 @@ std::string kernel_text(const Specialization& s, const Assets& assets, bool chro
     const std::array emissions = {"", ", uniform emission",
                                   glows_in_color ? ", emission by a grid of colours" : ", emission by temperature",
                                   ", black-body emission"};
-    const auto choice = [&](int axis, int id) { return axes()[std::size_t(axis)].names[std::size_t(id)]; };
+    const auto choice = [&](const char* axis, int id) { return find_axis(axis).names[std::size_t(id)]; };
     if (s[SPEC_SHAPE] == SHAPE_NONE)
         return shapes[SHAPE_NONE];
     std::string text = shapes[s[SPEC_SHAPE]];
@@ -46,14 +46,14 @@ std::string kernel_text(const Specialization& s, const Assets& assets, bool chro
                (s[SPEC_UNBOUNDED] != 0 ? "medium everywhere" : text);
     if (s[SPEC_MAP] != MAP_NONE)
         text += s[SPEC_MAP] >= MAP_ALBEDO ? ", transfer function" : ", mapped values";
-    text += fmt::format("{}, {} flight", chromatic ? ", chromatic" : "", choice(1, s[SPEC_FREE_FLIGHT]));
+    text += fmt::format("{}, {} flight", chromatic ? ", chromatic" : "", choice("flight", s[SPEC_FREE_FLIGHT]));
     text += scatterings[s[SPEC_SCATTERING]];
     if (s[SPEC_NEE] != NEE_NONE)
         text += fmt::format(", light at {} by {} transmittance",
                             s[SPEC_NEE] == NEE_COLLISIONS ? "collisions"
-                            : s[SPEC_NEE] == NEE_CACHED   ? "collisions from a cache corrected"
-                                                          : "every step",
-                            choice(2, s[SPEC_TRANSMITTANCE]));
+                            : s[SPEC_NEE] == NEE_CACHED   ? "collisions, from a cache corrected"
+                                                          : "tentative collisions",
+                            choice("transmittance", s[SPEC_TRANSMITTANCE]));
     if (s[SPEC_DISTANCE] == DISTANCE_MIXED)
         text += ", and looks from along flights";
     if (s[SPEC_PERIODIC] != 0)

@@ -23,8 +23,8 @@ Sums sums_of(std::span<const glm::vec3> sums, std::size_t i) {
     return {pair(0), pair(2)};
 }
 
-// Of what lies at the slots of each record. All layers of a pixel are made in turn: records are large, and each is read
-// but once.
+// Makes layers of what lies at the slots of each record. All layers of a pixel are made in turn: records are large, and
+// each is read but once.
 class Developer {
 public:
     Developer(const LayerPlan& plan, std::span<const glm::vec3> sums, std::span<const std::uint32_t> samples)
@@ -124,7 +124,7 @@ LayerPlan plan_layers(const Scene& scene) {
         params.count += static_cast<std::uint32_t>(count);
     };
     std::uint32_t kinds = 0; // the first
-    place(layer_background | layer_emission | layer_direct | layer_indirect, LAYERS_KINDS, kinds, LIGHT_KINDS);
+    place(layer_background | layer_emission | layer_direct | layer_indirect, LAYERS_KINDS, kinds, SCATTERED_KINDS);
     if (scene.layers & layer_groups)
         plan.groups = light_groups(scene);
     place(layer_groups, LAYERS_GROUPS, params.groups, 1 + plan.groups.size());
@@ -151,7 +151,7 @@ std::vector<FilmLayer> develop_layers(const LayerPlan& plan, std::span<const glm
                                       std::span<const std::uint32_t> samples, const glm::dvec3& origin) {
     Developer developer(plan, sums, samples);
     const shared::AovParams& params = plan.params;
-    for (std::uint32_t kind = 0; kind < LIGHT_KINDS; ++kind)
+    for (std::uint32_t kind = 0; kind < SCATTERED_KINDS; ++kind)
         if (plan.wanted & 1u << kind)
             developer.add_means(layer_names()[kind], kind);
     if (plan.kinds & LAYERS_GROUPS)

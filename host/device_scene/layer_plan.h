@@ -22,7 +22,7 @@ struct LayerPlan {
 // Throws InputError where these are too many.
 LayerPlan plan_layers(const Scene& scene);
 
-// Of a light's group among the layers of groups: 0 of none.
+// Number of a light's group among the layers of groups; 0: none.
 std::uint32_t group_layer(const std::vector<std::string>& groups, const std::string& group);
 
 // What a picture's layers are on the host. `sums`: four for each layer of each pixel. `samples`: of each pixel.

@@ -37,7 +37,7 @@ shared::LatticeParams make_lattice(glm::dvec3 low, glm::dvec3 high, glm::dvec3 e
 }
 
 CacheLayout cache_layout(const Scene& scene) {
-    if (const DirectionalLight* sun = lone_sun(scene))
+    if (const DirectionalLight* sun = lone_directional(scene))
         return {{glm::vec3(sun->direction)}, 64}; // twice as many nodes were no better
     CacheLayout all{{}, 32};
     for (int axis = 0; axis < 3; ++axis)

@@ -28,7 +28,7 @@ std::uint64_t cache_entries(const shared::LatticeParams& lattice, std::size_t di
 
 class LightCache {
 public:
-    // Of a scene whose buffers and frame are on the device. `texels`: it is read as such, see SPEC_TEXELS.
+    // The scene's buffers and frame are on the device. `texels`: it is read as such, see SPEC_TEXELS.
     LightCache(const Device& device, const BoundBuffers& scene, const shared::LatticeParams& lattice,
                std::vector<glm::vec3> directions, bool texels);
 

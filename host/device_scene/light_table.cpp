@@ -17,10 +17,6 @@ namespace {
 
 using std::numbers::pi;
 
-double radians(double degrees) {
-    return degrees * pi / 180.0;
-}
-
 // 1 - cos, with all digits where the angle is small.
 double versine(double angle) {
     return 2.0 * std::pow(std::sin(0.5 * angle), 2.0);
@@ -57,9 +53,9 @@ public:
     }
 
     Entry operator()(const SunLight& light) const {
-        Entry entry = begin(LIGHT_DISC, peak_radiance(light));
+        Entry entry = begin(LIGHT_SUN, peak_radiance(light));
         entry.row.direction = light.direction;
-        entry.row.extent = static_cast<float>(versine(radians(0.5 * light.angle)));
+        entry.row.extent = static_cast<float>(versine(glm::radians(0.5 * light.angle)));
         entry.row.darkening = static_cast<float>(light.limb_darkening);
         entry.fluence = channel_mean(light.irradiance);
         entry.place = Entry::Place::sky;
@@ -76,7 +72,7 @@ public:
 
     Entry operator()(const SpotLight& light) const {
         Entry entry = begin(LIGHT_SPOT, light.intensity);
-        const double half = radians(0.5 * light.angle);
+        const double half = glm::radians(0.5 * light.angle);
         entry.row.position = light.position - origin_;
         entry.row.direction = light.direction;
         entry.row.full_within = static_cast<float>(versine(half * (1.0 - light.blend)));
@@ -157,10 +153,11 @@ private:
         return entry;
     }
 
-    // From a light to the media; of one among them, to half of their way out.
+    // From a light to the media, or surfaces; of one among them, to half of their way out. Of planes alone, from the
+    // camera, and of one there, a unit of length.
     double square_distance(const glm::dvec3& position) const {
         const double distance = std::max(glm::length(position - origin_), 0.5 * radius_);
-        return std::max(distance * distance, 1e-300);
+        return distance > 0.0 ? distance * distance : 1.0;
     }
 
     const Assets& assets_;
@@ -181,7 +178,7 @@ double power_of(const Light& light, const Entry& entry) {
         light);
 }
 
-// Of the first rows, by their fluence.
+// Sets the chances of the first rows, by their fluence.
 void set_chances(std::vector<shared::LightRow>& rows, const std::vector<double>& fluences) {
     const std::vector<double> chances = defensive_chances(fluences);
     const std::vector<shared::AliasEntry> alias = make_alias_table(chances);
@@ -195,7 +192,7 @@ void set_chances(std::vector<shared::LightRow>& rows, const std::vector<double>&
 std::vector<glm::vec3> find_suns(std::vector<Entry> entries, double fluence) {
     constexpr double least = 0.05; // of all
     std::erase_if(entries, [&](const Entry& entry) {
-        return (entry.row.kind != LIGHT_DIRECTIONAL && entry.row.kind != LIGHT_DISC) || entry.fluence < least * fluence;
+        return (entry.row.kind != LIGHT_DIRECTIONAL && entry.row.kind != LIGHT_SUN) || entry.fluence < least * fluence;
     });
     std::stable_sort(entries.begin(), entries.end(),
                      [](const Entry& a, const Entry& b) { return a.fluence > b.fluence; });
@@ -225,8 +222,8 @@ PlacedLight placed(const Entry& entry, std::uint32_t row) {
 int lights_kind(const Scene& scene) {
     const std::vector<Light>& lights = scene.lights;
     const auto any = [&](bool (*is)(const Light&)) { return std::any_of(lights.begin(), lights.end(), is); };
-    if (lights.empty() || lone_sun(scene))
-        return LIGHTS_SUN;
+    if (lights.empty() || lone_directional(scene))
+        return LIGHTS_LONE;
     const auto is_square = [](const Light& light) {
         const auto* sky = std::get_if<SkyLight>(&light);
         return sky && sky->mapping == SkyMapping::equal_area;
@@ -243,7 +240,7 @@ int lights_kind(const Scene& scene) {
 }
 
 std::uint32_t loop_iterations(const Scene& scene) {
-    if (lights_kind(scene) == LIGHTS_SUN)
+    if (lights_kind(scene) == LIGHTS_LONE)
         return 0;
     const std::vector<Light>& lights = scene.lights;
     const auto count = [&](bool (*is)(const Light&)) { return std::count_if(lights.begin(), lights.end(), is); };

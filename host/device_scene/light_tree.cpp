@@ -13,7 +13,7 @@ namespace {
 // Radians, by which light from flat lamps and spots may seem to leave beyond its cone, by rounding.
 constexpr double spare = 2e-3;
 
-// Of a node over all of them.
+// Sets axis, spread and reach of the node over all of these lights.
 void set_cone(std::span<const PlacedLight> lights, shared::LightNode& node) {
     using std::numbers::pi;
     glm::dvec3 axis(0.0);

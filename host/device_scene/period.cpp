@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "medium_pieces.h"
 #include "placement.h"
 #include "surface_mesh.h"
 
@@ -40,22 +41,25 @@ void take_in(const Volume& volume, const LoadedMedium& loaded, Range& range) {
     }
 }
 
-// Of all there is.
+// Range that holds all there is.
 Range range_of(const Scene& scene, Media media) {
     Range range;
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-        take_in(scene.volumes[i], media[i], range);
+        if (has_matter(scene.volumes[i], media[i]))
+            take_in(scene.volumes[i], media[i], range);
     if (const std::optional<SurfaceBounds> bounds = bounds_of(scene.surfaces)) {
         range.take_in(bounds->low);
         range.take_in(bounds->high);
     }
-    // Planes lie along the axes that repeat, see supported.cpp; along others they have no end but across.
+    // Planes lie along the axes that repeat, see render_limits.cpp; along others they have no end but across.
     for (const Surface& surface : scene.surfaces)
         if (const auto* plane = std::get_if<PlaneSurface>(&surface.shape)) {
             const glm::dvec3 along = everywhere_reach * (1.0 - glm::step(1.0, glm::abs(plane->normal)));
             range.take_in(plane->point - along);
             range.take_in(plane->point + along);
         }
+    if (glm::any(glm::greaterThan(range.low, range.high))) // nothing at all: rays leave from where they begin
+        range.take_in(scene.camera.position);
     return range;
 }
 

@@ -82,7 +82,8 @@ private:
         bounded_.push_back(piece);
     }
 
-    // Of what is flat x and y alone: a place on the texture is how far along them it is, scaled, and from where.
+    // Axes of a shape that has a texture. Flat ones have x and y alone: a place on the texture is how far along them it
+    // is, scaled, and from where.
     std::optional<shared::SurfacePrimitive> axes(double scale, double from) const {
         if (!surface_.material.image)
             return std::nullopt;
@@ -157,9 +158,9 @@ std::uint32_t code_of(const Material& material) {
     return MATERIAL_DIFFUSE;
 }
 
-// Of even light from within a boundary of this index, what it throws back. What passes of such light from outside, T,
-// is found by Fresnel's equations, since from there no angle throws all back; from within T / ior^2 passes.
-double thrown_back(double ior) {
+// Share of diffuse light from inside that a boundary of this index reflects back in. What passes of such light from
+// outside, T, is found by Fresnel's equations, since from there no angle throws all back; from within T / ior^2 passes.
+double internal_diffuse_reflectance(double ior) {
     constexpr int n = 4096;
     double passes = 0.0;
     for (int i = 0; i < n; ++i) {
@@ -182,7 +183,8 @@ shared::SurfaceRow row_of(const Surface& surface) {
     row.emission = surface.emission;
     row.sides = surface.shines_both_ways ? 2u : 1u;
     row.eta = has_ior ? Rgb(material.ior) : material.eta;
-    row.k = material.kind == MaterialKind::coated ? Rgb(thrown_back(material.ior), 0.0, 0.0) : material.k;
+    row.k =
+        material.kind == MaterialKind::coated ? Rgb(internal_diffuse_reflectance(material.ior), 0.0, 0.0) : material.k;
     return row;
 }
 

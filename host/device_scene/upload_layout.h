@@ -24,12 +24,12 @@ public:
     const Parts& maps() const { return maps_.parts; }
     const Parts& blackbodies() const { return blackbodies_.parts; }
 
-    // Of a grid that one of the media has.
+    // Place of a grid that one of the media has.
     struct GridPlace {
         std::uint32_t first_word, first_entry; // of the grid and of its leaf table
     };
     GridPlace place_of(const DensityField& grid) const { return grid_places_.at(grid.bytes.data()); }
-    // Of tables, entries; 0 without one.
+    // First entries of tables; 0 without one.
     std::uint32_t first_node(const LoadedMedium& medium) const { return phases_.first(medium.phase_nodes); }
     std::uint32_t first_knot(const LoadedMedium& medium) const { return maps_.first(medium.map_knots); }
     std::uint32_t first_color(const LoadedMedium& medium) const { return blackbodies_.first(medium.blackbody); }

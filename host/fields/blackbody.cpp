@@ -37,7 +37,7 @@ glm::dvec3 blackbody_xyz(double kelvin) {
     return sum;
 }
 
-// Of all wavelengths, by Wien's displacement law.
+// The most that Planck's law has at any wavelength, by Wien's displacement law.
 double largest_planck(double kelvin) {
     return planck(2.897771955e6 / kelvin, kelvin);
 }
@@ -62,13 +62,16 @@ glm::dvec3 blackbody_rgb(double kelvin, double reference) {
     const glm::dvec3 rgb(3.2404542 * xyz.x - 1.5371385 * xyz.y - 0.4985314 * xyz.z,
                          -0.9692660 * xyz.x + 1.8760108 * xyz.y + 0.0415560 * xyz.z,
                          0.0556434 * xyz.x - 0.2040259 * xyz.y + 1.0572252 * xyz.z);
-    return glm::max(rgb, glm::dvec3(0.0));
+    // What is redder than Rec.709 has room for loses its negative green and blue, and keeps its luminance.
+    const glm::dvec3 shown = glm::max(rgb, glm::dvec3(0.0));
+    const double luminance = glm::dot(shown, glm::dvec3(0.2126729, 0.7151522, 0.0721750));
+    return reference > 0.0 && luminance > 0.0 ? shown * (xyz.y / luminance) : shown;
 }
 
-std::vector<glm::vec3> make_blackbody_table(double low, double high, double reference, int count) {
-    std::vector<glm::vec3> table(count);
+std::vector<glm::vec4> make_blackbody_table(double low, double high, double reference, int count) {
+    std::vector<glm::vec4> table(count);
     for (int i = 0; i < count; ++i)
-        table[i] = blackbody_rgb(low + (high - low) * i / (count - 1), reference);
+        table[i] = glm::vec4(blackbody_rgb(low + (high - low) * i / (count - 1), reference), 0.0f);
     return table;
 }
 

@@ -31,8 +31,8 @@ struct BoxTree {
 // By the surface area heuristic. Throws InputError for more items than nodes can name.
 BoxTree build_box_tree(std::span<const BvhBox> boxes);
 
-// Of a mesh's triangles. Boxes are exactly those of the single-precision vertices; what the traversal's own rounding
-// asks for depends on the ray and is added there.
+// Hierarchy of a mesh's triangles. Boxes are exactly those of the single-precision vertices; what the traversal's own
+// rounding asks for depends on the ray and is added there.
 struct Bvh {
     std::vector<glm::vec3> triangles; // three corners each, render space
     std::vector<shared::BvhNode> nodes;

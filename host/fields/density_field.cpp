@@ -119,6 +119,19 @@ DensityField::Block DensityField::block(glm::ivec3 block) const {
     return result;
 }
 
+std::array<float, 8> DensityField::row(glm::ivec3 first) const {
+    std::array<float, 8> values{};
+    const std::uint32_t entry = block_entry(*this, first);
+    const std::byte* at = bytes.data() + std::size_t{entry >> 1} * 4;
+    const unsigned place = place_in_leaf(first);
+    const int count = std::min(8 - (first.z & 7), voxel_max.z - first.z + 1);
+    for (unsigned i = 0; i < static_cast<unsigned>(count); ++i)
+        values[i] = type == GRID_COLOR ? largest_channel(entry & 1u ? leaf_color(at, place + i) : read_color(at))
+                    : entry & 1u       ? leaf_value(type, at, place + i)
+                                       : read_float(at);
+    return values;
+}
+
 float DensityField::max_value() const {
     float largest = 0.0f;
     glm::ivec3 b;
@@ -131,8 +144,8 @@ float DensityField::max_value() const {
                     continue;
                 for (int x = part.low.x; x <= part.high.x; ++x)
                     for (int y = part.low.y; y <= part.high.y; ++y)
-                        for (int z = part.low.z; z <= part.high.z; ++z)
-                            largest = std::max(largest, value({x, y, z}));
+                        for (const float each : row({x, y, part.low.z}))
+                            largest = std::max(largest, each);
             }
     return largest;
 }

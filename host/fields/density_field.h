@@ -2,6 +2,7 @@
 // table of its leaves.
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
@@ -41,6 +42,8 @@ struct DensityField {
         std::optional<float> constant;
     };
     Block block(glm::ivec3 block) const;
+    // value() of voxels from `first` along z, as many of the eight as its block and the box have; 0 of others.
+    std::array<float, 8> row(glm::ivec3 first) const;
     // World units per voxel: |det|^(1/3) of index_to_world.
     double voxel_size() const;
     // To where `transform` moves it from where the file has it.
@@ -50,7 +53,7 @@ struct DensityField {
 // Throws InputError naming file, grid, what is wrong and the remedy.
 DensityField load_density_field(const GridFile& file, GridValues values = GridValues::numbers);
 
-// Of all grids in the file, in its order. Throws InputError if it cannot be read.
+// Names of all grids in the file, in its order. Throws InputError if it cannot be read.
 std::vector<std::string> grid_names(const std::filesystem::path& file);
 std::vector<std::string> grid_names(const GridFile& file); // or in memory
 

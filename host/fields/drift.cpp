@@ -35,7 +35,7 @@ template <class At> auto trilinear(glm::dvec3 p, const At& at) {
     return sum;
 }
 
-// Of voxels, inclusive.
+// A box of voxels, from `low` to `high`, both inclusive.
 struct VoxelBox {
     glm::ivec3 low, high;
 };

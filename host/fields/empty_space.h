@@ -8,7 +8,7 @@
 
 namespace vkvol {
 
-// Of each cell, how many cells around it are empty like itself in every direction, beyond the grid too: all cells
+// For each cell how many cells around it are empty like itself in every direction, beyond the grid too: all cells
 // within that distance in the chessboard metric. 0 where the cell is not empty; 254 at most.
 std::vector<std::uint8_t> empty_reaches(const MajorantGrid& cells);
 

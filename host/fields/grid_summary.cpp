@@ -91,7 +91,7 @@ std::pair<glm::dvec3, glm::dvec3> world_box(const DensityField& field) {
     for (int corner = 0; corner < 8; ++corner) {
         const glm::ivec3 pick(corner & 1, corner >> 1 & 1, corner >> 2);
         const glm::dvec3 index =
-            glm::mix(glm::dvec3(field.voxel_min), glm::dvec3(field.voxel_max + 1), glm::dvec3(pick));
+            glm::mix(glm::dvec3(field.voxel_min) - 0.5, glm::dvec3(field.voxel_max) + 0.5, glm::dvec3(pick));
         const glm::dvec3 world(field.index_to_world * glm::dvec4(index, 1.0));
         low = glm::min(low, world);
         high = glm::max(high, world);

@@ -22,7 +22,7 @@ GridSummary summarize(const DensityField& field);
 // The world-space box of the index-space cells [min, max + 1].
 std::pair<glm::dvec3, glm::dvec3> world_box(const DensityField& field);
 
-// Of a voxel, along the three axes of the grid, in world units.
+// Edges of a voxel along the three axes of the grid, in world units.
 glm::dvec3 voxel_edges(const DensityField& field);
 
 } // namespace vkvol

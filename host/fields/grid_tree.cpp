@@ -33,7 +33,7 @@ static_assert(sizeof(nanovdb::Vec3f) == 3 * sizeof(float));
 static_assert(sizeof(nanovdb::NanoLeaf<nanovdb::Fp4>::DataType) == leaf_values + 256);
 static_assert(sizeof(nanovdb::NanoLeaf<nanovdb::FpN>::DataType) == leaf_values);
 
-// Of a transform and its inverse: products of three stay finite in the kernels.
+// Limit to the entries of a transform and of its inverse: products of three stay finite in the kernels.
 constexpr double largest_entry = 1e11;
 
 // The table of leaves keeps word offsets in 31 bits.
@@ -121,7 +121,7 @@ public:
         check_box(*root, root_offset);
         size_table();
         bytes_left_ = field_.bytes.size();
-        clean(root->mBackground);
+        clean_unseen(root->mBackground);
         field_.background = most(root->mBackground);
         std::fill(table_.begin(), table_.end(), entry_of_value(&root->mBackground));
         for (std::uint32_t i = 0; i < root->mTableSize; ++i)
@@ -260,6 +260,17 @@ private:
                 clean(color[i]);
     }
 
+    void clean_unseen(Value& value) { // no voxel has it
+        const std::uint64_t before = field_.cleaned;
+        clean(value);
+        field_.cleaned = before;
+    }
+    void clean_tile(Value& value, glm::ivec3 origin, int size) {
+        const bool is_beyond = glm::any(glm::greaterThan(origin, field_.voxel_max)) ||
+                               glm::any(glm::lessThan(origin + (size - 1), field_.voxel_min));
+        is_beyond ? clean_unseen(value) : clean(value);
+    }
+
     std::uint32_t word_offset(const void* p) const {
         return static_cast<std::uint32_t>((static_cast<const std::byte*>(p) - field_.bytes.data()) / 4);
     }
@@ -285,7 +296,7 @@ private:
         if (tile.isChild()) {
             visit<Upper>(child_offset(root_offset, tile.child), origin);
         } else {
-            clean(tile.value);
+            clean_tile(tile.value, origin, 4096);
             enter(origin, 4096, entry_of_value(&tile.value));
         }
     }
@@ -306,7 +317,7 @@ private:
         for (int n = 0; n < 1 << (3 * log2_dim<Node>); ++n) {
             const glm::ivec3 child_origin = origin + place_of_child<Node>(n);
             if (!node->mChildMask.isOn(n)) {
-                clean(node->mTable[n].value);
+                clean_tile(node->mTable[n].value, child_origin, child_size);
                 enter(child_origin, child_size, entry_of_value(&node->mTable[n].value));
             } else if constexpr (is_upper) {
                 visit<Lower>(child_offset(offset, node->mTable[n].child), child_origin);
@@ -320,29 +331,38 @@ private:
         std::byte* leaf = at<std::byte>(offset, leaf_values);
         if (field_.type == GRID_FLOAT || field_.type == GRID_COLOR) {
             spend(sizeof(Leaf));
-            for (Value& value : at<Leaf>(offset)->mValues)
-                clean(value);
+            Value* const values = at<Leaf>(offset)->mValues;
+            for (int n = 0; n < 512; ++n)
+                is_voxel(origin, n) ? clean(values[n]) : clean_unseen(values[n]);
         } else {
             const unsigned log2 = log2_bits(field_.type, leaf);
             if (log2 > 4)
                 damaged();
             spend(leaf_values + (std::size_t{64} << log2));
             at<std::byte>(offset, leaf_values + (std::size_t{64} << log2));
-            clean_quantised(leaf);
+            clean_quantised(leaf, origin);
         }
         enter(origin, 8, word_offset(leaf) << 1 | 1u);
     }
 
-    void clean_quantised(std::byte* leaf) {
+    // Of a leaf the n-th value, whose place counts z fastest, lies in the box of voxels.
+    bool is_voxel(glm::ivec3 origin, int n) const {
+        const glm::ivec3 place = origin + glm::ivec3(n >> 6, n >> 3 & 7, n & 7);
+        return place == glm::clamp(place, field_.voxel_min, field_.voxel_max);
+    }
+
+    void clean_quantised(std::byte* leaf, glm::ivec3 origin) {
         const float minimum = read_float(leaf + leaf_minimum);
         const float quantum = read_float(leaf + leaf_quantum);
         const float highest = 65535.0f * quantum + minimum;
         if (!std::isfinite(minimum) || !std::isfinite(quantum) || !std::isfinite(highest)) {
             std::memset(leaf + leaf_minimum, 0, 8);
-            field_.cleaned += 512;
+            for (int n = 0; n < 512; ++n)
+                field_.cleaned += is_voxel(origin, n);
         } else if (minimum < 0.0f) { // decoding clamps; here they are only counted
-            for (unsigned n = 0; n < 512; ++n)
-                field_.cleaned += leaf_value(field_.type, leaf, n) == 0.0f;
+            for (int n = 0; n < 512; ++n)
+                field_.cleaned +=
+                    is_voxel(origin, n) && leaf_value(field_.type, leaf, static_cast<unsigned>(n)) == 0.0f;
         }
     }
 

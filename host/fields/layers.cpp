@@ -8,10 +8,10 @@ namespace vkvol {
 namespace {
 
 constexpr int cells = 64;
-// Of an exponential: Vulkan's exp errs by 3 + 2 |x| units in the last place, and |x| is 20 where nothing is said.
+// Relative error of an exponential: Vulkan's exp errs by 3 + 2 |x| units in the last place, and |x| is 20 by default.
 constexpr double rounding = 1e-5;
 
-// Of the i-th cell from below.
+// Range of the density in the i-th cell from below.
 DensityRange cell_range(const Volume& volume, int i) {
     const LayerBox box = layer_box(volume);
     const int axis = volume.layers->axis;

@@ -17,7 +17,7 @@ LayerBox layer_box(const Volume& volume);
 // The density at a height; 0 beyond the bottom and the top.
 double layer_density(const Volume& volume, double height);
 
-// Of all heights in [low, high], and what single precision may make of them.
+// Densities at all heights in [low, high], and what single precision may make of them.
 DensityRange layer_range(const Volume& volume, double low, double high);
 
 // Cells across the layers of a volume, in a space in which each is a cube of edge 1; the largest density of each.

@@ -1,6 +1,7 @@
 #include "majorant_grid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -36,7 +37,17 @@ void raise(MajorantGrid& grid, glm::ivec3 first, glm::ivec3 last, float value) {
             }
 }
 
-// All voxels of a block. Tiles of value 0 are most of a sparse grid and cost one look, other tiles little more.
+// The cells along an axis that a voxel is a corner of: on a face between two, both.
+struct CellRange {
+    int low, high;
+};
+
+CellRange cells_of_corner(const MajorantGrid& grid, int axis, int voxel) {
+    return {std::max((voxel - 1) / grid.cell, 0), std::min(voxel / grid.cell, grid.dims[axis] - 1)};
+}
+
+// All voxels of a block, row by row. Tiles of value 0 are most of a sparse grid and cost one look, other tiles little
+// more.
 void raise_block(MajorantGrid& grid, const DensityField& field, glm::ivec3 block) {
     const auto [low, high, constant] = field.block(block);
     if (constant) {
@@ -44,18 +55,32 @@ void raise_block(MajorantGrid& grid, const DensityField& field, glm::ivec3 block
             raise(grid, low - grid.origin, high - grid.origin, *constant);
         return;
     }
+    std::array<std::array<CellRange, 8>, 3> cells;
+    for (int axis = 0; axis < 3; ++axis)
+        for (int i = 0; i <= high[axis] - low[axis]; ++i)
+            cells[axis][i] = cells_of_corner(grid, axis, low[axis] + i - grid.origin[axis]);
+    const int first = cells[2][0].low, last = cells[2][high.z - low.z].high;
     for (int x = low.x; x <= high.x; ++x)
-        for (int y = low.y; y <= high.y; ++y)
-            for (int z = low.z; z <= high.z; ++z)
-                if (const float value = field.value({x, y, z}); value > 0.0f)
-                    raise(grid, glm::ivec3(x, y, z) - grid.origin, glm::ivec3(x, y, z) - grid.origin, value);
+        for (int y = low.y; y <= high.y; ++y) {
+            const std::array<float, 8> row = field.row({x, y, low.z});
+            std::array<float, 9> most{}; // cells along the row: no more than there are voxels, and one
+            for (int z = 0; z <= high.z - low.z; ++z)
+                for (int c = cells[2][z].low; c <= cells[2][z].high; ++c)
+                    most[c - first] = std::max(most[c - first], row[z]);
+            for (int i = cells[0][x - low.x].low; i <= cells[0][x - low.x].high; ++i)
+                for (int j = cells[1][y - low.y].low; j <= cells[1][y - low.y].high; ++j) {
+                    float* const bounds = &grid.bounds[(std::size_t(i) * grid.dims.y + j) * grid.dims.z + first];
+                    for (int c = 0; c <= last - first; ++c)
+                        bounds[c] = std::max(bounds[c], most[c]);
+                }
+        }
 }
 
 struct CellDensities {
     double least = 0.0, most = 0.0, mean = 0.0;
 };
 
-// Of all interpolation inside the cell; the mean is that of its corners.
+// Densities of all interpolation inside the cell; the mean is that of its corners.
 CellDensities cell_densities(const DensityField& field, const ValueMap& map, const MajorantGrid& grid,
                              glm::ivec3 cell) {
     const glm::ivec3 low = grid.origin + cell * grid.cell;

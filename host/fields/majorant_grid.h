@@ -35,8 +35,8 @@ MajorantGrid merge_cells(const MajorantGrid& fine);
 // What a step costs that minds the room around empty cells, to one that does not.
 constexpr double leap_cost = 1.08; // measured on llvmpipe: a thin medium without empty cells
 
-// Of cells of 4, 8 ... 64 voxels, or of `cell` if that is not 0, with leaps or without, those over which paths of this
-// scene take the least time: the fewest steps (after Yue et al., "Toward Optimal Space Partitioning for Unbiased,
+// Among cells of 4, 8 ... 64 voxels, or of `cell` if that is not 0, with leaps or without, those over which paths of
+// this scene take the least time: the fewest steps (after Yue et al., "Toward Optimal Space Partitioning for Unbiased,
 // Adaptive Free Path Sampling", 2011; but along paths, not over the grid's box: they stay where the medium is thin, or
 // near its surface where it is dense).
 MajorantGrid choose_majorant_grid(const DensityField& field, const PilotScene& scene, int cell = 0);

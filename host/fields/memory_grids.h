@@ -31,7 +31,8 @@ struct GridPlace {
     glm::dvec3 origin{0.0};     // of the middle of voxel (0, 0, 0)
 };
 
-// Of a box of values, x fastest and then y, at (0, 0, 0) to dims - 1 of index space; those that are 0 take no memory.
+// Makes a grid of a box of values, x fastest and then y, at (0, 0, 0) to dims - 1 of index space; those that are 0 take
+// no memory.
 GridBytes make_grid(const std::string& name, glm::ivec3 dims, std::span<const float> values,
                     const GridPlace& place = {});
 GridBytes make_grid(const std::string& name, glm::ivec3 dims, std::span<const glm::vec3> colors,

@@ -10,11 +10,13 @@ namespace {
 
 using std::filesystem::path;
 
-// Beside this program, as the build leaves it.
+// Beside this program, as the build leaves it, or as it is installed.
 std::string make_field_command() {
     std::error_code error;
-    const path program = std::filesystem::read_symlink("/proc/self/exe", error);
-    const path beside = program.parent_path() / "make_field";
+    const path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+    if (!error && std::filesystem::exists(folder / "vkvol-make-field", error))
+        return folder == "/usr/bin" ? "vkvol-make-field" : (folder / "vkvol-make-field").string();
+    const path beside = folder / "make_field";
     if (error || !std::filesystem::exists(beside, error))
         return "build/make_field";
     const path relative = std::filesystem::proximate(beside, error);

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <fstream>
+#include <map>
 #include <nanovdb/util/IO.h>
 #include <zlib.h>
 
@@ -163,6 +164,11 @@ std::vector<GridEntry> read_nvdb_entries(const std::filesystem::path& file) {
             reader.seek(reader.position() + entries[i].file_bytes);
         }
     } while (!reader.at_end());
+    // As OpenVDB writes names that several grids have: the first as it is, then "name[1]".
+    std::map<std::string, int> known;
+    for (GridEntry& entry : entries)
+        if (const int before = known[entry.name]++; before > 0)
+            entry.name += fmt::format("[{}]", before);
     return entries;
 }
 

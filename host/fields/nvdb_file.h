@@ -19,7 +19,7 @@ public:
     GridBytes() = default;
     explicit GridBytes(std::size_t size) : blocks_((size + 31) / 32), size_(size) {}
 
-    // Of this copy alone.
+    // For writing: this copy becomes its own.
     std::byte* edit() { return reinterpret_cast<std::byte*>(blocks_.edit()); }
     const std::byte* data() const { return reinterpret_cast<const std::byte*>(blocks_.data()); }
     std::size_t size() const { return size_; }

@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "one_line.h"
+#include "polygon.h"
 
 namespace vkvol {
 
@@ -71,8 +72,6 @@ std::uint32_t resolve(const Progress& progress, int index) {
     return static_cast<std::uint32_t>(resolved);
 }
 
-// A polygon becomes a fan. Where it is not convex some triangles of the fan face the other way and cancel what the
-// others cover beyond it: what counts is the sum of signed crossings.
 void add_face(Progress& progress, const tinyobj::index_t* corners, int count) {
     ++progress.faces;
     if (count < 3)
@@ -80,17 +79,21 @@ void add_face(Progress& progress, const tinyobj::index_t* corners, int count) {
             fmt::format("{}: face {} has fewer than three vertices; delete loose edges (in Blender: Mesh > "
                         "Clean Up > Delete Loose) and export the mesh again",
                         progress.path->string(), progress.faces));
-    const std::uint32_t first = resolve(progress, corners[0].vertex_index);
+    std::vector<std::uint32_t> vertices;
+    std::vector<glm::dvec3> places_of_corners;
+    for (int i = 0; i < count; ++i) {
+        vertices.push_back(resolve(progress, corners[i].vertex_index));
+        places_of_corners.push_back(progress.obj->vertices[vertices.back()]);
+    }
     const auto from_zero = [](int index, std::size_t count) {
         return index < 0 ? static_cast<int>(count) + index : index - 1;
     };
     const auto normal = [&](int i) { return from_zero(corners[i].normal_index, progress.normals.size()); };
     const auto place = [&](int i) { return from_zero(corners[i].texcoord_index, progress.places.size()); };
-    for (int i = 2; i < count; ++i) {
-        progress.obj->triangles.emplace_back(first, resolve(progress, corners[i - 1].vertex_index),
-                                             resolve(progress, corners[i].vertex_index));
-        progress.of_triangles.emplace_back(normal(0), normal(i - 1), normal(i));
-        progress.places_of_triangles.emplace_back(place(0), place(i - 1), place(i));
+    for (const glm::ivec3 t : triangles_of_polygon(places_of_corners)) {
+        progress.obj->triangles.emplace_back(vertices[t.x], vertices[t.y], vertices[t.z]);
+        progress.of_triangles.emplace_back(normal(t.x), normal(t.y), normal(t.z));
+        progress.places_of_triangles.emplace_back(place(t.x), place(t.y), place(t.z));
     }
     if (progress.faces == 1)
         progress.obj->diffuse = progress.diffuse;

@@ -136,7 +136,7 @@ std::vector<double> pilot_steps(const std::vector<PilotSegment>& segments, const
     return all_steps;
 }
 
-std::uint32_t best_steps_per_look(const std::vector<double>& segment_steps) {
+std::uint32_t best_steps_per_turn(const std::vector<double>& segment_steps) {
     constexpr double look = 2.0; // steps; with it the best counts are those measured
     std::uint32_t best = 4;
     double least = std::numeric_limits<double>::infinity();

@@ -35,8 +35,8 @@ std::vector<PilotSegment> pilot_paths(const DensityField& field, const MajorantG
 // same time.
 std::vector<double> pilot_steps(const std::vector<PilotSegment>& segments, const MajorantGrid& cells, double sigma_t);
 
-// How many steps between two looks at what they led to take segments of these steps the least time, 2 to 4: a look
-// costs as much as two steps, and a lane whose segment ends waits for the next look.
-std::uint32_t best_steps_per_look(const std::vector<double>& segment_steps);
+// With how many steps in a turn segments of these steps take the least time, 2 to 4: what else there is to a turn costs
+// as much as two steps, and a lane whose segment ends waits for the turn's end.
+std::uint32_t best_steps_per_turn(const std::vector<double>& segment_steps);
 
 } // namespace vkvol

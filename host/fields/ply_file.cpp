@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "one_line.h"
+#include "polygon.h"
 
 namespace vkvol {
 
@@ -38,7 +39,7 @@ struct Element {
     std::vector<Property> properties;
 };
 
-// Of places on a texture, across and upwards: programs differ.
+// Names of places on a texture, across and upwards: programs differ.
 const std::vector<std::string> names_of_places[] = {{"u", "s", "texture_u", "texture_s"},
                                                     {"v", "t", "texture_v", "texture_t"}};
 
@@ -62,6 +63,8 @@ public:
                     throw InputError(
                         fmt::format("{}: a face names vertex {}, but there are {}, from 0; export the mesh again",
                                     path_.string(), triangle[corner], mesh_.vertices.size()));
+        for (const auto& [first, count] : polygons_)
+            cut(first, count);
         for (const glm::uvec3& t : mesh_.triangles)
             if (!normals_.empty())
                 mesh_.normals.emplace_back(normals_[t.x], normals_[t.y], normals_[t.z]);
@@ -211,6 +214,8 @@ private:
         for (int axis = 0; axis < 3; ++axis)
             if (!(std::abs(vertex[axis]) <= largest_length))
                 fail(fmt::format("its coordinates are to be finite, and {:g} at most", largest_length));
+        if (!std::isfinite(place.x) || !std::isfinite(place.y))
+            fail("its place on a texture is to be finite");
         mesh_.vertices.push_back(vertex);
         if (has_normal) // as all others
             normals_.push_back(normal);
@@ -218,10 +223,25 @@ private:
             places_.push_back(place);
     }
 
-    // A polygon becomes a fan, as that of an .obj file.
+    // The fan that a polygon became, whose corners are known now, becomes what it should be.
+    void cut(std::size_t first, std::size_t count) {
+        const auto fan = std::span(mesh_.triangles).subspan(first, count);
+        std::vector<std::uint32_t> numbers = {fan[0].x, fan[0].y};
+        for (const glm::uvec3& triangle : fan)
+            numbers.push_back(triangle.z);
+        std::vector<glm::dvec3> corners;
+        for (const std::uint32_t number : numbers)
+            corners.push_back(mesh_.vertices[number]);
+        const std::vector<glm::uvec3> triangles = triangles_of_polygon(corners);
+        for (std::size_t i = 0; i < count; ++i)
+            fan[i] = {numbers[triangles[i].x], numbers[triangles[i].y], numbers[triangles[i].z]};
+    }
+
     void read_list(const Property& property, double length, bool is_face) {
         if (!(length >= (is_face ? 3 : 0)) || length != std::floor(length))
             fail(is_face ? "has fewer than three vertices" : "has a list of no length");
+        if (is_face && length > 3)
+            polygons_.emplace_back(mesh_.triangles.size(), static_cast<std::size_t>(length) - 2);
         std::uint32_t first = 0, before = 0;
         for (double i = 0; i < length; ++i) {
             const double value = number(*property.type);
@@ -247,6 +267,8 @@ private:
     Polygons mesh_;
     std::vector<glm::vec3> normals_; // of vertices, or none
     std::vector<glm::vec2> places_;  // likewise, on a texture
+    // Fans of more than one triangle: the first of each, and how many.
+    std::vector<std::pair<std::size_t, std::size_t>> polygons_;
 };
 
 } // namespace

@@ -16,8 +16,9 @@ struct DensityRange {
     double least = 0.0, most = 0.0;
 };
 
-// Of all values in [low, high], and what single precision may make of their interpolation: 1e-6 of them, which is ten
-// roundings. Between the interval's ends a map that is linear by pieces has its extrema at its points.
+// What all values in [low, high] are mapped to, and what single precision may make of their interpolation: 1e-6 of
+// them, which is ten roundings. Between the interval's ends a map that is linear by pieces has its extrema at its
+// points.
 DensityRange mapped_range(const ValueMap& map, double low, double high);
 
 // What tells it from others; none without a map.

@@ -45,7 +45,7 @@ const std::map<std::string, std::uint32_t> map_doubles = {{"AffineMap", 16},
 // Grids of one name are told apart by what follows this character.
 constexpr char separator = '\x1e';
 
-// Of a float, or of three; 0 for other types of tree.
+// Bytes of a value, which is a float or three; 0 for other types of tree.
 std::uint64_t value_bytes(const std::string& type) {
     if (type == "Tree_float_5_4_3" || type == "Tree_float_5_4_3_HalfFloat")
         return sizeof(float);

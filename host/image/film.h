@@ -57,15 +57,15 @@ std::optional<double> relative_noise(const Film& film);
 inline constexpr const char* layers_key = "vkvol/layers";
 std::string layer_list(const Film& film);
 
-// Of the picture, over the pixels that have samples. Of independent pixels variances add; of one with a single sample
-// none is known, nor then of the picture, and of pixels whose errors go together only their sum's.
+// Mean of the picture over the pixels that have samples. Of independent pixels variances add; of one with a single
+// sample none is known, nor then of the picture, and of pixels whose errors go together only their sum's.
 struct ImageMean {
     glm::dvec3 value{0.0};
     std::optional<glm::dvec3> standard_error;
 };
 ImageMean image_mean(const Film& film);
 
-// Of the sum of all pixels' means, as above.
+// Variance of the sum of all pixels' means; none where it is not known, as above.
 std::optional<glm::dvec3> variance_of_sum(const Film& film);
 
 // Key "vkvol/seed" etc. -> value; written into EXR headers, read back by merge and compare.

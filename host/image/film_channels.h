@@ -15,10 +15,10 @@ std::string channel_name(const std::string& prefix, const FilmLayer& layer, char
 // What every film has: R, G, B, variance.R, variance.G, variance.B, and then this.
 inline constexpr std::size_t samples_channel = 6;
 
-// Of the film with its layers.
+// Channels of the film with its layers.
 std::vector<std::string> channel_names(const Film& film);
 
-// Of each pixel all channels, rows top to bottom: the bits of floats, but for the whole number of samples.
+// All channels of each pixel, rows top to bottom: the bits of floats, but for the whole number of samples.
 std::vector<std::uint32_t> interleaved_channels(const Film& film);
 
 } // namespace vkvol

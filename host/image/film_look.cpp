@@ -13,7 +13,7 @@ double luminance(const glm::dvec3& color) {
 
 } // namespace
 
-FilmLook look(const Film& film, const glm::dvec3& background, const ToneMapping& mapping) {
+FilmLook first_glance(const Film& film, const glm::dvec3& background, const ToneMapping& mapping) {
     FilmLook look;
     look.pixels = film.pixel_count();
     const double faintest = faintest_radiance(mapping);

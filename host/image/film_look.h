@@ -15,7 +15,7 @@ struct FilmLook {
 };
 
 // `mapping`: of the screen.
-FilmLook look(const Film& film, const glm::dvec3& background, const ToneMapping& mapping);
+FilmLook first_glance(const Film& film, const glm::dvec3& background, const ToneMapping& mapping);
 
 // Whether noise explains all that pixels differ by, by the ratio of the variance between them to their own. Its
 // expectation is 1 then; a picture that shows something is far above. Of single samples nobody knows: false.

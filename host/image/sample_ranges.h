@@ -27,8 +27,8 @@ struct SampleRanges {
 inline constexpr const char* sample_ranges_key = "vkvol/ranges";
 std::string to_text(const SampleRanges& ranges);
 
-// Of a merged image or of a plain render; nothing known, and not complete, if the metadata does not tell. Throws
-// InputError, naming the image, if it makes no sense.
+// Ranges that a merged image or a plain render holds; nothing known, and not complete, if the metadata does not tell.
+// Throws InputError, naming the image, if it makes no sense.
 SampleRanges sample_ranges_of(const Metadata& metadata, const std::string& image);
 
 SampleRanges united(const SampleRanges& a, const SampleRanges& b);

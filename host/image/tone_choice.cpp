@@ -28,7 +28,7 @@ std::optional<double> stops_in(const Metadata& metadata, const char* key) {
     return good ? std::optional(exposure) : std::nullopt;
 }
 
-// Of a file that may be anyone's: what cannot be read says nothing.
+// What a file's metadata asks for. The file may be anyone's: what cannot be read says nothing.
 ToneRequest recorded(const Metadata& metadata) {
     ToneRequest request;
     request.curve = find_tone_curve(text_of(metadata, curve_key));

@@ -98,7 +98,7 @@ Vec3 reinhard(const Vec3& v, double white) {
     return v * (1.0 + v / (white * white)) / (1.0 + v);
 }
 
-// Of the curves that srgb_encode follows: what it is given.
+// The value that srgb_encode is given, for the curves that it follows.
 Vec3 linear_value(const Vec3& radiance, ToneCurve curve) {
     return clamped(curve == ToneCurve::aces ? aces(radiance) : radiance);
 }

@@ -53,6 +53,7 @@ private:
         return std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(), is);
     }
     bool has_thrown_light() const;
+    bool is_thrown_from_afar() const;
     void find_chances();
     void choose_paths();
     void choose_scattering();
@@ -349,16 +350,32 @@ bool Resolution::has_thrown_light() const {
            std::any_of(scene_.lights.begin(), scene_.lights.end(), has_no_extent);
 }
 
+// Whether some of them are of light that particles do not bring.
+bool Resolution::is_thrown_from_afar() const {
+    const auto is_directional = [](const Light& light) { return std::holds_alternative<DirectionalLight>(light); };
+    return !particles_come_from_afar(scene_) && std::any_of(scene_.lights.begin(), scene_.lights.end(), is_directional);
+}
+
 void Resolution::find_chances() {
     const bool has_extent = std::any_of(scene_.lights.begin(), scene_.lights.end(),
                                         [](const Light& light) { return is_lamp(light) || is_met_by_chance(light); });
     const auto shines = [](const Surface& surface) { return surface.emission != Rgb(0.0); };
     std::vector<const char*> found;
+    const bool by_particles = method_.paths == PATHS_BOTH && particles_come_from_afar(scene_);
+    if (method_.paths == PATHS_BOTH && !by_particles && any_surface(is_smooth) &&
+        std::any_of(scene_.lights.begin(), scene_.lights.end(), is_met_by_chance))
+        found.push_back("what smooth mirrors, coats and glass throw of suns and skies, from which particles come only "
+                        "where neither a plane nor a medium is without end");
     if (method_.paths == PATHS_CAMERA && any_surface(is_smooth) && has_extent)
-        found.push_back(
-            "what smooth mirrors, coats and glass throw of lights, which integrator bidirectional looks for");
+        found.push_back(particles_come_from_afar(scene_)
+                            ? "what smooth mirrors, coats and glass throw of lights, which integrator bidirectional "
+                              "looks for"
+                            : "what smooth mirrors, coats and glass throw of lights, which integrator bidirectional "
+                              "looks for if they have a place");
     if (method_.paths != PATHS_LIGHT && any_surface(shines))
-        found.push_back("light of meshes and boxes, which integrator lightTracing begins at");
+        found.push_back(
+            "light of surfaces that no shadow ray looks for (meshes, boxes, planes, balls that shine inwards; all "
+            "where there are more than 256, or in domains that repeat)");
     method_.by_chance = fmt::format("{}", fmt::join(found, "; "));
 }
 
@@ -382,18 +399,29 @@ void Resolution::find_biases() {
     if (needs_majorant && scene_.settings.majorant_scale < 1.0)
         add(bias_majorant, "the majorant is scaled below the density");
     if (any_surface(is_smooth) && method_.paths == PATHS_LIGHT && !reads_flux(scene_.camera))
-        add(bias_shown, "what smooth mirrors, coats and glass show is missing, which no particle finds");
+        add(bias_specular_view, "what smooth mirrors, coats and glass show is missing, which no particle finds");
     if (has_thrown_light() && method_.paths == PATHS_CAMERA) {
         if (any_surface(is_clear))
-            warn("no path from the camera finds what directional lights, points and spots send through glass, which "
-                 "casts their shadow; integrator bidirectional does, and a sun, sphere, disk or rectangle shines "
-                 "through");
-        add(bias_thrown, "what smooth mirrors, coats and glass throw of points, spots and directional lights is "
-                         "missing, which no path from the camera finds; integrator bidirectional does");
+            warn(fmt::format("no path from the camera finds what directional lights, points and spots send through "
+                             "glass, which casts their shadow; {}, and a sun, sphere, disk or rectangle shines through",
+                             is_thrown_from_afar() ? "integrator bidirectional finds that of points and spots"
+                                                   : "integrator bidirectional does"));
+        add(bias_caustics,
+            is_thrown_from_afar()
+                ? "what smooth mirrors, coats and glass throw of points, spots and directional lights is "
+                  "missing, which no path from the camera finds; of points and spots integrator "
+                  "bidirectional does"
+                : "what smooth mirrors, coats and glass throw of points, spots and directional lights is "
+                  "missing, which no path from the camera finds; integrator bidirectional does");
     } else if (has_thrown_light() && method_.paths == PATHS_BOTH) {
-        add(bias_between, "what smooth mirrors, coats and glass throw of points, spots and directional lights and then "
-                          "show is missing, which neither particles nor paths from the camera find; lights with an "
-                          "extent have it");
+        if (is_thrown_from_afar())
+            add(bias_caustics,
+                "what smooth mirrors, coats and glass throw of directional lights is missing: from these "
+                "particles come only where neither a plane nor a medium is without end");
+        add(bias_caustics_in_mirrors,
+            "what smooth mirrors, coats and glass throw of points, spots and directional lights and then "
+            "show is missing, which neither particles nor paths from the camera find; lights with an "
+            "extent have it");
     }
     method_.biased = fmt::format("{}", fmt::join(reasons, "; "));
 }

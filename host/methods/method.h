@@ -11,12 +11,12 @@ namespace vkvol {
 // Where the mean of many samples is not the exact value; sums of these. What they depend on is in the scene hash.
 enum Bias : unsigned {
     bias_none = 0,
-    bias_flight_steps = 1, // depends on March::step or ::optical_step, and jitter
-    bias_shadow_steps = 2, // depends on March::shadow_step and jitter
-    bias_majorant = 4,     // depends on RenderSettings::majorant_scale
-    bias_shown = 8,        // what smooth mirrors, coats and glass show is missing
-    bias_thrown = 16,      // what they throw of lights without extent is
-    bias_between = 32      // what they throw of these and show as well is
+    bias_flight_steps = 1,        // depends on March::step or ::optical_step, and jitter
+    bias_shadow_steps = 2,        // depends on March::shadow_step and jitter
+    bias_majorant = 4,            // depends on RenderSettings::majorant_scale
+    bias_specular_view = 8,       // what smooth mirrors, coats and glass show is missing
+    bias_caustics = 16,           // what they throw of lights without extent is
+    bias_caustics_in_mirrors = 32 // what they throw of these and show as well is
 };
 
 struct Method {
@@ -26,7 +26,7 @@ struct Method {
     int transmittance = 0;       // TRANSMITTANCE_...; unused if nee is NEE_NONE
     int nee = 0;                 // NEE_...
     int mis = 0;                 // MIS_...; unused where flights meet no light but the background
-    std::optional<int> distance; // DISTANCE_...; none: as where the lights are asks for
+    std::optional<int> distance; // DISTANCE_...; none: chosen by where the lights are
     int emission_at = 0; // EMISSION_AT_...; a march through the medium adds emission step by step in either case
     Filter filter = Filter::stochastic; // of grids
     bool jitter = true;

@@ -37,7 +37,7 @@ glm::dvec2 sensor_size(const Scene& scene) {
 
 // In domains that repeat particles are counted, and the sensor, which repeats as well, is passed once in each.
 const char* why_no_particles_in_domain(const Scene& scene) {
-    if (!has_plain_pixels(scene.settings))
+    if (!has_plain_pixels(scene.settings) && scene.camera.projection != Projection::absorption)
         return "a pixel filter reaches beyond a sensor that counts particles in a domain that repeats";
     if (!reads_flux(scene.camera))
         return "a camera sees all domains that repeat, and particles look for it from one";
@@ -62,6 +62,10 @@ const char* why_no_particles_in_domain(const Scene& scene) {
 
 } // namespace
 
+bool particles_come_from_afar(const Scene& scene) {
+    return !any_medium(scene, is_everywhere) && (scene.periodic || !any_surface(scene, is_plane));
+}
+
 const char* why_no_particles(const Scene& scene, bool both, bool emits) {
     const auto shines = [](const Surface& surface) { return is_plane(surface) && surface.emission != Rgb(0.0); };
     const auto is_model = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
@@ -71,13 +75,16 @@ const char* why_no_particles(const Scene& scene, bool both, bool emits) {
         return "a sensor of flux is met by its own paths or passed by particles, and no weights are known for both";
     if (scene.layers != 0)
         return "layers are filled by paths from the camera alone";
+    if (scene.camera.projection == Projection::equirectangular && !has_plain_pixels(scene.settings) &&
+        scene.settings.pixel_filter_radius > 0.5 * scene.picture.reference_height + 0.5)
+        return "a pixel filter that reaches beyond both poles of a panorama has a point in too many pixels";
     if (scene.periodic)
         if (const char* why = why_no_particles_in_domain(scene))
             return why;
     if (both) // paths from the camera find what particles do not
         return nullptr;
     const bool has_no_end = any_medium(scene, is_everywhere);
-    if ((has_no_end || (any_surface(scene, is_plane) && !scene.periodic)) && is_lit_from_afar(scene))
+    if (!particles_come_from_afar(scene) && is_lit_from_afar(scene))
         return "light from infinitely far has no end where a medium is everywhere, or a plane, and particles can come "
                "from some of it only";
     if (any_surface(scene, shines))

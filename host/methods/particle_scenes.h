@@ -5,6 +5,9 @@
 
 namespace vkvol {
 
+// From lights that are infinitely far: not where a plane or a medium is without end.
+bool particles_come_from_afar(const Scene& scene);
+
 // What they cannot do of the scene, `both`: together with paths from the camera; null if they can render it.
 const char* why_no_particles(const Scene& scene, bool both, bool emits);
 

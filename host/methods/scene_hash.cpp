@@ -308,8 +308,11 @@ void add_method(Writer& writer, const RenderSettings& settings, const Method& me
         writer.add("majorant", glm::dvec3(settings.majorant_scale, settings.majorant_cell, method.nee));
         writer.add("tracking", glm::dvec3(method.free_flight, method.transmittance, 0));
     }
-    if (method.biases & (bias_shown | bias_thrown | bias_between))
-        writer.add("smooth", method.biases & bias_shown ? 1 : method.biases & bias_thrown ? 2 : 3);
+    if (method.biases & (bias_specular_view | bias_caustics | bias_caustics_in_mirrors))
+        writer.add("smooth", method.biases & bias_specular_view         ? 1
+                             : !(method.biases & bias_caustics)         ? 3
+                             : method.biases & bias_caustics_in_mirrors ? 4
+                                                                        : 2);
     const March& march = settings.march;
     if (method.biases & bias_flight_steps) {
         writer.add("flight", glm::dvec3(method.free_flight, march.step, method.emission_at));

@@ -19,7 +19,7 @@ public:
     // Coefficients, shares of light and indices. Nothing if there is no such parameter. Throws InputError for what is
     // no spectrum.
     std::optional<glm::dvec3> share(const PbrtThing& thing, const std::string& name) const;
-    // Of "rgb" values, three to each.
+    // Colours of "rgb" values, three to each.
     std::vector<glm::dvec3> colors(const PbrtThing& thing, const std::string& name) const;
     // Radiance or intensity in the unit of pbrt's pictures: colours as they are, all other spectra with luminance 1.
     std::optional<glm::dvec3> light(const PbrtThing& thing, const std::string& name) const;

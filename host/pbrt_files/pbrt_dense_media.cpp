@@ -175,7 +175,7 @@ MemoryGrids::Grid PbrtTranslator::glow_of(const PbrtThing& medium, glm::ivec3 di
     const glm::dvec2 kelvin = kelvins(medium);
     const auto [coldest, hottest] = std::minmax_element(temperatures.begin(), temperatures.end());
     const double most = std::max({kelvin.x * *coldest + kelvin.y, kelvin.x * *hottest + kelvin.y, 2.0 * least_kelvin});
-    const std::vector<glm::vec3> colors = make_blackbody_table(least_kelvin, most, 0.0, black_bodies);
+    const std::vector<glm::vec4> colors = make_blackbody_table(least_kelvin, most, 0.0, black_bodies);
     const FinerGrid finer(dims, options_.most_cloud_voxels);
     const std::vector<glm::vec3> glow = of_voxels(finer.dims, [&](int x, int y, int z) {
         const glm::dvec3 at = finer.at(x, y, z);
@@ -185,7 +185,7 @@ MemoryGrids::Grid PbrtTranslator::glow_of(const PbrtThing& medium, glm::ivec3 di
             return glm::vec3(0.0f);
         const double along = (here - least_kelvin) / (most - least_kelvin) * (black_bodies - 1);
         const int node = std::min(int(along), black_bodies - 2);
-        return float(scale) * glm::mix(colors[node], colors[node + 1], float(along - node));
+        return float(scale) * glm::vec3(glm::mix(colors[node], colors[node + 1], float(along - node)));
     });
     note(p.find("temperature")->place,
          fmt::format("what glows by its temperature is a grid of {} x {} x {} colours here", finer.dims.x, finer.dims.y,

@@ -59,7 +59,7 @@ private:
     PbrtScene& scene_;
     PbrtState state_;
     std::vector<PbrtState> states_;
-    // Of the files being imported, which leave the state as they find it: how many states were kept, and how many files
+    // The files being imported, which leave the state as they find it: how many states were kept, and how many files
     // open; coordinate systems, of which they know their own alone.
     struct Importing {
         std::size_t states, files;

@@ -18,8 +18,8 @@ glm::dvec3 moved(const glm::dmat4& map, const glm::dvec3& p) {
     return glm::dvec3(map * glm::dvec4(p, 1.0));
 }
 
-// Of a square map, on what faces its z, as pbrt adds it up: a texel counts as 2 pi over their number, which is half of
-// its solid angle, so that a map of given illuminance shines twice as bright there, and here.
+// Illuminance by a square map of what faces its z, as pbrt adds it up: a texel counts as 2 pi over their number, which
+// is half of its solid angle, so that a map of given illuminance shines twice as bright there, and here.
 double illuminance_of(const RadianceMap& map) {
     double sum = 0.0;
     for (int row = 0; row < map.height; ++row)

@@ -240,7 +240,7 @@ void PbrtTranslator::write_camera_medium() {
                                 scene_.camera_medium));
 }
 
-// Of a homogeneous medium outside of a shape.
+// Notes what becomes of a homogeneous medium outside of a shape.
 void PbrtTranslator::note_beyond(const PbrtShape& shape, const std::string& medium) {
     if (medium != scene_.camera_medium && media_within_.count(medium) == 0)
         note(shape.thing.place,

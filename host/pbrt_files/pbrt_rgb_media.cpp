@@ -14,7 +14,7 @@ namespace {
 
 using Colors = std::vector<glm::dvec3>;
 
-// Of one colour everywhere, or one channel.
+// A part of a medium that has one colour everywhere, or one channel.
 struct Part {
     std::string name;
     glm::dvec3 color{0.0};

@@ -62,7 +62,7 @@ glm::dvec3 rec709_of(const glm::dvec3& xyz) {
     return glm::max(glm::inverse(rec709()) * xyz, glm::dvec3(0.0));
 }
 
-// Of a black body, relative to luminance 1; daylight of the CIE by its chromaticity.
+// White of luminance 1 with this chromaticity (x, y).
 glm::dvec3 white(double x, double y) {
     return rec709_of({x / y, 1.0, (1.0 - x - y) / y});
 }
@@ -85,8 +85,8 @@ struct NamedShare {
     glm::dvec3 value;
 };
 
-// Of metals as in scene files (Johnson and Christy 1972; Rakic 1995), brass by Querry (1985); of glasses from Schott's
-// data sheets, at 588 nm; pbrt's F5, F10 and F11 are of SF5, SF10 and SF11. Oxides at 630, 532 and 465 nm.
+// Indices of metals as in scene files (Johnson and Christy 1972; Rakic 1995), brass by Querry (1985); of glasses from
+// Schott's data sheets, at 588 nm; pbrt's F5, F10 and F11 are of SF5, SF10 and SF11. Oxides at 630, 532 and 465 nm.
 const NamedShare shares[] = {{"metal-Ag-eta", {0.155, 0.117, 0.138}},   {"metal-Ag-k", {4.828, 3.122, 2.147}},
                              {"metal-Al-eta", {1.657, 0.880, 0.521}},   {"metal-Al-k", {9.224, 6.270, 4.837}},
                              {"metal-Au-eta", {0.143, 0.375, 1.442}},   {"metal-Au-k", {3.983, 2.386, 1.603}},

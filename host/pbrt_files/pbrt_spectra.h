@@ -24,7 +24,7 @@ glm::dvec3 white_of_space(const std::string& color_space);
 // which light becomes Rec.709. A constant spectrum is that constant.
 glm::dvec3 color_of_share(const Spectrum& spectrum);
 
-// Of light, divided by its luminance, as pbrt-v4 divides all light spectra but colours.
+// Colour of light, divided by its luminance, as pbrt-v4 divides all light spectra but colours.
 glm::dvec3 color_of_light(const Spectrum& spectrum);
 
 // A metal's or glass's of its own names, "metal-Au-k" or "glass-BK7", or an illuminant's. Metals in the three channels;

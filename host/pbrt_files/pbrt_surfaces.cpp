@@ -47,7 +47,7 @@ const PbrtThing& PbrtTranslator::texture_of(const PbrtThing& thing, const char* 
     return found->second;
 }
 
-// Of what has one colour everywhere.
+// Colour of a texture that has the same one everywhere; else none.
 std::optional<glm::dvec3> PbrtTranslator::even_color(const PbrtThing& texture, int depth) {
     if (texture.type == "constant")
         return colors_.share(texture, "value").value_or(glm::dvec3(1.0));
@@ -149,7 +149,8 @@ void PbrtTranslator::add_roughness(XmlAttributes& attributes, const PbrtThing& t
         attributes.emplace_back("roughness", xml_number(alpha));
 }
 
-// Of the channels' mean, `least` to what scene files take at most; elsewhere, and of a texture, with a note.
+// Index of refraction, the mean of the channels, from `least` to the most that scene files take. One beyond these is
+// clamped, and a texture taken for 1.5, with a note.
 double PbrtTranslator::index_of(const PbrtThing& thing, double least) {
     constexpr double most = 20.0;
     const glm::dvec3 eta = even_part(thing, "eta", 1.5, 0).value_or(glm::dvec3(0.0));

@@ -22,8 +22,8 @@ private:
     double area_of(std::size_t begin, std::size_t end) const;
 };
 
-// Of a "trianglemesh" or "bilinearmesh", in the shape's own space. Four-cornered patches become two triangles each.
-// Throws InputError for indices of no point, and other counts that do not fit.
+// Triangles of a "trianglemesh" or "bilinearmesh", in the shape's own space. Four-cornered patches become two triangles
+// each. Throws InputError for indices of no point, and other counts that do not fit.
 PbrtTriangles read_triangles(const PbrtThing& shape);
 
 // Where pbrt has corners on textures that a shape says nothing of: at (0, 0), (1, 0) and (1, 1) of each triangle, and

@@ -18,7 +18,7 @@ struct Band {
     std::optional<Buffer> layers; // records of paths, then sums of pixels; where layers are asked for
 };
 
-// Of a band: [begin, end).
+// Rows [begin, end) of a band.
 struct Rows {
     std::uint32_t begin = 0, end = 0;
     bool empty() const { return begin >= end; }
@@ -49,7 +49,7 @@ std::vector<glm::vec3> read_layers(Commands& commands, const std::vector<Band>& 
 void write_layers(Commands& commands, const std::vector<Band>& bands, std::uint32_t width,
                   const shared::AovParams& layers, std::span<const glm::vec3> sums);
 
-// Of the sum of all pixels, of one sample: the bands' are independent. Nothing if one has less than two samples.
+// Variance of one sample's sum over all pixels: the bands' are independent. Nothing if one has less than two samples.
 std::optional<glm::dvec3> variance_of_sums(Commands& commands, const std::vector<Band>& bands, std::uint32_t width);
 
 // Means, and variances of the means, of all bands. What else the film says is not touched.

@@ -15,9 +15,9 @@ namespace {
 // without a word.
 constexpr std::uint32_t most_iterations = 65535;
 
-// Of all loops in a turn that are not unrolled, at most. Every step has up to four places for a sum over octaves, or
-// media, which all lanes of a group pass under a mask: a flight's look-up, emission along it, and two of a shadow ray
-// that marches in several sets of samples; and a look from along a flight has one.
+// Iterations, at most, of all loops in a turn that are not unrolled. Every step has up to four places for a sum over
+// octaves, or media, which all lanes of a group pass under a mask: a flight's look-up, emission along it, and two of a
+// shadow ray that marches in several sets of samples; and a look from along a flight has one.
 std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
     constexpr std::uint32_t triangle = 2, node = 1 + (MESH_LEAF + 1) + MESH_LEAF * triangle;
     std::uint32_t iterations = 2 + (steps + 1);
@@ -101,10 +101,10 @@ Plan make_plan(const Device& device, const LoopSizes& loops, std::uint64_t pixel
 void fit_splats(const Device& device, std::uint64_t pixels, std::uint32_t batch, Plan& plan) {
     constexpr std::uint64_t each = SPLAT_WORDS * sizeof(std::uint32_t), usual = 1u << 26; // bytes
     const std::uint64_t most = std::min<std::uint64_t>(usual, device.limits().maxStorageBufferRange);
-    plan.most_film_bytes = std::min<std::uint64_t>(plan.most_film_bytes, (most / each - 1) * sizeof(shared::FilmPixel));
+    plan.most_film_bytes = std::min<std::uint64_t>(plan.most_film_bytes, (most / each - 2) * sizeof(shared::FilmPixel));
     pixels = std::min<std::uint64_t>(pixels, plan.most_film_bytes / sizeof(shared::FilmPixel));
     plan.most_batch =
-        static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most / (each * (pixels + 1)), 1, plan.most_batch));
+        static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most / (each * (pixels + 2)), 1, plan.most_batch));
     plan.splats = std::max(plan.most_batch, batch);
 }
 
@@ -117,7 +117,7 @@ const char* name_of(Schedule schedule) {
 }
 
 std::string describe(const Plan& plan) {
-    std::string text = fmt::format("{}, {} {}, {} steps a look", name_of(plan.schedule), plan.slots,
+    std::string text = fmt::format("{}, {} {}, {} steps a turn", name_of(plan.schedule), plan.slots,
                                    plan.schedule == Schedule::staged ? "paths" : "pixels", plan.steps);
     if (plan.majorant_cell > 0)
         text +=

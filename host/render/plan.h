@@ -1,5 +1,5 @@
 // How a render is carried out: sizes, and the order of its work. The picture's bits depend on none but the majorant
-// cells.
+// cells and, on a GPU, the schedule.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct Plan {
     std::uint32_t waiting = 0;          // staged: room for samples that wait to be added to the film, or at least this
     std::uint32_t lanes = 0;            // invocations that share a queue of paths
     std::uint32_t budget = 0;           // turns after which a lane lays its path aside
-    std::uint32_t steps = 0;            // of tracking between two looks at what they led to
+    std::uint32_t steps = 0;            // of tracking in a turn
     std::uint32_t step_limit = 0;       // steps after which a flight is cut, and counted
     std::uint32_t most_batch = 0;       // samples per pixel
     std::uint32_t splats = 0;           // particles: samples of a batch for whose splats there is room
@@ -61,7 +61,7 @@ std::uint32_t queue_capacity(const Plan& plan);
 
 const char* name_of(Schedule schedule);
 
-// "staged, 65536 paths, 4 steps a look, majorant cells of 8 voxels, empty ones leapt"
+// "staged, 65536 paths, 4 steps a turn, majorant cells of 8 voxels, empty ones leapt"
 std::string describe(const Plan& plan);
 
 } // namespace vkvol

@@ -15,7 +15,7 @@ struct RenderCounts {
     std::uint64_t abandoned = 0; // paths that would not end when the render was to
     std::uint64_t cleaned_voxels = 0;
 
-    // Of the steps for which lanes of the track pass had room, those that took a path further; 0 if there were none.
+    // Share of the steps for which lanes of the track pass had room that took a path further; 0 if there were none.
     double lane_use() const { return room > 0 ? double(steps) / double(room) : 0.0; }
     bool any_cap() const {
         return depth_caps + step_caps + majorant_violations + non_finite + queue_overflows + abandoned +
@@ -24,7 +24,7 @@ struct RenderCounts {
     }
 };
 
-// Of voxels that were cleaned each says all.
+// All but `cleaned_voxels`, of which every result has the whole number.
 inline void add_counts(RenderCounts& total, const RenderCounts& c) {
     for (const auto count :
          {&RenderCounts::paths, &RenderCounts::real_collisions, &RenderCounts::null_collisions, &RenderCounts::lookups,

@@ -13,14 +13,14 @@ namespace vkvol {
 
 namespace {
 
-constexpr double noise_seconds = 3.0;        // between two figures of noise
-constexpr double look_seconds = 0.2;         // between two looks at the film at least
-constexpr double look_share = 1.0 / 100.0;   // of the time, for looks,
-constexpr double look_allowance = 0.3;       // and seconds for the first of them
-constexpr double look_growth = 0.15;         // of the time so far, between two: noise has fallen by a fifteenth then
-constexpr double patience = 5.0;             // seconds, for paths that will not end
-constexpr std::uint32_t first_look = 16;     // at the noise to be reached; samples per pixel
-constexpr std::uint32_t surely_black = 1024; // likewise: a picture without any light by then will have none
+constexpr double noise_seconds = 3.0;         // between two figures of noise
+constexpr double least_pause = 0.2;           // seconds between two previews at least
+constexpr double preview_share = 1.0 / 100.0; // of the time, for previews,
+constexpr double preview_allowance = 0.3;     // and seconds for the first of them
+constexpr double preview_growth = 0.15;       // of the time so far, between two: noise has fallen by a fifteenth then
+constexpr double patience = 5.0;              // seconds, for paths that will not end
+constexpr std::uint32_t first_check = 16;     // of the noise to be reached; samples per pixel
+constexpr double surely_black = 1 << 22; // samples of all pixels: a picture without any light by then will have none
 
 void add_counts(RenderCounts& total, const shared::Counters& c) {
     total.paths += c.paths;
@@ -44,8 +44,7 @@ void add_counts(RenderCounts& total, const shared::Counters& c) {
 void Session::render(std::uint32_t samples) {
     if (gave_up_)
         throw RenderError(
-            "paths of this render were abandoned, since they would not end or a device failed; what they are part of "
-            "is missing, and it cannot be gone on with");
+            "this render cannot be continued: paths were abandoned, because they did not end or a device failed");
     check_ready();
     for (const auto& follower : followers_)
         follower->session->check_ready();
@@ -57,7 +56,7 @@ void Session::render(std::uint32_t samples) {
     }
     watch_.lap();
     next_noise_ = noise_seconds;
-    next_look_ = 0.0;
+    next_preview_ = 0.0;
     checkpoint_at_ = 0.0;
     stopped_ = result_.interrupted = false;
     stopped_at_.reset();
@@ -70,7 +69,7 @@ void Session::render(std::uint32_t samples) {
             throw;
         }
         if (batch_ == 0)
-            batch_ = std::min({next_, wanted_ - done_, until_next_look(), until_next_moment()});
+            batch_ = std::min({next_, wanted_ - done_, until_next_check(), until_next_moment()});
         const double begun = watch_.seconds();
         try {
             while (band_ < bands_.size() && !stopped_)
@@ -112,7 +111,7 @@ void Session::begin_again() {
     result_.passes.clear();
     result_.rounds = 0;
     result_.samples = 0;
-    result_.render_seconds = looked_ = 0.0;
+    result_.render_seconds = preview_seconds_ = 0.0;
     result_.interrupted = result_.reached_goal = false;
 }
 
@@ -189,35 +188,36 @@ void Session::report_noise() {
 
 // Amid a batch some pixels have samples that others wait for: long paths come last. Of several devices the film is only
 // whole once all rest.
-void Session::offer_look() {
-    if (!job_.look || watch_.seconds() < next_look_)
+void Session::offer_preview() {
+    if (!job_.preview || watch_.seconds() < next_preview_)
         return;
     const double begun = watch_.seconds();
     develop_film();
     result_.samples = done_;
     result_.render_seconds += begun;
-    job_.look(result_);
+    job_.preview(result_);
     result_.render_seconds -= begun;
-    looked_ += watch_.seconds() - begun;
+    preview_seconds_ += watch_.seconds() - begun;
     const double passed = result_.render_seconds + begun;
-    next_look_ =
-        begun + std::max({look_seconds, (looked_ - look_allowance) / look_share - passed, look_growth * passed});
+    next_preview_ = begun + std::max({least_pause, (preview_seconds_ - preview_allowance) / preview_share - passed,
+                                      preview_growth * passed});
 }
 
-// Where noise is looked at: at powers of two of the samples. The fewer looks, the less often one of them ends a render
+// Where noise is checked: at powers of two of the samples. The fewer checks, the less often one of them ends a render
 // that by chance looks better than it is, which is a bias, and which it is does not depend on the machine.
-std::uint32_t Session::until_next_look() const {
-    return job_.noise_goal ? std::bit_ceil(std::max(done_ + 1, first_look)) - done_ : most_batch_;
+std::uint32_t Session::until_next_check() const {
+    return job_.noise_goal ? std::bit_ceil(std::max(done_ + 1, first_check)) - done_ : most_batch_;
 }
 
 bool Session::is_good_enough() {
-    if (!job_.noise_goal || batch_ > 0 || done_ < first_look || !std::has_single_bit(done_))
+    if (!job_.noise_goal || batch_ > 0 || done_ < first_check || !std::has_single_bit(done_))
         return false;
     develop_film();
     const std::optional<double> noise = relative_noise(result_.film);
     if (job_.progress)
         job_.progress(done_, noise);
-    result_.reached_goal = noise ? *noise <= *job_.noise_goal : done_ >= surely_black;
+    result_.reached_goal =
+        noise ? *noise <= *job_.noise_goal : done_ * double(result_.film.pixel_count()) >= surely_black;
     return result_.reached_goal;
 }
 
@@ -278,7 +278,7 @@ void Session::run_band(const Band& band) {
         if (job_.progress)
             job_.progress(progress_of(band), std::nullopt);
         if (followers_.empty())
-            offer_look();
+            offer_preview();
         if (!resting && stopping()) {
             give_order(Order::rest);
             gave_up_ = resting = out_of_patience();
@@ -290,7 +290,7 @@ void Session::run_band(const Band& band) {
     pixels_ = wavefront_->pixels_left();
     if (!followers_.empty()) {
         join_followers();
-        offer_look();
+        offer_preview();
     }
     if (pixels_->empty() && !gave_up_) {
         pixels_.reset();
@@ -311,7 +311,7 @@ void Session::run_particles(const Band& band) {
     if (over) {
         wavefront_->collect(band.rows * width());
         ++band_;
-        offer_look();
+        offer_preview();
     }
 }
 

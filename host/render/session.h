@@ -39,7 +39,7 @@ struct RenderJob {
     std::function<void(double, std::optional<double>)> progress;
     // With the film as far as it is: soon after the first samples, and then whenever it has become a little better, as
     // long as that takes no more than a hundredth of the time, and 0.1 s.
-    std::function<void(const RenderResult&)> look;
+    std::function<void(const RenderResult&)> preview;
     // Called every so many seconds, and at the end of a render that was ended early.
     double checkpoint_seconds = 0.0;
     std::function<void(const Checkpoint&)> checkpoint;
@@ -109,7 +109,7 @@ public:
     // What the scene asks for and does not get.
     const std::vector<std::string>& warnings() const { return result_.warnings; }
 
-    // With the film as it is now. May be moved from by who renders no more.
+    // With the film as it is now. A caller that renders no more may move from it.
     RenderResult& result();
 
 private:
@@ -150,8 +150,8 @@ private:
     void save_checkpoint();
     bool checkpoint_due() const;
     void report_noise();
-    void offer_look();
-    std::uint32_t until_next_look() const;
+    void offer_preview();
+    std::uint32_t until_next_check() const;
     std::uint64_t next_sample() const { return std::uint64_t{job_.sample_offset} + done_; }
     void enter_moment();
     std::uint32_t until_next_moment() const;
@@ -213,8 +213,8 @@ private:
     std::uint32_t most_batch_ = 1;
     Stopwatch watch_;
     double next_noise_ = 0.0;
-    double next_look_ = 0.0, looked_ = 0.0; // when, and for how long until now; seconds
-    double checkpoint_at_ = 0.0;            // the last one
+    double next_preview_ = 0.0, preview_seconds_ = 0.0; // when, and for how long until now; seconds
+    double checkpoint_at_ = 0.0;                        // the last one
     bool stopped_ = false;
     bool gave_up_ = false; // paths were left in flight
     std::optional<double> stopped_at_;
@@ -222,7 +222,7 @@ private:
     // Where there are several devices. The session's own is the first member, and those of its followers come after.
     const bool leads_;
     std::vector<std::unique_ptr<Follower>> followers_;
-    // Of each band: from which row on each member has what was rendered of it, and the band's end.
+    // For each band from which row on each member has what was rendered of it, and the band's end.
     std::vector<std::vector<std::uint32_t>> edges_;
     std::vector<double> speeds_;             // of each member, in samples per second; 0: not known
     std::atomic<Order> order_{Order::go_on}; // to all followers

@@ -121,7 +121,7 @@ Session& Session::member(std::size_t i) {
     return i == 0 ? *this : *followers_[i - 1]->session;
 }
 
-// Of the band under way.
+// Rows that member `i` has of the band under way.
 Rows Session::rows_of(std::size_t i) const {
     return followers_.empty() ? Rows{0, bands_[band_].rows} : Rows{edges_[band_][i], edges_[band_][i + 1]};
 }
@@ -259,7 +259,7 @@ void Session::take_from(Follower& follower) {
     pixels_->insert(pixels_->end(), left.begin(), left.end());
 }
 
-// Of whole rows; from what is left over of them nothing is learnt.
+// Measures batches of whole rows alone: the pixels left over tell nothing.
 void Session::measure_speeds() {
     if (!divided_ || !pixels_->empty())
         return;

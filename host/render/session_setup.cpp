@@ -6,10 +6,10 @@
 
 #include "error.h"
 #include "estimator_traits.h"
+#include "kernel_constants.h"
 #include "phase_params.h"
 #include "pilot_paths.h"
 #include "scene_hash.h"
-#include "scene_upload.h"
 #include "schedule_memory.h"
 #include "session.h"
 #include "surface_mesh.h"
@@ -19,14 +19,14 @@ namespace vkvol {
 
 namespace {
 
-// Tracking steps between two looks at what they led to, as suits the scene; 0: not known.
-std::uint32_t steps_per_look(const Specialization& s, const LoadedMedium& medium) {
+// Tracking steps in a turn, as suits the scene; 0: not known.
+std::uint32_t steps_per_turn(const Specialization& s, const LoadedMedium& medium) {
     const bool at_once = s[SPEC_FREE_FLIGHT] == FREE_FLIGHT_ANALYTIC && s[SPEC_TRANSMITTANCE] == TRANSMITTANCE_ANALYTIC;
     if (at_once && s[SPEC_SHAPE] != SHAPE_MESH)
         return 1;
     const bool walks = flight_has(s[SPEC_FREE_FLIGHT], TRAIT_NULL) &&
                        !transmittance_has(s[SPEC_TRANSMITTANCE], TRAIT_VOXELS | TRAIT_MARCH);
-    return walks && medium.majorants ? best_steps_per_look(medium.majorants->segment_steps) : 0;
+    return walks && medium.majorants ? best_steps_per_turn(medium.majorants->segment_steps) : 0;
 }
 
 MediaFigures figures_of(const Assets& assets) {
@@ -67,7 +67,7 @@ Scene Session::scene_at(const Moment& moment) const {
     return scene_of_time(*moving_, time_of(*moving_->motion_blur, moment, job_.seed));
 }
 
-// Of the sample that comes next: all before it are finished. What it was compiled for, the device keeps.
+// Enters the moment of the sample that comes next: all before it are finished. The device keeps what it has compiled.
 void Session::enter_moment() {
     if (!moving_ || next_sample() < moment_->end)
         return;
@@ -75,8 +75,8 @@ void Session::enter_moment() {
     Scene scene = with_surface_files(with_preset(scene_at(moment)));
     Method method = choose_method(scene);
     if (method.paths != method_.paths || plan_layers(scene).params.count != device_scene_->layers().params.count)
-        throw InputError("<motionBlur>: what moves needs other paths, or has other layers, at some times than at "
-                         "others; name the paths, or leave the layers out");
+        throw InputError("<motionBlur>: at some moments the scene needs another kind of paths, or has other layers, "
+                         "than at others; name the paths, or leave the layers out");
     moment_ = moment;
     scene_ = std::move(scene);
     method_ = std::move(method);
@@ -89,7 +89,7 @@ void Session::enter_moment() {
 // Files may be gone since, and memory used up.
 void Session::check_ready() const {
     if (!device_scene_ || !wavefront_)
-        throw RenderError("a moment of what moves could not be made ready, and the render cannot be gone on with");
+        throw RenderError("the scene could not be prepared for one of its moments; the render cannot be continued");
 }
 
 std::uint32_t Session::until_next_moment() const {
@@ -164,7 +164,7 @@ void Session::find_wish(const Assets& assets, const Specialization& specializati
         loops_.phase = std::max(loops_.phase, phase_iterations(volume, medium.phase_nodes));
         loops_.octaves = std::max(loops_.octaves, volume.noise ? std::uint32_t(volume.noise->octaves) : 0u);
         if (wish_.steps == 0)
-            wish_.steps = steps_per_look(specialization, medium);
+            wish_.steps = steps_per_turn(specialization, medium);
         if (medium.majorants) {
             wish_.majorant_cell = medium.majorants->cell;
             wish_.leaps = medium.majorants->leaps;
@@ -276,8 +276,8 @@ void Session::choose_schedule(const PipelineCache& cache) {
     }
 }
 
-// Of a batch that is thrown away, once lanes work as long at a time as they may. Paths that miss the medium count: both
-// schedules have the same.
+// Speed of a batch that is thrown away, once lanes work as long at a time as they may. Paths that miss the medium
+// count: both schedules have the same.
 double Session::paths_per_second(Wavefront& wavefront, const Plan& plan) {
     constexpr double start_up = 0.1, enough = 0.3; // seconds
     const Band& band = bands_.front();
@@ -319,7 +319,7 @@ void Session::make_film() {
     film_layers_ = layers;
 }
 
-// Of each kind once: those of one kind compute alike.
+// Names each kind of device once: those of one kind compute alike.
 std::string Session::devices_text() const {
     const auto text_of = [](const Device& device) {
         return fmt::format("{}, {}", device.info().name, device.info().driver);

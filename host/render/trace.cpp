@@ -28,7 +28,8 @@ std::string triple(const glm::dvec3& v) {
 }
 
 const char* kind_name(const shared::TraceRecord& record) {
-    constexpr std::array names = {"scatter", "collision", "light", "escape", "end"};
+    constexpr std::array names = {"scatter", "collision", "light", "escape", "end", "surface", "source"};
+    static_assert(names.size() == TRACE_KINDS);
     return record.kind == TRACE_DEPART && record.depth == 0 ? "camera" : names[record.kind];
 }
 

@@ -81,7 +81,7 @@ Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, st
     }
     if (plan.splats > 0)
         add_buffer(BINDING_SPLATS, "splats",
-                   (std::uint64_t{most_pixels} + 1) * plan.splats * SPLAT_WORDS * sizeof(std::uint32_t));
+                   (std::uint64_t{most_pixels} + 2) * plan.splats * SPLAT_WORDS * sizeof(std::uint32_t));
     bindings_.emplace(device, bound(scene_buffers));
     make_passes(specialization, form, cache, meanwhile);
     push_.budget = std::min(plan.budget, first_budget);
@@ -123,11 +123,7 @@ void Wavefront::make_passes(const Specialization& specialization, unsigned form,
     const auto make = [&](Words spirv) {
         return std::make_unique<ComputePass>(device_, *bindings_, spirv, constants, cache);
     };
-    const bool is_known = specialization[SPEC_TRANSMITTANCE] == TRANSMITTANCE_ANALYTIC &&
-                          specialization[SPEC_SHAPE] != SHAPE_MESH && specialization[SPEC_PERIODIC] == 0 &&
-                          !(form & form_surfaces); // LOOKS of segment.glsl
-    const bool has_shadow_rays = specialization[SPEC_NEE] != NEE_NONE && !is_known;
-    const std::vector<PassRow> rows = passes_of(plan_, form, has_shadow_rays);
+    const std::vector<PassRow> rows = passes_of(plan_, form, shadow_rays_walk(specialization, form));
     std::vector<std::future<std::unique_ptr<ComputePass>>> compiling;
     for (const PassRow& row : rows)
         compiling.push_back(std::async(row.is_large ? std::launch::async : std::launch::deferred, make, row.kernel));
@@ -264,7 +260,7 @@ bool Wavefront::advance() {
     return std::all_of(headers.begin(), headers.end(), is_empty);
 }
 
-// Of pixels that miss the medium.
+// Samples of pixels that miss the medium, which the sky pass finishes at once.
 std::uint64_t Wavefront::samples_at_once() const {
     return sorted_ > 0 ? std::uint64_t{sorted_ - counters_.work_count} * samples() : 0;
 }

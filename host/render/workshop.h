@@ -26,7 +26,7 @@ public:
     const Device& device(const DeviceOptions& options) { return *open({options}).front(); }
     // Likewise each of several, of which the first leads.
     std::vector<const Device*> devices(const DeviceOptions& options) { return open(each_device(options)); }
-    // Of one of them. From any thread.
+    // Pipelines of one of the devices. From any thread.
     const PipelineCache& pipelines(const Device& device, bool use_disk) {
         const std::scoped_lock lock(mutex_);
         return pipelines_.try_emplace(&device, device, use_disk).first->second;

@@ -105,14 +105,20 @@ Rgb background_shown(const Scene& scene) {
 } // namespace
 
 std::optional<Explanation> explain(const Scene& authored, const RenderResult& result, const Tone& tone) {
+    const Scene scene = with_preset(authored);
+    const FilmLook seen = first_glance(result.film, background_shown(scene), tone.mapping);
+    if (!authored.surfaces.empty() && seen.brightest == 0.0 && seen.unsampled == 0 && !reads_flux(scene.camera))
+        return Explanation{
+            "black", "shadowed",
+            "the picture is black: no light comes to what is seen; surfaces stand between, or the camera "
+            "is inside one, or they are black",
+            seen, std::nullopt};
     if (!authored.surfaces.empty() || authored.periodic) // what is said is about pictures of media, that are there once
         return std::nullopt;
-    const Scene scene = with_preset(authored);
-    const FilmLook seen = look(result.film, background_shown(scene), tone.mapping);
     std::optional<Odd> odd = oddity(seen, scene, tone);
     std::optional<Sight> sight;
     if (result.outline.exists && !reads_flux(scene.camera)) // which looks nowhere
-        sight = look(scene, result.outline, result.film.crop);
+        sight = sight_of(scene, result.outline, result.film.crop);
     // Only where all that is seen is medium: elsewhere noise may hide a thing or two.
     if (!odd && sight && sight->inside && sight->least_depth >= deep && is_without_structure(result.film))
         odd = Odd::noise;

@@ -22,8 +22,8 @@ struct Explanation {
 // Before anything is rendered: a picture that will be black for certain. Whatever could give light and does not.
 std::optional<Explanation> foresee(const Scene& scene);
 
-// Of a picture that was rendered; none if it looks like one. `tone`: as it is shown; without pixels, it is not, and
-// pictures are too dark or too bright for nobody.
+// Explains a picture that was rendered; nothing if it looks like one. `tone`: as it is shown; without pixels, it is
+// not, and pictures are too dark or too bright for nobody.
 std::optional<Explanation> explain(const Scene& scene, const RenderResult& result, const Tone& tone);
 
 } // namespace vkvol

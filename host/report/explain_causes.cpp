@@ -4,7 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "scene_upload.h"
+#include "kernel_constants.h"
 #include "shared/constants.h"
 #include "view_advice.h"
 
@@ -44,7 +44,7 @@ std::string box_text(const WorldBox& box) {
     return fmt::format("{} to {}", text_of(box.low), text_of(box.high));
 }
 
-// Of all media.
+// The least and the most of the albedos of all media.
 std::pair<double, double> least_and_most_albedo(const Scene& scene) {
     double low = 1.0, high = 0.0;
     for (const Volume& volume : scene.volumes) {
@@ -230,7 +230,7 @@ Answer cold_glow(const Evidence& e) {
         return {};
     const TemperatureEmission& emission = volume->temperature;
     const double hottest = e.result->outline.hottest;
-    // Of the luminance at the reference temperature, six tenths of it have 1e-5.
+    // At six tenths of the reference temperature the luminance is 1e-5 of what the reference has.
     const bool faint = hottest < 0.6 * emission.reference;
     if (emission.model != TemperatureEmission::Model::blackbody || (hottest >= emission.cutoff && !faint))
         return {};

@@ -61,11 +61,11 @@ void print_caps(const RenderRequest& request, const RenderResult& result) {
     line(c.depth_caps, "paths ended at maxDepth: the light of further scatterings is missing (raise maxDepth; without "
                        "one it is a million)");
     line(c.step_caps, "segments were cut by the step limit: their light is missing");
-    line(c.abandoned, "paths would not end when the render was to, and are missing: they are the long ones");
+    line(c.abandoned, "paths had not ended when the render did, and are missing; long paths are the ones lost");
     line(c.majorant_violations,
          "collisions met a density above its majorant: delta estimators lose light there, ratio and weighted ones "
          "stay unbiased with more noise");
-    line(c.non_finite, "samples were not finite, or beyond 2.8e14, and were dropped");
+    line(c.non_finite, "samples were not finite, or brighter than the film has room for, and were dropped");
     for (const NonFiniteSample& s : result.non_finite)
         tell(stderr, "vkvol: note: not finite: pixel {},{} sample {} seed {}; its path: {}\n", s.x, s.y, s.sample,
              request.seed, replay_command(request, s));

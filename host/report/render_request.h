@@ -20,6 +20,7 @@ namespace vkvol {
 struct CropRequest {
     std::array<double, 4> window{};
     bool fractions = false;
+    bool is_pixel = false; // as --pixel says
 };
 
 struct RenderRequest {

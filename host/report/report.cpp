@@ -52,7 +52,7 @@ Json media_json(const MediaFigures& m) {
     return json;
 }
 
-// Of the slots, how many were in each pass's queue when it began, on average.
+// Share of the slots that were in each pass's queue when it began, on average.
 Json occupancy_json(const RenderResult& r) {
     Json json = Json::object();
     const double slots = double(r.rounds) * r.plan.slots;
@@ -137,7 +137,7 @@ Json explanation_json(const std::optional<Explanation>& explanation, const Camer
     return json;
 }
 
-// Of a sensor of flux, where they are few enough to be read.
+// Readings of a sensor of flux, where they are few enough to be read.
 Json readings_json(const Film& film, const Camera& camera) {
     constexpr std::size_t most = 1024;
     if (!reads_flux(camera))
@@ -213,7 +213,8 @@ Metadata make_metadata(const RenderRequest& request, const Scene& scene, const D
                       {"vkvol/nullCollisions", std::to_string(result.counts.null_collisions)},
                       {"vkvol/queueOverflows", metadata_count(result.counts.queue_overflows)},
                       {"vkvol/abandonedPaths", metadata_count(result.counts.abandoned)},
-                      {"vkvol/nonFiniteSamples", metadata_count(result.counts.non_finite)}};
+                      {"vkvol/nonFiniteSamples", metadata_count(result.counts.non_finite)},
+                      {"vkvol/cleanedVoxels", metadata_count(result.counts.cleaned_voxels)}};
     record_correlation(result.film, metadata);
     if (!scene.units.empty())
         metadata["vkvol/units"] = scene.units;

@@ -26,7 +26,7 @@ std::string make_report(const RenderRequest& request, const Scene& scene, const 
                         const RenderResult& result, const Shown& shown, double write_seconds,
                         const std::string& error = "");
 
-// Of a render without a result: what is known all the same. `device` may be null.
+// Report of a render without a result: what is known all the same. `device` may be null.
 std::string make_failure_report(const RenderRequest& request, const Scene& scene, const DeviceInfo* device,
                                 const std::string& error);
 

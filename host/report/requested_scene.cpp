@@ -88,6 +88,9 @@ Crop resolve_crop(const std::optional<CropRequest>& request, const Picture& pict
         window = {std::round(window[0] * picture.width), std::round(window[1] * picture.width),
                   std::round(window[2] * picture.height), std::round(window[3] * picture.height)};
     const bool inside = window[0] >= 0 && window[1] <= picture.width && window[2] >= 0 && window[3] <= picture.height;
+    if (!inside && request->is_pixel)
+        throw InputError(fmt::format("--pixel {},{}: the picture has {} x {} pixels, counted from 0", window[0],
+                                     window[2], picture.width, picture.height));
     if (!inside || window[0] >= window[1] || window[2] >= window[3])
         throw InputError(fmt::format("--crop {}: expected 0 <= x0 < x1 <= {} and 0 <= y0 < y1 <= {}",
                                      fmt::join(window, ","), picture.width, picture.height));

@@ -60,7 +60,7 @@ bool overlaps(const WorldBox& box, const CameraRays& rays, const Crop& window) {
 
 } // namespace
 
-Sight look(const Scene& scene, const MediumOutline& outline, const Crop& crop) {
+Sight sight_of(const Scene& scene, const MediumOutline& outline, const Crop& crop) {
     const CameraRays rays = camera_rays(scene.camera, scene.picture);
     const Picture& picture = scene.picture;
     Sight sight;

@@ -22,6 +22,6 @@ struct Sight {
 };
 
 // By rays on a lattice over the window, some hundreds of them. Expects a medium that exists.
-Sight look(const Scene& scene, const MediumOutline& outline, const Crop& crop);
+Sight sight_of(const Scene& scene, const MediumOutline& outline, const Crop& crop);
 
 } // namespace vkvol

@@ -8,7 +8,7 @@ namespace vkvol {
 
 namespace {
 
-// Of any vector but 0, whose square might overflow or vanish.
+// The unit vector along any vector but 0, whose square might overflow or vanish.
 glm::dvec3 unit(glm::dvec3 v) {
     return glm::normalize(v / std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}));
 }

@@ -35,7 +35,7 @@ struct Orbit {
 
 void place_on_orbit(Camera& camera, const Orbit& orbit);
 
-// Of the view on what has none: somewhat from the side and above [degrees].
+// The usual view, somewhat from the side and above [degrees].
 inline constexpr double usual_azimuth = 30.0, usual_elevation = 12.0, usual_fov = 30.0;
 
 // The part of the image plane at distance 1 that the picture shows, camera space: x to the right, y upwards.

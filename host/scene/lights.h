@@ -36,7 +36,7 @@ struct SunLight {
     std::string group = {};
 };
 
-// Of the disc's middle, where it is brightest.
+// Radiance of the disc's middle, where it is brightest.
 Rgb peak_radiance(const SunLight& sun);
 
 struct PointLight {
@@ -163,7 +163,7 @@ inline bool is_lamp(const Light& light) {
            std::holds_alternative<RectangleLight>(light);
 }
 
-// Of one that is somewhere, near or far: its middle.
+// Middle of a light that is somewhere, near or far; none of one infinitely far.
 std::optional<glm::dvec3> place_of(const Light& light);
 
 inline bool has_place(const Light& light) {

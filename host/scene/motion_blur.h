@@ -23,7 +23,7 @@ struct Moment {
     std::uint64_t index = 0;          // of the moment
 };
 
-// Of a sample, by its number alone: parts of a render have the moments of the whole.
+// The moment of a sample, by its number alone: parts of a render have the moments of the whole.
 Moment moment_of_sample(std::uint64_t sample);
 
 // Its time: evenly distributed over seeds, and spread evenly for one (van der Corput 1935, turned at random after

@@ -78,7 +78,7 @@ struct Camera {
     glm::dvec3 edges{1.0};             // absorption: world units, of the box about `position`, > 0
     glm::ivec3 cells{1};               // in it, > 0; in the picture x goes across, y up, and z down, slice after slice
 
-    // Of absorption, world.
+    // Cells in which absorption is read, world space.
     glm::dvec3 cell_size() const { return edges / glm::dvec3(cells); }
     glm::dvec3 cell_low(glm::ivec3 cell) const { return position - 0.5 * edges + glm::dvec3(cell) * cell_size(); }
     glm::ivec3 cell_of_pixel(int x, int y) const { return {x, cells.y - 1 - y % cells.y, y / cells.y}; }
@@ -292,7 +292,7 @@ struct AxisChoices {
 // Ray marching. Lengths in world units, or in voxels of a grid.
 struct March {
     double step = 0.0;         // > 0; 0: half a voxel in a grid, 0.2 world units elsewhere, as in the original
-    double shadow_step = 0.0;  // of shadow rays, > 0; 0: as step
+    double shadow_step = 0.0;  // of shadow rays, > 0; 0: as step; of telescoping ones 16 times that
     double optical_step = 0.1; // of adaptive marches: the majorant's optical depth per step, > 0
     bool jitter = true;        // sample points at random in their step, not in its middle
     CoefficientUnit unit = CoefficientUnit::voxel; // of the steps; always world but for grids
@@ -361,7 +361,7 @@ struct Scene {
 
 // The light if there is but one, that has neither place nor extent, and only media look at it: then there is no choice
 // of lights.
-inline const DirectionalLight* lone_sun(const Scene& scene) {
+inline const DirectionalLight* lone_directional(const Scene& scene) {
     return reads_flux(scene.camera) ? nullptr : only_directional(scene.lights);
 }
 

@@ -101,8 +101,9 @@ struct Material {
     Rgb eta{1.0}, k{0.0}; // of a conductor: its complex index, eta + i k
     double roughness = 0; // of a conductor or dielectric: alpha of GGX, in [least_roughness, 1]; 0: smooth
     std::filesystem::path texture =
-        {};                 // an image that multiplies the colour, of all but dielectrics and panes; or empty
-    glm::dvec2 repeat{1.0}; // how many times it lies side by side across the shape, of a plane across a unit; > 0
+        {}; // an image that multiplies the colour, of all but dielectrics and panes; or empty
+    glm::dvec2 repeat{
+        1.0}; // how many times it lies side by side across the shape, of a plane across a unit of the world; > 0
     std::shared_ptr<const Texture> image = {}; // once it is loaded; or what is of no file, a board of two colours
 };
 

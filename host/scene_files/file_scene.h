@@ -13,7 +13,7 @@ namespace vkvol {
 
 enum class Up { y, z };
 
-// Of such a scene, unless another size is asked for.
+// Picture of such a scene, unless another size is asked for.
 Picture file_picture();
 
 // What is chosen for a file; all of it follows from the file, the picture's shape and what is up.

@@ -18,7 +18,7 @@ const char* const color = "colours are r=\"...\" g=\"...\" b=\"...\" multiplier=
 
 using Words = std::map<std::string, const char*>;
 
-// Of Mitsuba, pbrt and Cycles, as elements.
+// Words of Mitsuba, pbrt and Cycles, as elements.
 const Words elements{{"sigma_t", extinction},
                      {"sigmaT", extinction},
                      {"spp", samples},

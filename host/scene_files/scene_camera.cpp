@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "camera_view.h"
+#include "scene_places.h"
 #include "scene_reader.h"
 
 namespace vkvol {
@@ -14,14 +15,6 @@ const char* first_of(const XmlElement& element, std::initializer_list<const char
         if (element.has(name))
             return name;
     return nullptr;
-}
-
-glm::dvec3 point(const XmlElement& element, const char* name, const Limits& limits) {
-    const std::vector<double> numbers = element.attribute_numbers(name, limits);
-    if (numbers.size() != 3)
-        element.fail_attribute(name,
-                               fmt::format("<camera> {}: expected three numbers x y z, e.g. {}=\"0 1 0\"", name, name));
-    return {numbers[0], numbers[1], numbers[2]};
 }
 
 // What belongs to lookAt, or against it.
@@ -49,14 +42,14 @@ void check_combination(const XmlElement& element) {
 }
 
 glm::dvec3 up_of(const XmlElement& element) {
-    const glm::dvec3 up = element.has("up") ? point(element, "up", any_number) : glm::dvec3(0.0, 1.0, 0.0);
+    const glm::dvec3 up = element.has("up") ? triple(element, "up", any_number) : glm::dvec3(0.0, 1.0, 0.0);
     if (up == glm::dvec3(0.0))
         element.fail_attribute("up", "<camera> up: has no direction; expected e.g. up=\"0 1 0\"");
     return up;
 }
 
 void look_at(const XmlElement& element, Camera& camera) {
-    const glm::dvec3 target = point(element, "lookAt", coordinate), up = up_of(element);
+    const glm::dvec3 target = triple(element, "lookAt", coordinate), up = up_of(element);
     if (element.has("distance")) {
         Orbit orbit{target, 0.0, 0.0, 0.0, up};
         orbit.distance = element.attribute_number("distance", 0.0, length);
@@ -115,7 +108,7 @@ Lens lens_of(const XmlElement& element, const Camera& camera) {
     if (element.has("focus"))
         lens.focus = element.attribute_number("focus", 0.0, length);
     else if (element.has("lookAt"))
-        lens.focus = glm::dot(point(element, "lookAt", coordinate) - camera.position, -camera_rotation(camera)[2]);
+        lens.focus = glm::dot(triple(element, "lookAt", coordinate) - camera.position, -camera_rotation(camera)[2]);
     else
         element.fail_attribute("lensRadius",
                                "<camera> lensRadius: what is sharp? add focus, the distance along the view, "

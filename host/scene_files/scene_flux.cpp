@@ -5,19 +5,12 @@
 
 #include "camera_view.h"
 #include "number_table.h"
+#include "scene_places.h"
 #include "scene_reader.h"
 
 namespace vkvol {
 
 namespace {
-
-glm::dvec3 triple(const XmlElement& element, const char* name, const Limits& limits) {
-    const std::vector<double> numbers = element.attribute_numbers(name, limits);
-    if (numbers.size() != 3)
-        element.fail_attribute(
-            name, fmt::format("<{}> {}: expected three numbers x y z, e.g. {}=\"0 1 0\"", element.name(), name, name));
-    return {numbers[0], numbers[1], numbers[2]};
-}
 
 glm::dvec3 upwards(const XmlElement& element, const glm::dvec3& forward) {
     if (!element.has("up"))

@@ -12,8 +12,8 @@ namespace vkvol {
 
 class SceneKeys {
 public:
-    // Of what is in `may_be_unused` nobody has to ask. `later`: frames, by which F is more in arithmetic, where it is a
-    // time; elsewhere it numbers files.
+    // Nobody has to ask for what is in `may_be_unused`. `later`: frames, by which F is more in arithmetic, where it is
+    // a time; elsewhere it numbers files.
     explicit SceneKeys(std::map<std::string, std::string> values, std::set<std::string> may_be_unused = {},
                        double later = 0.0)
         : values_(std::move(values)), may_be_unused_(std::move(may_be_unused)), later_(later) {}

@@ -155,7 +155,7 @@ void SceneReader::read_daylight(const XmlElement& element, Scene& scene) const {
                                "<daylight>: the sun is below the horizon; x, y, z point from the scene towards it, "
                                "and y is up");
     daylight.turbidity = element.attribute_number("turbidity", daylight.turbidity,
-                                                  {1.7, 10.0, true, true, "a number from 1.7 (clear) to 10 (hazy)"});
+                                                  {2.0, 10.0, true, true, "a number from 2 (clear) to 10 (hazy)"});
     daylight.ground =
         element.attribute_number("ground", daylight.ground, {0.0, 1.0, true, true, "an albedo from 0 to 1"});
     SkyLight sky;

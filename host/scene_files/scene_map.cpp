@@ -41,7 +41,8 @@ void SceneReader::check_points(const std::vector<MapPoint>& points, const char* 
                               last.name(), values, value));
 }
 
-// Of a density map or layers it has a density, of a transfer function or layers with colours its like, sigma_t.
+// A map's point: it has a density in a density map or layers, and in a transfer function or layers with colours
+// sigma_t, albedo and emission.
 MapPoint SceneReader::map_point(const XmlElement& element, const char* value, const Limits& limits,
                                 bool is_transfer) const {
     const char* amount = is_transfer ? "sigma_t" : "density";
@@ -71,7 +72,7 @@ std::vector<MapPoint> SceneReader::map_points(const char* name, bool is_transfer
     return points;
 }
 
-// Of values v: gain v + offset, where that is more than 0 and v is not below the threshold; else 0.
+// The map of values v to gain v + offset, where that is more than 0 and v is not below the threshold; else to 0.
 ValueMap SceneReader::ramp(const XmlElement& element) const {
     const double gain = element.attribute_number("gain", 1.0, any_number);
     const double offset = element.attribute_number("offset", 0.0, any_number);

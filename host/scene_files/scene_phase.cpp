@@ -22,7 +22,7 @@ const std::vector<PhaseKind> phase_kinds = {
     {"draine", {"alpha"}},    {"droplets", {"diameter"}, false},       {"table", {"file", "baseDir"}, false}};
 
 constexpr Limits asymmetry{-1, 1, false, false, "a number between -1 and 1, both excluded"};
-constexpr double sharpest = 0.99999; // single precision still has 1 - g to a thousandth
+constexpr double sharpest = 0.99999; // single precision still has 1 - g to a hundredth
 
 std::string too_sharp(const std::string& name, double g) {
     return fmt::format("{} {} is too near 1 for single precision; expected at most {} in magnitude", name, g, sharpest);

@@ -16,6 +16,14 @@ glm::dvec3 xyz(const XmlElement& element, const Limits& limits) {
             element.attribute_number("z", 0.0, limits)};
 }
 
+glm::dvec3 triple(const XmlElement& element, const char* name, const Limits& limits) {
+    const std::vector<double> numbers = element.attribute_numbers(name, limits);
+    if (numbers.size() != 3)
+        element.fail_attribute(
+            name, fmt::format("<{}> {}: expected three numbers x y z, e.g. {}=\"0 1 0\"", element.name(), name, name));
+    return {numbers[0], numbers[1], numbers[2]};
+}
+
 glm::dvec3 direction_towards(const XmlElement& element) {
     if (element.has("zenith") || element.has("azimuth")) {
         for (const char* name : {"x", "y", "z"})
@@ -51,11 +59,11 @@ glm::dvec3 looking_at(const XmlElement& element, const glm::dvec3& position) {
 glm::dmat3 axes_facing(const XmlElement& element, const glm::dvec3& normal) {
     glm::dvec3 up = std::abs(normal.y) < 0.999 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
     if (element.has("up")) {
-        const std::vector<double> numbers = element.attribute_numbers("up", any_number);
-        if (numbers.size() != 3 || glm::dvec3(numbers[0], numbers[1], numbers[2]) == glm::dvec3(0.0))
+        up = triple(element, "up", any_number);
+        if (up == glm::dvec3(0.0))
             element.fail_attribute(
                 "up", fmt::format("<{}> up: expected a direction x y z, e.g. up=\"0 1 0\"", element.name()));
-        up = unit({numbers[0], numbers[1], numbers[2]});
+        up = unit(up);
     }
     const glm::dvec3 across = glm::cross(normal, up);
     if (glm::length(across) < 1e-6)

@@ -11,6 +11,9 @@ glm::dvec3 unit(const glm::dvec3& v);
 // Where it is, or where towards, by x, y and z; 0 where they are missing.
 glm::dvec3 xyz(const XmlElement& element, const Limits& limits);
 
+// An attribute of three numbers.
+glm::dvec3 triple(const XmlElement& element, const char* name, const Limits& limits);
+
 // Unit, towards what is infinitely far away: by x, y and z, or by zenith and azimuth, degrees: from y, and from z
 // towards x, counter-clockwise as seen from above.
 glm::dvec3 direction_towards(const XmlElement& element);

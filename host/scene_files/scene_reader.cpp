@@ -56,6 +56,8 @@ Scene SceneReader::read() {
     for (const char* name : {"light", "backgroundColor", "medium", "emission"})
         if (const XmlElement element = one(name); element.exists() && color(element) == Rgb(0.0))
             scene.black.push_back({name, element.place()});
+    for (const char* name : {"light", "backgroundColor", "medium", "emission"})
+        warn_of_forgotten_color(one(name));
     scene.warnings = document_.warnings();
     return scene;
 }
@@ -176,6 +178,17 @@ Picture SceneReader::picture(const Camera& camera) const {
     return picture;
 }
 
+void warn_of_forgotten_color(const XmlElement& element) {
+    const auto has_any = [&](std::initializer_list<const char*> names) {
+        return std::any_of(names.begin(), names.end(), [&](const char* name) { return element.has(name); });
+    };
+    if (has_any({"multiplier", "model", "grid", "temperatureScale"}) && !has_any({"r", "g", "b"}))
+        element.warn(
+            fmt::format("<{0}> is black: r, g and b are 0 unless given; write <{0} r=\"1\" g=\"1\" b=\"1\" .../> "
+                        "for white",
+                        element.name()));
+}
+
 Rgb SceneReader::color(const XmlElement& element) const {
     const auto channel = [&](const char* name) { return element.attribute_number(name, 0.0, not_negative); };
     const double multiplier = element.attribute_number("multiplier", 1.0, not_negative);
@@ -206,7 +219,7 @@ void SceneReader::read_film(Scene& scene) const {
         element.fail("<film> " + trouble);
 }
 
-// Of a light, for layers: as names of channels may be, in which a dot parts a layer from its channel.
+// Group of a light, for layers: spelled as names of channels may be, in which a dot parts a layer from its channel.
 std::string SceneReader::group_name(const XmlElement& element) const {
     const std::string name = element.attribute("group");
     const bool good =

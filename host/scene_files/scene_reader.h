@@ -25,6 +25,9 @@ inline constexpr long long max_integer = 2147483647;
 // Null if there is none in `scope`. Throws InputError if there are two.
 pugi::xml_node find_one(XmlDocument& document, pugi::xml_node scope, std::initializer_list<const char*> names);
 
+// Elements whose colour is black unless it is given, and that say something else of it.
+void warn_of_forgotten_color(const XmlElement& element);
+
 class SceneReader {
 public:
     SceneReader(XmlDocument& document, const SceneOverrides& overrides)

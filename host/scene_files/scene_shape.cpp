@@ -134,7 +134,7 @@ GridFile SceneReader::grid_file(const XmlElement& element) const {
     return file;
 }
 
-// Of the shape that is a density field, in its file or in that of --grid.
+// Drift of the shape that is a density field, in its file or in that of --grid.
 Drift SceneReader::drift(const std::string& integrator) const {
     const XmlElement element = shape_element(integrator);
     if (!element.exists() || element.name() != "densityField")
@@ -147,6 +147,8 @@ Drift SceneReader::drift(const std::string& integrator) const {
         element.fail_attribute("framesPerSecond", "<densityField> framesPerSecond: of which velocities? Add "
                                                   "velocity=\"v\", the name of a grid in the file, or remove it");
     drift.seconds = document_.later() / rate;
+    if (!drift.grid.empty() && document_.root().child("motionBlur").empty())
+        element.warn("<densityField> velocity is without effect: only <motionBlur> has other times in a picture");
     return drift;
 }
 
@@ -174,7 +176,7 @@ std::optional<Noise> SceneReader::noise(const Volume& volume) const {
     noise.lacunarity =
         element.attribute_number("lacunarity", noise.lacunarity, {1, no_limit, true, true, "a number >= 1"});
     if (is_everywhere(volume))
-        element.fail("<noise> is for spheres, boxes and models, and has no end <everywhere>; take a <box>");
+        element.fail("<noise> is for spheres, boxes and models, and would have no end in <everywhere>; use a <box>");
     if (!is_grid)
         return noise;
     if (!overrides_.grid)

@@ -87,7 +87,7 @@ glm::dvec3 moved(const glm::dmat4& map, const glm::dvec3& point) {
     return glm::dvec3(map * glm::dvec4(point, 1.0));
 }
 
-// Of what must stay round, or flat across its normal.
+// The factor by which `map` enlarges what must stay round, or flat across its normal.
 double scale_of(const XmlElement& element, const glm::dmat4& map) {
     const glm::dmat3 m(map);
     const double scale = std::cbrt(std::abs(glm::determinant(m)));
@@ -122,9 +122,9 @@ SurfaceShape moved(const glm::dmat4& map, const Rectangle& r, bool shows) {
     if (shows && turn < 0.0)
         return moved(map, RectangleSurface{r.center, r.edge_u, r.edge_v}.triangles());
     const glm::dvec3 center = moved(map, r.center), u = turn * (linear * r.edge_u), v = linear * r.edge_v;
-    if (std::abs(glm::dot(u, v)) > 1e-9 * glm::length(u) * glm::length(v))
+    if (std::abs(glm::dot(u, v)) > stretch_of_digits * glm::length(u) * glm::length(v))
         return RectangleSurface{center, u, v}.triangles();
-    return RectangleSurface{center, u, v};
+    return RectangleSurface{center, u, v - u * (glm::dot(u, v) / glm::dot(u, u))};
 }
 
 TriangleSurface box_of(const Box& box) {
@@ -329,6 +329,8 @@ Surface SceneReader::surface(const XmlElement& element) const {
         surface.transform = map;
     }
     surface.material = material(element);
+    if (kind == "plane") // tiles are a unit of what the transform is of
+        surface.material.repeat /= scale_of(element, map);
     const XmlElement emission = one("emission");
     emission.allow({"r", "g", "b", "kelvin", "multiplier", "sides"});
     if (emission.exists())

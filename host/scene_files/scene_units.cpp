@@ -22,11 +22,10 @@ glm::dvec3* direction_of(Light& light) {
     return nullptr;
 }
 
-void set_irradiance(Light& light, const Rgb& irradiance) {
+Rgb& irradiance_of(Light& light) {
     if (DirectionalLight* const beam = std::get_if<DirectionalLight>(&light))
-        beam->irradiance = irradiance;
-    else
-        std::get<SunLight>(light).irradiance = irradiance;
+        return beam->irradiance;
+    return std::get<SunLight>(light).irradiance;
 }
 
 bool glows(const Volume& volume) {
@@ -62,7 +61,16 @@ void SceneReader::read_units(Scene& scene) const {
         units.fail(fmt::format("<units> {} is relative to what falls on a level plane, and the light is level; raise "
                                "it, or leave <units> out",
                                name));
-    set_irradiance(scene.lights.front(), Rgb((reads_flux(scene.camera) ? 1.0 : std::numbers::pi) / mu0));
+    if (const auto* sun = std::get_if<SunLight>(&scene.lights.front());
+        sun && std::asin(mu0) < glm::radians(0.5 * sun->angle))
+        units.fail(
+            fmt::format("<units> {} is relative to what falls on a level plane, and the sun's disc is partly below "
+                        "it; raise the sun, or give it a smaller angle, or leave <units> out",
+                        name));
+    // Channels without light have no such parts, and stay 0.
+    for (int c = 0; c < 3; ++c)
+        if (double& irradiance = irradiance_of(scene.lights.front())[c]; irradiance > 0.0)
+            irradiance = (reads_flux(scene.camera) ? 1.0 : std::numbers::pi) / mu0;
 }
 
 } // namespace vkvol

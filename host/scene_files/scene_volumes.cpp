@@ -190,13 +190,24 @@ void SceneReader::read_volumes(Scene& scene) {
         std::optional<Volume> medium = volume(scene.settings.integrator);
         if (!medium)
             XmlElement(document_, node)
-                .fail("<volume> has no shape; add a densityField, sphere, box or models to it, or say like=\"NAME\" of "
-                      "a volume that has one");
+                .fail("<volume> has no shape; add a densityField, sphere, box, models or everywhere to it, or say "
+                      "like=\"NAME\" of a volume that has one");
+        for (const char* name : {"medium", "emission"})
+            warn_of_forgotten_color(XmlElement(document_, node.child(name)));
         medium->name = XmlElement(document_, node).attribute("name");
         medium->transform = transform();
         scene.volumes.push_back(*medium);
     }
     scopes_ = {root};
+    std::map<std::string, std::string> layers;
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+        const std::string layer = medium_name(scene, i), &name = scene.volumes[i].name;
+        if (const std::string& before = layers.try_emplace(layer, name).first->second; before != name) {
+            groups.warn(fmt::format("volumes \"{}\" and \"{}\" would have one layer, medium.{}; name them otherwise",
+                                    before, name, layer));
+            break;
+        }
+    }
     constexpr std::size_t most = 100000;
     if (scene.volumes.size() > most)
         groups.fail(fmt::format("{} volumes are more than the {} that are rendered; leave some out",

@@ -11,7 +11,7 @@ bool looks_ahead() {
     bool walks = NULL_FLIGHT && FREE_FLIGHT != FREE_FLIGHT_DECOMPOSITION;
     bool shadows_walk = NULL_TRANSMITTANCE && TRANSMITTANCE != TRANSMITTANCE_RESIDUAL;
     bool gathers = EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS;
-    return FIELD == FIELD_GRID && walks && NEE != NEE_TENTATIVE && !gathers && (!LOOKS || shadows_walk);
+    return FIELD == FIELD_GRID && walks && NEE != NEE_TENTATIVE && !gathers && (!SHADOW_RAYS_WALK || shadows_walk);
 }
 
 void look_up(MediumParams v, Walk w, float t[STEPS], vec3 tap[STEPS], out float sigma_t[STEPS]) {
@@ -74,7 +74,7 @@ uint step_ahead(MediumParams v, bool seeing, inout Walk walk, inout Rng rng, ino
                 tally.violations += c.sigma_t > 1.00001 * c.sigma_maj ? 1u : 0u;
                 rng.draw += 1u;
                 walk.t = t[k];
-                if (LOOKS && seeing) {
+                if (SHADOW_RAYS_WALK && seeing) {
                     bool opaque;
                     event = see(v, c, event, walk, rng, T, opaque, tally);
                     event = opaque ? EVENT_OPAQUE : event;

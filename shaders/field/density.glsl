@@ -88,7 +88,7 @@ vec3 voxel_color(GridParams g, ivec3 ijk) {
     return place.inside ? color : vec3(0.0);
 }
 
-// Of a grid of colours; of numbers, grey.
+// Colour of a grid of colours; grey if the grid is of numbers.
 vec3 lookup_color(GridParams g, int type, vec3 p) {
     vec3 result = vec3(0.0);
     if (type == GRID_COLOR) {

@@ -6,11 +6,15 @@
 #define EMISSION_GLSL
 #include "field/albedo.glsl"
 
+vec3 blackbody_entry(uint i) {
+    return TABLE_TEXELS != 0 ? uintBitsToFloat(texelFetch(blackbody_texels, int(i)).xyz) : blackbody[i].xyz;
+}
+
 // Linear between the table's entries, the last of which is the hottest that the grid holds.
 vec3 blackbody_color(EmissionParams e, float kelvin) {
     float x = clamp((kelvin - e.table_low) / (e.table_high - e.table_low), 0.0, 1.0) * float(BLACKBODY_ENTRIES - 1);
     uint i = min(uint(x), uint(BLACKBODY_ENTRIES - 2));
-    return mix(blackbody[e.first_entry + i], blackbody[e.first_entry + i + 1u], x - float(i));
+    return mix(blackbody_entry(e.first_entry + i), blackbody_entry(e.first_entry + i + 1u), x - float(i));
 }
 
 // What comes of the medium's own, and of grids of temperatures or colours.

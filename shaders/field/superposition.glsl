@@ -15,7 +15,7 @@ struct Matter {
     Spectrum share; // of the medium in a channel's extinction, over the chance with which it was drawn
 };
 
-// Of its parts, which are to be asked for what collisions need: phase function, albedo, emission.
+// The part of a superposition that is to be asked for what collisions need: phase function, albedo, emission.
 MediumParams medium_of(MediumParams v, uint row) {
 #ifdef SEVERAL
     return media[row];
@@ -30,7 +30,7 @@ uvec4 member_texel(uint i) {
                        : uvec4(overlaps[4u * i], overlaps[4u * i + 1u], overlaps[4u * i + 2u], overlaps[4u * i + 3u]);
 }
 
-// Of all that are grids, or that of a GridRow.
+// The one grid of all media that are grids, or that of a GridRow.
 GridParams member_grid(MediumParams v, uint row) {
     GridParams grid = v.density;
     if (MEMBER_GRID == EACH) {

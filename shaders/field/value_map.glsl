@@ -26,7 +26,7 @@ float mapped_density(int map, uint first_knot, float value) {
     return density;
 }
 
-// Of the one medium there is. In an `if` of its own, which kernels without maps are compiled without.
+// Density for a value, by the map of a lone medium. In an `if` of its own, which kernels without maps are compiled without.
 float mapped(MediumParams v, float value) {
     float density = value;
     if (MAP != MAP_NONE)

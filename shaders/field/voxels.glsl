@@ -38,7 +38,7 @@ vec4 voxel_polynomial(MediumParams v, Walk w, float t_exit) {
                 -4.5 * f[0] + 13.5 * f[1] - 13.5 * f[2] + 4.5 * f[3]);
 }
 
-// Of the polynomial from 0 to s.
+// Integral of the polynomial from 0 to s.
 float integral(vec4 c, float s) {
     return s * (c.x + s * (c.y * 0.5 + s * (c.z * (1.0 / 3.0) + s * c.w * 0.25)));
 }

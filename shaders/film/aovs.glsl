@@ -13,12 +13,12 @@ const uint GROUP_BIT = 2u;
 const uint MEDIUM_BIT = 10u;
 const uint SOLID = 0x80000000u; // light of a surface that shines: it is there, as what it hides is not
 
-// Of light that has been scattered so often, or been sent out by a medium and not been scattered since.
+// Label of light that has been scattered so often, or been sent out by a medium and not been scattered since.
 uint kind_label(uint scatterings) {
-    return scatterings == 0u ? LIGHT_OF_SOURCES : scatterings == 1u ? LIGHT_ONCE : LIGHT_OFTEN;
+    return scatterings == 0u ? SCATTERED_NEVER : scatterings == 1u ? SCATTERED_ONCE : SCATTERED_OFTEN;
 }
 uint glow_label(uint scatterings) {
-    return scatterings == 0u ? LIGHT_OF_MEDIA : kind_label(scatterings);
+    return scatterings == 0u ? GLOW_OF_MEDIA : kind_label(scatterings);
 }
 uint group_label(uint group) {
     return group << GROUP_BIT;
@@ -50,7 +50,7 @@ void note_light(uint record, uint label, vec3 light) {
 // What of a path's light is in the picture.
 vec3 held_out(vec3 light, uint label) {
     if ((LAYERS & LAYERS_HOLDOUT) != 0)
-        light = (label & 3u) == LIGHT_OF_SOURCES && (label & SOLID) == 0u ? vec3(0.0) : light;
+        light = (label & 3u) == SCATTERED_NEVER && (label & SOLID) == 0u ? vec3(0.0) : light;
     return light;
 }
 
@@ -73,8 +73,8 @@ void note_normal(uint record, vec3 weight, vec3 normal) {
         note_in(record, frame.layers.normal, (weight.x + weight.y + weight.z) / 3.0 * normal);
 }
 
-// Of a homogeneous stretch that is gone through at once, the part behind which a collision would be, on average: of an exponential
-// that is cut at tau, 1 / tau - 1 / (exp(tau) - 1), which is its series where digits would cancel.
+// Mean place of a collision in a homogeneous stretch that is gone through at once, as a part of its length: for an exponential that
+// is cut at tau, 1 / tau - 1 / (exp(tau) - 1), which is its series where digits would cancel.
 float mean_part(float tau) {
     return tau < 0.3 ? 0.5 - tau * (1.0 / 12.0 - tau * tau / 720.0) : 1.0 / tau - 1.0 / (exp(min(tau, 80.0)) - 1.0);
 }

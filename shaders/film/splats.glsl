@@ -7,15 +7,15 @@
 #include "lib/rng.glsl"
 
 const float WORD = 4294967296.0;
-const uint COARSE = 16u; // bits that the sum over all pixels leaves out: it has to hold a million of the brightest
-const float MOST_SPLAT = 1.0e18; // thousands of which are below 2^63
+const float MOST_SPLAT = 1.0e18; // some of which are below 2^63
 
-// SPLAT_WORDS: red's low and high one, and so on. Behind the last pixel is the picture's sum.
+// SPLAT_WORDS: red's low and high one, and so on. Behind the last pixel is the picture's sum, of three words per channel, in the
+// room of two pixels.
 uint splat_pixels() {
     return frame.crop_width * frame.crop_height;
 }
 uint splat_place(uint pixel, uint sample_index) {
-    return uint(SPLAT_WORDS) * ((sample_index - push.sample_begin) * (splat_pixels() + 1u) + pixel);
+    return uint(SPLAT_WORDS) * ((sample_index - push.sample_begin) * (splat_pixels() + 2u) + pixel);
 }
 
 void add_whole(uint at, float x) {
@@ -49,16 +49,40 @@ void splat(uint pixel, uint place, uint sample_index, vec3 light) {
     add_whole(at + 4u, x.z);
 }
 
-// Whole numbers of 64 bits, shifted and added, whose last bits are dropped: for the sum's variance, to which an offset is nothing.
+// Adds to a word, and says what it carries.
+uint add_word(uint at, uint x) {
+    if (x == 0u)
+        return 0u;
+    uint before = atomicAdd(splats[at], x);
+    return before + x < before ? 1u : 0u;
+}
+
+// A pixel's number of 64 bits to the picture's of 96, which holds a million of the largest.
 void add_to_sum(uint at, uint sum) {
-    for (uint c = 0u; c < uint(SPLAT_WORDS); c += 2u) {
-        uint low = splats[at + c] >> COARSE | splats[at + c + 1u] << (32u - COARSE);
-        uint high = uint(int(splats[at + c + 1u]) >> COARSE);
-        if ((low | high) == 0u) // of most pixels, where little is lit
-            continue;
-        uint before = atomicAdd(splats[sum + c], low);
-        atomicAdd(splats[sum + c + 1u], high + (before + low < before ? 1u : 0u));
+    [[unroll]] for (uint c = 0u; c < 3u; ++c) {
+        uint low = splats[at + 2u * c], high = splats[at + 2u * c + 1u];
+        uint into = sum + 3u * c;
+        uint carried = add_word(into + 1u, add_word(into, low));
+        carried += add_word(into + 1u, high);
+        add_word(into + 2u, carried + (int(high) < 0 ? 0xffffffffu : 0u));
     }
+}
+
+// Value of a number of 96 bits, in units; taken from the number without its sign, which is rounded but once.
+float whole(uint at) {
+    uvec3 words = uvec3(splats[at], splats[at + 1u], splats[at + 2u]);
+    bool negative = int(words.z) < 0;
+    if (negative) {
+        words = ~words + uvec3(1u, 0u, 0u);
+        words.y += words.x == 0u ? 1u : 0u;
+        words.z += (words.x | words.y) == 0u ? 1u : 0u;
+    }
+    float size = (float(words.z) * WORD + float(words.y)) * WORD + float(words.x);
+    return negative ? -size : size;
+}
+
+vec3 splatted_sum(uint at) {
+    return frame.particles.unit * vec3(whole(at), whole(at + 3u), whole(at + 6u));
 }
 
 vec3 splatted(uint at) {

@@ -62,9 +62,9 @@ Particle from_point(vec3 position, vec3 direction, vec3 light) {
     return particle(position + apart * direction, direction, light, SHINES_UNSEEN);
 }
 
-// Off the surface that it may be: see SurfacePoint.
-Particle from_surface(vec3 position, vec3 normal, vec3 light, vec2 u) {
-    float apart = HAS_SURFACES ? spare_at(position) : 0.0;
+// Off the surface that it may be, whose largest coordinates are these: see SurfacePoint.
+Particle from_surface(vec3 position, vec3 normal, vec3 reach, vec3 light, vec2 u) {
+    float apart = HAS_SURFACES ? spare_at(reach) : 0.0;
     Particle p = particle(position + apart * normal, by_cosine(normal, u), light, SHINES_FLAT);
     p.normal = normal;
     return p;
@@ -81,9 +81,9 @@ Particle from_light(LightRow light, vec2 where, vec2 u, inout Rng rng) {
     Particle p;
     if (SEES_LAMPS && light.kind == LIGHT_SPHERE) {
         vec3 normal = in_any_direction(where);
-        p = from_surface(light.position + light.extent * normal, normal, 4.0 * PI * light.area * light.radiance, u);
+        p = from_surface(light.position + light.extent * normal, normal, abs(light.position) + light.extent, 4.0 * PI * light.area * light.radiance, u);
     } else if (SEES_LAMPS && light.kind > LIGHT_SPHERE) {
-        p = from_surface(flat_point(light, where), light.direction, PI * light.area * light.radiance, u);
+        p = from_surface(flat_point(light, where), light.direction, abs(light.position) + abs(light.edge_u) + abs(light.edge_v), PI * light.area * light.radiance, u);
     } else if (light.kind == LIGHT_POINT) {
         p = from_point(light.position, in_any_direction(u), 4.0 * PI * light.radiance);
     } else if (light.kind == LIGHT_SPOT) {
@@ -100,7 +100,7 @@ Particle from_light(LightRow light, vec2 where, vec2 u, inout Rng rng) {
 
 // The same from everywhere, `side` in [0, 1). What comes through a face goes by the cosine.
 Particle from_background(vec2 where, vec2 u, float side) {
-    vec3 light = frame.lights[LIGHT_BACKGROUND].radiance;
+    vec3 light = frame.lights[FRAME_BACKGROUND].radiance;
     if (!REPEATS)
         return from_afar(in_any_direction(u), 4.0 * PI * light, where);
     vec3 open = frame.particles.open;
@@ -127,7 +127,8 @@ Particle from_primitive(uint i, vec2 where, vec2 u, float side) {
     SurfacePrimitive piece = primitive_at(i);
     SurfaceRow row = surface_row(piece.surface);
     vec3 near = mix(piece.a, mix(piece.b, piece.c, where.y), sqrt(where.x));
-    float area = 0.5 * length(cross(piece.b - piece.a, piece.c - piece.a));
+    float scale = edge_scale(piece);
+    float area = 0.5 * length(cross(scale * (piece.b - piece.a), scale * (piece.c - piece.a))) / scale / scale;
     if (piece.shape == SURFACE_SPHERE) {
         near = piece.a + piece.c.x * in_any_direction(where);
         area = 4.0 * PI * piece.c.x * piece.c.x;

@@ -21,8 +21,8 @@ struct Stretch {
     vec2 mass;  // of its part before the foot, and of that behind
 };
 
-// Of a ray, counted from its `foot` next to the light, which is off that by `off`: what lies before a lamp that is flat, or in a
-// spot's cone, whose halves to both sides the quadratic cannot tell apart. Empty: both ends are the same.
+// The part of a ray that is before a flat lamp, or in a spot's cone, whose halves to both sides the quadratic cannot tell apart. It
+// is counted from the ray's foot next to the light, which is off that by `off`. Empty: both ends are the same.
 vec2 lit_part(LightRow light, vec3 off, vec3 direction) {
     float a = dot(direction, light.direction), b = dot(off, light.direction);
     float c = 1.0 - light.none_beyond;
@@ -69,7 +69,7 @@ Stretch stretch_of(MediumParams v, LightRow light, vec3 position, vec3 direction
     vec2 x = (s.t - s.foot) / s.off;
     s.y = 1.0 / (1.0 + abs(x));
     s.mass = vec2(x.x < 0.0 ? (x.y < 0.0 ? s.y.y : 1.0) - s.y.x : 0.0, x.y > 0.0 ? (x.x > 0.0 ? s.y.x : 1.0) - s.y.y : 0.0);
-    // Of what is so far away that its light is even here, the differences are rounding.
+    // The differences are rounding where the light is so far away that it is even here.
     if (s.mass.x + s.mass.y < 1.0e-5 * max(s.y.x, s.y.y))
         s.mass = vec2(0.0);
     return s;
@@ -101,7 +101,7 @@ bool has_place(LightRow light) {
     return light.kind >= LIGHT_POINT && light.kind != LIGHT_MAP;
 }
 
-// Of a collision at distance t of a flight, from where this light is looked at.
+// Weight of a collision at distance t of a flight, from where this light is looked at.
 float weight_of_collision(MediumParams v, LightRow light, vec3 direction, vec3 position, float t, float reach) {
     Stretch s = stretch_of(v, light, position - t * direction, direction, reach);
     float flown = assumed_flight_pdf(v, s, t);

@@ -48,7 +48,7 @@ float lamp_cosine(LightRow light, vec3 from, vec3 direction, float distance) {
     return max(-dot(normal, direction), 0.0);
 }
 
-// Of a light that a path finds along `direction`.
+// Shares of a light that a path finds along `direction`.
 vec2 shares_of_found(LightRow light, vec3 from, vec3 direction, float distance, float pdf) {
     float cosine = light.kind >= LIGHT_SPHERE ? lamp_cosine(light, from, direction, distance) : 1.0;
     return shares_at(light_shares(light, cosine, pdf), distance);

@@ -15,7 +15,7 @@ float hit_lamp(LightRow light, vec3 from, vec3 direction) {
     return light.kind == LIGHT_SPHERE ? hit_sphere(light, from, direction) : hit_flat(light, from, direction);
 }
 
-// Of the shape's own directions.
+// Density of the shape's own directions, per steradian.
 float lamp_pdf(LightRow light, vec3 from, vec3 direction, float t) {
     return light.kind == LIGHT_SPHERE ? sphere_pdf(light, from) : flat_pdf(light, direction, t);
 }

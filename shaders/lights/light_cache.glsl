@@ -67,8 +67,8 @@ float looking_chance(float share, Spectrum T, float looking) {
 // stands for the one at the flight's end.
 Spectrum foreseen_light(MediumParams v, vec3 position, Spectrum T, vec3 before, vec3 after) {
     Spectrum factor = -T * log(max(T, to_spectrum(vec3(1.0e-30)))) * to_spectrum(albedo_at(v, position));
-    float average = phase_eval_twice(v, before, frame.lights[LIGHT_SUN].direction);
-    return factor * (phase_eval(v, after, frame.lights[LIGHT_SUN].direction) - average);
+    float average = phase_eval_twice(v, before, frame.lights[FRAME_DIRECTIONAL].direction);
+    return factor * (phase_eval(v, after, frame.lights[FRAME_DIRECTIONAL].direction) - average);
 }
 
 #endif

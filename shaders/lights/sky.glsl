@@ -37,7 +37,7 @@ vec4 sky_entry(uvec2 texel) {
     return sky_texels[texel.y * frame.sky.width + texel.x];
 }
 
-// Of a texel, or of what is next to one over the map's edge.
+// Radiance of a texel, or of what is next to one over the map's edge.
 vec3 sky_near(ivec2 texel) {
     if (EQUAL_AREA)
         texel = equal_area_texel(texel);

@@ -10,7 +10,7 @@
 #include "lights/sky.glsl"
 #include "lights/tree.glsl"
 
-// Of a direction that was drawn with density `own`, and that the other technique draws with `other`. Quotients, since the
+// Weight of a direction that was drawn with density `own`, and that the other technique draws with `other`. By quotients, since the
 // densities of small lights overflow when squared.
 float mis_weight(float own, float other) {
     float r = other / own;
@@ -36,12 +36,12 @@ uint choose_light(vec3 from, bool on_surface, uvec4 words, inout Rng rng, out fl
     return i;
 }
 
-// Of one that is no lamp.
+// A look toward a light that is no lamp.
 LightSample sample_shapeless(LightRow light, vec3 from, vec2 u, inout Rng rng) {
     LightSample drawn;
     if (SEES_SKY && light.kind == LIGHT_MAP)
         drawn = sample_sky(u, rng);
-    else if (light.kind == LIGHT_DISC)
+    else if (light.kind == LIGHT_SUN)
         drawn = sample_disc(light, u);
     else if (light.kind == LIGHT_POINT)
         drawn = sample_point(light, from);

@@ -60,7 +60,7 @@ CellBlock cells_passed(Walk w) {
     return block;
 }
 
-// Of a block with `cell` in it, the last one on the way to each side; `cell` itself where there is no such side.
+// The last cell, on the way to each side, of a block that has `cell` in it; `cell` itself where there is no such side.
 ivec3 last_cell(CellBlock block, ivec3 cell, ivec3 side) {
     ivec3 last = cell + (block.edge >> 1) * side;
     if (CELL_BITS != 0)

@@ -14,7 +14,7 @@ void main() {
     FilmPixel sums = film[pixel];
     for (uint i = push.sample_begin; i < push.sample_end; ++i) {
         uint at = splat_place(pixel, i);
-        vec3 light = splatted(at) * (is_sum ? float(1u << COARSE) : 1.0);
+        vec3 light = is_sum ? splatted_sum(at) : splatted(at);
         add_sample(sums.sum, sums.sum_low, sums.square, sums.square_low, light);
         sums.count += 1u;
         if (!is_sum)

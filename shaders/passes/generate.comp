@@ -41,5 +41,5 @@ void main() {
     lane.record = waiting_place(lane.path);
     generate(frame.media[0], lane, rng);
     lay_aside(slot, index, rng, lane, false);
-    push_item(LOOKS && lane.todo == TODO_LOOK ? QUEUE_SHADOW : QUEUE_TRACK, slot);
+    push_item(SHADOW_RAYS_WALK && lane.todo == TODO_LOOK ? QUEUE_SHADOW : QUEUE_TRACK, slot);
 }

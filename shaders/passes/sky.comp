@@ -29,7 +29,7 @@ void main() {
             uint row;
             radiance = seen_lamp(ray.origin, ray.direction, to_uniform(next_words(rng)).w, row).light;
         }
-        radiance += frame.lights[LIGHT_BACKGROUND].radiance;
+        radiance += frame.lights[FRAME_BACKGROUND].radiance;
         if (SEES_SKY)
             radiance += light_from_beyond(ray.direction, 0.0);
         film_add(entry, radiance, place, i, tally);

@@ -5,8 +5,8 @@
 #include "lib/directions.glsl"
 #include "lib/rng.glsl"
 
-// Of a film entry, in the picture: x | y << 16. It is the key of the pixel's random numbers, the same whatever the crop.
-// The division costs software drivers as much as a step of a walk: once per path is enough.
+// Place of a film entry in the picture: x | y << 16. It is the key of the pixel's random numbers, the same whatever the crop. The
+// division costs software drivers as much as a step of a walk: once per path is enough.
 uint place_of(uint pixel) {
     uint x = frame.crop_x + pixel % frame.crop_width;
     uint y = frame.crop_y + pixel / frame.crop_width;

@@ -22,7 +22,7 @@ LightSample sample_lamp_by_ray(LightRow light, vec3 from, vec3 ray, vec2 u, floa
     return of_mixture(light, from, direction, t, flux_pdf(direction), share);
 }
 
-// Of one of all lights, what a ray from there would bring on average. The sample's own ray serves where lamps are looked for by rays.
+// What a ray from one of all lights would bring on average. The sample's own ray serves where lamps are looked for by rays.
 LightSample look_from_sensor(vec3 from, vec3 ray, inout Rng rng, out uint row) {
     uvec4 words = next_words(rng);
     vec2 u = to_uniform(words).zw;

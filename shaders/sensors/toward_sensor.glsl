@@ -95,8 +95,8 @@ SensorLook toward_panorama(SensorParams s, vec3 from, out vec2 p) {
 }
 
 // A panorama's plane has a point many times, once in every turn, and beyond a pole once more: filters reach across, and camera_ray goes on
-// there. One of those that pixels of the window may count, of `count`; false if there is none. Of filters that reach less than from pole to
-// pole.
+// there. One of those that pixels of the window may count, of `count`; false if there is none. Of filters that reach beyond one pole at
+// a time: see why_no_particles.
 bool image_in_panorama(SensorParams s, vec2 u, inout vec2 p, out float count) {
     float turn = 2.0 * PI / abs(s.angle_step.x);
     float reach = PIXEL_FILTER != PIXEL_EVEN ? frame_block.filter_quantiles[FILTER_QUANTILES] : 0.0;

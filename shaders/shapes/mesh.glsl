@@ -92,7 +92,7 @@ struct Crossing {
     vec3 areas; // the corners' weights, not normalised
 };
 
-// Of the ray's whole line with a triangle.
+// Crossing of the ray's whole line with a triangle.
 Crossing cross_triangle(Shear s, vec3 a, vec3 b, vec3 c) {
     vec3 p = project(s, a);
     vec3 q = project(s, b);

@@ -9,16 +9,16 @@
 // Where a shadow ray is a walk of its own; that of a homogeneous medium of one part is known at once, where no
 // surface and no seam can be in the way. (In bits,
 // since glslang 12 branches for nested `&&` and `||`, and takes the outcome for a constant nevertheless.)
-const bool LOOKS =
+const bool SHADOW_RAYS_WALK =
     (int(NEE != NEE_NONE) &
      (int(TRANSMITTANCE != TRANSMITTANCE_ANALYTIC) | int(SHAPE == SHAPE_MESH) | int(HAS_SURFACES) | int(REPEATS))) != 0;
 
 // What the scene's estimators need of a walk that is laid aside. The rest is dropped, so that nothing computes it.
 Walk kept(Walk w) {
-    int shadow_traits = LOOKS ? SHADOW_TRAITS : 0;
+    int shadow_traits = SHADOW_RAYS_WALK ? SHADOW_TRAITS : 0;
     int traits = FLIGHT_TRAITS | shadow_traits;
     bool marches = FREE_FLIGHT == FREE_FLIGHT_MARCH || (shadow_traits & TRAIT_MARCH) != 0;
-    bool adds_depth = !NULL_FLIGHT || (LOOKS && !NULL_TRANSMITTANCE);
+    bool adds_depth = !NULL_FLIGHT || (SHADOW_RAYS_WALK && !NULL_TRANSMITTANCE);
     bool walks = (traits & TRAIT_CELLS) != 0;
     bool cells = (traits & TRAIT_VOXELS) != 0 || (walks && HAS_CELLS);
     bool listed = SEVERAL_MEDIA, bricks = CELL_BITS != 0;
@@ -34,7 +34,7 @@ Walk kept(Walk w) {
 
 // How far a segment may go, where that is not for the medium alone to say: a shadow ray, to a light that is not infinitely far.
 float cut_short(float t, float reach) {
-    return LIGHTS == LIGHTS_SUN ? t : min(t, reach);
+    return LIGHTS == LIGHTS_LONE ? t : min(t, reach);
 }
 
 // The part of the segment within the medium that begins at t.x.
@@ -46,7 +46,7 @@ void begin_part(MediumParams v, Ray ray, vec2 t, bool seeing, inout Walk w) {
     w.t = 0.0;
     w.at = 0.0;
     w.met = 0u;
-    if (LOOKS && seeing)
+    if (SHADOW_RAYS_WALK && seeing)
         begin_transmittance_part(v, w);
     else
         begin_flight_part(v, w);
@@ -73,7 +73,7 @@ void begin_segment(MediumParams v, vec3 position, vec3 direction, float reach, b
 // What `event` of a step means for the segment: where a part of a mesh has ended there may be a further one.
 uint after_step(uint event, Walk w, float reach, inout PartSearch search) {
     bool searches = SHAPE == SHAPE_MESH && event == EVENT_LEFT && search.stage == SEARCH_OVER;
-    searches = searches && (LIGHTS == LIGHTS_SUN || w.start + w.t_end < reach);
+    searches = searches && (LIGHTS == LIGHTS_LONE || w.start + w.t_end < reach);
     if (searches)
         search = begin_search(SEARCH_NEXT, w.start + w.t_end);
     return searches ? EVENT_MOVING : event;
@@ -95,7 +95,7 @@ uint search_part(MediumParams v, vec3 position, vec3 direction, float reach, boo
         bool over = false;
         for (int k = 0; k < MESH_NODES_PER_TURN && !over; ++k)
             over = step_search(v.bvh_nodes, mesh_ray, search, t);
-        if (over && LIGHTS != LIGHTS_SUN) {
+        if (over && LIGHTS != LIGHTS_LONE) {
             t.y = cut_short(t.y, reach);
             t.x = min(t.x, t.y); // the first part may begin behind the lamp
         }
@@ -109,7 +109,7 @@ uint search_part(MediumParams v, vec3 position, vec3 direction, float reach, boo
 }
 
 // Transmittance of a homogeneous sphere or box, or of an exponential, up to a distance of `reach`.
-Spectrum analytic_shadow(MediumParams v, vec3 position, vec3 direction, float reach) {
+Spectrum transmittance_to(MediumParams v, vec3 position, vec3 direction, float reach) {
     vec2 t;
     Ray ray = to_medium(v, position, direction);
     float inside = medium_interval(v, ray, t) ? cut_short(t.y, reach) - t.x : 0.0;

@@ -5,7 +5,7 @@
 
 const float FAR = 3.0e38;
 
-// Of the largest coordinate, world units: more than places on surfaces err by, see mesh.glsl.
+// Spare distance by a place's largest coordinate, world units: more than places on surfaces err by, see mesh.glsl.
 float spare_at(vec3 place) {
     vec3 reach = abs(place);
     return SURFACE_SPARE * max(reach.x, max(reach.y, reach.z));

@@ -13,7 +13,7 @@
 #define BINDING_FILM 7        // FilmPixel per pixel of the crop
 #define BINDING_COUNTERS 8    // Counters
 #define BINDING_WORK 9        // pixels of the batch that may meet the medium
-#define BINDING_BLACKBODY 10  // vec3, BLACKBODY_ENTRIES colours evenly spaced in temperature
+#define BINDING_BLACKBODY 10  // vec4, BLACKBODY_ENTRIES colours evenly spaced in temperature
 #define BINDING_BETAS 11      // path throughput per slot: float, or vec3 in a medium of chromatic coefficients
 #define BINDING_CONTROLS 12   // ControlCell per majorant cell
 #define BINDING_TRIANGLES 13  // vec3, three corners per triangle, counterclockwise seen from without; render space
@@ -54,7 +54,8 @@
 #define BINDING_PRIMITIVE_TEXELS 37 // three to a primitive
 #define BINDING_SURFACE_TEXELS 38 // four to a row
 #define BINDING_LIGHT_TEXELS 39 // LIGHT_ROW_TEXELS to a row
-#define BINDING_COUNT 40
+#define BINDING_BLACKBODY_TEXELS 40
+#define BINDING_COUNT 41
 
 #define WORKGROUP_SIZE 64
 
@@ -63,8 +64,8 @@
 #define MOST_SENSORS 1
 #define MOST_MEDIA 1
 #define MOST_LIGHTS 2
-#define LIGHT_BACKGROUND 0
-#define LIGHT_SUN 1
+#define FRAME_BACKGROUND 0
+#define FRAME_DIRECTIONAL 1
 
 // Specialization constants. What a scene lacks is false here and absent from its kernels.
 #define SPEC_SHAPE 0
@@ -78,7 +79,7 @@
 #define SPEC_FREE_FLIGHT 8
 #define SPEC_TRANSMITTANCE 9
 #define SPEC_TEMPERATURE_TYPE 10 // GRID_...
-#define SPEC_STEPS 11            // tracking steps between two looks at what they led to
+#define SPEC_STEPS 11            // tracking steps in a turn
 #define SPEC_WINDOW_BITS 12      // log2 of the words in a window, where grids lie in windows
 #define SPEC_TRACE 13            // 1: vertices are recorded, of the one path there is
 #define SPEC_TEXELS 14           // 1: grids, their tables and lattices are read as texels
@@ -100,12 +101,12 @@
 #define SPEC_MAP_HALVINGS 30 // log2 of the knots in a map's table
 #define SPEC_UNBOUNDED 31    // 1: some medium is everywhere
 #define SPEC_LAYERS 32       // LAYERS_..., a sum
-#define SPEC_TABLE_TEXELS 33 // 1: lights, surfaces, their pieces and the hierarchy of those are read as texels
+#define SPEC_TABLE_TEXELS 33 // 1: lights, surfaces, their pieces and the hierarchy of those, and black bodies are read as texels
 #define SPEC_PATHS 34        // PATHS_...
 #define SPEC_PERIODIC 35     // 1: a domain repeats
 #define SPEC_COUNT 36
 
-// Of several media that differ in it: each one's own, which is in its row.
+// Value of a constant in which several media differ: each has its own, in its row.
 #define EACH -1
 
 #define SHAPE_NONE 0 // background only
@@ -142,7 +143,7 @@
 #define FILTER_QUANTILES 64
 
 // Images of more than radiance; see aovs.glsl.
-#define LAYERS_KINDS 1     // of light: LIGHT_OF_...
+#define LAYERS_KINDS 1     // of light: SCATTERED_NEVER and so on
 #define LAYERS_GROUPS 2    // by the group of the light that it comes from
 #define LAYERS_MEDIA 4     // by the medium that sends it toward the sensor
 #define LAYERS_COLLISION 8 // depth and coverage of the first, and its position
@@ -151,12 +152,12 @@
 #define LAYERS_NORMAL 128  // of the first surface
 #define LAYERS_HOLDOUT 64  // light that was not scattered, and no medium's, stays out of the picture
 
-// Layers by how often light was scattered on its way; of these LIGHT_KINDS.
-#define LIGHT_OF_SOURCES 0 // never: seen straight
-#define LIGHT_OF_MEDIA 1   // never, and sent out by a medium
-#define LIGHT_ONCE 2
-#define LIGHT_OFTEN 3
-#define LIGHT_KINDS 4
+// Layers by how often light was scattered on its way; of these SCATTERED_KINDS.
+#define SCATTERED_NEVER 0 // never: seen straight
+#define GLOW_OF_MEDIA 1   // never, and sent out by a medium
+#define SCATTERED_ONCE 2
+#define SCATTERED_OFTEN 3
+#define SCATTERED_KINDS 4
 
 #define ALBEDO_CONSTANT 0
 #define ALBEDO_GRID 1
@@ -194,7 +195,7 @@
 #define PHASE_DROPLETS 4
 #define PHASE_TABLE 5
 
-#define LIGHTS_SUN 0   // one without place or extent, or none, besides an even background
+#define LIGHTS_LONE 0   // one without place or extent, or none, besides an even background
 #define LIGHTS_TABLE 1 // any, of which every look chooses one; and sums with
 #define LIGHTS_SKY 2   // some that flights meet by themselves when they leave
 #define LIGHTS_LAMPS 4 // some that have a shape and a place
@@ -203,7 +204,7 @@
 #define LIGHTS_EQUAL_AREA 16 // a map of the sky, and that a square one; see equal_area.glsl
 
 #define LIGHT_DIRECTIONAL 0
-#define LIGHT_DISC 1 // in the sky
+#define LIGHT_SUN 1 // in the sky
 #define LIGHT_POINT 2
 #define LIGHT_SPOT 3
 #define LIGHT_MAP 4 // of the sky
@@ -321,6 +322,8 @@
 #define TRACE_ESCAPE 3      // into the background
 #define TRACE_END 4
 #define TRACE_SURFACE 5     // the path has come to one
+#define TRACE_EMIT 6        // a particle, from its light
+#define TRACE_KINDS 7
 
 #define LAST_OF_LIST 0x80000000u // of media in a cell: set in the last one's word
 

@@ -109,7 +109,7 @@ struct MarchParams {
     float jitter;       // 1: sample points anywhere in their step; 0: in its middle
 };
 
-// Of phase functions, what they need; see shaders/phase.
+// What phase functions need; see shaders/phase.
 struct PhaseParams {
     float g;     // Henyey and Greenstein's and Draine's, in (-1, 1)
     float g2;    // likewise of a second function,
@@ -258,7 +258,7 @@ struct SurfacePrimitive {
     uint details; // a piece that rays do not meet, DETAIL_..., or 0
 };
 
-// Of a binary tree over lights, in depth-first order; a branch's left one follows it.
+// A node of a binary tree over lights, in depth-first order; a branch's left one follows it.
 struct LightNode {
     vec3 low; // bounds of all lights below, render space
     vec3 high;
@@ -316,7 +316,7 @@ struct PeriodParams {
 struct FrameParams {
     SensorParams sensors[MOST_SENSORS];
     MediumParams media[MOST_MEDIA];
-    LightParams lights[MOST_LIGHTS]; // LIGHT_BACKGROUND, LIGHT_SUN
+    LightParams lights[MOST_LIGHTS]; // FRAME_BACKGROUND, FRAME_DIRECTIONAL
     uint choices;                    // rows of the table to choose among; where there is a tree, the last of them stands for that
     uint sky_count;                  // the first rows: those that flights meet by themselves
     uint lamp_first;                 // rows of the lamps

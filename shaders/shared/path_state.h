@@ -17,7 +17,7 @@
 #define TODO_CHECK 10u  // whether a surface is in the way of the shadow ray, before that begins
 #define TODO_GO 11u     // along a flight whose end is known, from where it has looked
 
-// Of a look from along a flight.
+// Legs of a look from along a flight.
 #define LEG_ALONG 0u // to where it begins
 #define LEG_LOOK 1u  // toward the light, as all other looks
 

@@ -2,14 +2,14 @@
 #ifndef STAGE_COLLIDE_GLSL
 #define STAGE_COLLIDE_GLSL
 #include "field/emission.glsl"
-#include "lights/light.glsl"
+#include "lights/directional.glsl"
 #include "lights/equiangular.glsl"
 #include "lights/light_cache.glsl"
 #include "lights/table.glsl"
 #include "lib/trace.glsl"
 #include "stages/count.glsl"
 
-// Of a particle: what it scatters toward the sensor.
+// Shows the sensor what a particle scatters toward it.
 void show_to_sensor(MediumParams v, Scatterer s, vec3 position, Spectrum lit, uint next, inout Lane lane, inout Rng rng) {
     SensorLook look = toward_sensor(position, rng);
     s = as_shown_along(s, look.direction);
@@ -31,7 +31,7 @@ void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spec
         light *= weight_of_found(lane, shares_of_found(row, position, drawn.direction, drawn.distance, 0.0), true);
     if (LOOKS_ALONG && !is_surface(s))
         light *= weight_of_collision(v, row, lane.path.direction, position, t, flying_as_far_as(lane));
-    if (LOOKS) {
+    if (SHADOW_RAYS_WALK) {
         lane.position = lit_position(s, position, drawn.direction);
         lane.lit = lit;
         lane.resume = next;
@@ -53,7 +53,7 @@ void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spec
             lane.todo = to_uniform(next_words(rng)).x < lane.chance ? lane.todo : next;
         }
     } else {
-        add_light(lane, lit * analytic_shadow(v, position, drawn.direction, drawn.distance) * light, label);
+        add_light(lane, lit * transmittance_to(v, position, drawn.direction, drawn.distance) * light, label);
         lane.todo = next;
     }
 }
@@ -63,12 +63,12 @@ void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spec
 // light, without its group.
 void gather_light(MediumParams v, MediumParams met, vec3 position, float t, Spectrum lit, uint label, uint next, inout Lane lane,
                   inout Rng rng) {
-    uint sun_label = label | group_label(frame.lights[LIGHT_SUN].group);
+    uint sun_label = label | group_label(frame.lights[FRAME_DIRECTIONAL].group);
     if (is_particle(lane)) {
         show_to_sensor(v, matter_of(met), position, lit, next, lane, rng);
-    } else if (LIGHTS != LIGHTS_SUN) {
+    } else if (LIGHTS != LIGHTS_LONE) {
         gather_some_light(v, matter_of(met), position, t, lit, label, next, lane, rng);
-    } else if (LOOKS) {
+    } else if (SHADOW_RAYS_WALK) {
         lane.label = sun_label;
         lane.position = position;
         lane.lit = lit;
@@ -77,14 +77,14 @@ void gather_light(MediumParams v, MediumParams met, vec3 position, float t, Spec
         lane.todo = TODO_LOOK;
         if (NEE == NEE_CACHED) {
             lane.cached = cached_transmittance(v, position);
-            Spectrum scattered = lit * phase_eval(met, lane.path.direction, frame.lights[LIGHT_SUN].direction);
-            add_light(lane, scattered * lane.cached * frame.lights[LIGHT_SUN].radiance, sun_label);
+            Spectrum scattered = lit * phase_eval(met, lane.path.direction, frame.lights[FRAME_DIRECTIONAL].direction);
+            add_light(lane, scattered * lane.cached * frame.lights[FRAME_DIRECTIONAL].radiance, sun_label);
             lane.chance = looking_chance(largest(scattered) / INV_4PI, lane.cached, LOOKING);
             lane.todo = to_uniform(next_words(rng)).x < lane.chance ? TODO_LOOK : next;
         }
     } else {
-        Spectrum T = analytic_shadow(v, position, frame.lights[LIGHT_SUN].direction, FAR);
-        add_light(lane, sun_contribution(met, frame.lights[LIGHT_SUN], lane.path.direction, lit * T), sun_label);
+        Spectrum T = transmittance_to(v, position, frame.lights[FRAME_DIRECTIONAL].direction, FAR);
+        add_light(lane, directional_contribution(met, frame.lights[FRAME_DIRECTIONAL], lane.path.direction, lit * T), sun_label);
         lane.todo = next;
     }
 }

@@ -54,7 +54,7 @@ void count_flight(MediumParams v, vec3 from, uint event, Lane lane) {
         count_passing(from, collided || t < FAR, collided ? lane.path.position : from + t * lane.path.direction, lane);
 }
 
-// Of a collision what is not scattered, per volume.
+// Counts the power that a collision absorbs, per volume.
 void count_absorbed(vec3 position, vec3 power, Lane lane) {
     SensorParams s = frame.sensors[0];
     ivec3 cell = ivec3(floor((at_sensor(position) - s.position) / s.corner));

@@ -37,20 +37,20 @@ void scatter(MediumParams v, vec4 u, inout Lane lane) {
     if (SEES_SKY)
         lane.phase_pdf = phase_eval(v, before, lane.path.direction);
     lane.todo = survives(lane, u.w) ? TODO_FLY : TODO_END;
-    if (LIGHTS == LIGHTS_SUN) // in an `if` of its own, as below
-        if (LOOKS && NEE == NEE_CACHED && PHASE_HAS_TWICE && lane.path.depth < frame.max_depth)
+    if (LIGHTS == LIGHTS_LONE) // in an `if` of its own, as below
+        if (SHADOW_RAYS_WALK && NEE == NEE_CACHED && PHASE_HAS_TWICE && lane.path.depth < frame.max_depth)
             add_light(lane,
-                      -lane.beta * frame.lights[LIGHT_SUN].radiance *
+                      -lane.beta * frame.lights[FRAME_DIRECTIONAL].radiance *
                           foreseen_light(v, lane.path.position, lane.cached, before, lane.path.direction),
-                      kind_label(lane.path.depth + 1u) | group_label(frame.lights[LIGHT_SUN].group) | lane.first_label);
+                      kind_label(lane.path.depth + 1u) | group_label(frame.lights[FRAME_DIRECTIONAL].group) | lane.first_label);
 }
 
 #ifdef SURFACES
-// Within glass whose faces stand for something round light may go about for ever, and loses nothing: roulette that does not ask
-// for throughput, after so many vertices that it is seldom asked.
+// Within glass whose faces stand for something round light may go about for ever, and loses nothing; likewise between mirrors, or
+// white walls: roulette that does not ask for throughput, after so many vertices that it is seldom asked.
 bool goes_on_within(bool stays_within, uint depth, inout Spectrum beta, inout float u) {
-    const float chance = 0.9;
-    bool asked = stays_within && depth >= 32u && frame.roulette_threshold > 0.0;
+    float chance = stays_within ? 0.9 : 0.99;
+    bool asked = depth >= (stays_within ? 32u : 256u) && frame.roulette_threshold > 0.0;
     bool goes_on = !asked || u < chance;
     beta *= !asked ? 1.0 : goes_on ? 1.0 / chance : 0.0;
     u = asked ? u / chance : u;
@@ -112,7 +112,7 @@ void set_going(MediumParams v, uvec4 words, bool looks, bool at_camera, inout La
     float e = to_exponential(at_camera ? words.z : words.x, words);
     lane.walk.tau = looks ? e : begin_flight(v, lane.beta, e, to_tap(words).z);
     lane.walk.depth = 0.0;
-    if (LOOKS && looks)
+    if (SHADOW_RAYS_WALK && looks)
         begin_transmittance(words, lane.walk);
     begin_here(v, looks, lane);
     lane.T = to_spectrum(vec3(1.0));
@@ -154,7 +154,7 @@ void begin_going(MediumParams v, uvec4 words, bool looks, bool at_camera, bool k
         set_going(v, words, looks, at_camera, lane);
     tally.shadow_rays += looks ? 1u : 0u;
     if (!looks && !(HAS_SURFACES && knows)) // else the search has begun there
-        trace(TRACE_DEPART, lane, lane.path.position, lane.path.direction);
+        trace(is_particle(lane) && lane.path.depth == 0u ? TRACE_EMIT : TRACE_DEPART, lane, lane.path.position, lane.path.direction);
 }
 
 // Behind a seam the segment goes on, once surfaces have been asked there.
@@ -186,7 +186,7 @@ void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
         scatter(medium_of(v, lane.path.medium), to_uniform(words), lane);
     bool goes_to_look = false;
 #ifdef SURFACES
-    if (SEES_LAMPS && LOOKS)
+    if (SEES_LAMPS && SHADOW_RAYS_WALK)
         if (!looks && !at_camera && !has_looked)
             goes_to_look = look_at_shown_lamps(lane, rng);
 #endif

@@ -7,8 +7,8 @@
 
 // Each light in its group's layer, and what of a sensor's ray has come through.
 void note_escape(Spectrum beta, uint label, Lane lane) {
-    note_light(lane.record, label | group_label(frame.lights[LIGHT_BACKGROUND].group),
-               beta * frame.lights[LIGHT_BACKGROUND].radiance);
+    note_light(lane.record, label | group_label(frame.lights[FRAME_BACKGROUND].group),
+               beta * frame.lights[FRAME_BACKGROUND].radiance);
     if (SEES_SKY)
         for (uint i = 0u; i < frame.sky_count; ++i)
             note_light(lane.record, label | group_label(light_at(i).group),
@@ -17,7 +17,7 @@ void note_escape(Spectrum beta, uint label, Lane lane) {
         note_transmittance(lane.record, vec3(beta));
 }
 
-// Of all that a flight meets when it leaves.
+// The path's part of the light of all that a flight meets when it leaves.
 vec3 light_left_to_path(Lane lane) {
     vec3 direction = lane.path.direction, radiance = vec3(0.0);
     for (uint i = 0u; i < frame.sky_count; ++i) {
@@ -39,7 +39,7 @@ void escape(MediumParams v, inout Lane lane) {
     uint label = kind_label(lane.path.depth) | lane.first_label;
     if (HAS_LAYERS)
         note_escape(beta, label, lane);
-    lane.path.radiance += held_out(beta * frame.lights[LIGHT_BACKGROUND].radiance, label);
+    lane.path.radiance += held_out(beta * frame.lights[FRAME_BACKGROUND].radiance, label);
     if (SEES_SKY && WEIGHS)
         lane.path.radiance += beta * light_left_to_path(lane);
     else if (SEES_SKY)

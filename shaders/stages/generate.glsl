@@ -9,10 +9,10 @@
 void look_first(MediumParams v, LightSample seen, uint row, inout Lane lane) {
     bool is_solid = light_at(row).body != NO_SURFACE;
     uint label = (is_solid ? SOLID : 0u) | kind_label(0u) | group_label(light_at(row).group);
-    if (LOOKS) {
+    if (SHADOW_RAYS_WALK) {
         look_straight(seen, light_at(row).body, to_spectrum(vec3(1.0)), label, TODO_DEPART, lane);
     } else {
-        add_light(lane, analytic_shadow(v, lane.path.position, seen.direction, seen.distance) * seen.light, label);
+        add_light(lane, transmittance_to(v, lane.path.position, seen.direction, seen.distance) * seen.light, label);
     }
 }
 
@@ -38,15 +38,15 @@ void look_at_lights(MediumParams v, inout Lane lane, inout Rng rng) {
 // Where particles are all there is, along the ray for what is beyond: nothing that they come from there would meet a camera.
 void look_beyond(MediumParams v, inout Lane lane, inout Rng rng) {
     rng.draw = 1u; // behind the camera's
-    vec3 light = frame.lights[LIGHT_BACKGROUND].radiance;
+    vec3 light = frame.lights[FRAME_BACKGROUND].radiance;
     if (SEES_SKY)
         light += light_from_beyond(lane.path.direction, 0.0);
     LightSample seen = LightSample(lane.path.direction, FAR, light, 0.0);
     lane.todo = TODO_END;
-    if (largest(light) > 0.0 && LOOKS)
+    if (largest(light) > 0.0 && SHADOW_RAYS_WALK)
         look_straight(seen, NO_SURFACE, to_spectrum(vec3(1.0)), 0u, TODO_END, lane);
     else if (largest(light) > 0.0)
-        add_light(lane, analytic_shadow(v, lane.path.position, seen.direction, FAR) * light, 0u);
+        add_light(lane, transmittance_to(v, lane.path.position, seen.direction, FAR) * light, 0u);
 }
 
 void generate(MediumParams v, inout Lane lane, out Rng rng) {

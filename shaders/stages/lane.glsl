@@ -23,9 +23,9 @@ bool at_shadow_ray(bool is) {
 #if defined(FLIGHTS_ONLY)
     return false;
 #elif defined(SHADOW_RAYS_ONLY)
-    return LOOKS;
+    return SHADOW_RAYS_WALK;
 #else
-    return LOOKS && is;
+    return SHADOW_RAYS_WALK && is;
 #endif
 }
 
@@ -47,7 +47,7 @@ bool departs(uint todo) {
     return todo == TODO_DEPART || todo == TODO_LOOK || sets_out;
 #endif
 }
-// Of the surface that ends a flight, or is in the way of a shadow ray.
+// Whether a lane seeks the surface that ends a flight, or is in the way of a shadow ray.
 bool seeks(uint todo) {
 #if !defined(SURFACES)
     return false;
@@ -84,15 +84,15 @@ vec3 looking_from(Lane lane) {
     return KEEPS_PLACE && !is_along(lane) ? lane.position : lane.path.position;
 }
 vec3 looking_along(Lane lane) {
-    return LIGHTS == LIGHTS_SUN ? frame.lights[LIGHT_SUN].direction : is_along(lane) ? lane.path.direction : lane.to_light;
+    return LIGHTS == LIGHTS_LONE ? frame.lights[FRAME_DIRECTIONAL].direction : is_along(lane) ? lane.path.direction : lane.to_light;
 }
 // World units, how far it is to the light.
 float reach_of_look(Lane lane) {
-    return LIGHTS == LIGHTS_SUN ? FAR
+    return LIGHTS == LIGHTS_LONE ? FAR
            : is_along(lane)     ? distance(lane.path.position, lane.position)
                                 : lane.light_distance;
 }
-// Of the present part of it, where a domain repeats.
+// World units, how far the present part of the look goes, where a domain repeats.
 float looking_as_far_as(Lane lane) {
     ivec3 axis;
     return REPEATS ? seam_ahead(looking_from(lane), looking_along(lane), FAR, axis) : reach_of_look(lane);
@@ -147,21 +147,21 @@ uint label_at(Lane lane, MediumParams met) {
 #define STATE_CONDITIONS(next, amid)                                                                                  \
     bool seeking = HAS_SURFACES && amid && (next == TODO_SEEK || next == TODO_CHECK);                                 \
     bool repeats = REPEATS, flight_rests = NEE == NEE_TENTATIVE;                                                      \
-    bool seeing = LOOKS && amid && (next == TODO_SEE || ((repeats || flight_rests) && next == TODO_CHECK)); \
-    bool looking = seeing || (LOOKS && next == TODO_LOOK) || (HAS_SURFACES && LOOKS && amid && next == TODO_CHECK);   \
+    bool seeing = SHADOW_RAYS_WALK && amid && (next == TODO_SEE || ((repeats || flight_rests) && next == TODO_CHECK)); \
+    bool looking = seeing || (SHADOW_RAYS_WALK && next == TODO_LOOK) || (HAS_SURFACES && SHADOW_RAYS_WALK && amid && next == TODO_CHECK);   \
     bool keeps_place = KEEPS_PLACE;                                                                                   \
     bool several = SEVERAL_MEDIA;                                                                                     \
     bool looks_along = LOOKS_ALONG;                                                                                   \
     bool sets_out = SETS_OUT && (looking || seeking || sets_out_again(next));                                         \
     bool sees_sky = SEES_SKY;                                                                             \
-    bool chooses_light = LIGHTS != LIGHTS_SUN;                                                                        \
-    bool has_cache = LOOKS && NEE == NEE_CACHED;                                                                      \
+    bool chooses_light = LIGHTS != LIGHTS_LONE;                                                                        \
+    bool has_cache = SHADOW_RAYS_WALK && NEE == NEE_CACHED;                                                                      \
     bool has_layers = HAS_LAYERS;                                                                                     \
     bool has_particles = HAS_PARTICLES;                                                                               \
     bool weighs_families = PATHS == PATHS_BOTH;                                                                       \
     bool under_way = (amid && next == TODO_FLY) || seeing || (looking && flight_rests) || (seeking && repeats);
 
-// Of `pixel` see PathState. `amid`, a constant: it may be amid a segment; else that is not compiled.
+// `pixel`: see PathState. `amid`, a constant: whether the path may be amid a segment; else that is not compiled.
 void lay_aside(uint slot, uint pixel, Rng rng, Lane lane, const bool amid) {
     lane.path.draw = rng.draw;
     lane.path.todo = lane.todo;

@@ -43,7 +43,7 @@ bool look_along(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tall
     lane.light = drawn.light * phase_eval(met, lane.path.direction, drawn.direction);
     uint label = kind_label(lane.path.depth + 1u) | group_label(light.group) | label_at(lane, met);
     bool is_lit = is_open(s) && lane.path.depth < frame.max_depth && largest(lane.lit) > 0.0 && largest(lane.light) > 0.0;
-    if (is_lit && LOOKS) {
+    if (is_lit && SHADOW_RAYS_WALK) {
         lane.position = position;
         lane.to_light = drawn.direction;
         lane.light_distance = drawn.distance;
@@ -58,11 +58,11 @@ bool look_along(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tall
         look_in_full(lane);
     } else if (is_lit) {
         add_light(lane,
-                  lane.lit * analytic_shadow(v, lane.path.position, lane.path.direction, t) *
-                      analytic_shadow(v, position, drawn.direction, drawn.distance) * lane.light,
+                  lane.lit * transmittance_to(v, lane.path.position, lane.path.direction, t) *
+                      transmittance_to(v, position, drawn.direction, drawn.distance) * lane.light,
                   label);
     }
-    return is_lit && LOOKS;
+    return is_lit && SHADOW_RAYS_WALK;
 }
 
 #endif

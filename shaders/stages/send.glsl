@@ -32,7 +32,7 @@ void send(uint slot, Rng rng, inout Lane lane) {
         finish(slot, lane);
     } else {
         lay_aside(slot, lane.path.pixel, rng, lane, COMES_AMID);
-        push_item(LOOKS && lane.todo == TODO_LOOK ? QUEUE_SHADOW : QUEUE_TRACK, slot);
+        push_item(SHADOW_RAYS_WALK && lane.todo == TODO_LOOK ? QUEUE_SHADOW : QUEUE_TRACK, slot);
     }
     lane.todo = TODO_TAKE;
 }

@@ -1,7 +1,7 @@
 // A shadow ray has ended, at the light, at nothing left, or cut.
 #ifndef STAGE_SHADOW_GLSL
 #define STAGE_SHADOW_GLSL
-#include "lights/light.glsl"
+#include "lights/directional.glsl"
 #include "lib/trace.glsl"
 #include "stages/show.glsl"
 
@@ -14,7 +14,7 @@ void turn_to_light(Spectrum T, inout Lane lane) {
 
 void end_look(MediumParams v, Spectrum T, inout Lane lane) {
     Spectrum more = NEE == NEE_CACHED ? (T - lane.cached) / lane.chance : T;
-    vec3 light = LIGHTS == LIGHTS_SUN ? sun_contribution(medium_of(v, lit_medium(lane)), frame.lights[LIGHT_SUN],
+    vec3 light = LIGHTS == LIGHTS_LONE ? directional_contribution(medium_of(v, lit_medium(lane)), frame.lights[FRAME_DIRECTIONAL],
                                                          lane.path.direction, lit_beta(lane) * more)
                                       : lit_beta(lane) * more * lane.light;
     if (is_particle(lane))

@@ -42,7 +42,7 @@ void show(MediumParams v, SensorLook look, vec3 position, vec3 value, Spectrum l
         value *= weight_of_particle(sensor_share(position, -look.direction, look.distance), lane.shares.x);
     bool is_seen = look.pixel != NO_PIXEL && largest(vec3(lit) * value) > 0.0;
     lane.todo = next;
-    if (LOOKS && is_seen) {
+    if (SHADOW_RAYS_WALK && is_seen) {
         lane.position = position;
         lane.lit = lit;
         lane.resume = next;
@@ -56,7 +56,7 @@ void show(MediumParams v, SensorLook look, vec3 position, vec3 value, Spectrum l
         look_in_full(lane);
         lane.todo = TODO_LOOK;
     } else if (is_seen) {
-        splat_of_particle(lane, look.pixel, lit * analytic_shadow(v, position, look.direction, look.distance) * value);
+        splat_of_particle(lane, look.pixel, lit * transmittance_to(v, position, look.direction, look.distance) * value);
     }
 }
 

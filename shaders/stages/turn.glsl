@@ -1,4 +1,4 @@
-// A turn: what befalls a lane between two looks at where it stands, of all stages that its pass has.
+// A turn: what befalls a lane until it is asked again where it stands, of all stages that its pass has.
 #ifndef STAGE_TURN_GLSL
 #define STAGE_TURN_GLSL
 #include "stages/collide.glsl"

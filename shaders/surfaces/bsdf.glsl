@@ -143,8 +143,10 @@ float bsdf_adjoint(Bsdf b, vec3 wo, vec3 wi) {
 // Which normal counts, the path from the camera decides: it comes along -wi where a particle comes along -wo. So a particle draws one
 // before it draws wi: the face's with this chance, the cosine-weighted part of all directions that do not see the other; or the other, if
 // light comes to it.
+// (1 - cos) / 2 of the angle between them, by a difference that is 0 where they are equal.
 float face_chance(Bsdf b, vec3 wo) {
-    return is_between(b, b.smooth_normal, wo) ? 1.0 : 0.5 - 0.5 * dot(b.smooth_normal, b.face);
+    vec3 between = b.smooth_normal - b.face;
+    return is_between(b, b.smooth_normal, wo) ? 1.0 : 0.25 * dot(between, between);
 }
 
 // `weight`: of what is then drawn with it, if that does see it.

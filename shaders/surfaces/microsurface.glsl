@@ -30,14 +30,14 @@ float smith_lambda(vec3 w, float alpha) {
     return w.z > 0.0 ? 0.5 * across / (up * (1.0 + root)) : -0.5 * (1.0 + root);
 }
 
-// Of facets as seen along -wi, per area of the boundary.
+// Projected area of facets as seen along -wi, per area of the boundary.
 float projected_area(vec3 wi, float alpha) {
     float across = alpha * alpha * dot(wi.xy, wi.xy);
     float root = sqrt(wi.z * wi.z + across);
     return wi.z > 0.0 ? 0.5 * (wi.z + root) : 0.5 * across / (root - wi.z);
 }
 
-// Of normals m, per steradian and area of the boundary.
+// Density of normals m, per steradian and area of the boundary.
 float ggx(vec3 m, float alpha) {
     float s = dot(m.xy, m.xy) / (alpha * alpha) + m.z * m.z;
     return m.z > 0.0 ? 1.0 / (PI * alpha * alpha * s * s) : 0.0;

@@ -12,7 +12,7 @@ void take_nearer(MeshRay m, Ray ray, uint i, uint from, uint body, inout Surface
     s.nearest = min(s.nearest, t);
 }
 
-// Of what is nearer than `reach`. Planes, which no hierarchy holds, are asked at once.
+// Begins the search for what is nearer than `reach`. Planes, which no hierarchy holds, are asked at once.
 SurfaceSearch begin_seek(Ray ray, float reach, uint from) {
     SurfaceSearch s = SurfaceSearch(0u, reach, NO_SURFACE);
     for (uint i = 0u; i < frame.planes; ++i) { // at most MOST_PLANES

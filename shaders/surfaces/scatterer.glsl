@@ -33,7 +33,7 @@ vec3 lit_position(Scatterer s, vec3 position, vec3 to_light) {
     return behind ? position - 2.0 * s.apart * s.bsdf.face : position;
 }
 
-// Of light, into `after`, per steradian.
+// Share of light that is scattered into `after`, per steradian.
 vec3 scatter_value(Scatterer s, vec3 before, vec3 after) {
     return s.is_surface ? bsdf_value(s.bsdf, -before, after) : vec3(phase_eval(s.medium, before, after));
 }
@@ -57,7 +57,7 @@ float adjoint(Scatterer s, vec3 before, vec3 after) {
     return s.is_surface ? bsdf_adjoint(s.bsdf, -before, after) : 1.0;
 }
 
-// Of a particle's vertex, where it is shown along `after`.
+// A particle's vertex as it is where it is shown along `after`.
 Scatterer as_shown_along(Scatterer s, vec3 after) {
     if (HAS_SMOOTH_FACES && s.is_surface)
         s.bsdf = as_seen_along(s.bsdf, after);

@@ -17,7 +17,7 @@ float meet_ball(Ray ray, vec3 center, float radius, bool itself) {
     return itself ? (middle > 0.0 ? 2.0 * middle : FAR) : t;
 }
 
-// Of an endless plane if the radius is FAR.
+// Distance along the ray to a disk, or to an endless plane if the radius is FAR; FAR if it meets none.
 float meet_disk(Ray ray, vec3 center, vec3 normal, float radius) {
     float along = dot(normal, ray.direction);
     float t = dot(normal, center - ray.origin) / (along != 0.0 ? along : 1.0);
@@ -116,8 +116,9 @@ vec2 texture_place(SurfacePrimitive p, vec3 at, vec3 normal) {
     return place;
 }
 
-// Of what is flat an offset of 64 u R, with u = 2^-24 and R the greatest coordinate that there is in it, is beyond the error of 28
-// u R that a ray's crossing with a neighbour has: see mesh.glsl. Unlike a fixed length it serves scenes of any size.
+// The point of primitive `i` next to `near`. An offset of 64 u R from what is flat, with u = 2^-24 and R the greatest coordinate
+// that there is in it, is beyond the error of 28 u R that a ray's crossing with a neighbour has: see mesh.glsl. Unlike a fixed
+// length it serves scenes of any size.
 SurfacePoint surface_point(uint i, vec3 near) {
     SurfacePrimitive p = primitive_at(i);
     uint shape = p.shape;

@@ -89,9 +89,9 @@ TEST_CASE("Student's t has the quantiles of its table", "[cpu][bench]") {
         CAPTURE(freedom);
         CHECK(std::abs(student_t95(freedom) - t) < 6e-5); // the table's rounding
     }
-    CHECK(std::abs(student_t(1.0, 0.99) - 63.6567) < 6e-5);
-    CHECK(std::abs(student_t(5.0, 0.999) - 6.8688) < 6e-5);
-    CHECK(std::abs(normal_quantile(0.99) - 2.5758) < 6e-5);
+    CHECK(std::abs(student_two_sided(1.0, 0.99) - 63.6567) < 6e-5);
+    CHECK(std::abs(student_two_sided(5.0, 0.999) - 6.8688) < 6e-5);
+    CHECK(std::abs(normal_two_sided(0.99) - 2.5758) < 6e-5);
 }
 
 TEST_CASE("a pure decay has slope -1, no floor, and the efficiency it was made with", "[cpu][bench]") {
@@ -259,7 +259,7 @@ TEST_CASE("the floor of pictures that are off by a tenth is a hundredth", "[cpu]
         runs.push_back({samples, 0, 1.0, relative_mse(image, exact), relative_variance(image, exact)});
     }
     const Interval floor = *bias_floor(runs, 0.0);
-    // Of one value the difference has variance 2 v^2 / (n (n - 1)) + 4 b^2 v / n, v = 1/3 and b = 0.1.
+    // The difference of one value has variance 2 v^2 / (n (n - 1)) + 4 b^2 v / n, v = 1/3 and b = 0.1.
     const double v = 1.0 / 3.0, n = samples;
     const double variance = (2.0 * v * v / (n * (n - 1.0)) + 4.0 * 0.01 * v / n) / (count * 3.0 * edge * edge);
     CHECK(std::abs(floor.value - 0.01 / 1.01) < 4.0 * std::sqrt(variance) / 1.01);

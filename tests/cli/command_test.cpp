@@ -52,7 +52,7 @@ TEST_CASE("paths that would not end are counted as missing", "[gpu][command][har
            "<camera z=\"5\" fov=\"25\"/><backgroundColor r=\"1\" g=\"1\" b=\"1\"/></options>";
     const Run run = folder.vkvol("slow.xml --spp 2 --time 0.5s --strict -o slow.exr");
     CHECK(run.code == exit_caps_hit);
-    CHECK_THAT(run.text, Contains("paths would not end"));
+    CHECK_THAT(run.text, Contains("paths had not ended"));
     Metadata metadata;
     read_exr(folder.file("slow.exr"), &metadata);
     CHECK(std::get<int>(metadata.at("vkvol/abandonedPaths")) > 0);

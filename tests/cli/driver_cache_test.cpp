@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Of kernels, in Mesa's cache; it has one of its own for this folder.
+// Number of kernels in Mesa's cache; it has one of its own for this folder.
 std::ptrdiff_t entries(const Folder& folder) {
     const fs::recursive_directory_iterator files(folder.file("cache"));
     return std::count_if(begin(files), end(files), [](const fs::directory_entry& entry) {

@@ -94,6 +94,14 @@ const std::string camera = "<camera z=\"5\" fov=\"30\"/>";
 
 } // namespace
 
+TEST_CASE("a room that no light enters is explained", "[gpu][explain]") {
+    const Found room =
+        explanation_of("<surfaces><box width=\"12\" height=\"12\" depth=\"12\"/></surfaces>" + light + camera + picture);
+    CHECK(room.picture == "black");
+    CHECK(room.cause == "shadowed");
+    CHECK(explanation_of("<surfaces><plane y=\"-1\"/></surfaces>" + light + camera + picture).cause == "");
+}
+
 TEST_CASE("pictures without light are explained", "[gpu][explain]") {
     check({lit_ball, light, "", "black", "noLight", "the scene has no <light>"});
     check({lit_ball, "r=\"5\" g=\"5\" b=\"5\"", "multiplier=\"5\"", "black", "blackSource", "<light> at "});

@@ -227,7 +227,7 @@ TEST_CASE("a sequence that is gone on with passes over the frames that are there
                             !Contains("frame 2:") && Contains("4 frames (1..4)"));
     CHECK((written("a.1.exr") == first && written("a.3.exr") == third && written("a.2.exr") != second));
     CHECK(std::filesystem::exists(scene.file("a.4.png")));
-    // Of other samples, or of another integrator or window, they are no longer what was asked for.
+    // With other samples, or another integrator or window, they are no longer what was asked for.
     const std::vector<const char*> others{"--spp 3",        "--seed 4",        "--integrator ratioTracking",
                                           "--crop 0,4,0,4", "--noise 50%",     "--time 9",
                                           "--aov depth",    "--report r.json", "-D unused=1"};

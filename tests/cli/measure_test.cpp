@@ -66,6 +66,9 @@ TEST_CASE("tables of bands", "[cpu][options]") {
     CHECK_THROWS_WITH(read("weight,sigma,sigma\n"), Contains("a name of its own"));
     CHECK_THROWS_WITH(read("weight,sigma\n1\n"), Contains("bands.csv:2: 1 values under 2 names"));
     CHECK_THROWS_WITH(read("weight,sigma\nx,1\n"), Contains("bands.csv:2: the weight is 'x'"));
+    CHECK_THROWS_WITH(read("weight,sigma\n1e20,1\n"), Contains("choose another unit"));
+    CHECK_THROWS_WITH(read("weight,sigma\n1e-20,1\n"), Contains("choose another unit"));
+    CHECK(read("weight,sigma\n0,1\n").front().weight == 0.0);
     CHECK_THROWS_WITH(read_bands(folder.file("nowhere.csv")), Contains("nowhere.csv"));
 }
 
@@ -132,6 +135,9 @@ TEST_CASE("readings are a table, a row for each point and combination of values"
     const Run means = folder.vkvol("measure glow.xml -D sigma=1 -D glow=1 --spp 64 --mean");
     CHECK(means.code == exit_done);
     CHECK_THAT(means.text, Contains("sigma  glow") && Contains("standardError.R") && Contains("128\n"));
+    const Run dark = folder.vkvol("measure glow.xml -D sigma=0 -D glow=1 --noise 5%");
+    CHECK(dark.code == exit_done);
+    CHECK_THAT(dark.text, Contains("no light came in 2097152 samples"));
     const Run plain = folder.vkvol("measure glow.xml -D sigma=1 -D glow=1 --noise 5%");
     CHECK(plain.code == exit_done);
     CHECK(std::count(plain.text.begin(), plain.text.end(), '\n') == 3);

@@ -46,7 +46,7 @@ bool same(const AheadOutput& a, const AheadOutput& b) {
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-// Of all rays, what one step at a time makes of them: else a test of few kinds of ends would prove little.
+// Checks what one step at a time makes of all rays: a test of few kinds of ends would prove little.
 void check_variety(const std::vector<AheadOutput>& ends, Segment segment) {
     const auto count = [&](const auto& is) { return std::count_if(ends.begin(), ends.end(), is); };
     CHECK(count([](const AheadOutput& end) { return end.event == left; }) > 20);

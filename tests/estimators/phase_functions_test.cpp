@@ -53,7 +53,7 @@ double from_forward(const glm::vec3& before, const glm::vec3& after) {
     return 0.5 * glm::dot(apart, apart);
 }
 
-// Of the numbers as kernels have them.
+// A medium with the phase function's numbers as kernels have them.
 reference::Medium medium_of(const NamedPhase& phase) {
     reference::Medium result = reference::load(phase.of(medium(Sphere{}, 1.0, 1.0)));
     for (double* number : {&result.g, &result.g2, &result.share, &result.alpha})
@@ -191,6 +191,21 @@ TEST_CASE("droplets scatter as Mie's theory says", "[cpu][phase]") {
     Volume table;
     table.phase = PhaseFunction::table;
     CHECK(mean_cosine(table, theory.nodes) == Approx(mean).epsilon(0.02)); // what is left out lies backward
+}
+
+// Moments g^l, as many as are above 1e-6: Henyey and Greenstein's, with a peak narrower than the angles that suffice
+// for others.
+TEST_CASE("many moments keep a narrow peak", "[cpu][phase]") {
+    const double g = 0.999;
+    std::string moments;
+    for (int l = 0; std::pow(g, l) > 1e-6; ++l)
+        moments += fmt::format("{:.17g}\n", std::pow(g, l));
+    const PhaseTable table = load_phase_table(write_text(moments));
+    Volume volume;
+    volume.phase = PhaseFunction::table;
+    CHECK(1.0 - mean_cosine(volume, table.nodes) == Approx(1.0 - g).epsilon(2e-3));
+    const double straight_on = (1.0 + g) / (4.0 * pi * (1.0 - g) * (1.0 - g));
+    CHECK(table.nodes.front().value == Approx(straight_on).epsilon(2e-3));
 }
 
 TEST_CASE("two of two phase functions are their convolution", "[cpu][phase]") {

@@ -25,13 +25,13 @@ constexpr std::uint32_t side = 32, samples = 16, draws = 8;
 std::size_t key_index(std::uint32_t x, std::uint32_t y, std::uint32_t sample, std::uint32_t draw) {
     return ((y * side + x) * samples + sample) * draws + draw;
 }
-std::vector<RngOutput> draw_neighbours() {
+std::vector<RngOutput> draw_neighbours(std::uint32_t seed = 7) {
     std::vector<glm::uvec4> keys;
     for (std::uint32_t y = 0; y < side; ++y)
         for (std::uint32_t x = 0; x < side; ++x)
             for (std::uint32_t sample = 0; sample < samples; ++sample)
                 for (std::uint32_t draw = 0; draw < draws; ++draw)
-                    keys.emplace_back(x | y << 16, sample, draw, 7);
+                    keys.emplace_back(x | y << 16, sample, draw, seed);
     return draw_on_device(keys);
 }
 
@@ -139,15 +139,16 @@ TEST_CASE("the numbers of one draw are independent of each other", "[gpu][rng]")
         }
 }
 
-TEST_CASE("neighbouring pixels, samples and draws are independent", "[gpu][rng]") {
-    const std::vector<RngOutput> outputs = draw_neighbours();
+TEST_CASE("neighbouring pixels, samples, draws and seeds are independent", "[gpu][rng]") {
+    const std::vector<RngOutput> outputs = draw_neighbours(), of_next_seed = draw_neighbours(8);
     struct Step {
         const char* name;
-        std::uint32_t x, y, sample, draw;
+        std::uint32_t x, y, sample, draw, seed = 0;
     };
-    const Step step = GENERATE(Step{"x", 1, 0, 0, 0}, Step{"y", 0, 1, 0, 0}, Step{"diagonal", 1, 1, 0, 0},
-                               Step{"sample", 0, 0, 1, 0}, Step{"draw", 0, 0, 0, 1}, Step{"two draws", 0, 0, 0, 2});
-    const double significance = sidak(1e-3, 6 * components * components);
+    const Step step =
+        GENERATE(Step{"x", 1, 0, 0, 0}, Step{"y", 0, 1, 0, 0}, Step{"diagonal", 1, 1, 0, 0}, Step{"sample", 0, 0, 1, 0},
+                 Step{"draw", 0, 0, 0, 1}, Step{"two draws", 0, 0, 0, 2}, Step{"seed", 0, 0, 0, 0, 1});
+    const double significance = sidak(1e-3, 7 * components * components);
     for (int a = 0; a < components; ++a)
         for (int b = 0; b < components; ++b) {
             Correlation correlation;
@@ -155,10 +156,10 @@ TEST_CASE("neighbouring pixels, samples and draws are independent", "[gpu][rng]"
                 for (std::uint32_t x = 0; x + step.x < side; ++x)
                     for (std::uint32_t s = 0; s + step.sample < samples; ++s)
                         for (std::uint32_t d = 0; d + step.draw < draws; ++d)
-                            correlation.add(
-                                component(outputs[key_index(x, y, s, d)], a),
-                                component(outputs[key_index(x + step.x, y + step.y, s + step.sample, d + step.draw)],
-                                          b));
+                            correlation.add(component(outputs[key_index(x, y, s, d)], a),
+                                            component((step.seed ? of_next_seed : outputs)[key_index(
+                                                          x + step.x, y + step.y, s + step.sample, d + step.draw)],
+                                                      b));
             INFO("step in " << step.name << ", components " << a << ' ' << b);
             CHECK(correlation.p() > significance);
         }

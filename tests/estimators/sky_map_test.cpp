@@ -137,8 +137,8 @@ TEST_CASE("the reference's squares have equal areas", "[cpu][lights]") {
         }
 }
 
-// Of a map of n x n texels: the length of none's side is more, for the mapping stretches by less than 2 anywhere (most
-// at the middles of the square's edges, by 1.73).
+// Length that no texel's side exceeds in a map of n x n: the mapping stretches by less than 2 anywhere (most at the
+// middles of the square's edges, by 1.73).
 double longest_side(int n) {
     return 2.0 * std::sqrt(4.0 * pi) / n;
 }

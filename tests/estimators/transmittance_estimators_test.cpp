@@ -72,8 +72,8 @@ struct Case {
     bool is_mapped = false;
 };
 
-// Of the rays' density integrals, at extinction 1: T of 0.1 to 0.9. Below, roulette leaves too few estimates other than
-// 0 for a t-test; above, the few that are not 1 are no normal sample either.
+// Limits to the rays' density integrals, at extinction 1: T of 0.1 to 0.9. Below, roulette leaves too few estimates
+// other than 0 for a t-test; above, the few that are not 1 are no normal sample either.
 constexpr double least = 0.11, most = 2.3;
 
 } // namespace

@@ -6,6 +6,7 @@
 
 #include "kernels/test_items.h"
 #include "lookup.spv.h"
+#include "support/scenes.h"
 #include "support/test_grids.h"
 #include "support/test_scene.h"
 
@@ -278,6 +279,27 @@ TEST_CASE("values that are no density count as 0 and are counted", "[gpu][densit
     CHECK(grid.field().cleaned == static_cast<std::uint64_t>(bad));
     check_host(grid);
     check_lookups(grid);
+}
+
+// As of exports in Hounsfield's units: what no voxel has was never to be seen.
+TEST_CASE("a background that is no density is no voxel that was cleaned", "[cpu][density]") {
+    GridRecipe recipe = rough_recipe();
+    recipe.first = glm::ivec3(8);
+    recipe.last = glm::ivec3(13); // a leaf's, but for some
+    recipe.background = -1000.0f;
+    const TestGrid grid = make_test_grid(recipe);
+    CHECK(grid.field().cleaned == 0);
+    CHECK(grid.field().background == 0.0f);
+}
+
+TEST_CASE("grids of one name are told apart by numbers", "[cpu][density]") {
+    std::vector<GridRecipe> recipes(3, rough_recipe());
+    for (int i = 0; i < 3; ++i)
+        recipes[std::size_t(i)].value = [i](glm::ivec3) { return i + 1.0f; };
+    const GridFile file = write_grids(recipes);
+    CHECK(load_density_field(file).max_value() == 1.0f);
+    CHECK(load_density_field({file.path, "density[1]"}).max_value() == 2.0f);
+    CHECK(load_density_field({file.path, "density[2]"}).max_value() == 3.0f);
 }
 
 TEST_CASE("negative values of quantised grids count as 0 and are counted", "[gpu][density][hard]") {

@@ -49,7 +49,7 @@ double trilinear(const DensityField& field, glm::dvec3 p) {
     return sum;
 }
 
-// Of everything near both.
+// Compares everything near both.
 template <class Expected> void check_voxels(const DensityField& moved, const Expected& expected) {
     double worst = 0.0;
     for (int x = -40; x <= 50; ++x)

@@ -27,7 +27,7 @@ TEST_CASE("a material library that cannot be read is named", "[cpu][mesh]") {
         CHECK_THAT(mesh.warnings[0],
                    Contains("mesh.obj: its material library") && Contains(name) && Contains("put it"));
     }
-    // Of several names the first that can be read is taken, and then all is well.
+    // A library that can be read is taken, and then all is well.
     directory.write("red.mtl", "newmtl red\nKd 1 0 0\n");
     CHECK(load_mesh({{directory.write("mesh.obj", "mtllib red.mtl\n" + tetrahedron)}}).warnings.empty());
 }

@@ -100,6 +100,26 @@ TEST_CASE("vertices at one position are welded, faces turned outward, slivers dr
         "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\n"
         "f 6 5 4 3 2 1\nf 9 10 11 12 7 8\nf 1 2 8 7\nf 2 3 9 8\nf 3 4 10 9\nf 4 5 11 10\nf 5 6 12 11\nf 6 1 7 12\n";
     CHECK(volume(directory.load(letter)) == Approx(3.0));
+    // Whose triangles cover what the letter does and no more: all face as the polygon does.
+    const auto area = [](const Polygons& faces, std::size_t from, std::size_t count, const glm::dvec3& normal) {
+        double sum = 0.0;
+        for (std::size_t i = from; i < from + count; ++i) {
+            const glm::uvec3 t = faces.triangles[i];
+            const glm::dvec3 a = faces.vertices[t.x];
+            const double part = 0.5 * glm::dot(normal, glm::cross(faces.vertices[t.y] - a, faces.vertices[t.z] - a));
+            CHECK(part > 0.0);
+            sum += part;
+        }
+        return sum;
+    };
+    const Polygons of_letter = read_polygons(directory.write("letter.obj", letter));
+    CHECK(area(of_letter, 0, 4, {0, 0, -1}) == Approx(3.0));
+    CHECK(area(of_letter, 4, 4, {0, 0, 1}) == Approx(3.0));
+    // A star, whose faces come before its vertices.
+    const std::string star = "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n"
+                             "element vertex 8\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+                             "8 0 1 2 3 4 5 6 7\n3 0 0\n1 0 1\n0 0 3\n-1 0 1\n-3 0 0\n-1 0 -1\n0 0 -3\n1 0 -1\n";
+    CHECK(area(read_polygons(directory.write("star.ply", star)), 0, 6, {0, -1, 0}) == Approx(12.0));
     // Two cubes that share a face, and so four triangles to some edges.
     const Mesh stacked = join(make_box(glm::dvec3(0.0), glm::dvec3(1.0), 1), make_box({0, 0, 1}, {1, 1, 2}, 1));
     CHECK(volume(directory.load(as_obj(stacked))) == Approx(2.0));

@@ -1,4 +1,4 @@
-// Pilot paths choose what costs the fewest steps: the cells' size, leaps, steps between two looks.
+// Pilot paths choose what costs the fewest steps: the cells' size, leaps, steps in a turn.
 #include <catch2/catch.hpp>
 #include <numeric>
 
@@ -62,11 +62,11 @@ TEST_CASE("steps along a segment are the majorant's optical depth and the cells 
     CHECK(steps_of(along, row) == Approx(0.5 * 6.0 + 2.0));
 }
 
-TEST_CASE("between two looks there are as many steps as lanes seldom wait for", "[cpu][majorant]") {
-    CHECK(best_steps_per_look({}) == 4);
-    CHECK(best_steps_per_look({1.0, 1.2, 1.9}) == 2);
-    CHECK(best_steps_per_look({2.5, 3.0, 3.0}) == 3);
-    CHECK(best_steps_per_look({40.0, 2.0, 25.0}) == 4);
+TEST_CASE("a turn has as many steps as lanes seldom wait for", "[cpu][majorant]") {
+    CHECK(best_steps_per_turn({}) == 4);
+    CHECK(best_steps_per_turn({1.0, 1.2, 1.9}) == 2);
+    CHECK(best_steps_per_turn({2.5, 3.0, 3.0}) == 3);
+    CHECK(best_steps_per_turn({40.0, 2.0, 25.0}) == 4);
 }
 
 TEST_CASE("walks leap where that takes fewer steps, and the scene's can", "[cpu][majorant]") {

@@ -29,7 +29,7 @@ template <class Node> Node* node_at(std::span<std::byte> grid, std::int64_t offs
     return reinterpret_cast<Node*>(grid.data() + offset);
 }
 
-// Of a grid of numbers, whose internal nodes are alike in all types, or of colours.
+// Damage to the tree of a grid of numbers, whose internal nodes are alike in all types, or of colours.
 template <class Value> struct TreeDamage {
     using Root = typename nanovdb::NanoRoot<Value>::DataType;
     using Upper = typename nanovdb::NanoUpper<Value>::DataType;

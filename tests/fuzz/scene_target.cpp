@@ -134,7 +134,7 @@ std::string map_by_points(Source& random) {
     return xml + fmt::format("  </{}>\n", name);
 }
 
-// Of some of the elements that a medium has.
+// A volume with some of the elements that a medium has.
 std::string volume(Source& random) {
     const char* names[] = {"a", "b", "c", ""};
     std::string xml = "  <volume";

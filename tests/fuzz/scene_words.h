@@ -33,6 +33,7 @@ inline constexpr const char* element_names[] = {"densityField",
                                                 "backgroundColor",
                                                 "camera",
                                                 "irradiance",
+                                                "periodic",
                                                 "film",
                                                 "fluence",
                                                 "absorption",
@@ -62,7 +63,7 @@ inline constexpr const char* element_names[] = {"densityField",
                                                 "rebound",
                                                 "options"};
 
-// Of each element, after its name; what it holds between its tags comes first.
+// The words of an element, after its name; what it holds between its tags comes first.
 struct Words {
     const char* element;
     const char* text; // "": none; "n": number; "i": whole number; else alternatives separated by |
@@ -100,6 +101,7 @@ inline constexpr Words grammar[] = {
     {"film", "", {"aov", "alpha"}},
     {"irradiance", "", {"x", "y", "z", "lookAt", "up", "width", "height"}},
     {"fluence", "0 1 0|0 1 0 2 3 4|", {"file", "baseDir"}},
+    {"periodic", "", {"x", "y", "z"}},
     {"units", "radiance|reflectance|transmittance", {}},
     {"motionBlur", "", {"open", "close"}},
     {"absorption", "", {"x", "y", "z", "width", "height", "depth", "cells"}},
@@ -186,6 +188,7 @@ inline constexpr const char* ordinary_numbers[] = {"0.5",
                                                    "${= 0.5 + 0.1*${F:-1}}"};
 
 inline constexpr const char* edge_values[] = {"NaN",
+                                              "-1 1",
                                               "nan",
                                               "inf",
                                               "-inf",

@@ -3,10 +3,11 @@
 #include <cmath>
 #include <limits>
 
+#include "frame_params.h"
+#include "kernel_constants.h"
 #include "light_table.h"
 #include "method.h"
 #include "scene_hash.h"
-#include "scene_upload.h"
 #include "shared/constants.h"
 #include "surface_mesh.h"
 #include "surface_table.h"
@@ -82,9 +83,9 @@ void check_frame(const shared::FrameParams& frame, int shape) {
     check_camera(frame.sensors[0]);
     if (shape != SHAPE_NONE)
         check_volume(frame.media[0]);
-    expect_radiance(frame.lights[LIGHT_SUN].radiance, "the light is out of range");
-    expect_finite(frame.lights[LIGHT_SUN].direction, "the light's direction is not finite");
-    expect_radiance(frame.lights[LIGHT_BACKGROUND].radiance, "the background is out of range");
+    expect_radiance(frame.lights[FRAME_DIRECTIONAL].radiance, "the light is out of range");
+    expect_finite(frame.lights[FRAME_DIRECTIONAL].direction, "the light's direction is not finite");
+    expect_radiance(frame.lights[FRAME_BACKGROUND].radiance, "the background is out of range");
     expect(std::isfinite(frame.march.step) && frame.march.step > 0.0f, "the step is not a positive float");
     expect(std::isfinite(frame.march.shadow_step) && frame.march.shadow_step > 0.0f,
            "the step of shadow rays is not a positive float");
@@ -120,7 +121,7 @@ void check_loaded(const LoadedMedium& loaded) {
         expect_radiance(knot.emission, "mapped emission is out of range");
         expect_finite(knot.emission_slope, "mapped emission is not finite");
     }
-    for (const glm::vec3& color : loaded.blackbody)
+    for (const glm::vec4& color : loaded.blackbody)
         expect_radiance(color, "a black body is out of range");
     if (loaded.bvh)
         for (const glm::vec3& corner : loaded.bvh->triangles)
@@ -228,7 +229,7 @@ void use_scene(const Scene& authored) {
     const Crop crop{0, scene.picture.width, 0, scene.picture.height};
     const shared::FrameParams frame = make_frame(scene, assets.media, method, crop, 1, whole);
     check_surfaces(scene.surfaces, render_origin(scene, assets.media, whole));
-    if (constants[SPEC_LIGHTS] != LIGHTS_SUN) {
+    if (constants[SPEC_LIGHTS] != LIGHTS_LONE) {
         const LightTable table = make_light_table(scene, assets, render_origin(scene, assets.media, whole),
                                                   lit_radius(scene, assets, frame.media[0]));
         for (const shared::LightRow& row : table.rows)

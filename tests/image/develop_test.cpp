@@ -120,7 +120,7 @@ TEST_CASE("an exposure that suits puts what is bright just below white", "[cpu][
             const double exposure = suitable_exposure(film, curve);
             CAPTURE(int(curve), brightness, exposure);
             const std::vector<std::uint8_t> bytes = tone_map(film, {curve, exposure});
-            // Of 400 values the 396th is the 99th percentile; a hundredth of a stop is less than half a per cent.
+            // The 396th of 400 values is the 99th percentile; a hundredth of a stop is less than half a per cent.
             CHECK(std::abs(bytes[3 * 1395] - 0.9 * 255.0) < 1.6);
             CHECK(clipped_pixels(film, {curve, exposure}) == 0);
         }

@@ -123,7 +123,7 @@ TEST_CASE("the mean of a picture and its error, by hand", "[cpu][film]") {
     CHECK(mean.value == glm::dvec3(2.0));
     CHECK(mean.standard_error == glm::dvec3(2.5, 0.0, 1.0)); // sqrt(9 + 16) / 2
     CHECK(image_mean(Film{}).value == glm::dvec3(0.0));
-    // Of a single sample no error is known.
+    // The error of a single sample is not known.
     film.samples = {4, 1, 0};
     CHECK_FALSE(image_mean(film).standard_error);
     CHECK(relative_noise(film).value() == Approx(std::sqrt((9.0 + 0 + 1) / (1 + 4 + 9))));

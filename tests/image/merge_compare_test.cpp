@@ -193,6 +193,22 @@ TEST_CASE("compare: error figures by hand", "[cpu][merge][compare]") {
     CHECK(compare_films(a, b, loose).different);
 }
 
+// Two-sided limits from tables of the normal distribution: 1 % shared by 1 and by 100 comparisons.
+TEST_CASE("compare: limits are those of tables", "[cpu][merge][compare]") {
+    const auto limit_of = [](std::size_t pixels) {
+        Film film;
+        film.picture_width = static_cast<int>(pixels);
+        film.picture_height = 1;
+        film.crop = {0, static_cast<int>(pixels), 0, 1};
+        film.mean.assign(pixels, glm::vec3(1.0f));
+        film.variance.assign(pixels, glm::vec3(0.01f));
+        film.samples.assign(pixels, 1000000);
+        return compare_films(film, film, options_at()).z_bound;
+    };
+    CHECK(limit_of(1) == Approx(3.1435).epsilon(1e-4));   // half of it by three channels
+    CHECK(limit_of(100) == Approx(4.3049).epsilon(1e-4)); // by three hundred
+}
+
 TEST_CASE("compare: noise alone is no difference", "[cpu][merge][compare]") {
     // At significance 0.01 one of a hundred pairs may be called different; more than 4 of 100 happen once in 300.
     for (const auto& [n_a, n_b] : {std::pair{4, 4}, {16, 16}, {8, 256}, {2, 32}, {64, 1}}) {

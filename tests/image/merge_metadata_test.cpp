@@ -137,16 +137,22 @@ TEST_CASE("a merged image adds up what its parts count", "[cpu][merge]") {
                        {"vkvol/capsHit", 1},
                        {"vkvol/majorantViolations", 9},
                        {"vkvol/queueOverflows", 1},
+                       {"vkvol/cleanedVoxels", 5},
                        {"other", "one"},
                        {"vkvol/nullCollisions", "4000000000"}};
-    const Metadata many{{"vkvol/stepCaps", 4}, {"vkvol/depthCaps", 0},
-                        {"vkvol/capsHit", 1},  {"vkvol/majorantViolations", std::numeric_limits<int>::max()},
-                        {"other", "two"},      {"vkvol/nullCollisions", "4000000001"}};
+    const Metadata many{{"vkvol/stepCaps", 4},
+                        {"vkvol/depthCaps", 0},
+                        {"vkvol/cleanedVoxels", 5},
+                        {"vkvol/capsHit", 1},
+                        {"vkvol/majorantViolations", std::numeric_limits<int>::max()},
+                        {"other", "two"},
+                        {"vkvol/nullCollisions", "4000000001"}};
     const MergeInput both = merged({part("a", 0, whole, few), part("b", 7, whole, many)});
     CHECK(int_at(both, "vkvol/stepCaps") == 7);
     CHECK(int_at(both, "vkvol/depthCaps") == 0);
     CHECK(int_at(both, "vkvol/nonFiniteSamples") == 2); // the other part does not tell
     CHECK(int_at(both, "vkvol/queueOverflows") == 1);
+    CHECK(int_at(both, "vkvol/cleanedVoxels") == 5);
     CHECK(int_at(both, "vkvol/majorantViolations") == std::numeric_limits<int>::max());
     CHECK(int_at(both, "vkvol/capsHit") == 1);
     CHECK(text_at(both, "vkvol/nullCollisions") == "8000000001");

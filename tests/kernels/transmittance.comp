@@ -20,13 +20,13 @@ void main() {
     PartSearch search;
     search.stage = SEARCH_OVER;
     uint event = EVENT_MOVING;
-    if (LOOKS) {
+    if (SHADOW_RAYS_WALK) {
         uvec4 words = next_words(rng);
         w.tau = to_exponential(words.x, words);
         begin_transmittance(words, w);
         begin_segment(v, ray.origin, ray.direction, FAR, true, w, search);
     } else {
-        T = analytic_shadow(v, ray.origin, ray.direction, FAR);
+        T = transmittance_to(v, ray.origin, ray.direction, FAR);
         event = EVENT_LEFT;
     }
     bool opaque = false;
@@ -42,7 +42,7 @@ void main() {
         event = see(v, c, event, w, rng, T, opaque, tally);
         event = opaque ? EVENT_LEFT : after_step(event, w, FAR, search);
     }
-    if (LOOKS)
+    if (SHADOW_RAYS_WALK)
         T = opaque ? to_spectrum(vec3(0.0)) : end_transmittance(v, w, T);
     outputs[i] = FlightOutput(event, 0.0, vec3(T), tally.null_collisions, tally.lookups, steps);
     add_tally(tally);

@@ -287,7 +287,7 @@ TEST_CASE("looks at a render change none of its bits", "[gpu][live]") {
     RenderJob job;
     job.crop = {0, scene.picture.width, 0, scene.picture.height};
     job.seed = 1;
-    job.look = [&](const RenderResult& result) {
+    job.preview = [&](const RenderResult& result) {
         seen.push_back(result.samples);
         CHECK(result.film.mean.size() == alone.film.mean.size());
     };
@@ -307,7 +307,7 @@ TEST_CASE("looks that take long are had nevertheless", "[gpu][live]") {
     job.crop = {0, scene.picture.width, 0, scene.picture.height};
     job.time_limit = 20.0;
     job.interrupted = [&] { return at.size() == 5; };
-    job.look = [&](const RenderResult& result) {
+    job.preview = [&](const RenderResult& result) {
         at.push_back(result.render_seconds);
         std::this_thread::sleep_for(std::chrono::milliseconds(80));
     };

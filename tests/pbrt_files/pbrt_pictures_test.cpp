@@ -22,7 +22,8 @@ using Catch::Contains;
 
 namespace {
 
-// Of a square map of equal areas, by Clarberg's mapping as pbrt has it: x and y from 0 to 1, y down its rows; z up.
+// Direction of a place on a square map of equal areas, by Clarberg's mapping as pbrt has it: x and y from 0 to 1, y
+// down its rows; z up.
 glm::dvec3 pbrt_direction(double x, double y) {
     const double u = 2.0 * x - 1.0, v = 2.0 * y - 1.0;
     const double signed_distance = 1.0 - (std::abs(u) + std::abs(v)), r = 1.0 - std::abs(signed_distance);

@@ -108,7 +108,7 @@ TEST_CASE("images of pbrt's textures that are taken otherwise are named", "[cpu]
         CHECK(world_of(std::string("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" ") + usual +
                        " Material \"diffuse\" \"texture reflectance\" \"t\"" + ball)
                   .warnings.empty());
-    // Of colours and of numbers, by one name.
+    // Textures of colours and of numbers may share a name.
     const Scene scene =
         world_of("Texture \"t\" \"spectrum\" \"constant\" \"rgb value\" [ .8 .1 .1 ] Texture \"t\" \"float\" "
                  "\"constant\" \"float value\" .05 Material \"diffuse\" \"texture reflectance\" \"t\"" +

@@ -87,7 +87,7 @@ TEST_CASE("what shines in pbrt's scenes", "[cpu][pbrt]") {
         REQUIRE(scene.surfaces.size() == 1);
         return scene.surfaces[0];
     };
-    // Of 3 by 2, in the order that has its front towards -z of pbrt, which is +z here.
+    // A rectangle of 3 by 2, in the order that has its front towards -z of pbrt, which is +z here.
     const char* quad = R"("point3 P" [ 0 0 0  0 2 0  3 2 0  3 0 0 ] "integer indices" [ 0 1 2 0 2 3 ])";
     const Surface front = lamp(std::string("Shape \"trianglemesh\" ") + quad);
     const auto& rectangle = std::get<RectangleSurface>(front.shape);
@@ -374,7 +374,7 @@ TEST_CASE("pbrt's quadrics that are none here are triangles", "[cpu][pbrt]") {
     CHECK(part_in_front(pipe, [](const glm::dvec3& p) { return glm::dvec3(p.x, p.y, 0.0); }) == 1.0);
     CHECK(part_in_front(mesh_of("ReverseOrientation Shape \"cylinder\""),
                         [](const glm::dvec3& p) { return glm::dvec3(-p.x, -p.y, 0.0); }) == 1.0);
-    // Of glass they enclose something.
+    // Closed shapes of glass enclose something.
     for (const char* closed :
          {"Scale 1 2 1 Shape \"sphere\"", "Scale 1 1 3 Rotate 40 1 1 0 Shape \"sphere\" \"float radius\" 0.7"})
         CHECK_NOTHROW(with_surface_files(world_of(std::string("Material \"dielectric\" ") + closed)));

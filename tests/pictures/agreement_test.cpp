@@ -73,7 +73,7 @@ TEST_CASE("each estimator equals the reference's own", "[gpu][agreement]") {
             const int usual = named.name == "chromatic cloud" ? FREE_FLIGHT_SPECTRAL : FREE_FLIGHT_DELTA;
             const int others = (*c.free_flight != usual) + (*c.transmittance != TRANSMITTANCE_RATIO) +
                                (*c.nee != NEE_COLLISIONS) + (*c.emission != EMISSION_AT_COLLISIONS);
-            // Of what a density is made of only flights through it ask.
+            // Only flights through a density ask what it is made of.
             const bool about_flights = *c.free_flight != usual || *c.transmittance != TRANSMITTANCE_RATIO;
             const bool about_density =
                 named.name == "noise in a mesh" || named.name == "transfer function" || named.name == "atmosphere";

@@ -48,7 +48,7 @@ Scene busy(const std::string& integrator, std::uint32_t spp) {
     return scene;
 }
 
-// Of one medium, with what else there may be to sum.
+// A scene of one medium, with what else there may be to sum.
 Scene plain(const std::string& integrator, std::uint32_t spp) {
     Scene scene = busy(integrator, spp);
     scene.volumes.pop_back();
@@ -346,6 +346,15 @@ TEST_CASE("a surface's normal is seen through what is before it", "[gpu][image][
     const Film within = render_here(scene, 5).film;
     for (const glm::vec3& normal : layer_of(within, "normal").mean)
         CHECK(glm::distance(glm::dvec3(normal), glm::dvec3(0.6, 0.0, 0.8)) < 1e-3);
+    // What else there is of the first that is met.
+    scene.surfaces.front().material.color = {0.2, 0.4, 0.8};
+    scene.layers = layer_depth | layer_position | layer_albedo;
+    const Film met = render_here(scene, 6).film;
+    for (std::size_t i = 0; i < met.pixel_count(); ++i) {
+        CHECK(layer_of(met, "depth").mean[i].x == Approx(0.8).epsilon(1e-4));
+        CHECK(glm::distance(layer_of(met, "position").mean[i], glm::vec3(0.0f, 0.0f, -3.8f)) < 1e-3f);
+        CHECK(glm::distance(layer_of(met, "albedo").mean[i], glm::vec3(0.2f, 0.4f, 0.8f)) < 1e-5f);
+    }
 }
 
 TEST_CASE("what is behind the media is held out for compositing", "[gpu][image][aovs]") {
@@ -463,7 +472,7 @@ TEST_CASE("layers of a crop, of a resumed and of a merged render are those of th
             for (int channel = 0; channel < 3; ++channel) {
                 CAPTURE(whole.layers[k].name, i);
                 const double expected = whole.layers[k].mean[i][channel];
-                // Of floats that were rounded three times.
+                // The means are of floats that were rounded three times.
                 REQUIRE(merged.layers[k].mean[i][channel] == Approx(expected).epsilon(1e-6).margin(1e-6));
                 if (!whole.layers[k].is_of_collisions())
                     REQUIRE(merged.layers[k].variance[i][channel] ==

@@ -9,7 +9,7 @@ using namespace vkvol;
 
 namespace {
 
-// Of the samples, over the picture.
+// Mean variance of the samples, over the picture.
 glm::dvec3 mean_variance(const Film& film) {
     glm::dvec3 sum(0.0);
     for (std::size_t i = 0; i < film.variance.size(); ++i)

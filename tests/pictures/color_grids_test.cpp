@@ -129,8 +129,8 @@ TEST_CASE("an opaque cube has the radiance of its colours", "[gpu][color_grids]"
     scene.volumes.front().temperature.grid = "glow";
     check(scene, {6.0, 2.0, 0.25});
 
-    // Of albedo a, without scattering: (1 - a) Le. Two voxels in the middle of the cube, whose values go on beyond
-    // them.
+    // A medium of albedo a, without scattering: (1 - a) Le. Two voxels in the middle of the cube, whose values go on
+    // beyond them.
     GridRecipe albedo{glm::ivec3(9), glm::ivec3(10), nullptr};
     albedo.color = [](glm::ivec3) { return glm::vec3(0.25f, 0.5f, 3.0f); };
     albedo.name = "Cd";

@@ -28,7 +28,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 const glm::dvec3 up(0.0, 1.0, 0.0);
 
-// Of `across` by `across` pixels.
+// A sensor of `across` by `across` pixels.
 Scene sensor(glm::dvec3 middle, glm::dvec3 facing, glm::dvec2 size, int across, std::uint32_t spp) {
     Scene scene;
     scene.camera.projection = Projection::irradiance;
@@ -71,7 +71,7 @@ void check_means(const Scene& scene, double expected, const std::string& name) {
     CHECK_AGREEMENT(agree_with_means(render_here(scene, 3).film, means, name));
 }
 
-// Of a domain [-0.5, 0.5]^2, from 0 down.
+// A slab in a domain [-0.5, 0.5]^2, from 0 down.
 Scene slab(double tau, double albedo, double height, bool from_above) {
     Scene scene = sensor({0.1, height, -0.2}, from_above ? up : -up, {1.0, 0.7}, 4, 512);
     scene.volumes = {medium(Box{{0.0, -0.5, 0.0}, glm::dvec3(1.0)}, tau, albedo)};
@@ -190,7 +190,7 @@ TEST_CASE("particles counted are the flux that rays from the sensor read", "[gpu
         check_counts(c.scene, c.name);
 }
 
-// Of 1 from above a third comes from beyond the sensor and all else that there is.
+// A third of the irradiance of 1 from above comes from beyond the sensor and all else that there is.
 TEST_CASE("far light is counted where a filter alone has it", "[gpu][counted]") {
     Scene scene = sensor({0.0, 0.0, 0.0}, up, {1.0, 1.0}, 1, 1 << 18);
     scene.volumes = {medium(Sphere{{0.0, 0.0, 0.0}, 0.1}, 1e-6, 1.0)};
@@ -359,12 +359,11 @@ TEST_CASE("what comes into a domain leaves it, or stays", "[gpu][counted]") {
     amid.lights = scene.lights;
     amid.periodic = scene.periodic;
     glm::dvec3 power(0.0), variance(0.0);
+    std::uint32_t seed = 1; // of particles of their own
     for (const auto& [part, of] : {std::pair(scene, 1.0), std::pair(below, 1.0), std::pair(amid, 12.0)}) { // per area
-        const Film film = render_here(by(part, "lightTracing"), 1).film;
-        for (std::size_t i = 0; i < film.mean.size(); ++i) {
-            power += of / 4.0 * glm::dvec3(film.mean[i]);
-            variance += of * of / 16.0 * glm::dvec3(film.variance[i]);
-        }
+        const ImageMean mean = image_mean(render_here(by(part, "lightTracing"), seed++).film);
+        power += of * mean.value;
+        variance += of * of * *mean.standard_error * *mean.standard_error;
     }
     const Rgb in = lights.beam.irradiance * lights.beam.direction.y + lights.sun.irradiance * lights.sun.direction.y;
     for (int channel = 0; channel < 3; ++channel) {
@@ -381,7 +380,7 @@ TEST_CASE("absorption amid several media with surfaces, beneath lights of all ki
                      medium(Box{{0.0, 0.0, 0.0}, glm::dvec3(1.2)}, 1.0, 0.8)};
     scene.surfaces = {ball_of(MaterialKind::diffuse, 0.0)};
     scene.lights = {lights.point, lights.beam, lights.rectangle, lights.sun};
-    const Film absorbed = render_here(scene, 1).film;
+    const ImageMean in_all = image_mean(render_here(scene, 1).film);
     // As much as the fluence of points all over the box says, times both media's sigma_a.
     scene.camera.projection = Projection::fluence;
     for (int i = 0; i < 4096; ++i) // of a lattice of rank 1, whose error is far below the noise
@@ -391,20 +390,39 @@ TEST_CASE("absorption amid several media with surfaces, beneath lights of all ki
     scene.settings.spp = 64;
     const Film fluence = render_here(by(scene, "ratioTracking"), 2).film;
     for (int channel = 0; channel < 3; ++channel) {
-        double sum = 0.0, variance = 0.0, read = 0.0, spread = 0.0;
-        for (std::size_t i = 0; i < absorbed.mean.size(); ++i) {
-            read += absorbed.mean[i][channel] / 512.0;
-            spread += absorbed.variance[i][channel] / (512.0 * 512.0);
-        }
+        double sum = 0.0, variance = 0.0;
+        const double read = in_all.value[channel], spread = (*in_all.standard_error)[channel];
         for (std::size_t i = 0; i < 4096; ++i) {
             sum += fluence.mean[i][channel] / 4096.0;
             variance += fluence.variance[i][channel] / (4096.0 * 4096.0);
         }
         const double sigma_a = 0.5 * 0.4 + 1.0 * 0.2;
-        const double error = std::sqrt(sigma_a * sigma_a * variance + spread);
+        const double error = std::sqrt(sigma_a * sigma_a * variance + spread * spread);
         CAPTURE(channel, sigma_a * sum, read, error);
         CHECK(std::abs(sigma_a * sum - read) < 4.0 * error);
         CHECK(error < 0.02 * sigma_a * sum);
+    }
+}
+
+// Whatever the unit of length, and however little of a particle a collision takes.
+TEST_CASE("the error of absorbed power is known where little is absorbed", "[gpu][counted]") {
+    std::vector<double> relative;
+    for (const double unit : {1e-6, 1.0, 1e4}) {
+        Scene scene = absorption({0.0, 0.0, 0.0}, glm::dvec3(unit), {1, 5, 1}, 2048);
+        scene.volumes = {medium(Box{{0.0, 0.0, 0.0}, glm::dvec3(unit)}, 2.0 / unit, 1.0 - 1e-5)};
+        scene.periodic = Periodic{{-0.5 * unit, 0.0, -0.5 * unit}, {0.5 * unit, 0.0, 0.5 * unit}};
+        scene.lights = {DirectionalLight{up, Rgb(1.0)}};
+        const Film film = render_here(scene, 1).film;
+        const ImageMean mean = image_mean(film);
+        REQUIRE(mean.standard_error);
+        CAPTURE(unit, mean.value.x, mean.standard_error->x);
+        CHECK(mean.value.x * unit > 1e-5);
+        CHECK(mean.value.x * unit < 4e-5);
+        relative.push_back(mean.standard_error->x / mean.value.x);
+    }
+    for (const double error : relative) { // as of any other unit, to what 2048 samples tell of it
+        CHECK(error > 1e-4);
+        CHECK(std::abs(error / relative.front() - 1.0) < 0.25);
     }
 }
 

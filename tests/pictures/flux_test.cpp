@@ -25,7 +25,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// Of `across` by `across` pixels.
+// A sensor of `across` by `across` pixels.
 Scene rectangle(glm::dvec3 middle, glm::dvec3 facing, glm::dvec2 size, int across, std::uint32_t spp) {
     Scene scene;
     scene.camera.projection = Projection::irradiance;
@@ -179,7 +179,7 @@ TEST_CASE("irradiance above and below a conservative slab", "[gpu][image][hard][
     const reference::SlabSolution diffuse = reference::slab_in_half_sky(1.0, tau, cells);
     CHECK(beam.reflected + beam.transmitted == Approx(1.0).epsilon(1e-4));
     CHECK(diffuse.reflected + diffuse.transmitted == Approx(pi).epsilon(1e-4));
-    // Of thick slabs the asymptote is off by less than 1e-4; of a depth of 1 it is 0.553 by van de Hulst's tables.
+    // The asymptote of thick slabs is off by less than 1e-4; at a depth of 1, 0.553 passes by van de Hulst's tables.
     const double known = tau < 2.0 ? 0.553 : reference::diffuse_transmission_asymptote(tau);
     CHECK(diffuse.transmitted / pi == Approx(known).margin(tau < 2.0 ? 1e-3 : 1e-4));
     for (const bool above : {true, false}) {

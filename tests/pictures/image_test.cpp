@@ -97,6 +97,8 @@ TEST_CASE("a depth limit equals the reference", "[gpu][image]") {
         Scene scene = cloud(thick, 0.95);
         scene.settings.max_depth = depth;
         check_both(scene, fmt::format("cloud, depth {}", depth));
+        // Null collisions, too, look for the light.
+        check(scene, fmt::format("cloud, depth {}, looks from null collisions", depth), {"ratioNEE"});
     }
 }
 

@@ -5,10 +5,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
+#include "frame_params.h"
 #include "loaded_medium.h"
 #include "overlap_words.h"
 #include "scene_hash.h"
-#include "scene_upload.h"
 #include "support/agreement.h"
 #include "support/images.h"
 #include "support/scene_text.h"

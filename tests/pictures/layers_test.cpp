@@ -29,7 +29,7 @@ Volume atmosphere(double sigma_t, double albedo, Layers layers = {1, 0.0, 20.0, 
     return volume;
 }
 
-// Of heights from -1 to 3, with a step; its values are heights above -1.
+// A table of heights from -1 to 3, with a step; its values are heights above -1.
 Volume table(double sigma_t, double albedo) {
     Volume volume = atmosphere(sigma_t, albedo, {1, -1.0, 3.0, 0.0, 0.0});
     volume.map.points = {{0.0, 0.2}, {1.0, 1.0}, {1.0, 0.4}, {2.5, 0.1}, {4.0, 0.0}};
@@ -386,7 +386,7 @@ TEST_CASE("layers in scene files", "[cpu][xml][layers]") {
     const std::pair<const char*, const char*> bad[] = {
         {"<everywhere/><box/>", "a volume has one shape"},
         {"<everywhere x='1'/>", "unknown attribute 'x'"},
-        {"<everywhere/><noise/>", "has no end <everywhere>"},
+        {"<everywhere/><noise/>", "would have no end in <everywhere>"},
         {"<sphere/><layers scaleHeight='1'/>", "are for a <box>, or <everywhere>"},
         {"<box/><noise/><layers scaleHeight='1'/>", "a volume has one density"},
         {"<everywhere/><layers/>", "lacks scaleHeight"},

@@ -72,7 +72,7 @@ Scene lit_by(const Volume& volume, double width, const std::vector<Light>& light
     return scene;
 }
 
-// Of the scene's one light, by quadrature along rays through `across` by `across` points of each pixel.
+// Single scattering of the scene's one light, by quadrature along `across` by `across` rays through each pixel.
 std::vector<Rgb> single_scattering(const Scene& scene, int across) {
     const reference::Medium medium = reference::load(scene.volumes.front(), Filter::trilinear);
     std::vector<Rgb> means;
@@ -194,7 +194,7 @@ TEST_CASE("looks from along flights leave what is far away to collisions", "[gpu
     }
 }
 
-// Of a flight only what is in the cone, or before the lamp, is drawn: rays across a cone, along it toward the lamp and
+// Only what is in the cone, or before the lamp, is drawn of a flight: rays across a cone, along it toward the lamp and
 // away from it, within it and past its back. The rims are hard where light would be missed first.
 TEST_CASE("looks from along flights know what a spot or a flat lamp lights", "[gpu][lights]") {
     const glm::dvec3 across = glm::normalize(glm::dvec3(0.3, -1.0, 0.2)), along(0.05, 0.02, -1.0);
@@ -287,7 +287,7 @@ TEST_CASE("looks and flights find the same light, by every phase function", "[gp
     const SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {5.0, 4.0, 3.0}, 60.0};
     std::uint32_t seed = 70;
     for (const NamedPhase& phase : all_phases()) {
-        // Of sharper ones looks alone seldom find the peak, and seem too dark with too little noise.
+        // Looks alone seldom find the peak of sharper ones, and seem too dark with too little noise.
         if (phase.name != "draine" &&
             (!thorough() || (phase.name != "doubleHenyeyGreenstein" && phase.name != "droplets 1")))
             continue;

@@ -82,7 +82,7 @@ TEST_CASE("samples have moments by their numbers alone", "[cpu][motion]") {
         if (sample == 16 || sample == 64 || sample == 256 || sample == 1024)
             CHECK(moments == (sample == 16 ? 16u : sample == 64 ? 40u : sample == 256 ? 88u : 184u));
     }
-    // Of the first 16 one is in each sixteenth, wherever the seed turns them: they are 1/16 apart around the circle.
+    // One of the first 16 is in each sixteenth, wherever the seed turns them: they are 1/16 apart around the circle.
     std::vector<double> first;
     for (std::uint64_t i = 0; i < 16; ++i)
         first.push_back(time_of({0.0, 1.0, {}}, moment_of_sample(i), 123));

@@ -195,7 +195,7 @@ TEST_CASE("particles and paths share what mirrors and glass show and throw", "[g
     CHECK(scene_hash(by(scene, "bidirectional")) == scene_hash(by(scene, "ratioTracking")));
     CHECK(scene_hash(by(scene, "lightTracing")) != scene_hash(by(scene, "ratioTracking")));
     CHECK_THAT(choose_method(with_preset(scene)).by_chance, Contains("glass"));
-    // Of lights without extent no path from the camera finds that.
+    // No path from the camera finds what glass throws of lights without extent.
     scene.lights.push_back(PointLight{{1.2, 1.9, 1.5}, {12.0, 9.0, 6.0}});
     CHECK_THAT(choose_method(with_preset(scene)).biased, Contains("bidirectional"));
     // Nor does any find what the one throws, and the other shows.
@@ -203,7 +203,32 @@ TEST_CASE("particles and paths share what mirrors and glass show and throw", "[g
     CHECK(scene_hash(by(scene, "bidirectional")) != scene_hash(by(scene, "ratioTracking")));
 }
 
-// Of splats as bright as what is seen from a three-thousandth of a scene's size, and of a lamp as near to the ground.
+// From lights that are infinitely far they come only to what has an end.
+TEST_CASE("what particles do not bring from afar is told", "[cpu][particles]") {
+    Scene scene = still({with_material(left, MaterialKind::dielectric)}, {sunlight()});
+    Surface ground;
+    ground.shape = PlaneSurface{{0.0, -3.0, 0.0}, {0.0, 1.0, 0.0}};
+    scene.surfaces.push_back(ground);
+    CHECK_THAT(choose_method(with_preset(by(scene, "bidirectional"))).biased, Contains("without end"));
+    scene.lights = {SunLight{{0.0, 1.0, 0.0}, Rgb(1.0), 10.0}};
+    CHECK(choose_method(with_preset(by(scene, "bidirectional"))).biased.empty());
+    CHECK_THAT(choose_method(with_preset(by(scene, "bidirectional"))).by_chance, Contains("suns and skies"));
+    scene.surfaces.back().shape = RectangleSurface{{0.0, -3.0, 0.0}, {5.0, 0.0, 0.0}, {0.0, 0.0, -5.0}};
+    CHECK(choose_method(with_preset(by(scene, "bidirectional"))).by_chance.empty());
+}
+
+// Splats are whole numbers, of which what a far light brings has to have enough.
+TEST_CASE("particles of a light far away are as fine as those of a near one", "[gpu][particles]") {
+    Scene scene = seen(medium(Sphere{{0.0, 0.0, 0.0}, 1.0}, 2.0, 0.9), 2.4, {PointLight{{0.0, 1e6, 0.0}, Rgb(1e12)}});
+    scene.background = Rgb(0.0);
+    scene.settings.spp = 64;
+    const std::optional<double> paths = relative_noise(render_here(by(scene, "ratioTracking"), 1).film),
+                                both = relative_noise(render_here(by(scene, "bidirectional"), 2).film);
+    REQUIRE((paths && both));
+    CHECK(*both < 1.5 * *paths);
+}
+
+// Splats are as bright as what is seen from a three-thousandth of a scene's size, lit by a lamp as near to the ground.
 TEST_CASE("particles light what is small in a large scene", "[gpu][particles]") {
     Scene scene =
         still({}, {PointLight{{0.5, 4.0, -20.0}, Rgb(1.0)}}); // by a lamp, which a larger ground changes little
@@ -345,6 +370,32 @@ TEST_CASE("pixels of particles are parts of a sum whose error is known", "[gpu][
     }
 }
 
+TEST_CASE("the error of a picture's sum is that of its samples' sums", "[gpu][particles]") {
+    Scene scene = by(seen(medium(Box{glm::dvec3(0.0), glm::dvec3(2.0)}, 10.0, 0.9), 4.0,
+                          {PointLight{{0.0, 0.0, 0.0}, Rgb(9.0, 3.0, 1e-4)}}),
+                     "lightTracing");
+    scene.background = Rgb(0.0);
+    scene.settings.spp = 2;
+    const Film both = render_here(scene, 5).film;
+    scene.settings.spp = 1;
+    RenderJob second;
+    second.sample_offset = 1;
+    const Film a = render_here(scene, 5).film, b = render_here(scene, 5, second).film;
+    REQUIRE(both.sum_variance);
+    CHECK(!a.sum_variance);
+    glm::dvec3 difference(0.0), sum(0.0);
+    for (std::size_t i = 0; i < both.pixel_count(); ++i) {
+        difference += glm::dvec3(a.mean[i]) - glm::dvec3(b.mean[i]);
+        sum += glm::dvec3(both.mean[i]);
+    }
+    for (int c = 0; c < 3; ++c) { // of two samples' mean; each is rounded to single precision
+        CHECK(difference[c] != 0.0);
+        CHECK(
+            (*both.sum_variance)[c] ==
+            Approx(difference[c] * difference[c] / 4.0).epsilon(1e-4).margin(1e-6 * std::abs(difference[c]) * sum[c]));
+    }
+}
+
 // A lamp in a ceiling: a black one takes nothing of what comes from its lower side, whichever way rounding has it.
 TEST_CASE("lamps that lie in the plane of a surface shine before it", "[gpu][particles]") {
     const glm::dvec3 down = glm::normalize(glm::dvec3(-0.13, -1.0, 0.21)), middle(0.37, 1.7, 0.41);
@@ -443,6 +494,7 @@ TEST_CASE("a batch of particles that would not end is given up whole", "[gpu][pa
     scene.surfaces.pop_back(); // the floor
     scene.surfaces.front().material.color = Rgb(1.0);
     scene.settings.max_depth = 2'000'000'000;
+    scene.settings.roulette_threshold = 0.0;
     scene.settings.spp = 4;
     RenderJob job;
     job.crop = {0, 8, 0, 8};

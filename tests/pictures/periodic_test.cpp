@@ -283,6 +283,48 @@ TEST_CASE("a level ray through nothing is cut after a million domains, and count
     CHECK(result.film.mean[0] == glm::vec3(0.0f));
 }
 
+// Which is everywhere, but nothing: paths that leave would go on to it.
+TEST_CASE("media that hold nothing keep no path in a domain that repeats", "[gpu][image][periodic]") {
+    Scene scene = scene_of(medium(Sphere{{0.0, 0.0, 0.0}, 0.5}, 1.0, 1.0), 2.0, 8);
+    scene.volumes.push_back(medium(Everywhere{}, 0.0, 0.0));
+    scene.periodic = Periodic{{-1.0, 0.0, -1.0}, {1.0, 0.0, 1.0}};
+    scene.camera.pitch = -80.0;
+    scene.background = Rgb(1.0);
+    scene.settings.roulette_threshold = 0.0;
+    const RenderResult result = render_here(scene, 1);
+    CHECK(result.counts.step_caps == 0);
+    for (const glm::vec3& pixel : result.film.mean)
+        CHECK(pixel.x == Approx(1.0));
+}
+
+TEST_CASE("a domain that repeats and holds nothing shows what is beyond", "[gpu][image][periodic]") {
+    Scene scene = scene_of(medium(Box{{0.0, 0.0, 0.0}, {2.0, 1.0, 2.0}}, 0.0, 0.0), 2.0, 4);
+    scene.periodic = Periodic{{-1.0, 0.0, -1.0}, {1.0, 0.0, 1.0}};
+    scene.background = {1.0, 2.0, 0.5};
+    for (const bool has_volume : {true, false}) {
+        if (!has_volume)
+            scene.volumes.clear();
+        const Film film = render_here(scene, 1).film;
+        for (const glm::vec3& pixel : film.mean)
+            CHECK(glm::distance(pixel, glm::vec3(scene.background)) < 1e-5f);
+        // What comes to a plane, by rays and by particles.
+        Scene flux = scene;
+        flux.camera = {};
+        flux.camera.projection = Projection::irradiance;
+        flux.camera.size = {2.0, 2.0};
+        look_along(flux.camera, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0});
+        flux.picture = {1, 1, 0.0, 0.0, 1.0, 1.0};
+        flux.background = Rgb(0.0);
+        flux.lights = {DirectionalLight{glm::normalize(glm::dvec3(0.0, 1.0, std::sqrt(3.0))), Rgb(1.0, 2.0, 1.0)}};
+        for (const char* integrator : {"ratioTracking", "lightTracing"}) {
+            CAPTURE(integrator, has_volume);
+            flux.settings.integrator = integrator;
+            flux.settings.spp = 256;
+            CHECK_AGREEMENT(agree_with_means(render_here(flux, 2).film, {Rgb(0.5, 1.0, 0.5)}, integrator));
+        }
+    }
+}
+
 TEST_CASE("domains that repeat in scene files", "[cpu][xml][periodic]") {
     const Scene scene = parse(R"(<sphere/><periodic x="-1 1" z="0 2.5"/>)");
     REQUIRE(scene.periodic);

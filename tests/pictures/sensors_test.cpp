@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "camera_rays.h"
+#include "frame_params.h"
 #include "framing.h"
 #include "pixel_filter.h"
-#include "scene_upload.h"
 #include "support/images.h"
 #include "support/scene_text.h"
 #include "support/scenes.h"
@@ -37,7 +37,7 @@ Lens lens(double radius, double focus, int blades = 0, double rotation = 0.0) {
     return lens;
 }
 
-// Of a filter, within x radii of the middle, x in [0, 1].
+// The part of a filter within x radii of the middle, x in [0, 1].
 double part_within(PixelFilter filter, double x) {
     const double pi = std::numbers::pi;
     switch (filter) {

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "error.h"
+#include "frame_params.h"
 #include "loaded_medium.h"
 #include "scene_hash.h"
 #include "support/agreement.h"
@@ -236,7 +237,7 @@ TEST_CASE("what is nothing beside a medium changes nothing", "[gpu][image][sever
     before.volumes.insert(before.volumes.begin(), medium(write_grid(dense), 2.0, 0.5));
     before.volumes.front().density_scale = 0.0;
     CHECK_AGREEMENT(agree(render_here(before, 1).film, render_here(grids, 2).film, "a grid that fades in"));
-    // Of colours, beside what is seen through it.
+    // Likewise a medium of colours, before a ball that is seen through it.
     Scene colored = whole;
     colored.volumes = {medium(Sphere{{0.0, 0.0, 0.0}, 1.5}, 0.0, 0.0)};
     colored.volumes.front().sigma_a = {0.1, 0.2, 0.4};
@@ -284,6 +285,29 @@ TEST_CASE("cells over several media bound their sum, and list all that may be th
     }
     CHECK(met > 2000);
     CHECK(empty > 2000); // corners of the box around turned ones
+}
+
+// Single precision is for what is seen, and not for the air high above it.
+TEST_CASE("air above leaves the middle where media are", "[cpu][several]") {
+    Scene scene = parse(R"(<volumes><volume><box x="3" y="1" width="2" height="2" depth="2"/></volume>
+        <volume><everywhere/><layers scaleHeight="8000"/><sigma_s>1e-6</sigma_s></volume></volumes>)");
+    const Method method = choose_method(scene);
+    const Assets assets = load_assets(scene, method);
+    CHECK(glm::distance(render_origin(scene, assets.media, &*assets.superposition), glm::dvec3(3.0, 1.0, 0.0)) < 1e-6);
+    CHECK(assets.superposition->high().y * assets.superposition->edge > 1.6e5 - 10.0);
+}
+
+TEST_CASE("what volumes hardly mean is told", "[cpu][xml][several]") {
+    const auto warnings = [](const std::string& volumes) {
+        const std::vector<std::string> all = parse("<volumes>" + volumes + "</volumes>").warnings;
+        return fmt::format("{}", fmt::join(all, "\n"));
+    };
+    CHECK_THAT(warnings("<volume name='my cloud'><sphere/></volume><volume name='my_cloud'><sphere/></volume>"),
+               Contains("one layer, medium.my_cloud"));
+    CHECK(warnings("<volume name='a'><sphere/></volume><volume name='a'><sphere/></volume>") == "");
+    CHECK_THAT(warnings("<volume><sphere/><emission multiplier='7'/></volume>"), Contains("<emission> is black"));
+    CHECK_THAT(warnings("<volume><sphere/><medium multiplier='7'/></volume>"), Contains("<medium> is black"));
+    CHECK(warnings("<volume><sphere/><medium r='0' multiplier='7'/></volume>") == "");
 }
 
 TEST_CASE("groups of volumes in scene files", "[cpu][xml][several]") {

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
 #include "error.h"
@@ -37,7 +38,7 @@ Material grey(double albedo) {
     return {MaterialKind::diffuse, Rgb(albedo)};
 }
 
-// Of `n` bands of latitude, closed.
+// A closed mesh of a ball, of `n` bands of latitude.
 TriangleSurface round_mesh(int n, double radius) {
     TriangleSurface mesh;
     const int columns = 2 * n;
@@ -466,6 +467,85 @@ TEST_CASE("surfaces among media equal the reference, by both schedules", "[gpu][
     CHECK_AGREEMENT(agree(render_here(bare, 1).film, render_reference(bare, 2), "no medium"));
 }
 
+// What comes straight from it, exp(-sigma_t) in each channel; what the fog scatters is cut off.
+TEST_CASE("surfaces shine through fog of different extinctions", "[gpu][image][surfaces]") {
+    const Rgb sigma_t(0.4, 0.8, 1.0);
+    Scene scene = from_above(0.1, 16);
+    Surface plane;
+    plane.shape = PlaneSurface{};
+    plane.material = grey(0.0);
+    plane.emission = {1.0, 2.0, 3.0};
+    scene.surfaces = {plane};
+    GridRecipe even;
+    even.last = glm::ivec3(7);
+    even.value = [](glm::ivec3) { return 1.0f; };
+    const Volume box = medium(Box{{0.0, 1.0, 0.0}, {3.0, 1.6, 3.0}}, 1.0, 0.5);
+    Volume grid = medium(write_grid(even), 1.0, 0.5);
+    grid.transform = glm::translate(glm::dmat4(1.0), {-0.8, 0.2, -0.8}) * glm::scale(glm::dmat4(1.0), glm::dvec3(0.2));
+    scene.settings.filter = Filter::nearest;
+    scene.settings.max_depth = 0;
+    scene.settings.spp = 256;
+    const Rgb expected = plane.emission * glm::exp(-1.6 * sigma_t);
+    for (const auto& [volume, flight] : {std::pair(box, FREE_FLIGHT_ANALYTIC), std::pair(grid, FREE_FLIGHT_REGULAR),
+                                         std::pair(grid, FREE_FLIGHT_DELTA), std::pair(grid, FREE_FLIGHT_MARCH)}) {
+        CAPTURE(flight);
+        scene.volumes = {volume};
+        scene.volumes.front().sigma_s = scene.volumes.front().sigma_a = 0.5 * sigma_t;
+        scene.volumes.front().unit = CoefficientUnit::world;
+        scene.settings.choices.free_flight = flight;
+        const Film film = render_here(scene, 1).film;
+        CHECK_AGREEMENT(
+            agree_with_means(film, std::vector<Rgb>(film.mean.size(), expected), fmt::format("{}", flight)));
+    }
+}
+
+// Nothing bounds what a lamp there is near to.
+TEST_CASE("a bright lamp at the camera shines over planes alone", "[gpu][image][surfaces]") {
+    Scene scene = from_above(0.1);
+    scene.camera.position = {0.0, 2.0, 0.0};
+    Surface floor;
+    floor.shape = PlaneSurface{};
+    floor.material = grey(0.5);
+    scene.surfaces = {floor};
+    scene.settings.max_depth = 1;
+    scene.lights = {PointLight{{0.0, 2.0, 0.0}, Rgb(1e9)}, PointLight{{0.0, 1e3, 0.0}, Rgb(1e9)}};
+    scene.settings.spp = 1024;
+    const double sum = 0.5 / pi * 1e9 * (1.0 / 4.0 + 1e-6);
+    const Film film = render_here(scene, 1).film; // straight below but for a fortieth, whose square counts
+    for (const glm::vec3& pixel : film.mean)
+        CHECK(pixel.x == Approx(sum).epsilon(0.01));
+}
+
+TEST_CASE("a depth limit counts surfaces as the reference does", "[gpu][image][surfaces]") {
+    for (const std::uint32_t depth : {1u, 2u, 3u}) {
+        Scene scene = still_life();
+        scene.settings.max_depth = depth;
+        CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_reference(scene, 2), fmt::format("depth {}", depth)));
+    }
+}
+
+// By roulette that does not ask for throughput, which is 1 for ever.
+TEST_CASE("light comes out of what it may be in for ever", "[gpu][image][surfaces]") {
+    Scene stone = empty_scene();
+    stone.background = Rgb(1.0);
+    stone.surfaces = {ball(white(MaterialKind::dielectric))};
+    stone.surfaces.front().shape = round_mesh(3, 1.0);
+    stone.surfaces.front().material.ior = 2.4;
+    stone.settings.spp = 1024;
+    const Film seen = render_here(stone, 1).film;
+    CHECK_AGREEMENT(agree_with_means(seen, std::vector<Rgb>(seen.mean.size(), Rgb(1.0)), "a cut stone"));
+    // Between white walls, with a glow of radiance L (1 - r) everywhere: L, and nothing but roulette ends a path.
+    Scene room = empty_scene(8);
+    room.camera = {};
+    Surface walls;
+    walls.shape = round_mesh(6, 1.0);
+    walls.material = white(MaterialKind::diffuse);
+    room.surfaces = {walls};
+    room.settings.max_depth.reset();
+    room.settings.spp = 4;
+    check_everywhere(room, Rgb(0.0), 0.0);
+}
+
 // Flights that end at surfaces, from them and in the midst; mirrors and glass show lamps before these looks, lamps with
 // bodies are in their own way, and a spot lights a part of a flight.
 TEST_CASE("looks from along flights find the same light beside surfaces", "[gpu][image][surfaces]") {
@@ -511,7 +591,7 @@ TEST_CASE("surfaces that shine are lamps with bodies", "[gpu][image][surfaces]")
     chance.settings.choices.nee = NEE_NONE;
     chance.lights.clear();
     scene.lights.clear();
-    // Of the whole picture: there are pixels that meet a lamp by chance once in thousands of samples.
+    // The whole picture is compared: there are pixels that meet a lamp by chance once in thousands of samples.
     const Film by_chance = render_here(chance, 3).film, looked = render_here(scene, 4).film;
     for (int channel = 0; channel < 3; ++channel) {
         double difference = 0.0, variance = 0.0;

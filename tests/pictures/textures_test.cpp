@@ -46,7 +46,7 @@ glm::dmat3 turned_axes(const glm::dvec3& z) {
     return {x, glm::cross(z, x), z};
 }
 
-// Of two triangles that do not agree about where on the image they are, and lean on each other.
+// Two triangles that lean on each other, and do not agree about where on the image they are.
 TriangleSurface tent() {
     return {{{-1.2, -1.0, 0.0}, {0.0, -1.0, 0.8}, {0.0, 1.0, 0.8}, {1.2, -1.0, 0.0}},
             {{0, 1, 2}, {1, 3, 2}},

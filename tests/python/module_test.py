@@ -264,7 +264,7 @@ class Running(unittest.TestCase):
 
     def test_black_is_good_enough(self):
         scene = vkvol.Scene.from_xml("<options><sphere/><camera z='4'/></options>")
-        self.assertEqual(int(vkvol.render(scene, width=4, height=4, noise=0.01).samples.max()), 1024)
+        self.assertEqual(int(vkvol.render(scene, width=4, height=4, noise=0.01).samples.max()), 1 << 18)
 
     def test_interrupted_and_gone_on_with(self):
         scene = vkvol.Scene.from_dict(smoke(placed()))

@@ -46,7 +46,7 @@ Flight DepthSample::escaped(double D) const {
 
 namespace {
 
-// Of the part's beginning, in which the integral of the density is `depth`, by bisection.
+// Length of the part's beginning in which the integral of the density is `depth`, by bisection.
 double fading_length(const Medium& medium, const Ray& ray, const Interval& part, double depth) {
     double low = 0.0, high = 1.0;
     const auto integral = [&](double length) { return medium.fading_integral(ray, {part.t0, part.t0 + length}); };

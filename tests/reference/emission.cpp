@@ -37,7 +37,9 @@ Rgb blackbody(double kelvin, double reference) {
     // Columns: what X, Y and Z give to red, green and blue (IEC 61966-2-1).
     const glm::dmat3 to_rgb(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259, -0.4985314, 0.0415560,
                             1.0572252);
-    return glm::max(to_rgb * (tristimulus(kelvin) / tristimulus(reference).y), Rgb(0.0));
+    const Rgb xyz = tristimulus(kelvin) / tristimulus(reference).y, shown = glm::max(to_rgb * xyz, Rgb(0.0));
+    const double luminance = (glm::inverse(to_rgb) * shown).y;
+    return luminance > 0.0 ? shown * (xyz.y / luminance) : shown;
 }
 
 Rgb Emission::at(const glm::dvec3& world) const {

@@ -57,7 +57,7 @@ struct ColorGrid {
 
 bool has_colors(const std::filesystem::path& path, const std::string& name);
 
-// Of a grid of colours, or grey ones of numbers.
+// Loads a grid of colours, or of numbers, which become grey.
 ColorGrid load_color_grid(const std::filesystem::path& path, const std::string& name);
 
 // The grid `name` of a .nvdb file: float, Fp4, Fp8, Fp16 or FpN. Throws std::runtime_error.

@@ -90,7 +90,7 @@ Rgb disc_radiance(const vkvol::Light& light, const glm::dvec3& direction) {
     if (miss >= 1.0 || glm::dot(direction, sun->direction) <= 0.0)
         return Rgb(0.0);
     const double mu = std::cos(std::asin(miss)), u = sun->limb_darkening;
-    // Of u = 1 a disc gives two thirds of what an even one of its middle's radiance does.
+    // With u = 1 a disc gives two thirds of what an even one of its middle's radiance does.
     const Rgb even = sun->irradiance / (pi * radius * radius);
     return even * ((1.0 - u + u * mu) / std::lerp(1.0, 2.0 / 3.0, u));
 }

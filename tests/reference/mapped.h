@@ -14,7 +14,7 @@ struct Extremes {
     double least, most;
 };
 
-// Of the densities that values in [low, high] are mapped to.
+// Extremes of the densities that values in [low, high] are mapped to.
 Extremes mapped_extremes(const vkvol::ValueMap& map, double low, double high);
 
 // Where in (0, 1) the cubic through `samples`, values at 0, 1/3, 2/3 and 1, takes any of the points' values, in order:

@@ -63,7 +63,7 @@ std::vector<Interval> support(const Medium& medium, const Ray& ray);
 
 // Where in the domain that repeats a point of the world is; where nothing does, there.
 glm::dvec3 folded(const Medium& medium, const glm::dvec3& world);
-// Of a medium that repeats: between where along the other axes there is anything, and how dense it is there.
+// A medium that repeats: the part of a ray where along the other axes there is anything, and the density at a point.
 Interval unfolded_support(const Medium& medium, const Ray& ray);
 double unfolded_density(const Medium& medium, const glm::dvec3& world);
 double largest_density(const Medium& medium);

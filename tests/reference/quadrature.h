@@ -13,10 +13,10 @@ namespace reference {
 double density_integral(const Medium& medium, const Ray& ray, double t0 = 0.0,
                         double t1 = std::numeric_limits<double>::infinity());
 
-// Of the channel with the largest extinction.
+// Optical depth and transmittance of the channel with the largest extinction.
 double optical_depth(const Medium& medium, const Ray& ray, double t0, double t1);
 double transmittance_quadrature(const Medium& medium, const Ray& ray, double t0, double t1);
-// Of all channels.
+// Transmittance of all channels.
 vkvol::Rgb chromatic_transmittance(const Medium& medium, const Ray& ray, double t0 = 0.0,
                                    double t1 = std::numeric_limits<double>::infinity());
 

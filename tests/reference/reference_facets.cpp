@@ -41,7 +41,7 @@ bool go_to_facet(Place& place, double alpha, double u) {
     return place.height <= 0.0;
 }
 
-// Of the facets' normals seen along -wi: a point of the half of an ellipsoid whose shadow along wi is uniform.
+// One of the facets' normals seen along -wi: a point of the half of an ellipsoid whose shadow along wi is uniform.
 glm::dvec3 seen_normal(const glm::dvec3& wi, double alpha, Rng& rng) {
     const glm::dvec3 s = glm::normalize(glm::dvec3(alpha * wi.x, alpha * wi.y, wi.z));
     const glm::dvec3 across =

@@ -13,8 +13,8 @@ vkvol::Rgb rough_transmittance(const Medium& medium, const Ray& ray);
 vkvol::Rgb cached_light(const World& world, const glm::dvec3& p, const glm::dvec3& travel, const vkvol::Rgb& beta,
                         Rng& rng);
 
-// Of expectation 0, to be subtracted when a path that travelled along `before` departs from p along
-// `after`, times its throughput.
+// What was foreseen of the light at p, of expectation 0: to be subtracted when a path that travelled along `before`
+// departs from p along `after`, times its throughput.
 vkvol::Rgb foreseen_light(const World& world, const glm::dvec3& p, const glm::dvec3& before, const glm::dvec3& after);
 
 } // namespace reference

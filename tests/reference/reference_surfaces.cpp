@@ -32,7 +32,7 @@ std::optional<glm::dvec3> meet_triangle(const glm::dvec3& a, const glm::dvec3& b
     return x >= 0.0 && y >= 0.0 && x + y <= 1.0 ? std::optional(glm::dvec3(glm::dot(v, q) / det, x, y)) : std::nullopt;
 }
 
-// Of what is no mesh, in shares of its texture from the lower left.
+// Place on what is no mesh, in shares of its texture from the lower left.
 glm::dvec2 place_on(const vkvol::Surface& surface, const glm::dvec3& at, const glm::dvec3& normal) {
     const glm::dvec3 own = glm::transpose(surface.axes) * normal;
     if (std::holds_alternative<vkvol::BallSurface>(surface.shape))
@@ -115,7 +115,7 @@ void meet(const vkvol::Surface& surface, const Ray& ray, std::optional<SurfaceHi
     }
 }
 
-// Of even light from within a boundary of index `ior`, what it throws back: the mean over angles.
+// The share of even light from within a boundary of index `ior` that it throws back: the mean over angles.
 double thrown_back(double ior) {
     constexpr int n = 2000;
     double sum = 0.0;

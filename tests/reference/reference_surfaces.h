@@ -30,7 +30,8 @@ struct Scattered {
 };
 Scattered scatter(const SurfaceHit& hit, const glm::dvec3& travel, const Draw& draw, Rng& rng);
 
-// Of light from `direction`, per steradian, cosine included; 0 of what is specular. An estimate, of what is rough.
+// Share of light from `direction` that is scattered, per steradian, cosine included; 0 if what is there is specular. An
+// estimate, if it is rough.
 vkvol::Rgb scatter_value(const SurfaceHit& hit, const glm::dvec3& travel, const glm::dvec3& direction, Rng& rng);
 
 } // namespace reference

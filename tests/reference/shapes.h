@@ -27,7 +27,7 @@ struct Interval {
 
 Interval clip(const Interval& a, const Interval& b); // the part common to both
 
-// Of the whole line, t < 0 included.
+// The part of the whole line, t < 0 included, that is inside.
 Interval intersect(const vkvol::Sphere& sphere, const Ray& ray);
 Interval intersect(const vkvol::Box& box, const Ray& ray);
 Interval intersect(const glm::dvec3& lower, const glm::dvec3& upper, const Ray& ray);

@@ -37,7 +37,7 @@ struct RgbMean {
     }
 };
 
-// Of two estimates of the same, per channel; the largest |z|.
+// The largest |z| of the channels, between two estimates of the same.
 inline double z_between(const RgbMean& a, const RgbMean& b) {
     double worst = 0.0;
     for (int i = 0; i < 3; ++i)

@@ -20,7 +20,7 @@ double e3(double x) {
     return 0.5 * (std::exp(-x) - x * e2(x));
 }
 
-// Of E1(|x - y|) over y from a to b.
+// Integral of E1(|x - y|) over y from a to b.
 double kernel_integral(double x, double a, double b) {
     if (x <= a)
         return e2(a - x) - e2(b - x);

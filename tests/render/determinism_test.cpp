@@ -27,12 +27,12 @@ Scene cloud(std::uint32_t samples = 11) {
     return scene;
 }
 
-RenderJob with_tuning(std::uint32_t slots, std::uint32_t lanes, std::uint32_t budget, std::uint32_t steps_per_look) {
+RenderJob with_tuning(std::uint32_t slots, std::uint32_t lanes, std::uint32_t budget, std::uint32_t steps_per_turn) {
     RenderJob job;
     job.plan.slots = slots;
     job.plan.lanes = lanes;
     job.plan.budget = budget;
-    job.plan.steps = steps_per_look;
+    job.plan.steps = steps_per_turn;
     return job;
 }
 

@@ -103,7 +103,7 @@ TEST_CASE("a shared render is looked at, stopped and gone on with", "[gpu][devic
     std::vector<Checkpoint> kept;
     job.interrupted = [&] { return ++asked > 9; };
     job.checkpoint = [&](const Checkpoint& checkpoint) { kept.push_back(checkpoint); };
-    job.look = [&](const RenderResult& result) {
+    job.preview = [&](const RenderResult& result) {
         const std::vector<std::uint32_t>& samples = result.film.samples;
         ++looks;
         REQUIRE(samples.size() == 1600);

@@ -126,7 +126,7 @@ TEST_CASE("a cache that is wrong everywhere is corrected by the few that look", 
     scene.settings.spp = 256;
     scene.settings.integrator = "cachedRatioTracking";
     const RenderResult cached = render_here(scene, 3);
-    // Of a table more do: what is known of it is known less well.
+    // More collisions look where there is a table of lights: what is known of it is known less well.
     CHECK((scene.lights.size() == 1 ? 2 : 1) * cached.counts.shadow_rays < cached.counts.real_collisions);
     scene.settings.integrator = "ratioTracking";
     CHECK_AGREEMENT(agree(cached.film, render_here(scene, 4).film, "columns of light"));

@@ -8,6 +8,7 @@
 #include "fused.spv.h"
 #include "fused_chromatic.spv.h"
 #include "fused_full.spv.h"
+#include "kernel_constants.h"
 #include "shared/items.h"
 #include "specialization.h"
 
@@ -151,7 +152,7 @@ TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "
         CHECK(
             specialise(fused_full_spv, with({{SPEC_MAP, map}, {SPEC_MAP_HALVINGS, 3}, {SPEC_FILTER, FILTER_TRILINEAR}}))
                 .bindings.contains(BINDING_MAPS));
-    lights_touch(LIGHTS_SUN, {});
+    lights_touch(LIGHTS_LONE, {});
     lights_touch(LIGHTS_TABLE, {BINDING_LIGHTS});
     lights_touch(LIGHTS_TABLE | LIGHTS_TREE, {BINDING_LIGHTS, BINDING_LIGHT_TREE});
     lights_touch(LIGHTS_TABLE | LIGHTS_TREE | LIGHTS_AIMED, {BINDING_LIGHTS, BINDING_LIGHT_TREE});
@@ -214,4 +215,26 @@ TEST_CASE("a grey path's throughput is one number, and its state holds nothing o
     // Position, direction, radiance; pixel, place, sample, draw, depth, medium, and whether a segment was laid aside.
     // No throughput, no shadow ray, no temperature.
     CHECK(sizeof(shared::PathState) == 3 * sizeof(glm::vec3) + 7 * sizeof(std::uint32_t));
+}
+
+// What nobody asks a FULL kernel for would silently be what kernels without FULL have built in.
+TEST_CASE("each constant that kernels have only with FULL asks for FULL", "[cpu][specialization]") {
+    Specialization plain{};
+    plain[SPEC_ALBEDO_TYPE] = GRID_FLOAT;
+    CHECK(!needs_full(plain));
+    Specialization all;
+    all.fill(1);
+    const Specialization without = declared_of(fused_spv, all), with = declared_of(fused_full_spv, all);
+    int only_with = 0;
+    for (std::size_t id = 0; id < all.size(); ++id) {
+        CAPTURE(id);
+        Specialization changed = plain;
+        changed[id] += 1;
+        CHECK(without[id] <= with[id]);
+        // These two are for what asks for FULL itself: lights of a table, and tables.
+        if (without[id] != with[id] && id != SPEC_MIS && id != SPEC_TABLE_TEXELS)
+            CHECK(needs_full(changed));
+        only_with += without[id] != with[id];
+    }
+    CHECK(only_with >= 13);
 }

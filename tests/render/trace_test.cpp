@@ -1,5 +1,7 @@
 // The path that is followed is the one that was rendered.
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
+#include <set>
 
 #include "support/images.h"
 #include "support/scenes.h"
@@ -73,4 +75,21 @@ TEST_CASE("a followed path is printed", "[gpu][trace]") {
     CHECK(missed.trace.empty());
     CHECK_THAT(trace_table(missed.trace, missed.trace_origin, missed.film.mean.front()),
                Catch::Contains("radiance 0.3 0.5 0.9"));
+}
+
+TEST_CASE("each kind of vertex of a followed path has a name", "[gpu][trace]") {
+    Scene scene = cloud();
+    scene.surfaces.emplace_back().shape = BallSurface{{0.0, 0.0, 0.0}, 1.5};
+    scene.settings.integrator = "bidirectional";
+    std::string tables;
+    std::set<std::uint32_t> kinds;
+    for (std::uint32_t sample = 0; sample < 8; ++sample) {
+        const RenderResult traced = one_sample(scene, 12, 11, sample, true);
+        tables += trace_table(traced.trace, traced.trace_origin, traced.film.mean.front());
+        for (const shared::TraceRecord& r : traced.trace)
+            kinds.insert(r.kind);
+    }
+    CHECK(kinds.size() == TRACE_KINDS);
+    for (const char* name : {"camera", "source", "scatter", "collision", "light", "surface", "escape", "end"})
+        CHECK_THAT(tables, Catch::Contains(fmt::format("\n{} ", name)));
 }

@@ -175,6 +175,10 @@ TEST_CASE("each kind of medium is framed by its box", "[cpu][xml]") {
     CHECK(same(middle_of(corners("<sphere x='1' y='2' z='3' radius='4'/>")), {1, 2, 3}));
     CHECK(diagonal_of(corners("<sphere radius='4'/>")) == Approx(8.0 * std::sqrt(3.0)));
     CHECK(diagonal_of(corners("<box width='3' height='4' depth='12'/>")) == Approx(13.0));
+    // Corners are as high as the layers that a shape holds; what holds nothing has none.
+    CHECK(diagonal_of(corners("<box y='500' width='3' height='1000' depth='4'/><layers><layer height='0' sigma_t='1'/>"
+                              "<layer height='12' sigma_t='0'/></layers>")) == Approx(13.0));
+    CHECK_FALSE(medium_corners(parse("<sphere/><sigma_a>0</sigma_a><sigma_s>0</sigma_s>"), fields));
     CHECK_FALSE(medium_corners(parse("<camera/>"), fields));
     Scene nothing = parse("<camera/>");
     CHECK_THROWS_WITH(frame_medium(nothing, fields), Contains("no medium to frame"));
@@ -205,6 +209,15 @@ TEST_CASE("a scene without a camera gets one that frames all its media", "[cpu][
     CHECK(given.camera.position == glm::dvec3(0.0, 0.0, 3.0));
     Scene bare = parse("");
     CHECK(give_camera(bare, fields).empty());
+}
+
+TEST_CASE("a scene of surfaces alone gets a camera, too", "[cpu][camera][xml]") {
+    FieldCache fields;
+    Scene balls = parse_scene("<options><surfaces><sphere x='40'/><sphere x='44'/></surfaces></options>", "s.xml");
+    CHECK_THAT(give_camera(balls, fields), Contains("frames its surfaces"));
+    CHECK(balls.camera.position.x > 30.0);
+    Scene plane = parse_scene("<options><surfaces><plane/></surfaces></options>", "s.xml");
+    CHECK_THAT(give_camera(plane, fields), Contains("nothing that could be framed"));
 }
 
 TEST_CASE("a camera's settings say which luminance is white", "[cpu][camera][xml]") {

@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "error.h"
+#include "frame_params.h"
 #include "method.h"
-#include "scene_upload.h"
 #include "scene_xml.h"
 
 using namespace vkvol;
@@ -32,7 +32,7 @@ std::string error_of(const std::string& elements, const Defines& defines = {}) {
     return message_of([&] { parse(elements, defines); });
 }
 
-// Of opening the scene's files, and of what the kernels are given.
+// The error of opening the scene's files, or of making what the kernels are given.
 std::string render_error_of(const std::string& elements) {
     return message_of([&] {
         const Scene scene = with_preset(parse(elements));
@@ -94,6 +94,16 @@ TEST_CASE("media that a ray would never get through are refused, with the scene'
     // In closed form any optical depth takes one step.
     CHECK(render_error_of("<sphere/><sigma_s>1e8</sigma_s>") == "no error");
     CHECK_THAT(render_error_of("<sphere radius=\"1e-11\"/><camera x=\"1e11\"/>"), Contains("move the camera"));
+    for (const char* shape :
+         {"<plane/>", "<sphere y=\"-1\"/>", "<disk lookAt=\"1 1 1\"/>", "<rectangle lookAt=\"1 1 1\"/>"}) {
+        const std::string surfaces = fmt::format("<surfaces>{}</surfaces>", shape);
+        CHECK_THAT(render_error_of(surfaces + "<fluence>0 0 0</fluence>"), Contains("lies in this surface"));
+        CHECK(render_error_of(surfaces + "<fluence>0 0.001 0</fluence>") == "no error");
+    }
+    CHECK_THAT(render_error_of("<sphere radius=\"1e-11\"/><fluence>0 0 0  1e11 0 0</fluence>"),
+               Contains("move the point"));
+    CHECK_THAT(render_error_of("<sphere/><sigma_s>1</sigma_s><noise frequency=\"1e15\" octaves=\"3\"/>"),
+               Contains("octave"));
 }
 
 TEST_CASE("errors of a scene's files name the line that names the file", "[cpu][xml]") {

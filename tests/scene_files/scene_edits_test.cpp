@@ -90,7 +90,7 @@ TEST_CASE("what shines in a scene, and where it is", "[cpu][live]") {
     CHECK(all[2].name == "sun (key)");
     CHECK(glm::distance(*all[2].direction, glm::dvec3(0.5, std::sqrt(0.75), 0.0)) < 1e-12);
     CHECK(all[3].name == "backgroundColor");
-    // Of a direction that is not written in numbers nobody knows where it is.
+    // A direction that is not written in numbers is not known.
     CHECK_FALSE(what_shines("<options><light x=\"$a\" y=\"1\" z=\"0\"/></options>").front().direction);
     CHECK_THROWS_AS(what_shines("<options><light"), InputError);
 }

@@ -142,8 +142,8 @@ std::vector<Combination> unbiased_combinations(const Scene& scene) {
 
 namespace {
 
-// Of every estimate, pixel and channel. An estimate that by chance met none of a pixel's rare bright samples takes
-// itself for exact, so no variance is taken for less than the median of all estimates' there.
+// Variances of every estimate, pixel and channel. An estimate that by chance met none of a pixel's rare bright samples
+// takes itself for exact, so no variance is taken for less than the median of all estimates' there.
 std::vector<std::vector<glm::dvec3>> known_variances(const std::vector<Estimate>& estimates) {
     std::vector<std::vector<glm::dvec3>> variances;
     for (const Estimate& estimate : estimates)

@@ -6,8 +6,9 @@
 
 #include "commands.h"
 #include "compute_pass.h"
+#include "loaded_medium.h"
 #include "scene_buffers.h"
-#include "scene_upload.h"
+#include "shared/frame.h"
 #include "shared/items.h"
 
 namespace vkvol {

@@ -21,7 +21,7 @@ struct Convex {
 
 Convex convex_box(glm::dvec3 low, glm::dvec3 high);
 
-// Of a convex mesh whose faces look outward.
+// The body within a convex mesh, whose faces look outward.
 Convex convex_hull(const Mesh& mesh);
 
 // Length of the part of the line from its origin on in the union of bodies that are grown by `margin` on all sides.

@@ -31,7 +31,7 @@ struct NamedPhase {
 };
 std::vector<NamedPhase> all_phases();
 
-// Of its voxels, in world space.
+// Middle of a grid's voxels, in world space.
 glm::dvec3 center_of(const GridRecipe& grid);
 
 // Four octaves of value noise, a third of it cut to 0; in [0, 1].

@@ -29,10 +29,10 @@ double normal_p(double z);
 // p = 1 if they agree with `expected` within `rounding`, else 0.
 double t_test_p(const RunningMean& mean, double expected, double rounding = 0.0);
 
-// Of a chi-square statistic, upper tail.
+// p of a chi-square statistic, upper tail.
 double chi_square_p(double statistic, double degrees_of_freedom);
 
-// Of observed against expected counts; neighbouring bins are merged until each expects at least 5.
+// p of observed against expected counts; neighbouring bins are merged until each expects at least 5.
 double chi_square_test_p(std::span<const double> observed, std::span<const double> expected);
 
 // That `uniforms` come from the uniform distribution on [0, 1]: Kolmogorov-Smirnov. Sorts its argument.

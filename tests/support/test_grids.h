@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scene_upload.h"
+#include "loaded_medium.h"
 #include "tests/reference/grid.h"
 
 namespace vkvol {
@@ -61,7 +61,7 @@ GridBytes with_root_tile(GridBytes bytes, glm::ivec3 ijk, float value);
 // For the reference, from NanoVDB's accessor alone.
 reference::Grid make_reference_grid(const TestGrid& grid);
 
-// Of one majorant cell.
+// Bound of one majorant cell.
 float bound_of(const MajorantGrid& majorants, glm::ivec3 cell);
 
 // A number in [0, 1) for each voxel.

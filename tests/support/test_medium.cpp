@@ -57,7 +57,7 @@ ValueMap bumpy_map() {
 
 namespace {
 
-// Of a kernel.
+// Form of the kernel that a scene needs.
 unsigned form_of(const TestScene& scene) {
     return (scene.chromatic ? form_chromatic : 0) | (scene.specialization[SPEC_MAP] != MAP_NONE ? form_full : 0);
 }

@@ -67,7 +67,7 @@ private:
     reference::Medium reference_;
 };
 
-// Of three channels.
+// Means of three channels.
 struct RgbMean {
     RunningMean channel[3];
     void add(const glm::vec3& v) {

@@ -1,5 +1,8 @@
 #include "test_scene.h"
 
+#include "frame_params.h"
+#include "kernel_constants.h"
+
 #include <algorithm>
 
 namespace vkvol {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The frame of its parts, as NAME.FRAME.exr and .png, with the bits of one render.
+# The frame of its parts, as NAME.FRAME.exr and .png, with the bits of one render (but for particles).
 #   merge_frame.sh FRAME PARTS NAME
 #   VKVOL=PROGRAM  in place of vkvol
 set -euo pipefail

@@ -5,7 +5,8 @@
 #   VKVOL=PROGRAM      in place of vkvol
 #   FARM_LINES=openjd  progress and failures in the words of Open Job Description
 # A part that is there was rendered to its end and is not rendered again; of one that was killed what its last checkpoint has
-# is gone on from. Windows of a picture have the bits that they have in the whole: ranges of samples would not, to the last.
+# is gone on from. Windows of a picture have the bits that they have in the whole (but for particles): ranges of samples would
+# not, to the last.
 set -euo pipefail
 export LC_ALL=C # numbers have points
 

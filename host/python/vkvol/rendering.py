@@ -100,7 +100,7 @@ class Session:
     def picture(self) -> Picture:
         """As it is now, whole and its own: further samples do not change it. Raises RenderError before there are any."""
         picture = Picture(self._session.picture())
-        cut = {name: n for name, n in picture.report["caps"].items() if isinstance(n, int) and n and name != "cleanedVoxels"}
+        cut = {name: n for name, n in picture.report["caps"].items() if isinstance(n, int) and n}
         if self._strict and cut:
             raise _vkvol.RenderError("under strict: " + ", ".join(f"{n} {name}" for name, n in cut.items()))
         return picture

@@ -1,27 +1,17 @@
-// From the authored scene to what the kernels see. The only place that fills the shared structs.
+// From the authored scene to what kernels read of it: the frame's and the media's parameters.
 #pragma once
 
-#include "compute_pass.h"
 #include "crop.h"
 #include "loaded_medium.h"
 #include "shared/frame.h"
 
 namespace vkvol {
 
-// What is left of light at a collision; 0 in channels that do not scatter.
-Rgb albedo_of(const Volume& volume);
-
-// Extinction or albedo differs between the colour channels, or may differ, as of surfaces.
-bool is_chromatic(const Scene& scene);
-
-// Value of every specialization constant. What the scene lacks is switched off here and compiles to nothing.
-// `whole`: of several media, here and below, else null.
-Specialization specialize(const Scene& scene, Media media, const Method& method, const Superposition* whole = nullptr);
-
 // World position of render space's origin: amid the media, or the surfaces, or the camera where there are none.
+// `whole`: of several media, here and below, else null.
 glm::dvec3 render_origin(const Scene& scene, Media media, const Superposition* whole = nullptr);
 
-// Of the boxes around the media; world units, 0 where there is none.
+// Longest diagonal of the boxes around the media; world units, 0 where there is none.
 double longest_diagonal(const Scene& scene, Media media, const Superposition* whole = nullptr);
 
 // Half of that: within which lights matter. Of what is everywhere, a mean free path. `medium`: the frame's.

@@ -1,15 +1,14 @@
-#include "scene_upload.h"
+#include "frame_params.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
-#include <set>
 
 #include "camera_rays.h"
 #include "camera_view.h"
 #include "error.h"
+#include "kernel_constants.h"
 #include "layer_plan.h"
 #include "layers.h"
 #include "light_cache.h"
@@ -44,17 +43,6 @@ static_assert(sizeof(shared::PassPush) <= 128, "the least push constant space th
 
 namespace {
 
-int shape_kind(const Volume& volume, const LoadedMedium& loaded) {
-    if ((volume.sigma_a + volume.sigma_s) * volume.density_scale == Rgb(0.0))
-        return SHAPE_NONE;
-    if (std::holds_alternative<Sphere>(volume.shape))
-        return SHAPE_SPHERE;
-    if (std::holds_alternative<MeshFiles>(volume.shape))
-        return SHAPE_MESH;
-    const bool is_box = std::holds_alternative<Box>(volume.shape) || is_everywhere(volume);
-    return loaded.field || is_box ? SHAPE_BOX : SHAPE_NONE;
-}
-
 shared::GridParams make_grid(const DensityField& field, const UploadLayout& layout) {
     const glm::ivec3 base = index_base(field);
     const UploadLayout::GridPlace place = layout.place_of(field);
@@ -73,11 +61,6 @@ void fill_rows(glm::vec4 (&rows)[3], const glm::dmat4& space_to_world, glm::dvec
     const glm::dmat4 map = glm::inverse(space_to_world) * glm::translate(glm::dmat4(1.0), origin);
     for (int row = 0; row < 3; ++row)
         rows[row] = glm::vec4(map[0][row], map[1][row], map[2][row], map[3][row]);
-}
-
-// Radiance per absorption event: the medium's own, or its model's diffuse colour.
-Rgb constant_emission(const Volume& volume, const LoadedMedium& loaded, const Method& method) {
-    return method.material_colour && loaded.mesh && loaded.mesh->diffuse ? *loaded.mesh->diffuse : volume.Le;
 }
 
 shared::EmissionParams make_emission(const Volume& volume, const LoadedMedium& loaded, const UploadLayout& layout,
@@ -136,39 +119,6 @@ shared::LayerParams make_layers(const Volume& volume, const MajorantGrid& cells)
     return params;
 }
 
-int emission_kind(const Volume& volume, const LoadedMedium& loaded, const Method& method) {
-    if (loaded.temperature)
-        return volume.temperature.model == TemperatureEmission::Model::color ? EMISSION_COLOR : EMISSION_BLACKBODY;
-    const Rgb glow = constant_emission(volume, loaded, method) + most_map_emission(volume);
-    return most_sigma_a(volume) * glow != Rgb(0.0) ? EMISSION_CONSTANT : EMISSION_NONE;
-}
-
-int map_kind(const Volume& volume) {
-    if (!volume.map.exists())
-        return MAP_NONE;
-    if (!volume.map.is_transfer)
-        return MAP_DENSITY;
-    return most_map_emission(volume) == Rgb(0.0) ? MAP_ALBEDO : MAP_GLOW;
-}
-
-int density_kind(const Volume& volume, const LoadedMedium& loaded) {
-    return loaded.field ? FIELD_GRID : loaded.is_layered ? FIELD_LAYERS : volume.noise ? FIELD_NOISE : FIELD_CONSTANT;
-}
-
-shared::MediumKinds kinds_of(const Volume& volume, const LoadedMedium& loaded, const Method& method) {
-    shared::MediumKinds kinds{};
-    kinds.shape = shape_kind(volume, loaded);
-    kinds.field = density_kind(volume, loaded);
-    kinds.grid_type = loaded.field ? loaded.field->type : GRID_FLOAT;
-    kinds.phase = static_cast<int>(volume.phase);
-    kinds.emission = kinds.shape != SHAPE_NONE ? emission_kind(volume, loaded, method) : EMISSION_NONE;
-    kinds.temperature_type = loaded.temperature ? loaded.temperature->type : GRID_FLOAT;
-    kinds.albedo = loaded.albedo ? ALBEDO_GRID : ALBEDO_CONSTANT;
-    kinds.albedo_type = loaded.albedo ? loaded.albedo->type : GRID_FLOAT;
-    kinds.map = loaded.field || loaded.is_layered ? map_kind(volume) : MAP_NONE;
-    return kinds;
-}
-
 // `origin`: of render space, in world coordinates.
 shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const LoadedMedium& loaded,
                                  const UploadLayout& layout, const Method& method, glm::dvec3 origin) {
@@ -215,7 +165,7 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
     return params;
 }
 
-// Of the superposition. What its parts have, collisions ask these for.
+// The superposition as one medium. Collisions ask its parts for what is theirs.
 shared::MediumParams make_whole(const Superposition& whole) {
     shared::MediumParams params{};
     fill_rows(params.to_medium, glm::scale(glm::translate(glm::dmat4(1.0), whole.origin), glm::dvec3(whole.edge)),
@@ -236,22 +186,6 @@ shared::MediumParams make_whole(const Superposition& whole) {
     return params;
 }
 
-// Near enough that what it lights differs much from place to place, and where shadow rays cost next to nothing or,
-// beside surfaces, the light is a point, about which there is no bound to that: elsewhere they take more time than they
-// save, see tools/results/README.md.
-bool gains_by_looks_along(const Scene& scene, Media media) {
-    if (density_kind(scene) != FIELD_CONSTANT)
-        return false;
-    constexpr double near = 0.1; // of the medium's diagonal
-    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-        for (const Light& light : scene.lights)
-            if (const std::optional<glm::dvec3> place = place_of(light);
-                place && (scene.surfaces.empty() || !is_lamp(light)))
-                if (distance_to(scene.volumes[i], media[i], *place) < near * diagonal_of(scene.volumes[i], media[i]))
-                    return true;
-    return false;
-}
-
 } // namespace
 
 double longest_diagonal(const Scene& scene, Media media, const Superposition* whole) {
@@ -267,143 +201,6 @@ double lit_radius(const Scene& scene, const Assets& assets, const shared::Medium
     if (any_medium(scene, is_everywhere))
         return 1.0 / std::max(double(medium.usual_sigma_t), 1e-12);
     return 0.5 * longest_diagonal(scene, assets.media, whole_of(assets));
-}
-
-namespace {
-
-int sensor_kind(const Camera& camera) {
-    switch (camera.projection) {
-    case Projection::orthographic:
-        return SENSOR_ORTHOGRAPHIC;
-    case Projection::equirectangular:
-        return SENSOR_EQUIRECTANGULAR;
-    case Projection::irradiance:
-        return SENSOR_IRRADIANCE;
-    case Projection::fluence:
-        return SENSOR_FLUENCE;
-    case Projection::absorption:
-        return SENSOR_ABSORPTION;
-    default:
-        return camera.lens.radius > 0.0 ? SENSOR_LENS : SENSOR_PINHOLE;
-    }
-}
-
-} // namespace
-
-Rgb albedo_of(const Volume& volume) {
-    Rgb albedo(0.0);
-    for (int i = 0; i < 3; ++i)
-        if (volume.sigma_s[i] > 0.0)
-            albedo[i] = volume.sigma_s[i] / (volume.sigma_a[i] + volume.sigma_s[i]);
-    return albedo;
-}
-
-namespace {
-bool is_grey(const Rgb& albedo) {
-    const double most = largest(albedo);
-    return !glm::any(glm::greaterThan(Rgb(most) - albedo, Rgb(1e-9 * most)));
-}
-} // namespace
-
-bool is_chromatic(const Scene& scene) {
-    return has_chromatic_extinction(scene) || !scene.surfaces.empty() || any_medium(scene, [](const Volume& volume) {
-               return !volume.albedo_grid.empty() || !is_grey(albedo_of(volume)) ||
-                      std::any_of(volume.map.points.begin(), volume.map.points.end(),
-                                  [](const MapPoint& point) { return !is_grey(point.albedo); });
-           });
-}
-
-namespace {
-
-// What kernels know of a medium.
-void specialize_medium(const shared::MediumKinds& kinds, Specialization& constants) {
-    constants[SPEC_PHASE] = kinds.phase;
-    constants[SPEC_GRID_TYPE] = kinds.grid_type;
-    constants[SPEC_TEMPERATURE_TYPE] = kinds.temperature_type;
-    constants[SPEC_ALBEDO] = kinds.albedo;
-    constants[SPEC_ALBEDO_TYPE] = kinds.albedo_type;
-    constants[SPEC_EMISSION] = kinds.emission;
-    constants[SPEC_MAP] = kinds.map;
-}
-
-// Of several, what they have in common.
-void specialize_media(const Scene& scene, Media media, const Superposition& whole, const Method& method,
-                      Specialization& constants) {
-    constants[SPEC_LEAPS] = whole.cells.leaps ? 1 : 0;
-    std::set<const std::byte*> grids;
-    bool first = true;
-    for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
-        const shared::MediumKinds kinds = kinds_of(scene.volumes[i], media[i], method);
-        if (kinds.shape == SHAPE_NONE)
-            continue;
-        Specialization its = constants;
-        specialize_medium(kinds, its);
-        its[SPEC_MEMBER_SHAPE] = kinds.shape;
-        its[SPEC_MEMBER_FIELD] = kinds.field;
-        for (std::size_t k = 0; k < its.size(); ++k)
-            constants[k] = first || its[k] == constants[k] ? its[k] : EACH;
-        constants[SPEC_SHAPE] = SHAPE_BOX;
-        first = false;
-        if (media[i].field)
-            grids.insert(media[i].field->bytes.data());
-    }
-    constants[SPEC_MEMBER_GRID] = grids.size() > 1 ? EACH : 0;
-    constants[SPEC_CELL_BITS] = whole.bits;
-}
-
-} // namespace
-
-Specialization specialize(const Scene& scene, Media media, const Method& method, const Superposition* whole) {
-    Specialization constants{}; // no medium, no emission
-    if (whole) {
-        specialize_media(scene, media, *whole, method, constants);
-    } else if (!scene.volumes.empty()) {
-        const shared::MediumKinds kinds = kinds_of(scene.volumes.front(), media.front(), method);
-        specialize_medium(kinds, constants);
-        constants[SPEC_SHAPE] = kinds.shape;
-        constants[SPEC_LEAPS] = media.front().majorants && media.front().majorants->leaps ? 1 : 0;
-    }
-    for (const LoadedMedium& medium : media)
-        if (!medium.map_knots.empty())
-            constants[SPEC_MAP_HALVINGS] = std::bit_width(medium.map_knots.size()) - 1;
-    const bool lone = !whole && !scene.volumes.empty() && is_everywhere(scene.volumes.front()) &&
-                      has_matter(scene.volumes.front(), media.front());
-    constants[SPEC_UNBOUNDED] = lone || (whole && whole->unbounded) ? 1 : 0;
-    constants[SPEC_FIELD] = density_kind(scene);
-    constants[SPEC_FILTER] = method.filter == Filter::nearest     ? FILTER_NEAREST
-                             : method.filter == Filter::trilinear ? FILTER_TRILINEAR
-                                                                  : FILTER_STOCHASTIC;
-    constants[SPEC_SCATTERING] = method.scattering;
-    constants[SPEC_NEE] = method.nee;
-    constants[SPEC_EMISSION_AT] = method.emission_at;
-    constants[SPEC_FREE_FLIGHT] = method.free_flight;
-    // Without shadow rays the choice is to leave no trace in the kernel.
-    constants[SPEC_TRANSMITTANCE] = method.nee != NEE_NONE ? method.transmittance : TRANSMITTANCE_ANALYTIC;
-    constants[SPEC_STEPS] = 1;
-    // Without looks only what flights meet by themselves is seen.
-    const int lights = lights_kind(scene);
-    const int seen = method.nee == NEE_NONE && method.paths == PATHS_CAMERA ? lights & ~LIGHTS_LAMPS : lights;
-    constants[SPEC_LIGHTS] = seen == LIGHTS_TABLE && method.nee == NEE_NONE ? LIGHTS_SUN : seen;
-    constants[SPEC_PATHS] = method.paths;
-    if (method.paths != PATHS_CAMERA) // whose looks go toward the sensor
-        constants[SPEC_LIGHTS] |= LIGHTS_TABLE;
-    constants[SPEC_PERIODIC] = scene.periodic ? 1 : 0;
-    if (scene.periodic) // segments then have an end,
-        constants[SPEC_LIGHTS] |= LIGHTS_TABLE;
-    if (!scene.surfaces.empty()) { // and here
-        constants[SPEC_LIGHTS] |= LIGHTS_TABLE;
-        constants[SPEC_MATERIALS] = material_bits(scene.surfaces);
-    }
-    constants[SPEC_MIS] = method.mis;
-    constants[SPEC_SENSOR] = sensor_kind(scene.camera);
-    const bool is_plain = has_plain_pixels(scene.settings) || scene.camera.projection == Projection::absorption;
-    constants[SPEC_PIXEL_FILTER] = is_plain                                          ? PIXEL_EVEN
-                                   : scene.settings.pixel_filter == PixelFilter::box ? PIXEL_BOX
-                                                                                     : PIXEL_QUANTILES;
-    constants[SPEC_LAYERS] = plan_layers(scene).kinds;
-    constants[SPEC_DISTANCE] =
-        method.distance.value_or(gains_by_looks_along(scene, media) ? DISTANCE_MIXED : DISTANCE_FLIGHTS);
-    return constants;
 }
 
 namespace {
@@ -500,10 +297,10 @@ shared::FrameParams make_frame(const Scene& scene, Media media, const Method& me
     frame.sensors[0] = sensor_params(scene, origin, std::max(0.5 * diagonal, reach_of_lamps(scene.lights, origin)));
     const LayerPlan layers = plan_layers(scene);
     frame.layers = layers.params;
-    frame.lights[LIGHT_BACKGROUND].radiance = scene.background;
-    frame.lights[LIGHT_BACKGROUND].group = group_layer(layers.groups, scene.background_group);
-    if (const DirectionalLight* sun = lone_sun(scene))
-        frame.lights[LIGHT_SUN] = {sun->direction, sun->irradiance, group_layer(layers.groups, sun->group)};
+    frame.lights[FRAME_BACKGROUND].radiance = scene.background;
+    frame.lights[FRAME_BACKGROUND].group = group_layer(layers.groups, scene.background_group);
+    if (const DirectionalLight* sun = lone_directional(scene))
+        frame.lights[FRAME_DIRECTIONAL] = {sun->direction, sun->irradiance, group_layer(layers.groups, sun->group)};
     const std::vector<double> quantiles = filter_quantiles(scene.settings, FILTER_QUANTILES);
     std::copy(quantiles.begin(), quantiles.end(), frame.filter_quantiles);
     frame.march = make_march(scene, media, method, diagonal);
