@@ -39,7 +39,8 @@ void PbrtDirectives::note(const PbrtPlace& place, const std::string& message) {
 }
 
 void PbrtDirectives::read() {
-    for (PbrtToken token = tokens_.next(); !token.is(Kind::end); token = tokens_.next()) {
+    PbrtToken token = tokens_.next();
+    for (; !token.is(Kind::end); token = tokens_.next()) {
         end_imports();
         const auto handler = token.is(Kind::word) ? handlers_.find(token.value) : handlers_.end();
         if (handler == handlers_.end()) {
@@ -54,11 +55,11 @@ void PbrtDirectives::read() {
         handler->second(token);
     }
     if (object_)
-        throw InputError(fmt::format("ObjectBegin \"{}\" lacks its ObjectEnd; is the file whole?", *object_));
+        fail_at(state_.begun, fmt::format("ObjectBegin \"{}\" lacks its ObjectEnd; is the file whole?", *object_));
     if (states_.size() > imports_.size()) // each of which has kept one
-        throw InputError("an AttributeBegin lacks its AttributeEnd; is the file whole?");
+        fail_at(state_.begun, "an AttributeBegin lacks its AttributeEnd; is the file whole?");
     if (!in_world_)
-        throw InputError("the scene lacks its WorldBegin, behind which it is; is the file whole?");
+        fail_at(token.place, "the scene lacks its WorldBegin, behind which it is; is the file whole?");
     place_objects();
 }
 
@@ -234,7 +235,7 @@ void PbrtDirectives::add_world() {
             if (states_.size() >= deepest_state)
                 fail_at(token.place,
                         fmt::format("{} within {} others, more than are read", token.value, deepest_state));
-            push();
+            push(token.place);
         };
     for (const char* end : {"AttributeEnd", "TransformEnd"}) // which are the same in version 4
         handlers_[end] = [this](const PbrtToken& token) { pop(token); };
@@ -278,7 +279,7 @@ void PbrtDirectives::add_world() {
 
 void PbrtDirectives::import(const PbrtToken& directive) {
     const std::string file = name("a file in quotes");
-    push();
+    push(directive.place);
     imports_.push_back({states_.size(), tokens_.depth(), std::exchange(coordinate_systems_, {})});
     tokens_.include(scene_.folder / file, directive.place);
 }
@@ -352,7 +353,7 @@ void PbrtDirectives::read_shape(const PbrtToken& directive) {
 void PbrtDirectives::begin_object(const PbrtToken& directive) {
     if (object_)
         fail_at(directive.place, "ObjectBegin within another one; end that first");
-    push();
+    push(directive.place);
     object_ = name("a name in quotes");
     if (!objects_.try_emplace(*object_).second)
         fail_at(directive.place, fmt::format("a second object \"{}\"; give it another name", *object_));

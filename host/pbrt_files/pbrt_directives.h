@@ -20,6 +20,7 @@ struct PbrtState {
     std::string color_space = "srgb";
     std::map<std::string, std::vector<PbrtParameter>> defaults; // by what they are for
     bool is_moving = false;                                     // transforms count at the shutter's end alone
+    PbrtPlace begun;                                            // the AttributeBegin or the like that it is within
 };
 
 class PbrtDirectives {
@@ -49,7 +50,10 @@ private:
     void end_object(const PbrtToken& directive);
     void read_instance();
     void place_objects();
-    void push() { states_.push_back(state_); }
+    void push(const PbrtPlace& place) {
+        states_.push_back(state_);
+        state_.begun = place;
+    }
     void pop(const PbrtToken& directive);
     void import(const PbrtToken& directive);
     void end_imports();

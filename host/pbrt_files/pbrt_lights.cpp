@@ -110,6 +110,7 @@ void PbrtTranslator::write_light(const PbrtThing& light) {
 
 void PbrtTranslator::write_lights() {
     glm::dvec3 background(0.0);
+    std::string place; // of the last that it is of
     bool has_map = false;
     xml_.open("lights");
     for (const PbrtThing& light : scene_.lights) {
@@ -117,6 +118,7 @@ void PbrtTranslator::write_lights() {
         if (light.type == "infinite" && !p.has("filename")) {
             const double illuminance = p.number("illuminance", -1.0);
             background += light_color(light, "L") * (illuminance > 0.0 ? illuminance / pi : 1.0);
+            place = light.place.text();
         } else if (light.type == "infinite" && has_map) {
             note(light.place, "a second map of the sky is left out; put both into one");
         } else if (light.type == "infinite") {
@@ -134,7 +136,7 @@ void PbrtTranslator::write_lights() {
     XmlAttributes attributes;
     add_rgb(attributes, background);
     if (background != glm::dvec3(0.0))
-        xml_.element("backgroundColor", attributes);
+        xml_.element("backgroundColor", attributes, "", place);
 }
 
 } // namespace vkvol

@@ -31,10 +31,18 @@ bool is_left_out(const std::string& material) {
 
 } // namespace
 
+glm::dvec3 PbrtTranslator::share_of_light(const PbrtThing& thing, const glm::dvec3& color) {
+    const glm::dvec3 share = glm::clamp(color, 0.0, 1.0);
+    if (share != color)
+        note(thing.place, fmt::format("a reflectance of {} is none of 0 to 1, and taken for {}", xml_numbers(color),
+                                      xml_numbers(share)));
+    return share;
+}
+
 void PbrtTranslator::add_color(XmlAttributes& attributes, const PbrtThing& thing, const char* name,
                                const glm::dvec3& fallback) {
     if (thing.parameters->texture(name).empty())
-        add_rgb(attributes, glm::clamp(colors_.share(thing, name).value_or(fallback), 0.0, 1.0));
+        add_rgb(attributes, share_of_light(thing, colors_.share(thing, name).value_or(fallback)));
     else
         add_texture(attributes, texture_of(thing, name), glm::dvec3(1.0), 0);
 }
@@ -70,7 +78,7 @@ void PbrtTranslator::add_texture(XmlAttributes& attributes, const PbrtThing& tex
                                  int depth) {
     const PbrtParameters& p = *texture.parameters;
     if (const std::optional<glm::dvec3> color = even_color(texture, depth)) {
-        add_rgb(attributes, glm::clamp(factor * *color, 0.0, 1.0));
+        add_rgb(attributes, share_of_light(texture, factor * *color));
     } else if (texture.type == "imagemap" && p.has("filename")) {
         add_image(attributes, texture, factor);
     } else if (texture.type == "checkerboard" && p.number("dimension", 2.0) == 2.0 &&
@@ -122,8 +130,8 @@ void PbrtTranslator::add_checkerboard(XmlAttributes& attributes, const PbrtThing
     const double across = p.number("uscale", 1.0), upwards = p.number("vscale", 1.0);
     if ((across < 0.0) != (upwards < 0.0))
         std::swap(own, other);
-    add_rgb(attributes, glm::clamp(factor * own, 0.0, 1.0));
-    attributes.emplace_back("checker", xml_numbers(glm::clamp(factor * other, 0.0, 1.0)));
+    add_rgb(attributes, share_of_light(texture, factor * own));
+    attributes.emplace_back("checker", xml_numbers(share_of_light(texture, factor * other)));
     attributes.emplace_back("repeat", fmt::format("{} {}", std::abs(across) / 2.0, std::abs(upwards) / 2.0));
     note_unused(texture);
 }

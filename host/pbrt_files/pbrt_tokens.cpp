@@ -98,6 +98,7 @@ void PbrtTokens::skip_space() {
     while (!sources_.empty()) {
         Source& source = sources_.back();
         if (source.at == source.text.size()) {
+            end_ = source.place;
             sources_.pop_back();
             comment = false;
             continue;
@@ -143,7 +144,7 @@ PbrtToken PbrtTokens::next() {
     }
     skip_space();
     if (sources_.empty())
-        return {};
+        return {PbrtToken::Kind::end, "", end_};
     Source& source = sources_.back();
     const char c = source.text[source.at];
     if (c == '"')
@@ -162,7 +163,7 @@ PbrtToken PbrtTokens::next() {
 PbrtToken PbrtTokens::next(PbrtToken::Kind kind, const char* expected) {
     PbrtToken token = next();
     if (token.is(PbrtToken::Kind::end))
-        throw InputError(fmt::format("the scene ends where {} is expected; is its file whole?", expected));
+        fail_at(token.place, fmt::format("the scene ends where {} is expected; is its file whole?", expected));
     if (!token.is(kind))
         fail_at(token.place, fmt::format("'{}': expected {}", token.value, expected));
     return token;

@@ -59,6 +59,7 @@ private:
     PbrtToken quoted();
 
     std::vector<Source> sources_; // the last one is being read
+    PbrtPlace end_;               // of the last that has been read
     std::optional<PbrtToken> back_;
     int includes_ = 0;
 };

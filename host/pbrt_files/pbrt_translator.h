@@ -93,6 +93,8 @@ private:
     std::optional<glm::dvec3> even_part(const PbrtThing& thing, const char* name, double fallback, int depth);
 
     std::string file_name(const PbrtThing& thing, const char* parameter = "filename") const;
+    // Of light that comes no more goes on, and no less than none: else says so.
+    glm::dvec3 share_of_light(const PbrtThing& thing, const glm::dvec3& color);
     void note(const PbrtPlace& place, const std::string& message);
     void note_unused(const PbrtThing& thing, std::initializer_list<const char*> known = {});
 

@@ -12,6 +12,7 @@
 #include "fused_forms.h"
 #include "generate_forms.h"
 #include "hand_out.spv.h"
+#include "kernel_constants.h"
 #include "prepare.spv.h"
 #include "shadow_forms.h"
 #include "sky_forms.h"

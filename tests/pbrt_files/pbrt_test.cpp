@@ -486,10 +486,11 @@ TEST_CASE("wrong pbrt scenes are refused with their place", "[cpu][pbrt]") {
     refused("WorldBegin AttributeEnd", "AttributeEnd without what it ends");
     refused("WorldBegin ObjectInstance \"o\"", "no object \"o\"; ObjectBegin defines one");
     refused("WorldBegin ObjectBegin \"o\" ObjectEnd ObjectBegin \"o\" ObjectEnd", "a second object \"o\"");
-    refused("Camera \"perspective\"", "lacks its WorldBegin");
-    refused("WorldBegin AttributeBegin", "an AttributeBegin lacks its AttributeEnd");
+    refused("Camera \"perspective\"\n", "s.pbrt:2:1: the scene lacks its WorldBegin");
+    refused("WorldBegin\n AttributeBegin\n AttributeBegin AttributeEnd",
+            "s.pbrt:2:2: an AttributeBegin lacks its AttributeEnd");
     refused("WorldBegin MakeNamedMaterial \"m\" \"rgb reflectance\" [ 1 1 1 ]", "lacks its \"string type\"");
-    refused("WorldBegin ObjectBegin \"o\"", "lacks its ObjectEnd");
+    refused("WorldBegin ObjectBegin \"o\"", "s.pbrt:1:12: ObjectBegin \"o\" lacks its ObjectEnd");
     refused("WorldBegin NamedMaterial \"m\" Shape \"sphere\"", "no material \"m\"; MakeNamedMaterial makes one");
     refused("WorldBegin Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\"", "no texture \"t\"");
     refused("WorldBegin MediumInterface \"m\" \"\" Shape \"sphere\"", "no medium \"m\"");
