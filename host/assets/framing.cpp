@@ -188,11 +188,12 @@ void frame_medium(Scene& scene, FieldCache& fields) {
                                      projection_name(scene.camera.projection)));
     const std::optional<Corners> corners = medium_corners(scene, fields);
     if (!corners)
-        throw InputError(scene.volumes.empty() ? "--frame: the scene has no medium to frame; leave --frame out"
-                         : std::any_of(scene.volumes.begin(), scene.volumes.end(), is_everywhere)
-                             ? "--frame: <everywhere> has no box to frame; leave --frame out"
-                             : "--frame: the medium is a grid without voxels, which has no box to frame; leave --frame "
-                               "out, or give another grid with --grid FILE");
+        throw InputError(
+            scene.volumes.empty() ? "--frame: the scene has no medium to frame; leave --frame out"
+            : std::any_of(scene.volumes.begin(), scene.volumes.end(), is_everywhere)
+                ? "--frame: <everywhere> has no box to frame; leave --frame out"
+                : "--frame: the medium holds nothing, or is a grid without voxels, and there is nothing to "
+                  "frame; leave --frame out, or give it an extinction, or another grid with --grid FILE");
     if (scene.camera.projection == Projection::equirectangular)
         throw InputError("--frame: an equirectangular camera sees all around it, wherever it is; leave --frame out");
     frame(scene.camera, scene.picture, *corners);
@@ -205,7 +206,8 @@ std::string give_camera(Scene& scene, FieldCache& fields) {
         return "";
     std::optional<Corners> corners = medium_corners(scene, fields);
     const bool has_media = corners.has_value();
-    if (const std::optional<SurfaceBounds> bounds = has_media ? std::nullopt : bounds_of(scene.surfaces))
+    if (const std::optional<SurfaceBounds> bounds =
+            has_media ? std::nullopt : bounds_of(with_surface_files(scene).surfaces))
         corners = corners_between(bounds->low, bounds->high);
     if (!corners)
         return scene.surfaces.empty() ? ""

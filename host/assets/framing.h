@@ -31,7 +31,8 @@ void frame(Camera& camera, const Picture& picture, const Corners& corners);
 void frame_medium(Scene& scene, FieldCache& fields);
 
 // Gives a scene without a camera the usual view of all its media, framed likewise. Returns one line that says which;
-// empty where the scene has a camera or no medium. Throws InputError for files that cannot be read.
+// empty where the scene has a camera, or nothing in it. Surfaces are framed where there are no media. Throws InputError
+// for files that cannot be read.
 std::string give_camera(Scene& scene, FieldCache& fields);
 
 } // namespace vkvol

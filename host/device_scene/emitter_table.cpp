@@ -227,7 +227,8 @@ EmitterTable make_emitter_table(const Scene& scene, const Method& method, const 
     const double reach = bounded && radius > 0.0 ? radius : 1.0;
     // What a sensor counts is absorbed, too; a camera sees what leaves.
     double shown = emitters.power() - (method.paths == PATHS_LIGHT && !counts ? glow.hidden : 0.0);
-    for (std::size_t i = 0; i < lights.rows.size() && bounded && !counts; ++i)
+    // Paths that share with them are as bright as what comes; particles alone bring all that there is of it at once.
+    for (std::size_t i = 0; i < lights.rows.size() && bounded && method.paths == PATHS_BOTH; ++i)
         shown -= lights.powers[i] * (1.0 - part_that_comes(lights.rows[i], reach));
     // Particles that come to it bring their part of all of it at once: numbers have to hold that.
     shown = std::max(shown, emitters.power() * 0x1p-20);

@@ -19,7 +19,7 @@ struct GridSummary {
 
 GridSummary summarize(const DensityField& field);
 
-// The world-space box of the index-space cells [min, max + 1].
+// The box around all voxels, whose middles are at whole indices; world space.
 std::pair<glm::dvec3, glm::dvec3> world_box(const DensityField& field);
 
 // Edges of a voxel along the three axes of the grid, in world units.

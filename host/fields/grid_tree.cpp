@@ -266,9 +266,14 @@ private:
         field_.cleaned = before;
     }
     void clean_tile(Value& value, glm::ivec3 origin, int size) {
-        const bool is_beyond = glm::any(glm::greaterThan(origin, field_.voxel_max)) ||
-                               glm::any(glm::lessThan(origin + (size - 1), field_.voxel_min));
-        is_beyond ? clean_unseen(value) : clean(value);
+        const std::uint64_t before = field_.cleaned;
+        clean(value);
+        // As many voxels as it has of the box.
+        const glm::i64vec3 part = glm::i64vec3(glm::min(origin + (size - 1), field_.voxel_max)) -
+                                  glm::i64vec3(glm::max(origin, field_.voxel_min)) + std::int64_t{1};
+        const bool is_beyond = glm::any(glm::lessThanEqual(part, glm::i64vec3(0)));
+        if (field_.cleaned > before)
+            field_.cleaned = before + (is_beyond ? 0 : static_cast<std::uint64_t>(part.x * part.y * part.z));
     }
 
     std::uint32_t word_offset(const void* p) const {

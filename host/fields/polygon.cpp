@@ -1,6 +1,7 @@
 #include "polygon.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace vkvol {
 
@@ -70,12 +71,14 @@ private:
         }
     }
 
-    // A corner of next to no area is one, too: it goes, and leaves the polygon as it was.
+    // A corner on a line is one, too: it goes, and leaves the polygon as it was.
     bool is_ear(std::size_t i, double spare) const {
         const glm::dvec2 a = places_[left_[before(i)]], b = places_[left_[i]], c = places_[left_[after(i)]];
         const double area = turn(a, b, c);
-        if (area <= spare)
-            return area >= -spare;
+        if (std::abs(area) <= 1e-9 * glm::length(b - a) * glm::length(c - b))
+            return true;
+        if (area < 0.0)
+            return false;
         return std::none_of(left_.begin(), left_.end(), [&](std::uint32_t other) {
             const glm::dvec2 p = places_[other];
             return p != a && p != b && p != c && turn(a, b, p) >= -spare && turn(b, c, p) >= -spare &&

@@ -13,6 +13,6 @@ namespace vkvol {
 // of which some triangles face the other way: their signed sum is the polygon still.
 std::vector<glm::uvec3> triangles_of_polygon(std::span<const glm::dvec3> corners);
 
-inline constexpr std::size_t most_to_cut = 4096; // which takes some seconds
+inline constexpr std::size_t most_to_cut = 4096; // which takes a second at most
 
 } // namespace vkvol

@@ -54,6 +54,7 @@ private:
     }
     bool has_thrown_light() const;
     bool is_thrown_from_afar() const;
+    std::string who_finds_caustics() const;
     void find_chances();
     void choose_paths();
     void choose_scattering();
@@ -356,18 +357,28 @@ bool Resolution::is_thrown_from_afar() const {
     return !particles_come_from_afar(scene_) && std::any_of(scene_.lights.begin(), scene_.lights.end(), is_directional);
 }
 
+// Where particles can, to the end of what is missing.
+std::string Resolution::who_finds_caustics() const {
+    if (why_no_particles(scene_, true, false))
+        return "";
+    return is_thrown_from_afar() ? "; of points and spots integrator bidirectional does"
+                                 : "; integrator bidirectional does";
+}
+
 void Resolution::find_chances() {
     const bool has_extent = std::any_of(scene_.lights.begin(), scene_.lights.end(),
                                         [](const Light& light) { return is_lamp(light) || is_met_by_chance(light); });
     const auto shines = [](const Surface& surface) { return surface.emission != Rgb(0.0); };
     std::vector<const char*> found;
     const bool by_particles = method_.paths == PATHS_BOTH && particles_come_from_afar(scene_);
+    const bool both_can = !why_no_particles(scene_, true, false);
     if (method_.paths == PATHS_BOTH && !by_particles && any_surface(is_smooth) &&
         std::any_of(scene_.lights.begin(), scene_.lights.end(), is_met_by_chance))
         found.push_back("what smooth mirrors, coats and glass throw of suns and skies, from which particles come only "
                         "where neither a plane nor a medium is without end");
     if (method_.paths == PATHS_CAMERA && any_surface(is_smooth) && has_extent)
-        found.push_back(particles_come_from_afar(scene_)
+        found.push_back(!both_can ? "what smooth mirrors, coats and glass throw of lights"
+                        : particles_come_from_afar(scene_)
                             ? "what smooth mirrors, coats and glass throw of lights, which integrator bidirectional "
                               "looks for"
                             : "what smooth mirrors, coats and glass throw of lights, which integrator bidirectional "
@@ -380,8 +391,8 @@ void Resolution::find_chances() {
 }
 
 void Resolution::find_biases() {
-    std::vector<const char*> reasons;
-    const auto add = [&](Bias bias, const char* reason) {
+    std::vector<std::string> reasons;
+    const auto add = [&](Bias bias, const std::string& reason) {
         method_.biases |= bias;
         reasons.push_back(reason);
     };
@@ -402,17 +413,12 @@ void Resolution::find_biases() {
         add(bias_specular_view, "what smooth mirrors, coats and glass show is missing, which no particle finds");
     if (has_thrown_light() && method_.paths == PATHS_CAMERA) {
         if (any_surface(is_clear))
-            warn(fmt::format("no path from the camera finds what directional lights, points and spots send through "
-                             "glass, which casts their shadow; {}, and a sun, sphere, disk or rectangle shines through",
-                             is_thrown_from_afar() ? "integrator bidirectional finds that of points and spots"
-                                                   : "integrator bidirectional does"));
-        add(bias_caustics,
-            is_thrown_from_afar()
-                ? "what smooth mirrors, coats and glass throw of points, spots and directional lights is "
-                  "missing, which no path from the camera finds; of points and spots integrator "
-                  "bidirectional does"
-                : "what smooth mirrors, coats and glass throw of points, spots and directional lights is "
-                  "missing, which no path from the camera finds; integrator bidirectional does");
+            warn("no path from the camera finds what directional lights, points and spots send through glass, which "
+                 "casts their shadow" +
+                 who_finds_caustics() + "; a sun, sphere, disk or rectangle shines through");
+        add(bias_caustics, "what smooth mirrors, coats and glass throw of points, spots and directional lights is "
+                           "missing, which no path from the camera finds" +
+                               who_finds_caustics());
     } else if (has_thrown_light() && method_.paths == PATHS_BOTH) {
         if (is_thrown_from_afar())
             add(bias_caustics,

@@ -58,7 +58,9 @@ PythonPicture PythonSession::picture() {
     PythonPicture picture{film, make_metadata(request_, scene, shop_->device, result), {}};
     Shown shown;
     shown.tone = choose_tone(request_.tone, film, picture.metadata);
-    shown.explanation = explain(scene, result, shown.tone);
+    shown.explanation = foresee(scene);
+    if (!shown.explanation)
+        shown.explanation = explain(scene, result, shown.tone);
     picture.report = make_report(request_, scene, shop_->device, result, shown, 0.0);
     return picture;
 }

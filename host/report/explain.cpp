@@ -107,11 +107,14 @@ Rgb background_shown(const Scene& scene) {
 std::optional<Explanation> explain(const Scene& authored, const RenderResult& result, const Tone& tone) {
     const Scene scene = with_preset(authored);
     const FilmLook seen = first_glance(result.film, background_shown(scene), tone.mapping);
-    if (!authored.surfaces.empty() && seen.brightest == 0.0 && seen.unsampled == 0 && !reads_flux(scene.camera))
+    const Crop& crop = result.film.crop;
+    const bool is_whole = crop.x1 - crop.x0 == scene.picture.width && crop.y1 - crop.y0 == scene.picture.height;
+    if (!authored.surfaces.empty() && seen.brightest == 0.0 && seen.unsampled == 0 && is_whole &&
+        !reads_flux(scene.camera) && choose_method(scene).scattering != SCATTERING_NONE)
         return Explanation{
             "black", "shadowed",
-            "the picture is black: no light comes to what is seen; surfaces stand between, or the camera "
-            "is inside one, or they are black",
+            "the picture is black: no light comes to what is seen; surfaces stand between, are black, or "
+            "have the camera inside, or it looks past them all",
             seen, std::nullopt};
     if (!authored.surfaces.empty() || authored.periodic) // what is said is about pictures of media, that are there once
         return std::nullopt;

@@ -120,6 +120,15 @@ TEST_CASE("vertices at one position are welded, faces turned outward, slivers dr
                              "element vertex 8\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
                              "8 0 1 2 3 4 5 6 7\n3 0 0\n1 0 1\n0 0 3\n-1 0 1\n-3 0 0\n-1 0 -1\n0 0 -3\n1 0 -1\n";
     CHECK(area(read_polygons(directory.write("star.ply", star)), 0, 6, {0, -1, 0}) == Approx(12.0));
+    // A wall, whose window is small and cut in from its edge.
+    const std::string wall = "v 0 0 0\nv 100 0 0\nv 100 100 0\nv 50 100 0\nv 50 50 0\nv 50.2 50 0\nv 50.2 49.8 0\n"
+                             "v 50 49.8 0\nv 50 50 0\nv 50 100 0\nv 0 100 0\nf 1 2 3 4 5 6 7 8 9 10 11\n";
+    const Polygons of_wall = read_polygons(directory.write("wall.obj", wall));
+    double covered = 0.0;
+    for (const glm::uvec3& t : of_wall.triangles)
+        covered += 0.5 * glm::length(glm::cross(of_wall.vertices[t.y] - of_wall.vertices[t.x],
+                                                of_wall.vertices[t.z] - of_wall.vertices[t.x]));
+    CHECK(covered == Approx(1e4 - 0.04).epsilon(1e-9));
     // Two cubes that share a face, and so four triangles to some edges.
     const Mesh stacked = join(make_box(glm::dvec3(0.0), glm::dvec3(1.0), 1), make_box({0, 0, 1}, {1, 1, 2}, 1));
     CHECK(volume(directory.load(as_obj(stacked))) == Approx(2.0));

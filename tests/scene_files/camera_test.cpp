@@ -8,6 +8,7 @@
 #include "camera_view.h"
 #include "framing.h"
 #include "support/scene_text.h"
+#include "support/scenes.h"
 #include "tests/reference/camera.h"
 
 using namespace vkvol;
@@ -216,6 +217,12 @@ TEST_CASE("a scene of surfaces alone gets a camera, too", "[cpu][camera][xml]") 
     Scene balls = parse_scene("<options><surfaces><sphere x='40'/><sphere x='44'/></surfaces></options>", "s.xml");
     CHECK_THAT(give_camera(balls, fields), Contains("frames its surfaces"));
     CHECK(balls.camera.position.x > 30.0);
+    // Of files, too.
+    Scene mesh;
+    mesh.has_camera = false;
+    mesh.surfaces.emplace_back().shape = MeshSurface{write_text("v 70 70 70\nv 71 70 70\nv 70 71 70\nf 1 2 3\n")};
+    CHECK_THAT(give_camera(mesh, fields), Contains("frames its surfaces"));
+    CHECK(mesh.camera.position.y > 60.0);
     Scene plane = parse_scene("<options><surfaces><plane/></surfaces></options>", "s.xml");
     CHECK_THAT(give_camera(plane, fields), Contains("nothing that could be framed"));
 }
