@@ -360,7 +360,9 @@ bool Resolution::is_thrown_from_afar() const {
 // Where particles can, to the end of what is missing.
 std::string Resolution::who_finds_caustics() const {
     if (why_no_particles(scene_, true, false))
-        return "";
+        return reads_flux(scene_.camera) && !why_no_particles(scene_, false, emits(scene_))
+                   ? "; integrator lightTracing does"
+                   : "";
     return is_thrown_from_afar() ? "; of points and spots integrator bidirectional does"
                                  : "; integrator bidirectional does";
 }
