@@ -372,9 +372,10 @@ TEST_CASE("pixels of particles are parts of a sum whose error is known", "[gpu][
 
 TEST_CASE("the error of a picture's sum is that of its samples' sums", "[gpu][particles]") {
     Scene scene = by(seen(medium(Box{glm::dvec3(0.0), glm::dvec3(2.0)}, 10.0, 0.9), 4.0,
-                          {PointLight{{0.0, 0.0, 0.0}, Rgb(9.0, 3.0, 1e-4)}}),
+                          {DirectionalLight{{0.0, 1.0, 0.0}, Rgb(9.0, 3.0, 1e-4)}}),
                      "lightTracing");
     scene.background = Rgb(0.0);
+    scene.picture = {64, 64, 0.0, 0.0, 64.0, 64.0}; // so many that low words of their sum carry
     scene.settings.spp = 2;
     const Film both = render_here(scene, 5).film;
     scene.settings.spp = 1;
