@@ -227,10 +227,10 @@ EmitterTable make_emitter_table(const Scene& scene, const Method& method, const 
     const double reach = bounded && radius > 0.0 ? radius : 1.0;
     // What a sensor counts is absorbed, too; a camera sees what leaves.
     double shown = emitters.power() - (method.paths == PATHS_LIGHT && !counts ? glow.hidden : 0.0);
-    // Paths that share with them are as bright as what comes; particles alone bring all that there is of it at once.
+    // Where paths share with particles nothing is much brighter than what may come of far lights.
     for (std::size_t i = 0; i < lights.rows.size() && bounded && method.paths == PATHS_BOTH; ++i)
         shown -= lights.powers[i] * (1.0 - part_that_comes(lights.rows[i], reach));
-    // Particles that come to it bring their part of all of it at once: numbers have to hold that.
+    // But a particle brings its part of all that its light sends out, and numbers have to hold that.
     shown = std::max(shown, emitters.power() * 0x1p-20);
     // A sensor counts particles, and sees nothing itself.
     const double brightest = counts ? 0.0 : brightest_of(scene, lights, surfaces, glow, sky, bounded ? reach : 0.0);
