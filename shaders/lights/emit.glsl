@@ -81,9 +81,11 @@ Particle from_light(LightRow light, vec2 where, vec2 u, inout Rng rng) {
     Particle p;
     if (SEES_LAMPS && light.kind == LIGHT_SPHERE) {
         vec3 normal = in_any_direction(where);
-        p = from_surface(light.position + light.extent * normal, normal, abs(light.position) + light.extent, 4.0 * PI * light.area * light.radiance, u);
+        p = from_surface(light.position + light.extent * normal, normal, abs(light.position) + light.extent,
+                         4.0 * PI * light.area * light.radiance, u);
     } else if (SEES_LAMPS && light.kind > LIGHT_SPHERE) {
-        p = from_surface(flat_point(light, where), light.direction, abs(light.position) + abs(light.edge_u) + abs(light.edge_v), PI * light.area * light.radiance, u);
+        vec3 reach = abs(light.position) + abs(light.edge_u) + abs(light.edge_v);
+        p = from_surface(flat_point(light, where), light.direction, reach, PI * light.area * light.radiance, u);
     } else if (light.kind == LIGHT_POINT) {
         p = from_point(light.position, in_any_direction(u), 4.0 * PI * light.radiance);
     } else if (light.kind == LIGHT_SPOT) {

@@ -154,7 +154,8 @@ void begin_going(MediumParams v, uvec4 words, bool looks, bool at_camera, bool k
         set_going(v, words, looks, at_camera, lane);
     tally.shadow_rays += looks ? 1u : 0u;
     if (!looks && !(HAS_SURFACES && knows)) // else the search has begun there
-        trace(is_particle(lane) && lane.path.depth == 0u ? TRACE_EMIT : TRACE_DEPART, lane, lane.path.position, lane.path.direction);
+        trace(is_particle(lane) && lane.path.depth == 0u ? TRACE_EMIT : TRACE_DEPART, lane, lane.path.position,
+              lane.path.direction);
 }
 
 // Behind a seam the segment goes on, once surfaces have been asked there.

@@ -144,21 +144,22 @@ uint label_at(Lane lane, MediumParams met) {
 }
 
 // What the rows of path_state.h ask for.
-#define STATE_CONDITIONS(next, amid)                                                                                  \
-    bool seeking = HAS_SURFACES && amid && (next == TODO_SEEK || next == TODO_CHECK);                                 \
-    bool repeats = REPEATS, flight_rests = NEE == NEE_TENTATIVE;                                                      \
+#define STATE_CONDITIONS(next, amid)                                                                                   \
+    bool seeking = HAS_SURFACES && amid && (next == TODO_SEEK || next == TODO_CHECK);                                  \
+    bool repeats = REPEATS, flight_rests = NEE == NEE_TENTATIVE;                                                       \
     bool seeing = SHADOW_RAYS_WALK && amid && (next == TODO_SEE || ((repeats || flight_rests) && next == TODO_CHECK)); \
-    bool looking = seeing || (SHADOW_RAYS_WALK && next == TODO_LOOK) || (HAS_SURFACES && SHADOW_RAYS_WALK && amid && next == TODO_CHECK);   \
-    bool keeps_place = KEEPS_PLACE;                                                                                   \
-    bool several = SEVERAL_MEDIA;                                                                                     \
-    bool looks_along = LOOKS_ALONG;                                                                                   \
-    bool sets_out = SETS_OUT && (looking || seeking || sets_out_again(next));                                         \
-    bool sees_sky = SEES_SKY;                                                                             \
+    bool looking = seeing || (SHADOW_RAYS_WALK && next == TODO_LOOK) ||                                                \
+                   (HAS_SURFACES && SHADOW_RAYS_WALK && amid && next == TODO_CHECK);                                   \
+    bool keeps_place = KEEPS_PLACE;                                                                                    \
+    bool several = SEVERAL_MEDIA;                                                                                      \
+    bool looks_along = LOOKS_ALONG;                                                                                    \
+    bool sets_out = SETS_OUT && (looking || seeking || sets_out_again(next));                                          \
+    bool sees_sky = SEES_SKY;                                                                                          \
     bool chooses_light = LIGHTS != LIGHTS_LONE;                                                                        \
-    bool has_cache = SHADOW_RAYS_WALK && NEE == NEE_CACHED;                                                                      \
-    bool has_layers = HAS_LAYERS;                                                                                     \
-    bool has_particles = HAS_PARTICLES;                                                                               \
-    bool weighs_families = PATHS == PATHS_BOTH;                                                                       \
+    bool has_cache = SHADOW_RAYS_WALK && NEE == NEE_CACHED;                                                            \
+    bool has_layers = HAS_LAYERS;                                                                                      \
+    bool has_particles = HAS_PARTICLES;                                                                                \
+    bool weighs_families = PATHS == PATHS_BOTH;                                                                        \
     bool under_way = (amid && next == TODO_FLY) || seeing || (looking && flight_rests) || (seeking && repeats);
 
 // `pixel`: see PathState. `amid`, a constant: whether the path may be amid a segment; else that is not compiled.

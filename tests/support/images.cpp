@@ -198,8 +198,8 @@ Agreement agree_with_escapes(const Film& film, const std::vector<double>& p, con
             const double span = if_escaped[channel] - otherwise[channel];
             if (span == 0.0)
                 continue;
-            // An exact count but for the rounding of the film and of each sample's hundreds of products: else samples
-            // have other values.
+            // An exact count but for the rounding of the film and of each sample, a product of hundreds of numbers that
+            // are known to 6e-8 each, for which 1e-4 has room: else samples have other values.
             const double counted = (film.mean[i][channel] - otherwise[channel]) / span * n;
             const double escapes = std::round(counted);
             const double most = std::max(if_escaped[channel], otherwise[channel]);
