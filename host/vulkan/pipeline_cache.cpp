@@ -18,9 +18,13 @@ namespace {
 
 std::vector<char> read_if_possible(const std::filesystem::path& path) {
     std::error_code error;
-    std::vector<char> data(std::filesystem::is_regular_file(path, error) ? std::filesystem::file_size(path, error) : 0);
-    std::ifstream file(path, std::ios::binary);
-    return !error && file.read(data.data(), static_cast<std::streamsize>(data.size())) ? data : std::vector<char>{};
+    if (!std::filesystem::is_regular_file(path, error))
+        return {};
+    // Its size is asked of the open file: another process may put a longer one in its place meanwhile.
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    std::vector<char> data(file ? static_cast<std::size_t>(file.tellg()) : 0);
+    file.seekg(0);
+    return file.read(data.data(), static_cast<std::streamsize>(data.size())) ? data : std::vector<char>{};
 }
 
 // The file name holds all that makes a cache valid; the header inside is checked too, since files get copied.
@@ -56,7 +60,11 @@ PipelineCache::PipelineCache(const Device& device, bool use_disk) : device_(devi
     create.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
     create.initialDataSize = data.size();
     create.pInitialData = data.data();
-    VK_CHECK(vkCreatePipelineCache(device.handle(), &create, nullptr, &cache_));
+    // A header that fits may stand before data that a driver refuses.
+    if (vkCreatePipelineCache(device.handle(), &create, nullptr, &cache_) != VK_SUCCESS) {
+        create.initialDataSize = 0;
+        VK_CHECK(vkCreatePipelineCache(device.handle(), &create, nullptr, &cache_));
+    }
 }
 
 void forgo_driver_cache_on_full_disk() {
