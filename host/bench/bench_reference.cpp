@@ -84,7 +84,8 @@ std::optional<Reference> read_cached(const Estimator& candidate, const Reference
     return same && reference.samples > 1 && enough ? std::optional(std::move(reference)) : std::nullopt;
 }
 
-// By some samples of each; one that cannot be rendered after all is left out.
+// By some samples of each, which the reference itself does not have: of those it would have the luckiest. One that
+// cannot be rendered after all is left out.
 const Estimator& most_efficient(const BenchRequest& request, const std::vector<Estimator>& candidates,
                                 Workshop& workshop, const ReferenceWish& wish) {
     constexpr std::uint32_t samples = 8;
@@ -95,7 +96,7 @@ const Estimator& most_efficient(const BenchRequest& request, const std::vector<E
             break;
         try {
             const RenderResult result =
-                render_whole(request, candidate, workshop, samples, wish.seed, 0.1 * wish.seconds);
+                render_whole(request, candidate, workshop, samples, ~wish.seed, 0.1 * wish.seconds);
             const double cost = relative_variance(result.film, result.film) * result.render_seconds;
             if (result.samples == samples && (least == 0.0 || cost < least)) {
                 least = cost;

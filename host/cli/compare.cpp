@@ -41,12 +41,29 @@ void check_windows(const Film& a, const Film& b) {
                                      describe(a), describe(b)));
 }
 
+// A variance that is a sum of estimates, each of some samples. The sum has about as many degrees of freedom as Welch
+// (1947) and Satterthwaite (1946) say.
+struct SumOfVariances {
+    double variance = 0.0;
+    double squares = 0.0; // each over its degrees of freedom
+
+    void add(double of_one, double samples) { // samples: 0 if that is not known; then it counts as exact
+        variance += of_one;
+        if (samples > 1)
+            squares += of_one * of_one / (samples - 1);
+    }
+    double freedom() const {
+        return squares > 0.0 ? variance * variance / squares : std::numeric_limits<double>::infinity();
+    }
+};
+
 // Running sums over the pixels that are finite in both images.
 struct Sums {
     double squared = 0.0, relative = 0.0, peak = 0.0;
     std::size_t values = 0;
     std::array<double, 3> a{}, b{};
-    std::array<double, 3> tested_a{}, tested_b{}, variance{}; // over the pixels of which a variance is known
+    std::array<double, 3> tested_a{}, tested_b{}; // over the pixels of which a variance is known,
+    std::array<SumOfVariances, 3> variance;       // and that
 };
 
 void add_pixel(const glm::vec3& a, const glm::vec3& b, Sums& sums, Comparison& result) {
@@ -92,8 +109,10 @@ Noise noise_of(const Film& a, const Film& b, std::size_t pixel, int channel) {
     const double own_b = b.variance[pixel][channel];
     const double n_a = a.samples[pixel];
     const double n_b = b.samples[pixel];
-    if (n_a < 1 || n_b < 1) { // an image of unknown making
+    if (n_a < 1 || n_b < 1) { // an image of unknown making, whose values are taken for exact unless it has variances
         noise.variance = own_a + own_b;
+        if (n_a + n_b > 0)
+            noise.freedom = std::max(1.0, n_a + n_b - 1);
         return noise;
     }
     const double per_sample = std::max(own_a * n_a, own_b * n_b);
@@ -118,14 +137,25 @@ std::vector<bool> sampled_pixels(const Film& a, const Film& b) {
 }
 
 // For sums over many pixels: unbiased, where noise_of is cautious. One sample has no variance of its own.
-double plain_variance(const Film& a, const Film& b, std::size_t pixel, int channel) {
+void add_plain_variance(const Film& a, const Film& b, std::size_t pixel, int channel, SumOfVariances& sum) {
     const double own_a = a.variance[pixel][channel];
     const double own_b = b.variance[pixel][channel];
     const double n_a = a.samples[pixel];
     const double n_b = b.samples[pixel];
     if (n_a == 1)
-        return own_b * n_b + own_b;
-    return n_b == 1 ? own_a + own_a * n_a : own_a + own_b;
+        sum.add(own_b * (n_b + 1), n_b);
+    else
+        sum.add(own_a * (n_b == 1 ? n_a + 1 : 1), n_a);
+    if (n_a != 1 && n_b != 1)
+        sum.add(own_b, n_b);
+}
+
+// Of two pictures' sums.
+SumOfVariances of_sums(const Film& a, const glm::dvec3& of_a, const Film& b, const glm::dvec3& of_b, int channel) {
+    SumOfVariances sum;
+    sum.add(of_a[channel], *std::max_element(a.samples.begin(), a.samples.end()));
+    sum.add(of_b[channel], *std::max_element(b.samples.begin(), b.samples.end()));
+    return sum;
 }
 
 bool is_tested(const Noise& noise) {
@@ -208,7 +238,7 @@ Comparison compare_films(const Film& a, const Film& b, const CompareOptions& opt
             for (int c = 0; c < 3; ++c) {
                 sums.tested_a[c] += a.mean[i][c];
                 sums.tested_b[c] += b.mean[i][c];
-                sums.variance[c] += plain_variance(a, b, i, c);
+                add_plain_variance(a, b, i, c, sums.variance[c]);
             }
         add_z(a, b, i, result);
     }
@@ -219,8 +249,9 @@ Comparison compare_films(const Film& a, const Film& b, const CompareOptions& opt
                                    : std::numeric_limits<double>::infinity();
     for (int c = 0; c < 3; ++c) {
         result.mean_ratio[c] = sums.a[c] == sums.b[c] ? 1.0 : sums.a[c] / sums.b[c];
-        const double variance = is_correlated && result.has_mean_z ? (*of_a)[c] + (*of_b)[c] : sums.variance[c];
-        result.mean_z[c] = z_of(sums.tested_a[c], sums.tested_b[c], variance);
+        const SumOfVariances variance =
+            is_correlated && result.has_mean_z ? of_sums(a, *of_a, b, *of_b, c) : sums.variance[c];
+        result.mean_z[c] = normal_of_t(z_of(sums.tested_a[c], sums.tested_b[c], variance.variance), variance.freedom());
     }
     judge(a, options, result);
     return result;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -65,11 +66,16 @@ void Progress::update(std::uint32_t samples, std::optional<double> noise) {
     const double of_samples = total > 0 ? double(samples) / total : 0.0;
     const double of_time = time_limit_ && *time_limit_ > 0.0 ? seconds / *time_limit_ : 0.0;
     const double fraction = std::min(std::max(of_samples, of_time), 1.0);
-    const double remaining = fraction > 0.0 ? seconds * (1.0 - fraction) / fraction : 0.0;
+    double remaining = std::numeric_limits<double>::infinity();
+    if (samples > begun_at_)
+        remaining = seconds * (double(total) - std::min(samples, total)) / (samples - begun_at_);
+    if (time_limit_)
+        remaining = std::min(remaining, std::max(*time_limit_ - seconds, 0.0));
+    const bool foresees = std::isfinite(remaining);
 
     if (mode_ == Mode::json) {
         tell(out_, R"({{"progress": {:.4f}, "samples": {}, "total": {}, "seconds": {:.3f}, "remaining": {:.1f}, )",
-             fraction, samples, total, seconds, remaining);
+             fraction, samples, total, seconds, foresees ? remaining : 0.0);
         tell(out_, "\"noise\": {}}}\n", noise_ ? fmt::format("{:.6g}", *noise_) : "null");
         std::fflush(out_);
         return;
@@ -77,7 +83,7 @@ void Progress::update(std::uint32_t samples, std::optional<double> noise) {
     const bool is_known = of_time <= of_samples && (!noise_goal_ || noise_);
     const std::string of_total = is_known ? fmt::format("/{}", total) : "";
     const std::string status =
-        fmt::format("{}{} samples, {} left{}", samples, of_total, fraction > 0.0 ? duration_text(remaining) : "?",
+        fmt::format("{}{} samples, {} left{}", samples, of_total, foresees ? duration_text(remaining) : "?",
                     noise_ ? fmt::format(", noise {:.2g} %", 100.0 * *noise_) : "");
     if (mode_ == Mode::lines) {
         if (const int tenth = static_cast<int>(fraction * 10.0); tenth > last_tenth_) {

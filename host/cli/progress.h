@@ -24,6 +24,8 @@ public:
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
+    // Samples per pixel that there were before, and took none of the time.
+    void begin_at(std::uint32_t samples) { begun_at_ = samples; }
     // `noise`: the picture's at present, see film.h; the last that was known is shown until the next is.
     void update(std::uint32_t samples, std::optional<double> noise = std::nullopt);
 
@@ -42,6 +44,7 @@ private:
     std::optional<double> time_limit_;
     std::optional<double> noise_goal_;
     std::FILE* out_;
+    std::uint32_t begun_at_ = 0;
     Clock::time_point start_;
     Clock::time_point last_draw_;
     std::optional<double> noise_;

@@ -79,6 +79,8 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
     job.interrupted = interrupted;
     Progress progress(options.progress, options.quiet || options.trace || options.dry_run, scene.settings.spp,
                       options.time_limit, options.noise_goal);
+    if (from)
+        progress.begin_at(from->done);
     std::future<void> codec;
     job.progress = [&](double samples, std::optional<double> noise) {
         if (codec.valid())

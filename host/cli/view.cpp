@@ -20,6 +20,7 @@
 #include "stopwatch.h"
 #include "view_board.h"
 #include "view_server.h"
+#include "vulkan_error.h"
 #include "watched_scene.h"
 #include "workshop.h"
 
@@ -46,6 +47,11 @@ public:
                 rendered = render_wish();
                 board_.say(file_trouble_);
             } catch (const InputError& error) {
+                board_.say(error.what());
+            } catch (const VulkanError& error) {
+                if (error.result == VK_ERROR_DEVICE_LOST) // for good
+                    throw;
+                session_.reset();
                 board_.say(error.what());
             } catch (const RenderError& error) {
                 session_.reset();

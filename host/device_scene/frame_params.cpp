@@ -205,11 +205,12 @@ double lit_radius(const Scene& scene, const Assets& assets, const shared::Medium
 
 namespace {
 
-// Positions along a march are products of step number and length in single precision, and patience is finite too.
+// What a march goes through is a product of factors near 1 in single precision: of 10^5 steps an optical depth of 1 errs by
+// 0.1 %, of 10^6 by 1.4 %, and thin ones by far more.
 void check_step(const char* name, double step, double diagonal, double unit) {
-    constexpr double most_steps = 1e6;
+    constexpr double most_steps = 1e5;
     if (diagonal / step > most_steps)
-        throw InputError(fmt::format("<march> {}: {} takes more than a million steps across the medium; {:.3g} takes a "
+        throw InputError(fmt::format("<march> {}: {} takes more than a hundred thousand steps across the medium; {:.3g} takes a "
                                      "thousand",
                                      name, step / unit, diagonal / unit / 1000.0));
 }

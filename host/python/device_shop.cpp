@@ -65,6 +65,11 @@ std::shared_ptr<DeviceShop> device_shop(const DeviceOptions& options) {
     return shop;
 }
 
+void forget_device_shop(const DeviceShop& shop) {
+    const std::lock_guard lock(mutex);
+    std::erase_if(shops(), [&](const auto& entry) { return entry.second.get() == &shop; });
+}
+
 void close_device_shops() {
     const std::lock_guard lock(mutex);
     shops().clear();

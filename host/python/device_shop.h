@@ -51,6 +51,9 @@ void retire(const std::shared_ptr<DeviceShop>& shop, std::shared_ptr<void> thing
 // The same for the same options. Throws DeviceError.
 std::shared_ptr<DeviceShop> device_shop(const DeviceOptions& options);
 
+// A device that was lost stays so, for the sessions that have it; the next get another shop.
+void forget_device_shop(const DeviceShop& shop);
+
 // Forgets them; they end with the sessions that have them.
 void close_device_shops();
 

@@ -7,6 +7,7 @@
 #include "explain.h"
 #include "report.h"
 #include "requested_scene.h"
+#include "vulkan_error.h"
 
 namespace vkvol::python {
 
@@ -29,7 +30,7 @@ PythonSession::PythonSession(const SceneSource& source, const RenderRequest& req
     job.others.assign(shop_->devices.begin() + 1, shop_->devices.end());
     job.progress = std::move(callbacks.progress);
     job.interrupted = std::move(callbacks.interrupted);
-    work_->session = std::make_unique<Session>(shop_->device, work_->scene, job);
+    on_device([&] { work_->session = std::make_unique<Session>(shop_->device, work_->scene, job); });
     warnings_ = work_->scene.warnings;
     const std::vector<std::string>& found = work_->session->warnings();
     warnings_.insert(warnings_.end(), found.begin(), found.end());
@@ -39,9 +40,19 @@ PythonSession::~PythonSession() {
     retire(shop_, std::move(work_));
 }
 
+void PythonSession::on_device(const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const VulkanError& error) {
+        if (error.result == VK_ERROR_DEVICE_LOST)
+            forget_device_shop(*shop_);
+        throw;
+    }
+}
+
 void PythonSession::render(std::optional<std::uint32_t> samples) {
     const Turn turn(*shop_, work_->job.interrupted);
-    work_->session->render(samples.value_or(work_->scene.settings.spp));
+    on_device([&] { work_->session->render(samples.value_or(work_->scene.settings.spp)); });
     for (const Device* device : shop_->devices)
         if (const auto& objections = device->validation_messages(); !objections.empty())
             throw RenderError(fmt::format("the validation layer has {} objections, the first: {}", objections.size(),

@@ -38,6 +38,8 @@ private:
         std::unique_ptr<Session> session;
     };
 
+    void on_device(const std::function<void()>& work);
+
     RenderRequest request_;
     std::shared_ptr<DeviceShop> shop_;
     std::string assumed_;

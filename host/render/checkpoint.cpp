@@ -22,8 +22,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-// magic, bytes of the header, header (JSON), film, layers, pixels, digest of all before.
-constexpr char magic[] = {'v', 'k', 'v', 'o', 'l', 'c', 'h', '4'};
+// magic, bytes of the header, header (JSON), film, sums, layers, pixels, digest of all before.
+constexpr char magic[] = {'v', 'k', 'v', 'o', 'l', 'c', 'h', '5'};
 
 template <class T> void append(std::string& text, std::span<const T> values) {
     text.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
@@ -33,6 +33,9 @@ Json header_of(const Checkpoint& c) {
     Json non_finite = Json::array();
     for (const NonFiniteSample& s : c.non_finite)
         non_finite.push_back({s.x, s.y, s.sample});
+    Json passes = Json::array();
+    for (const PassFigures& p : c.passes)
+        passes.push_back({p.name, p.seconds, p.queued});
     const auto counts = std::bit_cast<std::array<std::uint64_t, sizeof(RenderCounts) / 8>>(c.counts);
     return {{"kernel", c.identity.kernel},
             {"program", c.identity.program},
@@ -44,11 +47,14 @@ Json header_of(const Checkpoint& c) {
             {"wholeBand", !c.pixels},
             {"pixels", c.pixels ? c.pixels->size() : 0},
             {"film", c.film.size()},
+            {"sums", c.sums.size()},
             {"layers", c.layers.size()},
             {"counts", counts},
             {"nonFinite", non_finite},
             {"seconds", c.seconds},
-            {"staged", c.schedule == Schedule::staged}};
+            {"staged", c.schedule == Schedule::staged},
+            {"passes", passes},
+            {"rounds", c.rounds}};
 }
 
 Checkpoint from_header(const Json& header) {
@@ -61,12 +67,16 @@ Checkpoint from_header(const Json& header) {
     if (!header.at("wholeBand").get<bool>())
         c.pixels.emplace(header.at("pixels").get<std::size_t>());
     c.film.resize(header.at("film").get<std::size_t>());
+    c.sums.resize(header.at("sums").get<std::size_t>());
     c.layers.resize(header.at("layers").get<std::size_t>());
     c.counts =
         std::bit_cast<RenderCounts>(header.at("counts").get<std::array<std::uint64_t, sizeof(RenderCounts) / 8>>());
     for (const Json& s : header.at("nonFinite"))
         c.non_finite.push_back({s.at(0), s.at(1), s.at(2)});
     c.seconds = header.at("seconds");
+    for (const Json& p : header.at("passes"))
+        c.passes.push_back({p.at(0), p.at(1), p.at(2)});
+    c.rounds = header.at("rounds");
     c.schedule = header.at("staged").get<bool>() ? Schedule::staged : Schedule::fused;
     return c;
 }
@@ -110,6 +120,7 @@ Checkpoint parse(std::string_view bytes) {
     Checkpoint checkpoint = from_header(Json::parse(bytes.substr(0, header_size)));
     bytes.remove_prefix(header_size);
     take(bytes, std::span(checkpoint.film));
+    take(bytes, std::span(checkpoint.sums));
     take(bytes, std::span(checkpoint.layers));
     if (checkpoint.pixels)
         take(bytes, std::span(*checkpoint.pixels));
@@ -162,6 +173,7 @@ void save_checkpoint(const std::filesystem::path& file, const Checkpoint& checkp
     append(bytes, std::span<const std::uint64_t>(&header_size, 1));
     bytes += header;
     append(bytes, std::span<const shared::FilmPixel>(checkpoint.film));
+    append(bytes, std::span<const shared::FilmPixel>(checkpoint.sums));
     append(bytes, std::span<const glm::vec3>(checkpoint.layers));
     if (checkpoint.pixels)
         append(bytes, std::span<const std::uint32_t>(*checkpoint.pixels));

@@ -36,11 +36,14 @@ struct Checkpoint {
     std::uint32_t band = 0;                           // in which it is
     std::optional<std::vector<std::uint32_t>> pixels; // of that band, still without the batch's samples; none: all
     std::vector<shared::FilmPixel> film;              // all bands, row by row
-    std::vector<glm::vec3> layers;                    // likewise their sums
+    std::vector<shared::FilmPixel> sums;              // of particles: each band's
+    std::vector<glm::vec3> layers;                    // sums of layers, all bands, row by row
     RenderCounts counts;
     std::vector<NonFiniteSample> non_finite;
     double seconds = 0.0; // of rendering
     Schedule schedule = Schedule::fused;
+    std::vector<PassFigures> passes; // of all samples
+    std::uint64_t rounds = 0;
 };
 
 // `media`: rows, of several. `points`: where flux is read.

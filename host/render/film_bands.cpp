@@ -95,6 +95,21 @@ void write_bands(Commands& commands, const std::vector<Band>& bands, std::uint32
         commands.upload(band.film, std::as_bytes(pixels.subspan(first_pixel(band, width), pixel_count(band, width))));
 }
 
+std::vector<shared::FilmPixel> read_sums(Commands& commands, const std::vector<Band>& bands, std::uint32_t width) {
+    std::vector<shared::FilmPixel> sums(bands.size());
+    for (std::size_t i = 0; i < bands.size(); ++i)
+        commands.download(bands[i].film, std::as_writable_bytes(std::span(&sums[i], 1)),
+                          pixel_count(bands[i], width) * sizeof(shared::FilmPixel));
+    return sums;
+}
+
+void write_sums(Commands& commands, const std::vector<Band>& bands, std::uint32_t width,
+                std::span<const shared::FilmPixel> sums) {
+    for (std::size_t i = 0; i < bands.size(); ++i)
+        commands.upload(bands[i].film, std::as_bytes(sums.subspan(i, 1)),
+                        pixel_count(bands[i], width) * sizeof(shared::FilmPixel));
+}
+
 std::vector<glm::vec3> read_layers(Commands& commands, const std::vector<Band>& bands, std::uint32_t width,
                                    const shared::AovParams& layers) {
     const std::size_t each = 4 * std::size_t(layers.count);
@@ -141,12 +156,9 @@ glm::dvec3 variance_of_mean(const shared::FilmPixel& pixel) { // of two samples 
 
 } // namespace
 
-std::optional<glm::dvec3> variance_of_sums(Commands& commands, const std::vector<Band>& bands, std::uint32_t width) {
+std::optional<glm::dvec3> variance_of_sums(std::span<const shared::FilmPixel> sums) {
     glm::dvec3 variance(0.0);
-    for (const Band& band : bands) {
-        shared::FilmPixel sum{};
-        commands.download(band.film, std::as_writable_bytes(std::span(&sum, 1)),
-                          pixel_count(band, width) * sizeof(shared::FilmPixel));
+    for (const shared::FilmPixel& sum : sums) {
         if (sum.count < 2)
             return std::nullopt;
         variance += double(sum.count) * variance_of_mean(sum);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "commands.h"
@@ -35,6 +36,11 @@ std::vector<shared::FilmPixel> read_bands(Commands& commands, const std::vector<
 void write_bands(Commands& commands, const std::vector<Band>& bands, std::uint32_t width,
                  std::span<const shared::FilmPixel> pixels);
 
+// Of particles: each band's sum over all its pixels, with which the error of the picture's sum is known.
+std::vector<shared::FilmPixel> read_sums(Commands& commands, const std::vector<Band>& bands, std::uint32_t width);
+void write_sums(Commands& commands, const std::vector<Band>& bands, std::uint32_t width,
+                std::span<const shared::FilmPixel> sums);
+
 // Rows of a band, with its layers, of one device to the same band of another. The layers' records may differ in number.
 struct BandOn {
     Commands& commands;
@@ -50,7 +56,7 @@ void write_layers(Commands& commands, const std::vector<Band>& bands, std::uint3
                   const shared::AovParams& layers, std::span<const glm::vec3> sums);
 
 // Variance of one sample's sum over all pixels: the bands' are independent. Nothing if one has less than two samples.
-std::optional<glm::dvec3> variance_of_sums(Commands& commands, const std::vector<Band>& bands, std::uint32_t width);
+std::optional<glm::dvec3> variance_of_sums(std::span<const shared::FilmPixel> sums);
 
 // Means, and variances of the means, of all bands. What else the film says is not touched.
 void develop(Commands& commands, const std::vector<Band>& bands, std::uint32_t width, Film& film);

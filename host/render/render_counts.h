@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <string>
 
 namespace vkvol {
 
@@ -33,6 +34,13 @@ inline void add_counts(RenderCounts& total, const RenderCounts& c) {
           &RenderCounts::room, &RenderCounts::steps, &RenderCounts::abandoned})
         total.*count += c.*count;
 }
+
+// What a pass came to.
+struct PassFigures {
+    std::string name;
+    double seconds = 0.0;
+    std::uint64_t queued = 0; // items that it found in its queue, over all rounds
+};
 
 constexpr std::size_t most_examples = 16; // of them that are named
 struct NonFiniteSample {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <fmt/format.h>
 #include <stdexcept>
 #include <utility>
@@ -19,7 +20,7 @@ constexpr double preview_share = 1.0 / 100.0; // of the time, for previews,
 constexpr double preview_allowance = 0.3;     // and seconds for the first of them
 constexpr double preview_growth = 0.15;       // of the time so far, between two: noise has fallen by a fifteenth then
 constexpr double patience = 5.0;              // seconds, for paths that will not end
-constexpr std::uint32_t first_check = 16;     // of the noise to be reached; samples per pixel
+constexpr double least_samples = 16.0;        // per pixel, before noise is checked
 constexpr double surely_black = 1 << 22; // samples of all pixels: a picture without any light by then will have none
 
 void add_counts(RenderCounts& total, const shared::Counters& c) {
@@ -145,6 +146,7 @@ void Session::resume(const Checkpoint& from) {
                                      "asked for; ask for more with --spp",
                                      from.done + from.batch, wanted_));
     write_bands(commands_, bands_, width(), from.film);
+    write_sums(commands_, bands_, width(), from.sums);
     write_layers(commands_, bands_, width(), film_layers_, from.layers);
     done_ = from.done;
     batch_ = from.batch;
@@ -154,6 +156,8 @@ void Session::resume(const Checkpoint& from) {
     paths_before_ = from.counts.paths;
     result_.non_finite = from.non_finite;
     result_.render_seconds = from.seconds;
+    result_.passes = from.passes;
+    result_.rounds = from.rounds;
 }
 
 void Session::save_checkpoint() {
@@ -164,11 +168,14 @@ void Session::save_checkpoint() {
                           band_,
                           pixels_,
                           read_bands(commands_, bands_, width()),
+                          read_sums(commands_, bands_, width()),
                           read_layers(commands_, bands_, width(), film_layers_),
                           result_.counts,
                           result_.non_finite,
                           result_.render_seconds + watch_.seconds(),
-                          result_.plan.schedule};
+                          result_.plan.schedule,
+                          result_.passes,
+                          result_.rounds};
     job_.checkpoint(checkpoint);
     checkpoint_at_ = watch_.seconds();
 }
@@ -206,11 +213,20 @@ void Session::offer_preview() {
 // Where noise is checked: at powers of two of the samples. The fewer checks, the less often one of them ends a render
 // that by chance looks better than it is, which is a bias, and which it is does not depend on the machine.
 std::uint32_t Session::until_next_check() const {
-    return job_.noise_goal ? std::bit_ceil(std::max(done_ + 1, first_check)) - done_ : most_batch_;
+    return job_.noise_goal ? std::bit_ceil(std::max(done_ + 1, first_check())) - done_ : most_batch_;
+}
+
+// What none of N samples met brings less than 3 / N of their paths, at 95 % ("the rule of three"): so many, and more,
+// that what is rare, and was met by none, is no more than the noise that is asked for. Else single readings, which a
+// sample is but one path of, would often end as constants without noise.
+std::uint32_t Session::first_check() const {
+    const double pixels = double(width()) * (job_.crop.y1 - job_.crop.y0);
+    const double samples = 4.0 / (*job_.noise_goal * pixels);
+    return std::bit_ceil(std::uint32_t(std::ceil(std::clamp(samples, least_samples, double(1u << 31)))));
 }
 
 bool Session::is_good_enough() {
-    if (!job_.noise_goal || batch_ > 0 || done_ < first_check || !std::has_single_bit(done_))
+    if (!job_.noise_goal || batch_ > 0 || done_ < first_check() || !std::has_single_bit(done_))
         return false;
     develop_film();
     const std::optional<double> noise = relative_noise(result_.film);
@@ -353,8 +369,7 @@ void Session::develop_film() {
     develop(commands_, bands_, width(), film);
     film.sum_variance.reset();
     if (method_.paths != PATHS_CAMERA && !moving_ && done_ > 0)
-        if (const auto of_sample =
-                variance_of_sums(commands_, bands_, width())) // of those since a resume, if there was one
+        if (const auto of_sample = variance_of_sums(read_sums(commands_, bands_, width())))
             film.sum_variance = *of_sample / double(done_);
     film.layers =
         develop_layers(device_scene_->layers(), read_layers(commands_, bands_, width(), device_scene_->frame().layers),

@@ -151,6 +151,7 @@ private:
     bool checkpoint_due() const;
     void report_noise();
     void offer_preview();
+    std::uint32_t first_check() const; // of the noise; samples per pixel, a power of two
     std::uint32_t until_next_check() const;
     std::uint64_t next_sample() const { return std::uint64_t{job_.sample_offset} + done_; }
     void enter_moment();

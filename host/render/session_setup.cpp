@@ -276,8 +276,8 @@ void Session::choose_schedule(const PipelineCache& cache) {
     }
 }
 
-// Speed of a batch that is thrown away, once lanes work as long at a time as they may. Paths that miss the medium
-// count: both schedules have the same.
+// Speed of a batch that is thrown away: once lanes work as long at a time as they may, if the batch lasts until then.
+// Paths that miss the medium count: both schedules have the same.
 double Session::paths_per_second(Wavefront& wavefront, const Plan& plan) {
     constexpr double start_up = 0.1, enough = 0.3; // seconds
     const Band& band = bands_.front();
@@ -293,8 +293,9 @@ double Session::paths_per_second(Wavefront& wavefront, const Plan& plan) {
     for (bool resting = false; !resting && watch.seconds() < enough;) {
         resting = wavefront.advance();
         paths += wavefront.counters().paths;
-        if (!resting && counted_from == 0.0 && watch.seconds() > start_up) {
-            counted_from = watch.seconds();
+        // Unless the first submit took all of the time: then it is what counts.
+        if (const double now = watch.seconds(); !resting && counted_from == 0.0 && now > start_up && now < enough) {
+            counted_from = now;
             paths = 0;
         }
     }

@@ -368,6 +368,10 @@ void Wavefront::adapt(double seconds) {
     const double dearest = worst_turn_ * push_.budget;
     if (!device_.is_cpu())
         rounds_ = std::min(rounds_, static_cast<std::uint32_t>(std::max(longest_submit / dearest, 1.0)));
+    // Counters have 32 bits, and room for steps is what they count most of.
+    const std::uint64_t room = std::uint64_t{plan_.lanes} * push_.budget * std::uint64_t(plan_.steps);
+    rounds_ =
+        std::min(rounds_, static_cast<std::uint32_t>(std::clamp<std::uint64_t>(0xffffffffu / room, 1, most_rounds)));
 }
 
 } // namespace vkvol

@@ -13,16 +13,10 @@
 #include "compute_pass.h"
 #include "film_bands.h"
 #include "plan.h"
+#include "render_counts.h"
 #include "shared/items.h"
 
 namespace vkvol {
-
-// What a pass came to.
-struct PassFigures {
-    std::string name;
-    double seconds = 0.0;
-    std::uint64_t queued = 0; // items that it found in its queue, over all rounds
-};
 
 class Wavefront {
 public:

@@ -26,7 +26,7 @@ Buffer::Buffer(const Device& device, const std::string& name, VkDeviceSize bytes
 
     const VkMemoryPropertyFlags visible = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     int type = -1;
-    // Where device memory is host memory (software drivers, integrated GPUs) one mapping spares every copy.
+    // Where the device is this machine's processor one mapping spares every copy.
     if (place == BufferPlace::host || device.is_cpu())
         type = device.find_memory_type(need.memoryTypeBits, visible | VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
     if (place == BufferPlace::host && type < 0)

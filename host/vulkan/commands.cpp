@@ -53,7 +53,10 @@ void Commands::run(const std::function<void(VkCommandBuffer)>& record) {
     submit.commandBufferCount = 1;
     submit.pCommandBuffers = &buffer_;
     VK_CHECK(vkQueueSubmit(device_.queue(), 1, &submit, fence_));
-    VK_CHECK(vkWaitForFences(device_.handle(), 1, &fence_, VK_TRUE, UINT64_MAX));
+    const VkResult waited = vkWaitForFences(device_.handle(), 1, &fence_, VK_TRUE, UINT64_MAX);
+    if (waited < 0)
+        vkDeviceWaitIdle(device_.handle()); // whoever learns of the failure frees what the device may still be using
+    check_vulkan(waited, "vkWaitForFences", __FILE__, __LINE__);
     VK_CHECK(vkResetFences(device_.handle(), 1, &fence_));
 }
 
@@ -112,7 +115,7 @@ void record_barrier(VkCommandBuffer commands) {
     barrier.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
     barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_READ_BIT |
                             VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT |
-                            VK_ACCESS_HOST_READ_BIT;
+                            VK_ACCESS_UNIFORM_READ_BIT | VK_ACCESS_HOST_READ_BIT;
     const VkPipelineStageFlags stages = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
     vkCmdPipelineBarrier(commands, stages, stages | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_HOST_BIT, 0,
                          1, &barrier, 0, nullptr, 0, nullptr);

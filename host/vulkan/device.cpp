@@ -80,7 +80,10 @@ std::string find_rejection(VkPhysicalDevice physical, const VkPhysicalDeviceProp
     if (!features_of(physical).scalarBlockLayout)
         return "it lacks the feature scalarBlockLayout";
     constexpr std::uint32_t needed = BINDING_BUFFERS - 1; // but the frame's
-    if (const std::uint32_t most = properties.limits.maxPerStageDescriptorStorageBuffers; most < needed)
+    const VkPhysicalDeviceLimits& limits = properties.limits;
+    const std::uint32_t most =
+        std::min(limits.maxPerStageDescriptorStorageBuffers, limits.maxDescriptorSetStorageBuffers);
+    if (most < needed)
         return fmt::format("it lets kernels see {} storage buffers, at least {} are needed", most, needed);
     return "";
 }

@@ -21,7 +21,7 @@ const float OPAQUE = 104.0;        // exp(-104) is 0 in single precision
 // Once per shadow ray; the words of its first draw.
 void begin_transmittance(uvec4 words, inout Walk w) {
     w.depth = 0.0;
-    w.coarse = 0.0;
+    w.partial = 0.0;
     if (TRANSMITTANCE == TRANSMITTANCE_TELESCOPING)
         begin_telescoping(to_uniform(words), to_tap(words).z, w);
 }

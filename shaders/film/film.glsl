@@ -35,7 +35,9 @@ const float MOST_RADIANCE = 281474976710656.0; // 2^48
 // A sample that is not finite is dropped and counted, the first of them with its place in the picture and number.
 void film_add(inout FilmPixel pixel, vec3 radiance, uint place, uint sample_index, inout Tally tally) {
     tally.paths += 1u;
-    if (any(isnan(radiance)) || any(greaterThan(abs(radiance), vec3(MOST_RADIANCE)))) {
+    // By its bits, since compilers may take it that nothing is NaN: that is above infinity.
+    uvec3 size = floatBitsToUint(radiance) & 0x7fffffffu;
+    if (any(greaterThan(size, uvec3(floatBitsToUint(MOST_RADIANCE))))) {
         if (tally.non_finite == 0u) {
             tally.dropped_place = place;
             tally.dropped_sample = sample_index;

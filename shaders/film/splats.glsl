@@ -37,7 +37,8 @@ void add_whole(uint at, float x) {
 // What is not finite, or more than the numbers hold, is dropped, and counted.
 void splat(uint pixel, uint place, uint sample_index, vec3 light) {
     vec3 x = light / frame.particles.unit;
-    if (any(isnan(x)) || any(greaterThan(abs(x), vec3(MOST_SPLAT)))) {
+    uvec3 magnitude = floatBitsToUint(x) & 0x7fffffffu; // of NaN above infinity, see film_add
+    if (any(greaterThan(magnitude, uvec3(floatBitsToUint(MOST_SPLAT))))) {
         count_dropped(1u, place, sample_index);
         return;
     }

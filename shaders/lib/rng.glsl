@@ -4,7 +4,8 @@
 //   key   = (x | y << 16, sample, draw, seed)         x, y: pixel of the picture (not of the crop), 16 bits each
 //   words = pcg4d(key)                                 Jarzynski & Olano, "Hash Functions for GPU Rendering", 2020
 //   u_i   = (words_i >> 8) * 2^-24                     in [0, 1)
-//   tap   = ((words_z >> 8), (words_w >> 8), low bytes of words_x, words_y, words_z as one 24-bit number) * 2^-24
+//   tap   = ((words_z >> 8), (words_w >> 8), low bytes of m_y, m_z, m_x as one 24-bit number) * 2^-24, m = words ^ words >> 16:
+//           low bytes alone know nothing of the key's upper ones, so that of rows 256 apart they are the same
 //   e_i   = -log(1 - U), U = (words_i + r * 2^-24) * 2^-32, r: low bytes of words_w, words_y, words_x as one number.
 //           At most 38.82; of steps of 2^-48 near 0: a medium thinner than 2^-24 is hit as often as it should be.
 //
@@ -28,7 +29,12 @@
 //   particle's look        toward the sensor: x, y: where on the lens; z, w: which of the pixels to which it counts
 //   walk among facets      after a surface is met, and again after the draw with which the path departs: the key of the walk's own
 //                          numbers, which are hashes of (words_x, words_y, words_z + n, words_w)
+//   lamps shown            by a mirror, glass or a vertex before surfaces, behind the draw of the departure: w: which of them; taken
+//                          whether one is in the way or not
 //   scattering             e_x: next free flight; y, z: phase function; w: roulette; select
+//   scattering, a surface  y, z, x: the BSDF; w, in parts: which side's normal, and the roulettes
+// Where there are surfaces each flight and each shadow ray takes a draw of its own once its end is known: e_x and select. Those of
+// the camera and of scattering are not used then.
 #ifndef RNG_GLSL
 #define RNG_GLSL
 
@@ -64,9 +70,10 @@ vec4 to_uniform(uvec4 words) {
     return vec4(words >> 8u) * 5.9604644775390625e-8;
 }
 
-// Three numbers in [0, 1) that share no bits with the x and y of to_uniform(words).
+// Three numbers in [0, 1) that are independent of the x and y of to_uniform(words).
 vec3 to_tap(uvec4 words) {
-    uint low_bytes = ((words.x & 255u) << 16u) | ((words.y & 255u) << 8u) | (words.z & 255u);
+    uvec4 mixed = words ^ (words >> 16u);
+    uint low_bytes = ((mixed.y & 255u) << 16u) | ((mixed.z & 255u) << 8u) | (mixed.x & 255u);
     return vec3(uvec3(words.z >> 8u, words.w >> 8u, low_bytes)) * 5.9604644775390625e-8;
 }
 

@@ -55,7 +55,7 @@ Spectrum cached_transmittance_to(MediumParams v, vec3 position, vec3 direction, 
 // q. `share`: of the light that an isotropic collision at throughput 1 would scatter into the path.
 float looking_chance(float share, Spectrum T, float looking) {
     float t = largest(T);
-    float doubt = sqrt(t * (1.0 - t)) + DOUBT_AT_ENDS;
+    float doubt = sqrt(max(t * (1.0 - t), 0.0)) + DOUBT_AT_ENDS;
     return clamp(looking * share * doubt, LEAST_CHANCE, 1.0);
 }
 

@@ -91,7 +91,7 @@
     ROW(uint, level, sets)        /* telescoping: the refinement */                                                   \
     ROW(uint, residue, sets)      /* telescoping: which samples the coarser sums take */                              \
     ROW(float, offset, sets)      /* telescoping: of the samples in their steps */                                    \
-    ROW(float, coarse, sets)      /* telescoping: density integrated with half of the samples */                      \
+    ROW(float, partial, sets)     /* telescoping: depth less what half of the samples say; jackknife: depth by the first of each two */ \
     ROW(float, base, sets)        /* telescoping: with the coarsest set of samples */
 
 // ROW(type, name): a search for the next part of a ray within meshes, as far as it has gone; see mesh.glsl.

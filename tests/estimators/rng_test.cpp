@@ -139,6 +139,35 @@ TEST_CASE("the numbers of one draw are independent of each other", "[gpu][rng]")
         }
 }
 
+// The low bits of words know nothing of the upper bits of a key. By the reference, which the kernels equal bit by bit.
+TEST_CASE("pixels, samples and seeds that are far apart are independent", "[cpu][rng]") {
+    using Key = std::array<std::uint32_t, 4>;
+    struct Step {
+        const char* name;
+        Key by;
+    };
+    const std::vector<Step> steps = {{"64 rows", {64u << 16, 0, 0, 0}},     {"128 rows", {128u << 16, 0, 0, 0}},
+                                     {"256 rows", {256u << 16, 0, 0, 0}},   {"512 rows", {512u << 16, 0, 0, 0}},
+                                     {"256 columns", {256, 0, 0, 0}},       {"2^16 samples", {0, 1u << 16, 0, 0}},
+                                     {"2^23 samples", {0, 1u << 23, 0, 0}}, {"2^24 samples", {0, 1u << 24, 0, 0}},
+                                     {"2^28 samples", {0, 1u << 28, 0, 0}}, {"2^24 seeds", {0, 0, 0, 1u << 24}}};
+    const auto number = [](const reference::Draw& draw, int i) { return i < 4 ? draw.uniform(i) : draw.tap()[i - 4]; };
+    const double significance = sidak(1e-3, double(steps.size()) * components * components);
+    for (const Step& step : steps)
+        for (int a = 0; a < components; ++a)
+            for (int b = 0; b < components; ++b) {
+                Correlation correlation;
+                for (std::uint32_t i = 0; i < 1u << 15; ++i) {
+                    const Key key = {(i & 31u) | (i >> 5 & 31u) << 16, i >> 10, 3, 7};
+                    const Key far = {key[0] + step.by[0], key[1] + step.by[1], key[2] + step.by[2],
+                                     key[3] + step.by[3]};
+                    correlation.add(number({reference::pcg4d(key)}, a), number({reference::pcg4d(far)}, b));
+                }
+                INFO(step.name << ", components " << a << ' ' << b);
+                CHECK(correlation.p() > significance);
+            }
+}
+
 TEST_CASE("neighbouring pixels, samples, draws and seeds are independent", "[gpu][rng]") {
     const std::vector<RngOutput> outputs = draw_neighbours(), of_next_seed = draw_neighbours(8);
     struct Step {

@@ -244,6 +244,29 @@ TEST_CASE("marched transmittance has the bias of its order", "[gpu][transmittanc
     }
 }
 
+// Whatever the refinement: where it is 10 the difference of the two marches is multiplied by 5e4, so that two sums
+// which are rounded by 1e-6 would be off by more than what they are to tell. The bound is of the coarsest march, of a
+// few hundred steps that are each rounded by u.
+TEST_CASE("telescoping knows a constant density by each estimate", "[gpu][transmittance]") {
+    MediumRecipe recipe = recipe_of(MediumKind::sphere, TRANSMITTANCE_TELESCOPING, Filter::trilinear, 1.0);
+    recipe.estimators.settings.march.shadow_step = 0.05;
+    const TestMedium medium(recipe);
+    const auto rays = medium.random_rays(4, 7, least, most);
+    constexpr std::uint32_t count = 50000;
+    const auto outputs = medium.see(rays, count, 10);
+    double worst = 0.0;
+    std::uint32_t longest = 0;
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        if (outputs[i].event != left)
+            continue;
+        const double T = std::exp(-medium.density_integral(rays[i / count]));
+        worst = std::max(worst, std::abs(outputs[i].weight.x / T - 1.0));
+        longest = std::max(longest, outputs[i].steps);
+    }
+    CHECK(longest > 256 * 20);
+    CHECK(worst < 500 * u);
+}
+
 TEST_CASE("telescoping begins anywhere and has the same mean", "[gpu][transmittance]") {
     const double step = GENERATE(0.3, 1.0, 100.0); // the last: one step per part, the largest bias to take away
     const MediumKind kind = GENERATE(MediumKind::grid, MediumKind::noise_cubes);

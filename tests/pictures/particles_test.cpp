@@ -483,7 +483,19 @@ TEST_CASE("particles give the same bits however they are worked on", "[gpu][part
         rest.crop = job.crop;
         rest.seed = 1;
         rest.resume = &*last;
-        CHECK(same_bits(render(test_device(), scene, rest).film, whole));
+        const RenderResult resumed = render(test_device(), scene, rest);
+        CHECK(same_bits(resumed.film, whole));
+        REQUIRE((resumed.film.sum_variance && whole.sum_variance)); // of all samples
+        CHECK(*resumed.film.sum_variance == *whole.sum_variance);
+        const auto paths_of = [](const RenderResult& result) {
+            std::uint64_t queued = 0;
+            for (const PassFigures& pass : result.passes)
+                queued += pass.queued;
+            return queued;
+        };
+        CHECK(resumed.counts.paths == 40 * 64);
+        CHECK(paths_of(resumed) > paths_of(begun));
+        CHECK(resumed.rounds > begun.rounds);
     }
 }
 

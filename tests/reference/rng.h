@@ -37,9 +37,10 @@ struct Draw {
     double z() const { return uniform(2); }
     double w() const { return uniform(3); }
 
-    // Three more numbers in [0, 1) that share no bits with x() and y().
+    // Three more numbers in [0, 1) that are independent of x() and y().
     glm::dvec3 tap() const {
-        const std::uint32_t low_bytes = (words[0] & 255u) << 16 | (words[1] & 255u) << 8 | (words[2] & 255u);
+        const auto low_byte = [this](int i) { return (words[i] ^ words[i] >> 16) & 255u; };
+        const std::uint32_t low_bytes = low_byte(1) << 16 | low_byte(2) << 8 | low_byte(0);
         return glm::dvec3(words[2] >> 8, words[3] >> 8, low_bytes) * 0x1p-24;
     }
 
@@ -49,7 +50,7 @@ struct Draw {
         return -std::log1p(-(words[i] + rest * 0x1p-24) * 0x1p-32);
     }
 
-    // One more number in [0, 1), that shares no bits with x() to w().
+    // One more number in [0, 1), independent of x() to w().
     double select() const { return tap().z; }
 };
 

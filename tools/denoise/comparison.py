@@ -77,7 +77,13 @@ def mean_line(noisy, denoised):
     text = f"The picture's mean (red, green, blue) changed by {parts}"
     if own is None or not own.any():
         return text + "."
-    errors = np.sqrt(own.sum(axis=(0, 1))) / pixels
+    variance = own.sum(axis=(0, 1))
+    if noisy.text("vkvol/correlated"):  # pixels that share samples, as particles' do: their sum has a variance of its own, if any
+        words = noisy.text("vkvol/sumVariance").split()
+        if len(words) != 3:
+            return text + "."
+        variance = np.array([float(word) for word in words])
+    errors = np.sqrt(variance) / pixels
     in_errors = ", ".join(f"{abs(c) / e:.2g}" if e > 0 else "?" for c, e in zip(change, errors))
     return f"{text}: {in_errors} standard errors of the noisy one's."
 

@@ -9,14 +9,14 @@ uint jackknife_transmittance(MediumParams v, inout Walk w, inout Rng rng, inout 
     float first = march_density(v, offset.x * w.dt, to_tap(words), to_choice(words), w, tally);
     float second = march_density(v, offset.y * w.dt, to_tap(words), to_choice(words), w, tally);
     w.depth += 0.5 * w.dt * (first + second);
-    w.coarse += w.dt * first;
+    w.partial += w.dt * first;
     w.index += 1u;
     w.t = float(w.index) * w.dt;
     return EVENT_MOVING;
 }
 
 Spectrum end_jackknife(MediumParams v, Walk w) {
-    Spectrum first = analytic_transmittance(v, w.coarse);
-    Spectrum second = analytic_transmittance(v, 2.0 * w.depth - w.coarse);
+    Spectrum first = analytic_transmittance(v, w.partial);
+    Spectrum second = analytic_transmittance(v, 2.0 * w.depth - w.partial);
     return 2.0 * analytic_transmittance(v, w.depth) - 0.5 * (first + second);
 }
