@@ -372,9 +372,7 @@ void load_sky(const SkyLight& sky, Assets& assets) {
     } catch (const InputError& error) {
         throw InputError(sky.place.empty() ? error.what() : fmt::format("{}: {}", sky.place, error.what()));
     }
-    if (assets.sky->mended > 0)
-        assets.warnings.push_back(fmt::format("{}: {} texels were negative or not finite, and count as 0",
-                                              sky.file.string(), assets.sky->mended));
+    assets.warnings.insert(assets.warnings.end(), assets.sky->warnings.begin(), assets.sky->warnings.end());
 }
 
 } // namespace

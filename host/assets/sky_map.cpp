@@ -103,6 +103,7 @@ SkyMap make_sky(const RadianceMap& map, const Rgb& scale, SkyMapping mapping) {
     sky.width = static_cast<std::uint32_t>(map.width);
     sky.height = static_cast<std::uint32_t>(map.height);
     sky.mended = map.mended;
+    sky.warnings = map.warnings;
     std::vector<double> values;
     values.reserve(map.texels.size());
     for (const glm::vec3& texel : map.texels) {

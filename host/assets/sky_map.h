@@ -14,6 +14,7 @@ struct SkyMap {
     std::vector<shared::AliasEntry> alias; // of rows, then of the columns of each row
     Rgb fluence{0.0};                      // integral of the radiance over all directions
     std::size_t mended = 0;                // texels that were negative or not finite
+    std::vector<std::string> warnings;     // of the file
 };
 
 // Opens the file. Throws InputError, also for a map without light.

@@ -35,15 +35,18 @@ glm::dvec3 across(const TriangleSurface& mesh, std::size_t i) {
     return glm::cross(mesh.vertices[t.y] - mesh.vertices[t.x], mesh.vertices[t.z] - mesh.vertices[t.x]);
 }
 
-// At each vertex the mean of the faces about it, by their areas.
+// At each vertex the mean of the faces about it, by their areas. Files have several vertices at one place where texture
+// coordinates differ, or three of its own for each face.
 std::vector<glm::mat3> means_of_faces(const TriangleSurface& mesh) {
+    const std::vector<std::uint32_t> welded = welded_vertices(mesh.vertices);
     std::vector<glm::dvec3> sums(mesh.vertices.size(), glm::dvec3(0.0));
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         for (int corner = 0; corner < 3; ++corner)
-            sums[mesh.triangles[i][corner]] += across(mesh, i);
+            sums[welded[mesh.triangles[i][corner]]] += across(mesh, i);
     const auto mean = [&](std::uint32_t vertex) {
-        const double length = glm::length(sums[vertex]);
-        return length > 0.0 ? sums[vertex] / length : glm::dvec3(0.0);
+        const glm::dvec3& sum = sums[welded[vertex]];
+        const double length = glm::length(sum);
+        return length > 0.0 ? sum / length : glm::dvec3(0.0);
     };
     std::vector<glm::mat3> normals;
     for (const glm::uvec3& t : mesh.triangles)
@@ -104,8 +107,9 @@ void finish(TriangleSurface& mesh, const Surface& surface) {
     complete(mesh);
 }
 
-std::shared_ptr<const Texture> load_texture(const std::filesystem::path& file) {
+std::shared_ptr<const Texture> load_texture(const std::filesystem::path& file, std::vector<std::string>& warnings) {
     RadianceMap map = read_radiance_map(file);
+    warnings.insert(warnings.end(), map.warnings.begin(), map.warnings.end());
     for (std::size_t i = 0; i < map.texels.size(); ++i) {
         const glm::vec3 color = map.texels[i];
         if (const float most = std::max({color.x, color.y, color.z}); most > 1.0f)
@@ -128,7 +132,7 @@ Scene with_surface_files(Scene scene) {
             else if (auto* mesh = std::get_if<TriangleSurface>(&surface.shape); mesh && mesh->is_mesh)
                 finish(*mesh, surface);
             if (!material.texture.empty() && !textures[material.texture])
-                textures[material.texture] = load_texture(material.texture);
+                textures[material.texture] = load_texture(material.texture, scene.warnings);
             if (!material.texture.empty())
                 material.image = textures[material.texture];
         } catch (const InputError& error) { // of the file; the scene says who asked for it

@@ -25,6 +25,8 @@ Metadata attributes_of(const OIIO::ImageSpec& spec) {
             attributes[key] = value.get_float();
         else if (value.type() == OIIO::TypeString)
             attributes[key] = value.get_string();
+        else if (key == "chromaticities" && value.type().basetype == OIIO::TypeDesc::FLOAT)
+            attributes[key] = value.get_string(); // eight numbers, with commas between
     }
     return attributes;
 }

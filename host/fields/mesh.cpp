@@ -18,15 +18,7 @@ namespace {
 // they run through both ways, so that their neighbours on either side fit each other. Triangles whose three corners lie
 // on a line stay, since they fill a gap between unlike edges; no ray meets them.
 void weld(Polygons& obj) {
-    std::vector<std::uint32_t> order(obj.vertices.size()), welded(obj.vertices.size());
-    std::iota(order.begin(), order.end(), 0u);
-    const auto key = [&](std::uint32_t i) {
-        const glm::dvec3 v = obj.vertices[i];
-        return std::tuple(v.x, v.y, v.z);
-    };
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-    for (std::size_t i = 0; i < order.size(); ++i)
-        welded[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? welded[order[i - 1]] : order[i];
+    const std::vector<std::uint32_t> welded = welded_vertices(obj.vertices);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < obj.triangles.size(); ++i) {
         const glm::uvec3 old = obj.triangles[i], t = {welded[old.x], welded[old.y], welded[old.z]};
@@ -211,6 +203,16 @@ void append(Mesh& mesh, const Polygons& obj) {
 }
 
 } // namespace
+
+std::vector<std::uint32_t> welded_vertices(const std::vector<glm::dvec3>& vertices) {
+    std::vector<std::uint32_t> order(vertices.size()), welded(vertices.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto key = [&](std::uint32_t i) { return std::tuple(vertices[i].x, vertices[i].y, vertices[i].z); };
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    for (std::size_t i = 0; i < order.size(); ++i)
+        welded[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? welded[order[i - 1]] : order[i];
+    return welded;
+}
 
 void close_polygons(Polygons& polygons, const std::string& name) {
     weld(polygons);

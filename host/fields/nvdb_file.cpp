@@ -164,10 +164,10 @@ std::vector<GridEntry> read_nvdb_entries(const std::filesystem::path& file) {
             reader.seek(reader.position() + entries[i].file_bytes);
         }
     } while (!reader.at_end());
-    // As OpenVDB writes names that several grids have: the first as it is, then "name[1]".
+    // As OpenVDB writes names that several grids have, the first as it is, then "name[1]"; and none, "[0]".
     std::map<std::string, int> known;
     for (GridEntry& entry : entries)
-        if (const int before = known[entry.name]++; before > 0)
+        if (const int before = known[entry.name]++; before > 0 || entry.name.empty())
             entry.name += fmt::format("[{}]", before);
     return entries;
 }

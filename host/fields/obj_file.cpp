@@ -1,5 +1,6 @@
 #include "obj_file.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
@@ -35,6 +36,36 @@ glm::dvec3 parse_vertex(std::string_view line, const std::filesystem::path& path
         at = next;
     }
     return vertex;
+}
+
+// For parsers that know nothing of them: without a mark of UTF-8, without comments, and with lines that end in \ joined
+// to the next; as many lines as before.
+std::string plain_lines(std::string text) {
+    constexpr std::string_view mark = "\xef\xbb\xbf";
+    if (text.compare(0, mark.size(), mark) == 0)
+        std::fill_n(text.begin(), mark.size(), ' ');
+    bool is_comment = false;
+    std::size_t joined = 0; // ends of lines that became spaces
+    std::string plain;
+    plain.reserve(text.size());
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool ends = text[i] == '\n' || text[i] == '\r';
+        const std::size_t end = text[i] == '\\' ? std::min(text.find_first_not_of(" \t", i + 1), text.size()) : i;
+        if (text[i] == '\\' && end < text.size() && (text[end] == '\n' || text[end] == '\r')) {
+            i = end + (text.compare(end, 2, "\r\n") == 0 ? 1 : 0);
+            plain += ' ';
+            ++joined;
+            continue;
+        }
+        is_comment = !ends && (is_comment || text[i] == '#');
+        if (!is_comment)
+            plain += text[i];
+        if (text[i] == '\n' || (text[i] == '\r' && text.compare(i, 2, "\r\n") != 0)) {
+            plain.append(joined, '\n');
+            joined = 0;
+        }
+    }
+    return plain;
 }
 
 std::vector<glm::dvec3> parse_vertices(std::string_view text, const std::filesystem::path& path) {
@@ -186,7 +217,7 @@ std::vector<Corners> of_corners(const std::vector<Value>& values, const std::vec
 } // namespace
 
 Polygons read_obj(const std::filesystem::path& path) {
-    const std::string text = read_mesh_text(path);
+    const std::string text = plain_lines(read_mesh_text(path));
     Polygons obj;
     obj.vertices = parse_vertices(text, path);
     Progress progress;

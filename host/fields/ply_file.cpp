@@ -123,6 +123,9 @@ private:
                 if (!(words >> element.name >> element.count))
                     fail("its header has an element without a name and a count");
                 element.name = one_line(element.name.substr(0, 40));
+                const auto has_its_name = [&](const Element& other) { return other.name == element.name; };
+                if (std::count_if(elements_.begin(), elements_.end(), has_its_name) > 1)
+                    fail(fmt::format("its header has two elements \"{}\"", element.name));
             } else if (word == "property") {
                 read_property(words);
             }

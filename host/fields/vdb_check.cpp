@@ -106,9 +106,9 @@ public:
             check(grids, *grid, allowed);
         std::vector<VdbEntry> entries;
         for (const Descriptor& grid : grids) {
-            // The first of several is known by the plain name too.
+            // The first of several is known by the plain name too, if it has one.
             const std::string plain = grid.plain_name();
-            const bool first = &grid == find(grids, plain);
+            const bool first = !plain.empty() && &grid == find(grids, plain);
             entries.push_back({first ? plain : shown_name(grid.name), grid.type, shown_name(grid.name)});
         }
         return entries;

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <map>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "error.h"
 #include "input_file.h"
@@ -46,6 +48,8 @@ public:
             throw InputError(fmt::format("{}: is no EXR file", file_.string()));
         const bool several = (get<std::uint32_t>() & 0x1000u) != 0;
         do {
+            width_ = height_ = 0; // of this part
+            tile_ = {};
             for (std::string name = text(); !name.empty(); name = text())
                 attribute(name);
         } while (several && stream_.peek() > 0);
@@ -90,8 +94,10 @@ private:
         if (type == "chlist" || type == "stringvector" || type == "preview")
             check_parts(type, end);
         stream_.seekg(end - std::streamoff{size});
-        if ((name == "dataWindow" || name == "displayWindow") && size == 16)
-            check_window(get<std::array<std::int32_t, 4>>());
+        if (name == "dataWindow" && size == 16)
+            std::tie(width_, height_) = checked_window(get<std::array<std::int32_t, 4>>());
+        if (name == "displayWindow" && size == 16)
+            checked_window(get<std::array<std::int32_t, 4>>());
         if (name == "chunkCount" && size == 4)
             check_chunks(static_cast<std::uint64_t>(std::max(get<std::int32_t>(), 0)));
         if (name == "tiles" && size == 9)
@@ -119,12 +125,14 @@ private:
             damaged("an attribute's size is not that of its parts");
     }
 
-    void check_window(const std::array<std::int32_t, 4>& window) {
-        width_ = std::int64_t{window[2]} - window[0] + 1;
-        height_ = std::int64_t{window[3]} - window[1] + 1;
-        if (width_ < 1 || width_ > largest_edge || height_ < 1 || height_ > largest_edge)
-            damaged(fmt::format("a data window or picture of {}x{}, where edges are 1 to {}", width_, height_,
-                                largest_edge));
+    // Width and height.
+    std::pair<std::int64_t, std::int64_t> checked_window(const std::array<std::int32_t, 4>& window) {
+        const std::int64_t width = std::int64_t{window[2]} - window[0] + 1;
+        const std::int64_t height = std::int64_t{window[3]} - window[1] + 1;
+        if (width < 1 || width > largest_edge || height < 1 || height > largest_edge)
+            damaged(
+                fmt::format("a data window or picture of {}x{}, where edges are 1 to {}", width, height, largest_edge));
+        return {width, height};
     }
 
     void check_tiles() {

@@ -1,14 +1,18 @@
 #include "radiance_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <locale>
 #include <memory>
+#include <sstream>
 
 #include "error.h"
 #include "file_ending.h"
 #include "image_input.h"
 #include "input_file.h"
+#include "one_line.h"
 
 namespace vkvol {
 
@@ -17,6 +21,64 @@ namespace {
 // IEC 61966-2-1.
 float from_srgb(float x) {
     return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
+}
+
+std::size_t channel_named(const PictureHeader& header, const std::string& name) {
+    const auto found = std::find(header.channels.begin(), header.channels.end(), name);
+    return std::size_t(found - header.channels.begin());
+}
+
+// Places of red, green and blue in a pixel.
+std::array<std::size_t, 3> color_channels(const PictureHeader& header, const std::filesystem::path& file) {
+    const std::size_t none = header.channels.size();
+    std::vector<std::array<std::size_t, 3>> found;
+    std::vector<std::string> layers;
+    for (const std::string& channel : header.channels) {
+        if (channel.empty() || channel.back() != 'R' || (channel.size() > 1 && channel[channel.size() - 2] != '.'))
+            continue;
+        const std::string layer = channel.substr(0, channel.size() - 1);
+        const std::array<std::size_t, 3> rgb = {channel_named(header, channel), channel_named(header, layer + "G"),
+                                                channel_named(header, layer + "B")};
+        if (rgb[1] == none || rgb[2] == none)
+            continue;
+        if (layer.empty())
+            return rgb;
+        found.push_back(rgb);
+        layers.push_back(layer.substr(0, layer.size() - 1));
+    }
+    if (found.size() == 1)
+        return found.front();
+    const std::string names = one_line(fmt::format("{}", fmt::join(header.channels, ", ")).substr(0, 200));
+    if (found.size() > 1)
+        throw InputError(fmt::format("{}: has colours in several layers ({}); save the one that is meant by itself",
+                                     file.string(),
+                                     one_line(fmt::format("{}", fmt::join(layers, ", ")).substr(0, 200))));
+    const std::size_t grey = header.channels.size() == 1 ? 0 : channel_named(header, "Y");
+    if (grey == none)
+        throw InputError(
+            fmt::format("{}: has no channels R, G and B, nor Y, but {}; save it as RGB", file.string(), names));
+    return {grey, grey, grey};
+}
+
+// Red, green, blue, white; x and y (CIE 1931). An .exr without is of these.
+bool is_rec709(const std::string& chromaticities) {
+    constexpr double rec709[] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
+    std::string text = chromaticities;
+    std::replace(text.begin(), text.end(), ',', ' ');
+    std::istringstream numbers(text);
+    numbers.imbue(std::locale::classic());
+    for (const double expected : rec709)
+        if (double number = 0.0; numbers >> number && std::abs(number - expected) > 2e-3)
+            return false;
+    return true;
+}
+
+// EXIF's numbers: 1 is as pictures are looked at.
+void check_orientation(const PictureHeader& header, const std::filesystem::path& file) {
+    const std::string orientation = text_of(header.attributes, "Orientation");
+    if (!orientation.empty() && orientation != "1")
+        throw InputError(fmt::format("{}: is stored turned or mirrored (orientation {}); save it upright",
+                                     file.string(), orientation));
 }
 
 } // namespace
@@ -30,7 +92,11 @@ RadianceMap read_radiance_map(const std::filesystem::path& file) {
             fmt::format("{}: unknown kind of map '{}'; expected .exr, .hdr or .png", file.string(), ending));
     const std::unique_ptr<PictureReader> reader = open_image(file);
     const PictureHeader& header = reader->header();
+    check_orientation(header, file);
     const std::size_t channels = header.channels.size();
+    const std::array<std::size_t, 3> colors = ending == ".exr" ? color_channels(header, file)
+                                              : channels < 3   ? std::array<std::size_t, 3>{0, 0, 0}
+                                                               : std::array<std::size_t, 3>{0, 1, 2};
     std::vector<float> values(std::size_t(header.width) * header.height * channels);
     if (!reader->read(values.data()))
         fail_to_read(file, *reader);
@@ -46,7 +112,7 @@ RadianceMap read_radiance_map(const std::filesystem::path& file) {
                   y = header.y - header.full_y + int(i / channels / header.width);
         if (x < 0 || y < 0 || x >= map.width || y >= map.height)
             continue;
-        glm::vec3 texel = channels < 3 ? glm::vec3(values[i]) : glm::vec3(values[i], values[i + 1], values[i + 2]);
+        glm::vec3 texel(values[i + colors[0]], values[i + colors[1]], values[i + colors[2]]);
         bool fine = true;
         for (int c = 0; c < 3; ++c) {
             const bool good = std::isfinite(texel[c]) && texel[c] >= 0.0f;
@@ -56,6 +122,14 @@ RadianceMap read_radiance_map(const std::filesystem::path& file) {
         map.mended += fine ? 0 : 1;
         map.texels[std::size_t(y) * map.width + x] = texel;
     }
+    if (map.mended > 0)
+        map.warnings.push_back(
+            fmt::format("{}: {} texels were negative or not finite, and count as 0", file.string(), map.mended));
+    if (!is_rec709(text_of(header.attributes, "chromaticities")))
+        map.warnings.push_back(
+            fmt::format("{}: its primaries are not those of Rec.709 (sRGB), but its numbers are taken "
+                        "as such; convert it to linear Rec.709",
+                        file.string()));
     return map;
 }
 

@@ -201,8 +201,7 @@ std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping,
     bytes.reserve(film.mean.size() * 4);
     for (std::size_t i = 0; i < film.mean.size(); ++i) {
         const double a = std::clamp(double(alpha.mean[i].x), 0.0, 1.0);
-        const Vec3 premultiplied = display_value(exposed(film.mean[i], gain), mapping.curve, white);
-        const Vec3 v = a > 0.0 ? clamped(premultiplied / a) : Vec3(0.0);
+        const Vec3 v = a > 0.0 ? display_value(exposed(film.mean[i], gain) / a, mapping.curve, white) : Vec3(0.0);
         for (int channel = 0; channel < 3; ++channel)
             bytes.push_back(static_cast<std::uint8_t>(255.0 * v[channel] + rounding));
         bytes.push_back(static_cast<std::uint8_t>(255.0 * a + 0.5));

@@ -25,8 +25,8 @@ struct ToneMapping {
 std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping);
 
 // Four bytes a pixel, the last of alpha. Means are premultiplied by it, and colours in such files, as PNG has it, are
-// not: what the curve makes of a mean is divided by alpha, and cut at white. Readers that multiply again get the
-// picture over black; light where alpha is 0, as flames may be, is lost.
+// not: what the curve makes of a mean over its alpha. Readers that put it over something in linear light get what that
+// would look like behind the medium; light where alpha is 0, as flames may be, is lost.
 std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping, const FilmLayer& alpha);
 
 // As the first of these, but with a fourth byte, 255, as screens have it.

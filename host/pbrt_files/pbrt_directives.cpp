@@ -265,7 +265,14 @@ void PbrtDirectives::add_world() {
     };
     handlers_["Texture"] = [this](const PbrtToken& token) { read_texture(token); };
     handlers_["LightSource"] = [this](const PbrtToken& token) { scene_.lights.push_back(thing(token, "light")); };
-    handlers_["AreaLightSource"] = [this](const PbrtToken& token) { state_.light = thing(token, "light"); };
+    handlers_["AreaLightSource"] = [this](const PbrtToken& token) {
+        state_.light = thing(token, "light");
+        if (!state_.light->type.empty() && state_.light->type != "diffuse")
+            fail_at(token.place,
+                    fmt::format("AreaLightSource \"{}\"; \"diffuse\" is the only one", state_.light->type));
+        if (state_.light->type.empty()) // what follows does not shine
+            state_.light.reset();
+    };
     handlers_["Shape"] = [this](const PbrtToken& token) { read_shape(token); };
     handlers_["ObjectBegin"] = [this](const PbrtToken& token) { begin_object(token); };
     handlers_["ObjectEnd"] = [this](const PbrtToken& token) { end_object(token); };

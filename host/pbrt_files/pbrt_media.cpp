@@ -253,9 +253,13 @@ void PbrtTranslator::note_beyond(const PbrtShape& shape, const std::string& medi
 }
 
 void PbrtTranslator::note_what_is_not_cut(const PbrtShape& shape, const std::string& name, const PbrtThing& medium) {
-    const std::optional<Region> region = region_of(shape);
-    if (!region || region->element.empty() || !is_dense(medium))
+    if (!is_dense(medium))
         return;
+    const std::optional<Region> region = region_of(shape);
+    if (!region || region->element.empty())
+        return note(shape.thing.place, fmt::format("the grid of medium \"{}\" fills its box, whatever of it is within "
+                                                   "this: shapes do not cut grids here",
+                                                   name));
     const PbrtBounds bounds = bounds_of(medium);
     const glm::dmat4 to_region = glm::inverse(region->transform) * world_ * medium.transform;
     for (int corner = 0; corner < 8; ++corner) {
@@ -279,6 +283,9 @@ void PbrtTranslator::write_media_of(const PbrtShape& shape) {
     const PbrtThing* beyond = medium_of(sides.beyond, shape.thing.place);
     if (beyond && !write_grid_once(sides.beyond, *beyond))
         note_beyond(shape, sides.beyond);
+    else if (beyond && lets_light_in(shape))
+        note(shape.thing.place,
+             fmt::format("the grid of medium \"{}\" goes on within: shapes do not cut grids here", sides.beyond));
     if (!within)
         return;
     if (write_grid_once(sides.within, *within))

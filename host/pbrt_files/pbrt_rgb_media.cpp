@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "blackbody.h"
+#include "pbrt_spectra.h"
 #include "pbrt_translator.h"
 #include "pbrt_voxels.h"
 
@@ -98,8 +99,11 @@ void PbrtTranslator::write_rgb_medium(const std::string& name, const PbrtThing& 
     const glm::ivec3 dims = dims_of(medium);
     const glm::dmat4 place = voxels_to_medium(bounds_of(medium), dims);
     const Colors glow = p.has("Le") ? colors_of(colors_, medium, "Le", dims) : Colors();
-    std::vector<Part> parts = parts_of("sigma_a", colors_of(colors_, medium, "sigma_a", dims), glow);
-    const std::vector<Part> scattering = parts_of("sigma_s", colors_of(colors_, medium, "sigma_s", dims), {});
+    // First what is given, which shows whether there are as many as the file says, and only then as many ones.
+    const Colors given = colors_of(colors_, medium, p.has("sigma_s") ? "sigma_s" : "sigma_a", dims);
+    const Colors other = colors_of(colors_, medium, p.has("sigma_s") ? "sigma_a" : "sigma_s", dims);
+    std::vector<Part> parts = parts_of("sigma_a", p.has("sigma_s") ? other : given, glow);
+    const std::vector<Part> scattering = parts_of("sigma_s", p.has("sigma_s") ? given : other, {});
     parts.insert(parts.end(), scattering.begin(), scattering.end());
     const std::string file = free_name(name);
     const auto grids = std::make_shared<MemoryGrids>();
@@ -119,7 +123,7 @@ void PbrtTranslator::write_rgb_medium(const std::string& name, const PbrtThing& 
             const std::string glow_name = "Le" + part.name.substr(std::string("sigma_a").size());
             grids->grids.push_back({glow_name, make_grid(glow_name, dims, part.glow)});
             XmlAttributes attributes = {{"grid", glow_name}, {"model", "color"}};
-            add_rgb(attributes, part.glow_color * brightness);
+            add_rgb(attributes, part.glow_color * brightness * white_of_space(medium.color_space));
             xml_.element("emission", attributes);
         }
         xml_.close();

@@ -1,5 +1,6 @@
 // The part of PbrtTranslator that writes surfaces.
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
@@ -295,7 +296,7 @@ void PbrtTranslator::write_ball(const PbrtShape& shape, const XmlAttributes& mat
 void PbrtTranslator::write_disk(const PbrtShape& shape, const XmlAttributes& material) {
     const PbrtParameters& p = *shape.thing.parameters;
     const double radius = p.number("radius", 1.0), height = p.number("height", 0.0);
-    const double side = shape.is_reversed ? -1.0 : 1.0;
+    const double side = faces_inwards(shape) ? -1.0 : 1.0;
     XmlAttributes attributes = {
         {"z", xml_number(height)}, {"lookAt", xml_numbers({0.0, 0.0, height + side})}, {"radius", xml_number(radius)}};
     attributes.insert(attributes.end(), material.begin(), material.end());
@@ -363,11 +364,17 @@ void PbrtTranslator::write_triangles(const PbrtShape& shape, const PbrtTriangles
 
 namespace {
 
+double number_of(const std::string& text) { // whatever a locale takes for a decimal point
+    double number = 0.0;
+    std::from_chars(text.data(), text.data() + text.size(), number);
+    return number;
+}
+
 // Glass whose normals point inwards has its inside around it, as pbrt sees it: a bubble.
 void turn_inside_out(XmlAttributes& glass) {
     for (auto& [name, value] : glass)
         if (name == "ior")
-            value = xml_number(1.0 / std::stod(value));
+            value = xml_number(1.0 / number_of(value));
 }
 
 bool is_glass(const XmlAttributes& material) {
@@ -384,13 +391,15 @@ void PbrtTranslator::write_surface(const PbrtShape& shape) {
             note(shape.thing.place,
                  "shines, but is an interface between media: pbrt leaves that light out, and so does "
                  "this");
+        if (shape.thing.parameters->has("alpha"))
+            note(shape.thing.place, "\"alpha\" is left out; it bounds its media everywhere");
         return;
     }
     const PbrtThing& thing = shape.thing;
     if (thing.parameters->has("alpha"))
         note(thing.place, "\"alpha\" is left out; it is opaque");
     PbrtShape turned = shape; // as its triangles would be
-    if (thing.type == "sphere" || thing.type == "cylinder")
+    if (thing.type == "sphere" || thing.type == "cylinder" || thing.type == "disk")
         turned.is_reversed = faces_inwards(shape);
     if (is_glass(*material) && thing.type != "disk" && thing.type != "plymesh" && faces_inwards(shape))
         turn_inside_out(*material);

@@ -71,7 +71,7 @@ Pixels pixels_of(const PbrtThing& film) {
     for (int i = 0; i < 4; ++i) {
         const double edge = double(i < 2 ? pixels.width : pixels.height);
         if (!crop.empty())
-            part[i] = std::ceil(edge * std::clamp(crop[i], 0.0, 1.0));
+            part[i] = std::ceil(float(edge) * std::clamp(float(crop[i]), 0.0f, 1.0f)); // rounded as pbrt does
         else if (!bounds.empty())
             part[i] = std::clamp(std::floor(bounds[i]), 0.0, edge);
     }

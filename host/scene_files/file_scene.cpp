@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -104,7 +105,9 @@ int decimals_for(double size) {
 }
 
 double rounded(double value, int decimals) {
-    return std::stod(fmt::format("{:.{}f}", value, decimals));
+    const std::string text = fmt::format("{:.{}f}", value, decimals);
+    std::from_chars(text.data(), text.data() + text.size(), value); // whatever a locale takes for a decimal point
+    return value;
 }
 
 std::string number(double value, int decimals) {

@@ -33,6 +33,19 @@ std::optional<double> as_number(const std::string& text) {
     return value;
 }
 
+// Of words that are no numbers, as files' names are, none is of a time.
+bool are_numbers(const std::string& text) {
+    constexpr const char* between = " \t\r\n,";
+    for (std::size_t begin = text.find_first_not_of(between); begin != std::string::npos;
+         begin = text.find_first_not_of(between, begin)) {
+        const std::size_t end = std::min(text.find_first_of(between, begin), text.size());
+        if (!as_number(text.substr(begin, end - begin)))
+            return false;
+        begin = end;
+    }
+    return true;
+}
+
 // The shortest that reads back as the same number; whole ones as such, so that they do where those are asked for.
 std::string written(double value) {
     if (value == std::floor(value) && std::abs(value) < 1e15)
@@ -48,6 +61,16 @@ int digits_of_frame(const std::string& key) {
 } // namespace
 
 std::string SceneKeys::fill_in(const std::string& raw) {
+    const bool moved_before = moves_;
+    std::string text = fill_in_at(later_, raw);
+    if (are_numbers(text))
+        return text;
+    moves_ = moved_before;
+    return later_ == 0.0 ? text : fill_in_at(0.0, raw);
+}
+
+std::string SceneKeys::fill_in_at(double later, const std::string& raw) {
+    time_ = later;
     raw_ = raw;
     at_ = 0;
     depth_ = 0;
@@ -169,7 +192,7 @@ double SceneKeys::key_number(bool live) {
         return 1.0;
     moves_ = moves_ || is_time;
     if (const std::optional<double> number = as_number(value))
-        return *number + (is_time ? later_ : 0.0);
+        return *number + (is_time ? time_ : 0.0);
     throw InputError(fmt::format("{} is '{}', no number; give one to compute with it", raw_.substr(first, at_ - first),
                                  value.substr(0, 60)));
 }

@@ -12,8 +12,8 @@ namespace vkvol {
 
 class SceneKeys {
 public:
-    // Nobody has to ask for what is in `may_be_unused`. `later`: frames, by which F is more in arithmetic, where it is
-    // a time; elsewhere it numbers files.
+    // Nobody has to ask for what is in `may_be_unused`. `later`: frames, by which F is more in arithmetic of values
+    // that are numbers, where it is a time; elsewhere it numbers files.
     explicit SceneKeys(std::map<std::string, std::string> values, std::set<std::string> may_be_unused = {},
                        double later = 0.0)
         : values_(std::move(values)), may_be_unused_(std::move(may_be_unused)), later_(later) {}
@@ -29,6 +29,7 @@ public:
     double later() const { return later_; }
 
 private:
+    std::string fill_in_at(double later, const std::string& raw);
     std::string text_up_to(char end, bool live); // '\0': the end of the text
     std::string reference(bool live);
     std::string braced(bool live);
@@ -42,6 +43,7 @@ private:
     const std::map<std::string, std::string> values_;
     const std::set<std::string> may_be_unused_;
     const double later_;
+    double time_ = 0.0; // `later`, or 0
     bool moves_ = false;
     std::set<std::string> named_; // every key the scene names
     std::size_t filled_in_ = 0;   // bytes, of the values of all keys

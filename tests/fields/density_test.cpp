@@ -300,6 +300,11 @@ TEST_CASE("grids of one name are told apart by numbers", "[cpu][density]") {
     CHECK(load_density_field(file).max_value() == 1.0f);
     CHECK(load_density_field({file.path, "density[1]"}).max_value() == 2.0f);
     CHECK(load_density_field({file.path, "density[2]"}).max_value() == 3.0f);
+    for (GridRecipe& recipe : recipes)
+        recipe.name = "";
+    const GridFile nameless = write_grids(recipes);
+    CHECK(load_density_field({nameless.path, "[0]"}).max_value() == 1.0f);
+    CHECK(load_density_field({nameless.path, "[2]"}).max_value() == 3.0f);
 }
 
 TEST_CASE("negative values of quantised grids count as 0 and are counted", "[gpu][density][hard]") {

@@ -66,6 +66,17 @@ TEST_CASE("an .obj file of quads, texture coordinates, groups and Windows line e
     CHECK(mesh.vertices[0].x == 1234567.8901234567);
 }
 
+TEST_CASE("an .obj file with comments, lines that go on, and a mark of UTF-8", "[mesh]") {
+    const TestDirectory directory;
+    const auto read = [&](const std::string& text) { return read_polygons(directory.write("a.obj", text)); };
+    const Polygons plain = read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
+    const Polygons written = read("\xef\xbb\xbfv 0 0 0 # first\r\nv 1 0 \\\r\n0\r\n#v 9 9 9\r\nv 0 1 0\r\nv 1 1 0\r\n"
+                                  "f 1 2 3 # front\r\nf 2 \\ \r\n 4 \\\r\n3\r\n");
+    CHECK(written.vertices == plain.vertices);
+    CHECK(written.triangles == plain.triangles);
+    CHECK_THROWS_WITH(read("v 0 0 \\\n0\nv 1 x 0\n"), Catch::Contains("a.obj:3:")); // by the lines of the file
+}
+
 TEST_CASE("vertices at one position are welded, faces turned outward, slivers dropped or kept", "[mesh]") {
     const Directory directory;
     const Mesh box = directory.load(as_obj(make_box(glm::dvec3(-1.0), glm::dvec3(1.0), 4)));

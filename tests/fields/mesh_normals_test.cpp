@@ -62,6 +62,13 @@ TEST_CASE("smooth normals are the means of faces about a corner", "[cpu][mesh][s
     check_near(mesh.normals[0][1], both);
     check_near(mesh.normals[0][2], {0.0, 0.0, 1.0});
     check_near(mesh.normals[1][1], {0.0, 1.0, 0.0});
+    // So they are where each face has corners of its own.
+    const std::string split = corners + "v 0 0 0\nv 1 0 0\n" + "f 1 2 3\nf 5 4 6\n";
+    const TriangleSurface other = loaded(directory.write("split.obj", split), MeshNormals::smooth);
+    REQUIRE(other.normals.size() == 2);
+    check_near(other.normals[0][0], both);
+    check_near(other.normals[1][2], both);
+    check_near(other.normals[1][1], {0.0, 1.0, 0.0});
 }
 
 TEST_CASE("normals of a .ply file, and of glass", "[cpu][mesh][surfaces]") {

@@ -54,6 +54,13 @@ TEST_CASE("polygons of a .ply file become fans, and the rest of it is passed ove
 }
 
 TEST_CASE("a .ply file that is none is refused by name and place", "[cpu][mesh]") {
+    {
+        const TestDirectory two;
+        CHECK_THROWS_WITH(
+            read_polygons(two.write("two.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+                                               "element vertex 1\nproperty float x\nend_header\n0\n0\n")),
+            Catch::Contains("two elements \"vertex\""));
+    }
     const Directory directory;
     const std::string faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
     CHECK_THAT(directory.error_of("v 0 0 0\nf 1 1 1\n"), Contains("mesh.ply: not a .ply file"));

@@ -139,6 +139,14 @@ TEST_CASE("of several grids of one name the first has it, and all can be named",
     CHECK(file.field("density[1]").value({7, 1, 2}) == 100.0f);
 }
 
+TEST_CASE("a grid without a name is read by its number", "[cpu][density]") {
+    const VdbFile file({ramp("")});
+    const std::vector<VdbEntry> entries = read_vdb_entries(file.path());
+    REQUIRE(entries.size() == 1);
+    CHECK(entries[0].name == "[0]");
+    CHECK(file.field("[0]").value({7, 1, 2}) == 8.0f);
+}
+
 TEST_CASE("a grid of a type that nobody knows costs itself alone", "[cpu][density]") {
     const auto vectors = openvdb::Vec3SGrid::create();
     vectors->setName("velocity");

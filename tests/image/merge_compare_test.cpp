@@ -334,6 +334,19 @@ TEST_CASE("depths of single samples know their scatter once merged", "[cpu][merg
     CHECK(merged.layer("depth")->variance[5].x == Approx((squares - mean * mean) / 16.0).epsilon(1e-4));
 }
 
+TEST_CASE("depths are merged by how many collisions they are of", "[cpu][merge]") {
+    const auto seen = [](unsigned seed, int samples, float depth, float coverage) {
+        Film film = film_of(draw(seed, samples));
+        film.layers.push_back({"depth", std::vector<glm::vec3>(film.pixel_count(), glm::vec3(depth)),
+                               std::vector<glm::vec3>(film.pixel_count(), glm::vec3(0.1f))});
+        film.layers.push_back({"coverage", std::vector<glm::vec3>(film.pixel_count(), glm::vec3(coverage)), {}});
+        return film;
+    };
+    const Film merged =
+        merge_films({input("a", seen(1, 4, 2.0f, 0.5f), 0, 4), input("b", seen(2, 12, 6.0f, 0.25f), 4, 12)}).film;
+    CHECK(merged.layer("depth")->mean[5].x == Approx((4 * 0.5 * 2.0 + 12 * 0.25 * 6.0) / (4 * 0.5 + 12 * 0.25)));
+}
+
 TEST_CASE("compare: real differences are found", "[cpu][merge][compare]") {
     const Film reference = film_of(draw(1, 256));
     CHECK(compare_films(film_of(draw(2, 64, 1.05)), reference, options_at()).different); // 5 % brighter

@@ -23,6 +23,13 @@ std::string rgb_medium(const std::string& parameters) {
            parameters + "\nMaterial \"interface\" MediumInterface \"m\" \"\" Shape \"sphere\" \"float radius\" 99\n";
 }
 
+// Before terabytes are asked for.
+std::string huge_medium() {
+    return "MakeNamedMedium \"m\" \"string type\" \"rgbgrid\" \"integer nx\" 4096 \"integer ny\" 4096 \"integer nz\" "
+           "4096 "
+           "\"rgb sigma_s\" [ 1 1 1 ]\nMaterial \"interface\" MediumInterface \"m\" \"\" Shape \"sphere\"\n";
+}
+
 using Colors = std::vector<glm::dvec3>;
 
 Colors random_colors(unsigned seed) {
@@ -158,6 +165,7 @@ TEST_CASE("media of a colour in each voxel are rendered as one of as many densit
 }
 
 TEST_CASE("wrong colours in voxels are refused with their place", "[cpu][pbrt]") {
+    CHECK_THROWS_WITH(world_of(huge_medium()), Contains("has 1 colours; expected nx ny nz = 68719476736"));
     const auto refused = [](const std::string& parameters, const std::string& reason) {
         CAPTURE(parameters);
         CHECK_THROWS_WITH(world_of(rgb_medium(parameters)), Contains(reason) && Contains("s.pbrt:"));

@@ -1,5 +1,6 @@
 // Which side of a pbrt shape has which medium, what of it is not rendered, and what files and blocks leave behind.
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "pbrt_scenes.h"
 #include "support/scene_text.h"
@@ -58,6 +59,49 @@ TEST_CASE("pbrt's normals say which medium is within", "[cpu][pbrt]") {
     CHECK(absorbs(object(box)) == All{1});
 }
 
+// Of what is flat the volume is rounding, of either sign.
+TEST_CASE("pbrt's panes of glass have their inside below them however they are turned", "[cpu][pbrt]") {
+    const std::string pane =
+        " Shape \"trianglemesh\" \"point3 P\" [ -1 -1 0 1 -1 0 -1 1 0 1 1 0 ] \"integer indices\" ";
+    for (const char* order : {"[ 0 1 2 1 3 2 ]", "[ 0 1 2 2 1 3 ]"})
+        for (int degrees = 1; degrees < 90; ++degrees) {
+            const Scene scene =
+                world_of(fmt::format("Material \"dielectric\" Rotate {} 1 2 3", degrees) + pane + order);
+            CAPTURE(order, degrees);
+            REQUIRE(scene.surfaces.size() == 1);
+            CHECK(scene.surfaces.front().material.ior == 1.5);
+        }
+}
+
+TEST_CASE("pbrt's disks have their front where a mirror puts it", "[cpu][pbrt]") {
+    const auto normal = [](const std::string& before) {
+        const Surface disk = world_of(before + " Shape \"disk\"").surfaces.at(0);
+        return glm::normalize(glm::dmat3(disk.transform) * std::get<DiskSurface>(disk.shape).normal).z;
+    };
+    const double front = normal("");
+    CHECK(std::abs(front) == Approx(1.0));
+    CHECK(normal("ReverseOrientation") == Approx(-front));
+    CHECK(normal("Scale -1 1 1") == Approx(-front));
+    CHECK(normal("ReverseOrientation Scale -1 1 1") == Approx(front));
+}
+
+TEST_CASE("pbrt's nameless area light ends what shines, and others are refused", "[cpu][pbrt]") {
+    const Scene scene = world_of("AreaLightSource \"diffuse\"" + ball + "AreaLightSource \"\"" + ball);
+    REQUIRE(scene.surfaces.size() == 2);
+    CHECK(scene.surfaces[0].emission != Rgb(0.0));
+    CHECK(scene.surfaces[1].emission == Rgb(0.0));
+    CHECK_THROWS_WITH(world_of("AreaLightSource \"spheric\"" + ball), Contains("\"diffuse\" is the only one"));
+}
+
+TEST_CASE("pbrt's cropwindow is rounded in single precision", "[cpu][pbrt]") {
+    const auto width = [](const char* text) {
+        return scene_of("Film \"rgb\" " + std::string(text) + " Camera \"perspective\" WorldBegin " + ball)
+            .picture.width;
+    };
+    CHECK(width("\"integer xresolution\" 800 \"float cropwindow\" [ .3 .6 0 1 ]") == 480 - 240);
+    CHECK(width("\"integer xresolution\" 100 \"float cropwindow\" [ 0 .55 0 1 ]") == 55);
+}
+
 TEST_CASE("pbrt's media that are not rendered as in pbrt are named", "[cpu][pbrt]") {
     check_noted("ReverseOrientation MediumInterface \"a\" \"\"" + ball,
                 "medium \"a\" is outside of this, as its normals point");
@@ -80,6 +124,8 @@ TEST_CASE("pbrt's media that are not rendered as in pbrt are named", "[cpu][pbrt
     const std::string not_cut = "the grid of medium \"g\" reaches beyond this";
     check_noted(grid + ball, not_cut);
     check_noted(grid + "Scale .9 2 2" + box, not_cut);
+    check_noted(grid + "Shape \"plymesh\" \"string filename\" \"a.ply\"", "the grid of medium \"g\" fills its box");
+    check_noted(grid + "MediumInterface \"\" \"g\"" + ball, "the grid of medium \"g\" goes on within");
     for (const std::string& whole : {box, "Scale 1.8 1.8 1.8" + ball})
         for (const std::string& warning : world_of(media + grid + whole).warnings)
             CHECK_THAT(warning, !Contains(not_cut));

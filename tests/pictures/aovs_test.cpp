@@ -511,13 +511,13 @@ TEST_CASE("layers in image files", "[cpu][image_io][aovs]") {
     film.layers.resize(1);
     film.layers.front() = {
         "alpha", std::vector<glm::vec3>{glm::vec3(0.5f), glm::vec3(0.0f), glm::vec3(1.0f), glm::vec3(0.25f)}, {}};
-    film.mean.assign(4, glm::vec3(0.5f, 0.0f, 2.0f));
+    film.mean.assign(4, glm::vec3(0.25f, 0.0f, 2.0f));
     const std::vector<std::uint8_t> bytes = tone_map(film, {}, film.layers.front());
     REQUIRE(bytes.size() == 16);
-    // sRGB of 0.5 is 187.5 of 255: over an alpha of a half, cut at white.
-    CHECK(std::vector<int>(bytes.begin(), bytes.begin() + 4) == std::vector<int>{255, 0, 255, 128});
+    // Through half of the light 0.5, whose sRGB is 187.5 of 255.
+    CHECK(std::vector<int>(bytes.begin(), bytes.begin() + 4) == std::vector<int>{188, 0, 255, 128});
     CHECK(std::vector<int>(bytes.begin() + 4, bytes.begin() + 8) == std::vector<int>{0, 0, 0, 0});
-    CHECK(std::vector<int>(bytes.begin() + 8, bytes.begin() + 12) == std::vector<int>{188, 0, 255, 255});
+    CHECK(std::vector<int>(bytes.begin() + 8, bytes.begin() + 12) == std::vector<int>{137, 0, 255, 255});
 }
 
 TEST_CASE("the film of a scene file names its layers", "[cpu][xml][aovs]") {

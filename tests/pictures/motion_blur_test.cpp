@@ -112,6 +112,17 @@ TEST_CASE("the frame's number is a time in arithmetic alone", "[cpu][motion][xml
           glm::dvec3(4.0, 3.5, 0.0));
 }
 
+TEST_CASE("files are those of the frame, by whatever arithmetic", "[cpu][motion][xml]") {
+    const Scene scene = parse_at(R"(<camera x="${= F}"/><densityField>smoke.${= F + 100}.nvdb</densityField>)", 3);
+    for (const double time : {-0.25, 0.1, 1.0}) {
+        const Scene then = scene_of_time(scene, time);
+        CHECK(std::get<GridFile>(then.volumes.front().shape).path.filename() == "smoke.103.nvdb");
+        CHECK(then.camera.position.x == 3.0 + time);
+    }
+    // Nor does such a scene move by that.
+    CHECK(!parse_at("<densityField>smoke.${= F + 100}.nvdb</densityField>", 3).motion_blur);
+}
+
 // Its light is 0 when the shutter opens.
 TEST_CASE("pixels that move together know no error of their mean", "[gpu][motion]") {
     const Scene scene =

@@ -1,0 +1,80 @@
+// Pictures of other programs, read as light.
+#include <OpenImageIO/imageio.h>
+#include <catch2/catch.hpp>
+
+#include "error.h"
+#include "radiance_map.h"
+#include "support/test_directory.h"
+
+using namespace vkvol;
+using Catch::Contains;
+
+namespace {
+
+// 16 x 16 pixels, channel c of which has the value 1 + c.
+std::filesystem::path write_map(const TestDirectory& directory, const std::vector<std::string>& channels,
+                                const std::function<void(OIIO::ImageSpec&)>& change = {}) {
+    const std::filesystem::path file = directory.path / "map.exr";
+    OIIO::ImageSpec spec(16, 16, int(channels.size()), OIIO::TypeDesc::FLOAT);
+    spec.channelnames = channels;
+    if (change)
+        change(spec);
+    std::vector<float> pixels;
+    for (int i = 0; i < spec.width * spec.height; ++i)
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            pixels.push_back(1.0f + float(c));
+    const auto output = OIIO::ImageOutput::create(file.string());
+    REQUIRE(output->open(file.string(), spec));
+    REQUIRE(output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()));
+    output->close();
+    return file;
+}
+
+} // namespace
+
+TEST_CASE("maps have the colours of channels by their names", "[cpu][image_io]") {
+    const TestDirectory directory;
+    const auto texel = [&](const std::vector<std::string>& channels) {
+        return read_radiance_map(write_map(directory, channels)).texels.front();
+    };
+    CHECK(texel({"R", "G", "B", "A"}) == glm::vec3(1.0f, 2.0f, 3.0f));
+    CHECK(texel({"Z", "B", "G", "R"}) == glm::vec3(4.0f, 3.0f, 2.0f));
+    CHECK(texel({"AO.R", "Sky.R", "Sky.G", "Sky.B", "Sky.Z"}) == glm::vec3(2.0f, 3.0f, 4.0f));
+    CHECK(texel({"AO.R", "AO.G", "AO.B", "R", "G", "B"}) == glm::vec3(4.0f, 5.0f, 6.0f));
+    CHECK(texel({"A", "Y", "Z"}) == glm::vec3(2.0f));
+    CHECK(texel({"anything"}) == glm::vec3(1.0f));
+    CHECK_THROWS_WITH(texel({"AO.R", "AO.G", "AO.B", "Combined.R", "Combined.G", "Combined.B"}),
+                      Contains("several layers (AO, Combined)"));
+    CHECK_THROWS_WITH(texel({"U", "V"}), Contains("no channels R, G and B"));
+}
+
+TEST_CASE("maps of other primaries are told, and turned ones refused", "[cpu][image_io]") {
+    const TestDirectory directory;
+    const auto with_primaries = [&](const std::vector<float>& primaries) {
+        return read_radiance_map(write_map(directory, {"R", "G", "B"},
+                                           [&](OIIO::ImageSpec& spec) {
+                                               spec.attribute("chromaticities",
+                                                              OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8),
+                                                              primaries.data());
+                                           }))
+            .warnings;
+    };
+    CHECK(with_primaries({0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}).empty());
+    const auto aces = with_primaries({0.7347f, 0.2653f, 0.0f, 1.0f, 0.0001f, -0.077f, 0.32168f, 0.33767f});
+    REQUIRE(aces.size() == 1);
+    CHECK_THAT(aces[0], Contains("map.exr") && Contains("Rec.709"));
+    CHECK_THROWS_WITH(read_radiance_map(write_map(directory, {"R", "G", "B"},
+                                                  [](OIIO::ImageSpec& spec) { spec.attribute("Orientation", 3); })),
+                      Contains("orientation 3"));
+}
+
+TEST_CASE("a small part of a tiled picture is no damage", "[cpu][image_io]") {
+    const TestDirectory directory;
+    const RadianceMap map = read_radiance_map(write_map(directory, {"R", "G", "B"}, [](OIIO::ImageSpec& spec) {
+        spec.tile_width = spec.tile_height = 16;
+        spec.x = spec.y = 16;
+        spec.full_width = spec.full_height = 128; // 64 tiles' worth in a file of 3 kB
+    }));
+    CHECK((map.width == 128 && map.height == 128));
+    CHECK(map.texels[16 * 128 + 16] == glm::vec3(1.0f, 2.0f, 3.0f));
+}
