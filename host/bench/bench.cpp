@@ -196,7 +196,16 @@ BenchResult Bench::run(const std::vector<Estimator>& estimators) {
 }
 
 // Before any work is done.
-void check_files(const BenchRequest& request, const std::vector<Estimator>& estimators) {
+void check_request(const BenchRequest& request, const std::vector<Estimator>& estimators) {
+    // A relMSE of few pixels is a chi-square of few degrees: what is left of it beyond the reference's own is often
+    // none.
+    constexpr int least_pixels = 32;
+    const Picture& picture = estimators.front().scene.picture;
+    if (picture.width * picture.height < least_pixels)
+        throw InputError(
+            fmt::format("a picture of {} pixels: a bench judges by the errors of {} at least; give the camera or "
+                        "sensor more --width and --height",
+                        picture.width * picture.height, least_pixels));
     FileUses uses;
     uses.reads("the scene", request.render.scene);
     uses.reads_files_of(estimators.front().scene);
@@ -260,7 +269,7 @@ int run_bench(const BenchRequest& request) {
     for (const Estimator& estimator : estimators)
         if (!request.quiet && (estimator.is_default || !request.integrators.empty()))
             print_warnings(estimator.scene.warnings);
-    check_files(request, estimators);
+    check_request(request, estimators);
     Bench bench(request);
     const BenchResult result = bench.run(estimators);
     if (result.measurements.empty()) {

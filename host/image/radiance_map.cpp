@@ -12,6 +12,7 @@
 #include "file_ending.h"
 #include "image_input.h"
 #include "input_file.h"
+#include "metadata.h"
 #include "one_line.h"
 
 namespace vkvol {

@@ -249,6 +249,7 @@ TEST_CASE("bench refuses command lines that make no sense", "[gpu][bench][option
              std::pair{"", "no scene given"},
              {"none.xml", "none.xml"},
              {"ball.xml --time fast", "--time"},
+             {"ball.xml --width 4 --height 4", "a bench judges by the errors of 32 at least"},
              {"ball.xml --spp 4", "unknown option --spp"},
              {"ball.xml --integrators ratioTraking", "did you mean ratioTracking"},
              {"ball.xml --integrators ratioTracking,", "empty name"},
