@@ -15,6 +15,7 @@
 #include "phase_table.h"
 #include "pilot_paths.h"
 #include "render_limits.h"
+#include "scene_facts.h"
 #include "shared/estimators.h"
 #include "value_map.h"
 

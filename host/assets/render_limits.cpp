@@ -9,6 +9,7 @@
 #include "layers.h"
 #include "method.h"
 #include "noise.h"
+#include "scene_facts.h"
 #include "shared/constants.h"
 #include "shared/estimators.h"
 

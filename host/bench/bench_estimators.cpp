@@ -6,6 +6,8 @@
 #include "error.h"
 #include "framing.h"
 #include "integrators.h"
+#include "preset.h"
+#include "scene_facts.h"
 #include "scene_hash.h"
 #include "scene_xml.h"
 #include "shared/estimators.h"

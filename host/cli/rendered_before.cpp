@@ -11,6 +11,7 @@
 #include "image_io.h"
 #include "metadata.h"
 #include "method.h"
+#include "preset.h"
 #include "render_outputs.h"
 #include "requested_scene.h"
 #include "scene_hash.h"

@@ -8,6 +8,7 @@
 
 #include "alias_table.h"
 #include "camera_rays.h"
+#include "scene_facts.h"
 
 namespace vkvol {
 

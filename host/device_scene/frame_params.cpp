@@ -19,6 +19,7 @@
 #include "phase_params.h"
 #include "pixel_filter.h"
 #include "placement.h"
+#include "scene_facts.h"
 #include "sensor_params.h"
 #include "shared/estimators.h"
 #include "shared/items.h"
@@ -205,14 +206,15 @@ double lit_radius(const Scene& scene, const Assets& assets, const shared::Medium
 
 namespace {
 
-// What a march goes through is a product of factors near 1 in single precision: of 10^5 steps an optical depth of 1 errs by
-// 0.1 %, of 10^6 by 1.4 %, and thin ones by far more.
+// What a march goes through is a product of factors near 1 in single precision: of 10^5 steps an optical depth of 1
+// errs by 0.1 %, of 10^6 by 1.4 %, and thin ones by far more.
 void check_step(const char* name, double step, double diagonal, double unit) {
-    constexpr double most_steps = 1e5;
+    constexpr double most_steps = 2e5;
     if (diagonal / step > most_steps)
-        throw InputError(fmt::format("<march> {}: {} takes more than a hundred thousand steps across the medium; {:.3g} takes a "
-                                     "thousand",
-                                     name, step / unit, diagonal / unit / 1000.0));
+        throw InputError(
+            fmt::format("<march> {}: {} takes more than two hundred thousand steps across the medium; {:.3g} takes a "
+                        "thousand",
+                        name, step / unit, diagonal / unit / 1000.0));
 }
 
 // World units: of the finest of the scene's grids; 0 without one.

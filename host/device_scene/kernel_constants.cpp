@@ -10,6 +10,7 @@
 #include "medium_pieces.h"
 #include "pixel_filter.h"
 #include "placement.h"
+#include "scene_facts.h"
 #include "shared/estimators.h"
 #include "surface_table.h"
 
@@ -73,6 +74,12 @@ bool is_chromatic(const Scene& scene) {
                                   [](const MapPoint& point) { return !is_grey(point.albedo); });
            });
 }
+
+static_assert(int(PhaseFunction::henyey_greenstein) == PHASE_HENYEY_GREENSTEIN &&
+              int(PhaseFunction::rayleigh) == PHASE_RAYLEIGH &&
+              int(PhaseFunction::double_henyey_greenstein) == PHASE_DOUBLE_HENYEY_GREENSTEIN &&
+              int(PhaseFunction::draine) == PHASE_DRAINE && int(PhaseFunction::droplets) == PHASE_DROPLETS &&
+              int(PhaseFunction::table) == PHASE_TABLE);
 
 shared::MediumKinds kinds_of(const Volume& volume, const LoadedMedium& loaded, const Method& method) {
     shared::MediumKinds kinds{};
@@ -154,9 +161,10 @@ int sensor_kind(const Camera& camera) {
         return SENSOR_FLUENCE;
     case Projection::absorption:
         return SENSOR_ABSORPTION;
-    default:
-        return camera.lens.radius > 0.0 ? SENSOR_LENS : SENSOR_PINHOLE;
+    case Projection::perspective:
+        break;
     }
+    return camera.lens.radius > 0.0 ? SENSOR_LENS : SENSOR_PINHOLE;
 }
 
 } // namespace

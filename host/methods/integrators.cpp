@@ -7,6 +7,7 @@
 #include "method.h"
 #include "nearest_name.h"
 #include "particle_scenes.h"
+#include "scene_facts.h"
 #include "shared/constants.h"
 #include "surface_lamps.h"
 

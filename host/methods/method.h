@@ -26,7 +26,7 @@ struct Method {
     int transmittance = 0;       // TRANSMITTANCE_...; unused if nee is NEE_NONE
     int nee = 0;                 // NEE_...
     int mis = 0;                 // MIS_...; unused where flights meet no light but the background
-    std::optional<int> distance; // DISTANCE_...; none: chosen by where the lights are
+    std::optional<int> distance; // DISTANCE_...; none: kernel_constants.cpp chooses by where the lights are
     int emission_at = 0; // EMISSION_AT_...; a march through the medium adds emission step by step in either case
     Filter filter = Filter::stochastic; // of grids
     bool jitter = true;
@@ -47,24 +47,8 @@ struct Method {
 // A march (or, without scattering, one analytic step) through the whole medium that samples no collision.
 bool is_through(const Method& method);
 
-// Several media, whose extinctions add up.
-bool is_superposition(const Scene& scene);
-
-// FIELD_..., FIELD_CONSTANT without a volume.
-int density_kind(const Scene& scene);
-bool has_chromatic_extinction(const Scene& scene); // sigma_t differs between channels
-// Where transmittances towards lights can be cached: there are any, the density varies, the shape is no mesh, and no
-// surface is in the way.
-bool can_cache_light(const Scene& scene);
-bool can_scatter(const Volume& volume);
-bool emits(const Scene& scene); // judged by coefficients: the temperature grid may be missing
-
-// `field`: FIELD_... Expects the scene of with_preset(). Throws InputError, with the remedy, for what cannot be.
-Method choose_method(const Scene& scene, int field, bool chromatic_extinction, bool emits);
+// Expects the scene of with_preset(). Opens grid files where an analytic estimator is asked for, which is possible in
+// an empty grid alone. Throws InputError, with the remedy, for what cannot be.
 Method choose_method(const Scene& scene);
-
-// The scene as its integrator sees it, with warnings added. Applying it twice changes nothing more. Of
-// adjust_material_colour nothing is done here, since a mesh's colour is known only once it is loaded.
-Scene with_preset(Scene scene);
 
 } // namespace vkvol

@@ -5,6 +5,7 @@
 
 #include "camera_view.h"
 #include "method.h"
+#include "scene_facts.h"
 
 namespace vkvol {
 

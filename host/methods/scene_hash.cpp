@@ -7,6 +7,7 @@
 #include "digest.h"
 #include "memory_grids.h"
 #include "method.h"
+#include "preset.h"
 #include "shared/constants.h"
 #include "surface_lamps.h"
 

@@ -9,6 +9,8 @@
 #include "kernel_constants.h"
 #include "phase_params.h"
 #include "pilot_paths.h"
+#include "preset.h"
+#include "scene_facts.h"
 #include "scene_hash.h"
 #include "schedule_memory.h"
 #include "session.h"

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include "explain_causes.h"
+#include "preset.h"
+#include "scene_facts.h"
 #include "shared/constants.h"
 
 namespace vkvol {

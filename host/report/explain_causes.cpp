@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "kernel_constants.h"
+#include "scene_facts.h"
 #include "shared/constants.h"
 #include "view_advice.h"
 

@@ -85,7 +85,8 @@ struct Camera {
 };
 
 inline bool reads_flux(const Camera& camera) {
-    return camera.projection >= Projection::irradiance;
+    const Projection p = camera.projection;
+    return p == Projection::irradiance || p == Projection::fluence || p == Projection::absorption;
 }
 
 // What a sensor reads where the same radiance comes from everywhere, per unit of that [sr].

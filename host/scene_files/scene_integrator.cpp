@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "integrators.h"
+#include "preset.h"
 #include "scene_reader.h"
 #include "shared/estimators.h"
 

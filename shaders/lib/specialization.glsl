@@ -108,8 +108,8 @@ const bool SOME_AIMED = (LIGHTS & LIGHTS_AIMED) != 0;
 const bool HAS_LAYERS = LAYERS != 0;
 const bool HAS_PARTICLES = PATHS != PATHS_CAMERA;
 const bool REPEATS = PERIODIC != 0;
-const bool READS_FLUX = SENSOR >= SENSOR_IRRADIANCE; // and no radiance: see flux.glsl
-// (In bits, for the sake of glslang 12: see SHADOW_RAYS_WALK.)
+// And no radiance: see flux.glsl. (In bits, for the sake of glslang 12: see SHADOW_RAYS_WALK.)
+const bool READS_FLUX = (int(SENSOR == SENSOR_IRRADIANCE) | int(SENSOR == SENSOR_FLUENCE) | int(SENSOR == SENSOR_ABSORPTION)) != 0;
 const bool LOOKS_FROM_SENSOR = (int(READS_FLUX) & int(NEE != NEE_NONE) & int(LIGHTS != LIGHTS_LONE)) != 0;
 const bool COUNTS = (int(READS_FLUX) & int(HAS_PARTICLES)) != 0; // particles, where they pass the sensor, or what they leave
 const bool COUNTS_PASSING = (int(COUNTS) & int(SENSOR == SENSOR_IRRADIANCE)) != 0;

@@ -31,7 +31,8 @@ float phase_eval(MediumParams v, vec3 before, vec3 after) {
 }
 
 // Whether there is a closed form of two scatterings.
-const bool PHASE_HAS_TWICE = PHASE != EACH && PHASE <= PHASE_DOUBLE_HENYEY_GREENSTEIN;
+const bool PHASE_HAS_TWICE = (int(PHASE == PHASE_HENYEY_GREENSTEIN) | int(PHASE == PHASE_RAYLEIGH) |
+                              int(PHASE == PHASE_DOUBLE_HENYEY_GREENSTEIN)) != 0;
 
 // After two scatterings: the mean of phase_eval(drawn, after) over what phase_sample draws from `before`. Henyey and
 // Greenstein's functions are closed under convolution, asymmetries multiply.

@@ -7,6 +7,7 @@
 #include "kernel_constants.h"
 #include "light_table.h"
 #include "method.h"
+#include "preset.h"
 #include "scene_hash.h"
 #include "shared/constants.h"
 #include "surface_mesh.h"

@@ -6,6 +6,8 @@
 #include "error.h"
 #include "integrators.h"
 #include "method.h"
+#include "preset.h"
+#include "scene_facts.h"
 #include "scene_hash.h"
 #include "shared/constants.h"
 

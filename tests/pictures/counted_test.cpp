@@ -8,6 +8,7 @@
 
 #include "camera_view.h"
 #include "method.h"
+#include "preset.h"
 #include "reading_grid.h"
 #include "scene_hash.h"
 #include "shared/constants.h"

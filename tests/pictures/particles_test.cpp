@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "method.h"
+#include "preset.h"
 #include "scene_hash.h"
 #include "session.h"
 #include "shared/constants.h"

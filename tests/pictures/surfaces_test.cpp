@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "error.h"
+#include "preset.h"
 #include "scene_hash.h"
 #include "support/agreement.h"
 #include "support/images.h"

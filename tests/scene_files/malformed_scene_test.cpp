@@ -7,6 +7,7 @@
 #include "error.h"
 #include "frame_params.h"
 #include "method.h"
+#include "preset.h"
 #include "scene_xml.h"
 
 using namespace vkvol;

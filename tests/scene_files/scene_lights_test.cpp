@@ -9,6 +9,7 @@
 #include "error.h"
 #include "integrators.h"
 #include "method.h"
+#include "preset.h"
 #include "scene_hash.h"
 #include "shared/constants.h"
 #include "support/scene_text.h"

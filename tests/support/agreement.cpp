@@ -8,6 +8,7 @@
 #include "error.h"
 #include "integrators.h"
 #include "method.h"
+#include "scene_facts.h"
 #include "scenes.h"
 #include "shared/constants.h"
 #include "statistics.h"

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <random>
 
+#include "estimator_traits.h"
 #include "flight_forms.h"
 #include "test_meshes.h"
 #include "tests/reference/quadrature.h"
@@ -69,7 +70,7 @@ bool bends(const MediumRecipe& recipe) {
 } // namespace
 
 bool is_null_flight(int free_flight) {
-    return free_flight >= FREE_FLIGHT_DELTA;
+    return flight_has(free_flight, TRAIT_NULL);
 }
 
 bool is_null_transmittance(int transmittance) {

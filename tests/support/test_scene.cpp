@@ -2,6 +2,7 @@
 
 #include "frame_params.h"
 #include "kernel_constants.h"
+#include "scene_facts.h"
 
 #include <algorithm>
 

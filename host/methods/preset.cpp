@@ -1,0 +1,53 @@
+#include "preset.h"
+
+#include <fmt/format.h>
+
+#include "scene_facts.h"
+#include "shared/constants.h"
+#include "surface_lamps.h"
+
+namespace vkvol {
+
+int scattering_of(const RenderSettings& settings, const Integrator& integrator) {
+    const int scattering = settings.choices.scattering.value_or(integrator.scattering);
+    return scattering == SCATTERING_SINGLE && settings.max_depth == 0u ? SCATTERING_NONE : scattering;
+}
+
+Scene with_preset(Scene scene) {
+    const Integrator& integrator = choose_integrator(scene);
+    const auto adjusts = [&](Adjustment adjustment) { return (integrator.adjustments & adjustment) != 0; };
+    const auto warn = [&](const char* message) {
+        scene.warnings.push_back(fmt::format("{}: {}", integrator.name, message));
+    };
+    const int scattering = scene.settings.choices.scattering.value_or(integrator.scattering);
+    const bool glows = emits(scene);
+    for (Volume& volume : scene.volumes) {
+        if (adjusts(adjust_no_scattering) && scattering == SCATTERING_NONE && !volume.map.is_transfer) // which has all
+            volume.sigma_s = Rgb(0.0);
+        if (adjusts(adjust_isotropic) && (volume.g != 0.0 || volume.phase != PhaseFunction::henyey_greenstein)) {
+            warn("scatters isotropically and leaves heyneygreenstein_g and phase out; homogeneousRayMarcherImproved "
+                 "honours them");
+            volume.g = 0.0;
+            volume.phase = PhaseFunction::henyey_greenstein;
+        }
+        if (adjusts(adjust_default_noise) && !volume.noise) {
+            if (std::holds_alternative<GridFile>(volume.shape))
+                warn("the density is the grid's, not noise, which fills spheres, boxes and models");
+            else
+                volume.noise = Noise{};
+        }
+        if (adjusts(adjust_no_emission)) {
+            volume.Le = volume.temperature.color = Rgb(0.0);
+            for (MapPoint& point : volume.map.points)
+                point.emission = Rgb(0.0);
+        }
+    }
+    if (adjusts(adjust_no_emission) && glows)
+        warn("leaves emission out; nanoVDBEmission renders it");
+    const bool looks = scene.settings.choices.nee.value_or(integrator.nee) != NEE_NONE;
+    return looks && scattering_of(scene.settings, integrator) != SCATTERING_NONE
+               ? with_lamps_of_surfaces(std::move(scene))
+               : scene;
+}
+
+} // namespace vkvol
