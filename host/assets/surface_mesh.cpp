@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "error.h"
 #include "mesh.h"
@@ -36,21 +37,31 @@ glm::dvec3 across(const TriangleSurface& mesh, std::size_t i) {
 }
 
 // At each vertex the mean of the faces about it, by their areas. Files have several vertices at one place where texture
-// coordinates differ, or three of its own for each face.
+// coordinates differ, or three of its own for each face; those of sheets with two sides look to either.
 std::vector<glm::mat3> means_of_faces(const TriangleSurface& mesh) {
-    const std::vector<std::uint32_t> welded = welded_vertices(mesh.vertices);
     std::vector<glm::dvec3> sums(mesh.vertices.size(), glm::dvec3(0.0));
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         for (int corner = 0; corner < 3; ++corner)
-            sums[welded[mesh.triangles[i][corner]]] += across(mesh, i);
-    const auto mean = [&](std::uint32_t vertex) {
-        const glm::dvec3& sum = sums[welded[vertex]];
+            sums[mesh.triangles[i][corner]] += across(mesh, i);
+    const std::vector<std::uint32_t> welded = welded_vertices(mesh.vertices);
+    std::vector<std::uint32_t> order(mesh.vertices.size()); // those at one place in a row
+    std::iota(order.begin(), order.end(), 0u);
+    const auto before = [&](std::uint32_t a, std::uint32_t b) { return welded[a] < welded[b]; };
+    std::sort(order.begin(), order.end(), before);
+    constexpr std::ptrdiff_t many = 1000; // at one place, of which each then has its own faces alone
+    std::vector<glm::dvec3> means(mesh.vertices.size());
+    for (const std::uint32_t vertex : order) {
+        const auto [first, last] = std::equal_range(order.begin(), order.end(), vertex, before);
+        const glm::dvec3 own = sums[vertex];
+        glm::dvec3 sum = last - first > many ? own : glm::dvec3(0.0);
+        for (auto other = first; last - first <= many && other != last; ++other)
+            sum += glm::dot(sums[*other], own) > 0.0 ? sums[*other] : glm::dvec3(0.0);
         const double length = glm::length(sum);
-        return length > 0.0 ? sum / length : glm::dvec3(0.0);
-    };
+        means[vertex] = length > 0.0 ? sum / length : glm::dvec3(0.0);
+    }
     std::vector<glm::mat3> normals;
     for (const glm::uvec3& t : mesh.triangles)
-        normals.emplace_back(mean(t.x), mean(t.y), mean(t.z));
+        normals.emplace_back(means[t.x], means[t.y], means[t.z]);
     return normals;
 }
 

@@ -150,11 +150,18 @@ void add_plain_variance(const Film& a, const Film& b, std::size_t pixel, int cha
         sum.add(own_b, n_b);
 }
 
-// Of two pictures' sums.
-SumOfVariances of_sums(const Film& a, const glm::dvec3& of_a, const Film& b, const glm::dvec3& of_b, int channel) {
+// Of a picture's sum, which is known: of what shares samples an estimate by itself, else one for each pixel.
+void add_sum(const Film& film, int channel, SumOfVariances& sum) {
+    if (film.is_correlated)
+        return sum.add((*film.sum_variance)[channel], *std::max_element(film.samples.begin(), film.samples.end()));
+    for (std::size_t i = 0; i < film.pixel_count(); ++i)
+        sum.add(film.variance[i][channel], film.samples[i]);
+}
+
+SumOfVariances of_sums(const Film& a, const Film& b, int channel) {
     SumOfVariances sum;
-    sum.add(of_a[channel], *std::max_element(a.samples.begin(), a.samples.end()));
-    sum.add(of_b[channel], *std::max_element(b.samples.begin(), b.samples.end()));
+    add_sum(a, channel, sum);
+    add_sum(b, channel, sum);
     return sum;
 }
 
@@ -249,8 +256,7 @@ Comparison compare_films(const Film& a, const Film& b, const CompareOptions& opt
                                    : std::numeric_limits<double>::infinity();
     for (int c = 0; c < 3; ++c) {
         result.mean_ratio[c] = sums.a[c] == sums.b[c] ? 1.0 : sums.a[c] / sums.b[c];
-        const SumOfVariances variance =
-            is_correlated && result.has_mean_z ? of_sums(a, *of_a, b, *of_b, c) : sums.variance[c];
+        const SumOfVariances variance = is_correlated && result.has_mean_z ? of_sums(a, b, c) : sums.variance[c];
         result.mean_z[c] = normal_of_t(z_of(sums.tested_a[c], sums.tested_b[c], variance.variance), variance.freedom());
     }
     judge(a, options, result);

@@ -19,7 +19,7 @@ Metadata attributes_of(const OIIO::ImageSpec& spec) {
     Metadata attributes;
     for (const OIIO::ParamValue& value : spec.extra_attribs) {
         const std::string key = value.name().string();
-        if (value.type() == OIIO::TypeInt)
+        if (value.type() == OIIO::TypeInt || value.type() == OIIO::TypeUInt16) // JPEG's orientation, say
             attributes[key] = value.get_int();
         else if (value.type() == OIIO::TypeFloat)
             attributes[key] = value.get_float();

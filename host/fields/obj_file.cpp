@@ -1,6 +1,5 @@
 #include "obj_file.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
@@ -38,32 +37,38 @@ glm::dvec3 parse_vertex(std::string_view line, const std::filesystem::path& path
     return vertex;
 }
 
-// For parsers that know nothing of them: without a mark of UTF-8, without comments, and with lines that end in \ joined
-// to the next; as many lines as before.
-std::string plain_lines(std::string text) {
-    constexpr std::string_view mark = "\xef\xbb\xbf";
-    if (text.compare(0, mark.size(), mark) == 0)
-        std::fill_n(text.begin(), mark.size(), ' ');
-    bool is_comment = false;
-    std::size_t joined = 0; // ends of lines that became spaces
-    std::string plain;
+// Whether what it says is numbers, behind which a # begins a comment. In names it is a letter.
+bool has_numbers(std::string_view line) {
+    const std::string_view word = line.substr(0, line.find_first_of(" \t"));
+    return word == "v" || word == "vn" || word == "vt" || word == "f";
+}
+
+// For parsers that know nothing of them: without a mark of UTF-8, without comments behind numbers, and with lines that
+// end in \ joined to the next; as many lines as before.
+std::string plain_lines(std::string_view text) {
+    constexpr std::string_view mark = "\xef\xbb\xbf", blanks = " \t";
+    text.remove_prefix(text.substr(0, mark.size()) == mark ? mark.size() : 0);
+    std::string plain, line; // `line`: as far as it has been joined
     plain.reserve(text.size());
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const bool ends = text[i] == '\n' || text[i] == '\r';
-        const std::size_t end = text[i] == '\\' ? std::min(text.find_first_not_of(" \t", i + 1), text.size()) : i;
-        if (text[i] == '\\' && end < text.size() && (text[end] == '\n' || text[end] == '\r')) {
-            i = end + (text.compare(end, 2, "\r\n") == 0 ? 1 : 0);
-            plain += ' ';
+    std::size_t joined = 0;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+        line += text.substr(0, end);
+        text.remove_prefix(std::min(end + (text.substr(end, 2) == "\r\n" ? 2 : 1), text.size()));
+        line = line.substr(std::min(line.find_first_not_of(blanks), line.size()));
+        if (has_numbers(line))
+            line.resize(std::min(line.find('#'), line.size()));
+        const std::size_t last = line.find_last_not_of(blanks);
+        if (last != std::string::npos && line[last] == '\\' && line[0] != '#' && !text.empty()) {
+            line.resize(last);
+            line += ' ';
             ++joined;
             continue;
         }
-        is_comment = !ends && (is_comment || text[i] == '#');
-        if (!is_comment)
-            plain += text[i];
-        if (text[i] == '\n' || (text[i] == '\r' && text.compare(i, 2, "\r\n") != 0)) {
-            plain.append(joined, '\n');
-            joined = 0;
-        }
+        plain += line;
+        plain.append(1 + joined, '\n');
+        line.clear();
+        joined = 0;
     }
     return plain;
 }
@@ -243,7 +248,13 @@ std::vector<std::filesystem::path> material_libraries(const std::filesystem::pat
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error))
         return files;
-    std::ifstream stream(path, std::ios::binary);
+    std::string text;
+    try {
+        text = read_mesh_text(path);
+    } catch (const InputError&) { // told by who reads the mesh
+        return files;
+    }
+    std::istringstream stream(plain_lines(text));
     for (std::string line; std::getline(stream, line);) {
         std::istringstream words(line);
         std::string name;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 #include <locale>
 #include <memory>
+#include <optional>
 #include <sstream>
 
 #include "error.h"
@@ -24,41 +26,74 @@ float from_srgb(float x) {
     return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
 }
 
-std::size_t channel_named(const PictureHeader& header, const std::string& name) {
-    const auto found = std::find(header.channels.begin(), header.channels.end(), name);
-    return std::size_t(found - header.channels.begin());
+// Red, green and blue of a layer, as far as they are found: places in a pixel.
+struct LayerColors {
+    std::string layer;
+    std::array<std::size_t, 3> at{};
+    std::array<bool, 3> has{};
+};
+
+// By the names that programs give: R, r, red, Combined.R, diffuse.red, ...; the picture's own come before those of
+// layers.
+std::vector<LayerColors> layers_of(const std::vector<std::string>& channels) {
+    std::vector<LayerColors> layers;
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+        const std::size_t dot = channels[i].rfind('.');
+        const std::string layer = dot == std::string::npos ? "" : channels[i].substr(0, dot);
+        std::string name = channels[i].substr(dot == std::string::npos ? 0 : dot + 1);
+        std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+        const int color = name == "r" || name == "red"     ? 0
+                          : name == "g" || name == "green" ? 1
+                          : name == "b" || name == "blue"  ? 2
+                                                           : -1;
+        if (color < 0)
+            continue;
+        auto found = std::find_if(layers.begin(), layers.end(), [&](const LayerColors& l) { return l.layer == layer; });
+        if (found == layers.end())
+            found = layers.insert(layers.end(), LayerColors{layer});
+        found->at[color] = i;
+        found->has[color] = true;
+    }
+    std::erase_if(layers, [](const LayerColors& l) { return !(l.has[0] && l.has[1] && l.has[2]); });
+    return layers;
+}
+
+// What is grey beside alpha and depth, if that is all there is.
+std::optional<std::size_t> grey_channel(const std::vector<std::string>& channels) {
+    std::optional<std::size_t> grey;
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+        if (channels.size() > 1 && (channels[i] == "A" || channels[i] == "Z"))
+            continue;
+        if (grey)
+            return std::nullopt;
+        grey = i;
+    }
+    return grey;
 }
 
 // Places of red, green and blue in a pixel.
 std::array<std::size_t, 3> color_channels(const PictureHeader& header, const std::filesystem::path& file) {
-    const std::size_t none = header.channels.size();
-    std::vector<std::array<std::size_t, 3>> found;
-    std::vector<std::string> layers;
-    for (const std::string& channel : header.channels) {
-        if (channel.empty() || channel.back() != 'R' || (channel.size() > 1 && channel[channel.size() - 2] != '.'))
-            continue;
-        const std::string layer = channel.substr(0, channel.size() - 1);
-        const std::array<std::size_t, 3> rgb = {channel_named(header, channel), channel_named(header, layer + "G"),
-                                                channel_named(header, layer + "B")};
-        if (rgb[1] == none || rgb[2] == none)
-            continue;
-        if (layer.empty())
-            return rgb;
-        found.push_back(rgb);
-        layers.push_back(layer.substr(0, layer.size() - 1));
+    const std::vector<LayerColors> layers = layers_of(header.channels);
+    const auto own = std::find_if(layers.begin(), layers.end(), [](const LayerColors& l) { return l.layer.empty(); });
+    if (own != layers.end())
+        return own->at;
+    if (layers.size() == 1)
+        return layers.front().at;
+    std::vector<std::string> names = header.channels;
+    if (!layers.empty()) {
+        names.clear();
+        for (const LayerColors& l : layers)
+            names.push_back(l.layer);
     }
-    if (found.size() == 1)
-        return found.front();
-    const std::string names = one_line(fmt::format("{}", fmt::join(header.channels, ", ")).substr(0, 200));
-    if (found.size() > 1)
+    const std::string list = one_line(fmt::format("{}", fmt::join(names, ", ")).substr(0, 200));
+    if (!layers.empty())
         throw InputError(fmt::format("{}: has colours in several layers ({}); save the one that is meant by itself",
-                                     file.string(),
-                                     one_line(fmt::format("{}", fmt::join(layers, ", ")).substr(0, 200))));
-    const std::size_t grey = header.channels.size() == 1 ? 0 : channel_named(header, "Y");
-    if (grey == none)
-        throw InputError(
-            fmt::format("{}: has no channels R, G and B, nor Y, but {}; save it as RGB", file.string(), names));
-    return {grey, grey, grey};
+                                     file.string(), list));
+    const std::optional<std::size_t> grey = grey_channel(header.channels);
+    if (!grey)
+        throw InputError(fmt::format("{}: has no channels R, G and B, nor one that is grey, but {}; save it as RGB",
+                                     file.string(), list));
+    return {*grey, *grey, *grey};
 }
 
 // Red, green, blue, white; x and y (CIE 1931). An .exr without is of these.
@@ -77,7 +112,7 @@ bool is_rec709(const std::string& chromaticities) {
 // EXIF's numbers: 1 is as pictures are looked at.
 void check_orientation(const PictureHeader& header, const std::filesystem::path& file) {
     const std::string orientation = text_of(header.attributes, "Orientation");
-    if (!orientation.empty() && orientation != "1")
+    if (orientation.size() == 1 && orientation > "1" && orientation < "9") // others mean nothing
         throw InputError(fmt::format("{}: is stored turned or mirrored (orientation {}); save it upright",
                                      file.string(), orientation));
 }

@@ -16,9 +16,9 @@ struct RadianceMap {
     std::vector<std::string> warnings = {}; // with the file's name
 };
 
-// Reads .exr and .hdr as they are, and .png, .jpg and .tif of whole numbers as sRGB. One channel, or Y, is grey; alpha
-// is left out; of an .exr with layers that one which has R, G and B. Throws InputError for what is no such picture, is
-// too large, is stored turned or mirrored, or has colours in several layers or none.
+// Reads .exr and .hdr as they are, and .png, .jpg and .tif of whole numbers as sRGB. One channel, beside alpha and
+// depth, is grey; alpha is left out; of an .exr with layers that one which has R, G and B. Throws InputError for what
+// is no such picture, is too large, is stored turned or mirrored, or has colours in several layers or none.
 RadianceMap read_radiance_map(const std::filesystem::path& file);
 
 } // namespace vkvol

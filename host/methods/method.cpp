@@ -12,6 +12,7 @@
 #include "preset.h"
 #include "scene_facts.h"
 #include "shared/constants.h"
+#include "surface_lamps.h"
 
 namespace vkvol {
 

@@ -8,6 +8,7 @@
 #include "particle_scenes.h"
 #include "scene_facts.h"
 #include "shared/constants.h"
+#include "shared/estimators.h"
 
 namespace vkvol {
 

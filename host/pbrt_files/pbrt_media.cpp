@@ -252,10 +252,40 @@ void PbrtTranslator::note_beyond(const PbrtShape& shape, const std::string& medi
              fmt::format("medium \"{}\" goes on within: media add up where they overlap here", medium));
 }
 
+namespace {
+
+// Whether triangles reach about the grid's box, or are but a rectangle, one of several.
+bool is_about(const PbrtShape& shape, const PbrtThing& medium) {
+    if (shape.thing.type != "trianglemesh" && shape.thing.type != "bilinearmesh")
+        return false;
+    const PbrtTriangles mesh = moved(shape.thing.transform, read_triangles(shape.thing), false);
+    if (as_rectangle(mesh))
+        return true;
+    glm::dvec3 low = mesh.points[mesh.triangles[0].x], high = low;
+    for (const glm::uvec3& t : mesh.triangles)
+        for (int corner = 0; corner < 3; ++corner) {
+            low = glm::min(low, mesh.points[t[corner]]);
+            high = glm::max(high, mesh.points[t[corner]]);
+        }
+    const PbrtBounds bounds = bounds_of(medium);
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 own = bounds.low + bounds.size * glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2);
+        const glm::dvec3 p(medium.transform * glm::dvec4(own, 1.0));
+        const glm::dvec3 spare = 1e-5 * (high - low);
+        if (glm::any(glm::lessThan(p, low - spare)) || glm::any(glm::greaterThan(p, high + spare)))
+            return false;
+    }
+    return true;
+}
+
+} // namespace
+
 void PbrtTranslator::note_what_is_not_cut(const PbrtShape& shape, const std::string& name, const PbrtThing& medium) {
     if (!is_dense(medium))
         return;
     const std::optional<Region> region = region_of(shape);
+    if (!region && is_about(shape, medium))
+        return;
     if (!region || region->element.empty())
         return note(shape.thing.place, fmt::format("the grid of medium \"{}\" fills its box, whatever of it is within "
                                                    "this: shapes do not cut grids here",
@@ -283,7 +313,7 @@ void PbrtTranslator::write_media_of(const PbrtShape& shape) {
     const PbrtThing* beyond = medium_of(sides.beyond, shape.thing.place);
     if (beyond && !write_grid_once(sides.beyond, *beyond))
         note_beyond(shape, sides.beyond);
-    else if (beyond && lets_light_in(shape))
+    else if (beyond && is_dense(*beyond) && lets_light_in(shape))
         note(shape.thing.place,
              fmt::format("the grid of medium \"{}\" goes on within: shapes do not cut grids here", sides.beyond));
     if (!within)

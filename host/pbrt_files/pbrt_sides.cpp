@@ -11,18 +11,14 @@ bool faces_inwards(const PbrtShape& shape) {
     if (thing.type != "trianglemesh" && thing.type != "bilinearmesh")
         return shape.is_reversed != shape.is_mirrored; // an instance carries normals along
     const PbrtTriangles mesh = moved(thing.transform, read_triangles(thing), shape.is_reversed);
-    double volume = 0.0; // by Gauss's theorem, six times; of what is flat nothing but rounding
-    glm::dvec3 low = mesh.points[mesh.triangles[0].x], high = low;
+    if (as_rectangle(mesh)) // flat, but for rounding, of which its volume would be
+        return false;
+    double volume = 0.0; // by Gauss's theorem, six times
     for (const glm::uvec3& t : mesh.triangles) {
         const glm::dvec3& o = mesh.points[mesh.triangles[0].x];
         volume += glm::dot(mesh.points[t.x] - o, glm::cross(mesh.points[t.y] - o, mesh.points[t.z] - o));
-        for (int corner = 0; corner < 3; ++corner) {
-            low = glm::min(low, mesh.points[t[corner]]);
-            high = glm::max(high, mesh.points[t[corner]]);
-        }
     }
-    const double size = glm::distance(low, high);
-    return volume < -1e-12 * size * size * size;
+    return volume < 0.0;
 }
 
 PbrtSides sides_of(const PbrtShape& shape) {

@@ -62,6 +62,7 @@ void PythonSession::render(std::optional<std::uint32_t> samples) {
 PythonPicture PythonSession::picture() {
     const Turn turn(*shop_, work_->job.interrupted);
     const Scene& scene = work_->scene;
+    on_device([&] { work_->session->result(); }); // which reads the film
     const RenderResult& result = work_->session->result();
     const Film& film = result.film;
     if (std::none_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n > 0; }))

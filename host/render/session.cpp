@@ -156,8 +156,10 @@ void Session::resume(const Checkpoint& from) {
     paths_before_ = from.counts.paths;
     result_.non_finite = from.non_finite;
     result_.render_seconds = from.seconds;
-    result_.passes = from.passes;
-    result_.rounds = from.rounds;
+    if (from.schedule == result_.plan.schedule) { // the other has other passes
+        result_.passes = from.passes;
+        result_.rounds = from.rounds;
+    }
 }
 
 void Session::save_checkpoint() {

@@ -62,11 +62,12 @@ int digits_of_frame(const std::string& key) {
 
 std::string SceneKeys::fill_in(const std::string& raw) {
     const bool moved_before = moves_;
-    std::string text = fill_in_at(later_, raw);
-    if (are_numbers(text))
-        return text;
-    moves_ = moved_before;
-    return later_ == 0.0 ? text : fill_in_at(0.0, raw);
+    std::string text = fill_in_at(0.0, raw);
+    if (!are_numbers(text))
+        moves_ = moved_before;
+    else if (later_ != 0.0)
+        text = fill_in_at(later_, raw);
+    return text;
 }
 
 std::string SceneKeys::fill_in_at(double later, const std::string& raw) {

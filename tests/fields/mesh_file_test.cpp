@@ -74,6 +74,12 @@ TEST_CASE("an .obj file with comments, lines that go on, and a mark of UTF-8", "
                                   "f 1 2 3 # front\r\nf 2 \\ \r\n 4 \\\r\n3\r\n");
     CHECK(written.vertices == plain.vertices);
     CHECK(written.triangles == plain.triangles);
+    // Not so in a comment, which may end with a path, nor in names.
+    directory.write("a.mtl", "newmtl gold #2\nKd 1 0.5 0\n");
+    const Polygons named =
+        read("# from C:\\\nmtllib a.mtl\nv 0 0 0 # C:\\\nv 1 0 0\nv 0 1 0\nusemtl gold #2\nf 1 2 3\n");
+    CHECK(named.vertices.size() == 3);
+    CHECK(named.diffuse == Rgb(1.0, 0.5, 0.0));
     CHECK_THROWS_WITH(read("v 0 0 \\\n0\nv 1 x 0\n"), Catch::Contains("a.obj:3:")); // by the lines of the file
 }
 

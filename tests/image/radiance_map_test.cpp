@@ -43,6 +43,10 @@ TEST_CASE("maps have the colours of channels by their names", "[cpu][image_io]")
     CHECK(texel({"AO.R", "AO.G", "AO.B", "R", "G", "B"}) == glm::vec3(4.0f, 5.0f, 6.0f));
     CHECK(texel({"A", "Y", "Z"}) == glm::vec3(2.0f));
     CHECK(texel({"anything"}) == glm::vec3(1.0f));
+    CHECK(texel({"R", "A"}) == glm::vec3(1.0f));
+    CHECK(texel({"b", "g", "r"}) == glm::vec3(3.0f, 2.0f, 1.0f));
+    CHECK(texel({"diffuse.red", "diffuse.green", "diffuse.blue"}) == glm::vec3(1.0f, 2.0f, 3.0f));
+    CHECK_THROWS_WITH(texel({"X", "Y", "Z"}), Contains("no channels R, G and B"));
     CHECK_THROWS_WITH(texel({"AO.R", "AO.G", "AO.B", "Combined.R", "Combined.G", "Combined.B"}),
                       Contains("several layers (AO, Combined)"));
     CHECK_THROWS_WITH(texel({"U", "V"}), Contains("no channels R, G and B"));
@@ -66,6 +70,18 @@ TEST_CASE("maps of other primaries are told, and turned ones refused", "[cpu][im
     CHECK_THROWS_WITH(read_radiance_map(write_map(directory, {"R", "G", "B"},
                                                   [](OIIO::ImageSpec& spec) { spec.attribute("Orientation", 3); })),
                       Contains("orientation 3"));
+    CHECK(read_radiance_map(write_map(directory, {"R", "G", "B"}, [](OIIO::ImageSpec& spec) {
+              spec.attribute("Orientation", 0);
+          })).width == 16);
+    // As cameras do.
+    OIIO::ImageSpec spec(16, 8, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("Orientation", 6);
+    const auto output = OIIO::ImageOutput::create((directory.path / "photo.jpg").string());
+    REQUIRE(output->open((directory.path / "photo.jpg").string(), spec));
+    const std::vector<std::uint8_t> pixels(16 * 8 * 3, 99);
+    REQUIRE(output->write_image(OIIO::TypeDesc::UINT8, pixels.data()));
+    output->close();
+    CHECK_THROWS_WITH(read_radiance_map(directory.path / "photo.jpg"), Contains("orientation 6"));
 }
 
 TEST_CASE("a small part of a tiled picture is no damage", "[cpu][image_io]") {

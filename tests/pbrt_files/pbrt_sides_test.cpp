@@ -71,6 +71,12 @@ TEST_CASE("pbrt's panes of glass have their inside below them however they are t
             REQUIRE(scene.surfaces.size() == 1);
             CHECK(scene.surfaces.front().material.ior == 1.5);
         }
+    // Points of six digits.
+    CHECK(world_of("Material \"dielectric\" Shape \"trianglemesh\" \"point3 P\" [ 2.12846 -0.327634 2.30894 4.12733 "
+                   "-0.271496 2.27189 "
+                   "2.07267 1.6715 2.32811 4.07154 1.72763 2.29106 ] \"integer indices\" [ 0 1 2 1 3 2 ]")
+              .surfaces.at(0)
+              .material.ior == 1.5);
 }
 
 TEST_CASE("pbrt's disks have their front where a mirror puts it", "[cpu][pbrt]") {

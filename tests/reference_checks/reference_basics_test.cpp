@@ -16,7 +16,9 @@ TEST_CASE("random numbers follow the specification", "[cpu][reference]") {
     const Draw draw{{0xffffffffu, 0x100u, 0x80000012u, 0u}};
     CHECK(draw.x() == 1.0 - 0x1p-24);
     CHECK(draw.y() == 0x1p-24);
-    CHECK(draw.tap() == glm::dvec3(0.5, 0.0, 0xff0012 * 0x1p-24));
+    CHECK(draw.tap() == glm::dvec3(0.5, 0.0, 0x001200 * 0x1p-24));
+    // Bytes f0 and bc, 3c and 1e, 78 and 35, by exclusive or.
+    CHECK(Draw{{0x12355678u, 0x9abcdef0u, 0x0f1e2d3cu, 0u}}.tap().z == 0x4c224d * 0x1p-24);
     CHECK(draw.exponential(0) == Approx(32.0 * std::log(2.0)));
     CHECK(draw.exponential(2) == Approx(-std::log1p(-(0x80000012 * 0x1p-32))));
     CHECK(draw.exponential(3) == Approx(0xff * 0x1p-56));

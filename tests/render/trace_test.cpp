@@ -51,7 +51,7 @@ TEST_CASE("a followed path gathers the radiance of its sample, bit by bit", "[gp
         scene.volumes.front().sigma_s *= Rgb(1.0, 0.7, 0.2);
     CAPTURE(integrator, chromatic);
     std::size_t collisions = 0;
-    for (std::uint32_t sample = 0; sample < 2; ++sample) {
+    for (const std::uint32_t sample : {2u, 3u}) { // which collide
         const RenderResult plain = one_sample(scene, 12, 11, sample, false, schedule);
         const RenderResult traced = one_sample(scene, 12, 11, sample, true, schedule);
         CHECK(plain.trace.empty());

@@ -78,7 +78,7 @@ def mean_line(noisy, denoised):
     if own is None or not own.any():
         return text + "."
     variance = own.sum(axis=(0, 1))
-    if noisy.text("vkvol/correlated"):  # pixels that share samples, as particles' do: their sum has a variance of its own, if any
+    if noisy.number("vkvol/correlated"):  # pixels that share samples, as particles' do: their sum has a variance of its own, if any
         words = noisy.text("vkvol/sumVariance").split()
         if len(words) != 3:
             return text + "."
