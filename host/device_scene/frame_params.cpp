@@ -206,8 +206,9 @@ double lit_radius(const Scene& scene, const Assets& assets, const shared::Medium
 
 namespace {
 
-// What a march goes through is a product of factors near 1 in single precision: of 10^5 steps an optical depth of 1
-// errs by 0.1 %, of 10^6 by 1.4 %, and thin ones by far more.
+// What a march goes through is a product of factors near 1 in single precision, all rounded alike: over 2 10^5 steps an
+// optical depth of 1 errs by 0.1 % and one of 0.03 by 21 %, over 10^5 by 0.1 and 0.9 %, over 10^4 by 0.02 and 0.5 %.
+// The diagonal is the longest way; few rays of a wide slab go it, so that is not refused before.
 void check_step(const char* name, double step, double diagonal, double unit) {
     constexpr double most_steps = 2e5;
     if (diagonal / step > most_steps)

@@ -98,7 +98,8 @@ void BiasFinder::find_biases() {
         method_.biases |= bias;
         reasons.push_back(reason);
     };
-    // At constant density a march knows its optical depths exactly, but not the light between its sample points.
+    // At constant density a march knows its optical depths but for rounding (see check_step), though not the light
+    // between its sample points.
     if (method_.flights_have(TRAIT_MARCH) && field_ != FIELD_CONSTANT)
         add(bias_flight_steps, "flights take the density of one point for that of a whole step");
     else if (method_.flights_have(TRAIT_MARCH) && is_through(method_) && method_.nee != NEE_NONE &&
