@@ -271,7 +271,7 @@ cubic through wrong values ~ shaders/field/voxels.glsl ~ -5.5 * f[0] + 9.0 * f[1
 colours over alpha after their curve ~ host/image/tone_map.cpp ~ display_value(exposed(film.mean[i], gain) / a, mapping.curve, white) ~ clamped(display_value(exposed(film.mean[i], gain), mapping.curve, white) / a) ~ [aovs]
 smooth across indices alone ~ host/assets/surface_mesh.cpp ~ sum += glm::dot(sums[*other], own) > 0.0 ? sums[*other] : glm::dvec3(0.0) ~ sum += *other == vertex ? own : glm::dvec3(0.0) ~ [mesh]
 grids without a name ~ host/fields/vdb_check.cpp ~ !plain.empty() && &grid ~ &grid ~ [density]
-files of moments ~ host/scene_files/scene_keys.cpp ~ if (!are_numbers(text)) ~ if (false) ~ [motion]
+files of moments ~ host/scene_files/scene_keys.cpp ~ if (!are_numbers(text)) ~ if (are_numbers("x")) ~ [motion]
 colours by the order of channels ~ host/image/radiance_map.cpp ~ ending == ".exr" ? ~ false ? ~ [image_io]
 panes of glass turned by rounding ~ host/pbrt_files/pbrt_sides.cpp ~ if (as_rectangle(mesh)) ~ if (false) ~ [pbrt]
 depths of merged pictures by samples alone ~ host/cli/merge.cpp ~ coverage ? double(coverage->mean[i].x) * input.film.samples[i] : 0.0 ~ coverage ? 1.0 * input.film.samples[i] : 0.0 ~ [merge]
