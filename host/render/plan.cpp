@@ -35,9 +35,13 @@ std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
     return iterations + loops.phase + loops.lights + records;
 }
 
-// Turns whose loops stay below the limit.
-std::uint32_t longest_budget(const LoopSizes& loops, std::uint32_t steps) {
-    return std::clamp(most_iterations / turn_iterations(loops, steps), 1u, 1024u);
+// Of taking a path up and laying it aside.
+constexpr std::uint32_t copy_iterations = 2 * (MOST_PATH_WORDS / WORDS_AT_ONCE + 1);
+
+// Turns whose loops stay below the limit. Between bursts of turns a lane of a staged pass may pass its path on.
+std::uint32_t longest_budget(const LoopSizes& loops, std::uint32_t steps, bool staged) {
+    const std::uint32_t turn = turn_iterations(loops, steps) + (staged ? copy_iterations / STAGED_BURST : 0);
+    return std::clamp((most_iterations - 2 * copy_iterations) / turn, 1u, 1024u);
 }
 
 // Samples of a pixel that one lane loops over: the sky's, and those added to the film.
@@ -52,7 +56,7 @@ constexpr std::uint64_t sky_samples = 1u << 22;
 // the buffer of each band.
 std::uint32_t slots_that_fit(const Device& device, std::uint32_t layers, std::uint64_t most_film_bytes) {
     const auto fits = [&](std::uint64_t slots) {
-        return slots * sizeof(shared::Suspended) <= device.limits().maxStorageBufferRange &&
+        return slots * path_bytes <= device.limits().maxStorageBufferRange &&
                waiting_per_slot * slots * layers * sizeof(glm::vec3) <= most_film_bytes / 4;
     };
     std::uint32_t slots = most_slots;
@@ -76,9 +80,13 @@ Plan make_plan(const Device& device, const LoopSizes& loops, std::uint64_t pixel
         pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
     const std::uint32_t wide_slots = slots_that_fit(device, loops.layers, plan.most_film_bytes);
     plan.slots = pick(wish.slots, device.is_cpu() ? (staged ? 32768u : 8192u) : wide ? wide_slots : 1u << 18);
+    if (plan.memory == PathMemory::automatic)
+        plan.memory = !device.is_cpu()            ? PathMemory::by_field
+                      : device.writes_out_lanes() ? PathMemory::by_path_in_loops
+                                                  : PathMemory::by_path;
     plan.lanes = pick(wish.lanes, device.is_cpu() ? 512u : wide ? 1u << 16 : 1u << 17);
     plan.steps = pick(wish.steps, 4u);
-    const std::uint32_t longest = longest_budget(loops, plan.steps);
+    const std::uint32_t longest = longest_budget(loops, plan.steps, staged);
     plan.budget = std::min(pick(wish.budget, wide ? 32u : longest), longest);
     plan.step_limit = pick(wish.step_limit, 1u << 26);
     plan.sky_samples = sky_samples / (1 + loops.lights / 16);

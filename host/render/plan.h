@@ -6,6 +6,7 @@
 #include <string>
 
 #include "device.h"
+#include "shared/path_state.h"
 
 namespace vkvol {
 
@@ -13,10 +14,15 @@ namespace vkvol {
 // a small picture fills a large device. See shaders/passes.
 enum class Schedule { automatic, fused, staged };
 
+// The words of paths in memory: those of each together, in loops or not, or those of each field; see laid_aside.glsl.
+enum class PathMemory { automatic, by_path, by_path_in_loops, by_field };
+constexpr PathMemory path_memories[] = {PathMemory::by_path, PathMemory::by_path_in_loops, PathMemory::by_field};
+
 // 0, automatic: what suits device and scene.
 struct Plan {
     Schedule schedule = Schedule::automatic;
-    bool tries = false;                 // automatic: try both even where one is known to be faster
+    bool tries = false; // automatic: try both even where one is known to be faster
+    PathMemory memory = PathMemory::automatic;
     std::uint32_t slots = 0;            // fused: pixels in work; staged: paths
     std::uint32_t waiting = 0;          // staged: room for samples that wait to be added to the film, or at least this
     std::uint32_t lanes = 0;            // invocations that share a queue of paths
@@ -33,6 +39,9 @@ struct Plan {
     bool leaps = false;                 // walks pass empty ones together
     std::uint64_t sky_samples = 0;      // per submit of the passes over pixels
 };
+
+// Of a slot, in memory.
+constexpr std::uint64_t path_bytes = MOST_PATH_WORDS * sizeof(std::uint32_t);
 
 // Dispatches over slots, and over samples that wait, keep to the 65535 groups that every device allows.
 constexpr std::uint32_t most_slots = 1u << 19;

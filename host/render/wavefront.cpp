@@ -68,9 +68,7 @@ Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, st
     : device_(device), plan_(plan), commands_(device),
       readback_(device, "readback", queue_bytes + sizeof(shared::Counters), 0, BufferPlace::host) {
     const std::uint64_t slots = plan.slots;
-    add_buffer(BINDING_PATHS, "path states", slots * sizeof(shared::PathState));
-    add_buffer(BINDING_BETAS, "path throughputs", slots * (form & form_chromatic ? sizeof(glm::vec3) : sizeof(float)));
-    add_buffer(BINDING_SUSPENDED, "suspended paths", slots * sizeof(shared::Suspended));
+    add_buffer(BINDING_PATHS, "paths", slots * path_bytes);
     add_buffer(BINDING_QUEUE_ITEMS, "queues",
                std::uint64_t{QUEUE_COUNT} * queue_capacity(plan) * sizeof(std::uint32_t));
     add_buffer(BINDING_QUEUES, "queue headers", queue_bytes, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
@@ -121,6 +119,8 @@ void Wavefront::make_passes(const Specialization& specialization, unsigned form,
                             const std::function<void()>& meanwhile) {
     Specialization constants = specialization;
     constants[SPEC_STEPS] = static_cast<std::int32_t>(plan_.steps);
+    constants[SPEC_SLOTS] = plan_.memory == PathMemory::by_field ? static_cast<std::int32_t>(plan_.slots) : 0;
+    constants[SPEC_COPIES] = plan_.memory == PathMemory::by_path_in_loops ? 1 : 0;
     const auto make = [&](Words spirv) {
         return std::make_unique<ComputePass>(device_, *bindings_, spirv, constants, cache);
     };

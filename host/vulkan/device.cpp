@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <cstring>
 #include <fmt/format.h>
 #include <mutex>
@@ -104,6 +105,8 @@ DeviceInfo describe(VkPhysicalDevice physical, int index) {
     info.type = type_name(properties.properties.deviceType);
     info.api = version_text(properties.properties.apiVersion);
     info.driver = fmt::format("{} {}", properties12.driverName, properties12.driverInfo);
+    if (properties12.driverID == VK_DRIVER_ID_MESA_LLVMPIPE)
+        std::sscanf(properties12.driverInfo, "Mesa %u", &info.lavapipe);
     info.storage_range = properties.properties.limits.maxStorageBufferRange;
     for (std::uint8_t byte : id.deviceUUID)
         info.uuid += fmt::format("{:02x}", byte);

@@ -31,6 +31,7 @@ struct DeviceInfo {
     std::string api;                 // "1.3.230"
     std::uint64_t memory = 0;        // bytes, device-local heaps
     std::uint64_t storage_range = 0; // bytes one storage buffer may span
+    unsigned lavapipe = 0;           // Mesa's major version, of its software driver
     bool addresses = false;          // kernels may reach buffers by address, and so larger grids
     std::string rejection;
 };
@@ -54,6 +55,9 @@ public:
     VkDeviceSize most_allocation() const { return most_allocation_; } // bytes, in one piece
     const VkPhysicalDeviceProperties& properties() const { return properties_; }
     bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+    // A kernel has each access to storage as often as a group has lanes, and takes as long to compile: Mesa's software
+    // driver, not of 22.3, but of 25.0.
+    bool writes_out_lanes() const { return info_.lavapipe >= 23; }
     bool has_timestamps() const { return timestamp_bits_ >= 36; }
     // Between two marks of one submit, counters that have begun anew between them included.
     std::uint64_t ticks_between(std::uint64_t first, std::uint64_t second) const;

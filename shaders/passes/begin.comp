@@ -3,6 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/pass.glsl"
 
+#include "lib/path_words.glsl"
+
 void main() {
     uint slot = gl_GlobalInvocationID.x;
     if (slot < push.places)
@@ -11,7 +13,7 @@ void main() {
         waiting_samples[slot].x = NO_SAMPLE;
     if (slot >= frame.slots)
         return;
-    paths[slot].todo = TODO_TAKE;
+    PATH_WORD(slot, PATH_TODO) = TODO_TAKE;
     queue_items[QUEUE_GENERATE * frame.queue_capacity + slot] = slot;
     if (slot == 0u) {
         for (uint queue = 0u; queue < QUEUE_COUNT; ++queue)

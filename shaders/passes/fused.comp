@@ -15,6 +15,7 @@
 #include "lib/queue.glsl"
 #include "stages/accumulate.glsl"
 #include "stages/generate.glsl"
+#include "stages/laid_aside.glsl"
 #include "stages/turn.glsl"
 
 const uint BURST = 16u; // turns: a lane without a pixel waits for half as many
@@ -30,10 +31,10 @@ void turn_of_pixel(MediumParams v, inout Lane lane, inout Rng rng, inout FilmPix
 
 // The slot's next pixel, from its first sample of the batch.
 void begin_pixel(uint slot, inout Lane lane, inout FilmPixel sums) {
-    lane.path.place = paths[slot].place;
+    lane.path.place = PATH_WORD(slot, PATH_PLACE);
     lane.path.sample_index = push.sample_begin;
     lane.record = slot;
-    sums = film[paths[slot].pixel];
+    sums = film[PATH_WORD(slot, PATH_PIXEL)];
     lane.todo = TODO_BEGIN;
 }
 
@@ -62,14 +63,14 @@ void main() {
         for (uint k = 0u; k < turns; ++k)
             turn_of_pixel(v, lane, rng, sums, tally);
         if (lane.todo == TODO_DONE) {
-            film[paths[slot].pixel] = sums;
+            film[PATH_WORD(slot, PATH_PIXEL)] = sums;
             push_item(QUEUE_GENERATE, slot);
             lane.todo = TODO_TAKE;
         }
     }
     if (lane.todo != TODO_TAKE) {
-        film[paths[slot].pixel] = sums;
-        lay_aside(slot, paths[slot].pixel, rng, lane, true);
+        film[PATH_WORD(slot, PATH_PIXEL)] = sums;
+        lay_aside(slot, PATH_WORD(slot, PATH_PIXEL), rng, lane, true);
         push_item(QUEUE_RESUME, slot);
     }
     add_tally(tally);

@@ -11,16 +11,16 @@
 
 // The slot's next sample: one it had been given before, or the next of the work list. False if none is left.
 bool has_sample(uint slot) {
-    if (paths[slot].todo == TODO_BEGIN)
+    if (PATH_WORD(slot, PATH_TODO) == TODO_BEGIN)
         return true;
     uint number = atomicAdd(counters.next_work, 1u);
     uint samples = push.sample_end - push.sample_begin;
     uint index = number / samples;
     if (number >= push.work_end || index >= counters.work_count)
         return false;
-    paths[slot].todo = TODO_BEGIN;
-    paths[slot].pixel = index;
-    paths[slot].sample_index = push.sample_begin + number % samples;
+    PATH_WORD(slot, PATH_TODO) = TODO_BEGIN;
+    PATH_WORD(slot, PATH_PIXEL) = index;
+    PATH_WORD(slot, PATH_SAMPLE) = push.sample_begin + number % samples;
     return true;
 }
 
@@ -28,7 +28,7 @@ void main() {
     uint slot;
     if (!pop_item(QUEUE_GENERATE, slot) || !has_sample(slot))
         return; // no work left: the slot rests until the next batch
-    uint index = paths[slot].pixel;
+    uint index = PATH_WORD(slot, PATH_PIXEL);
     if (sample_places[index % push.places].tenants != index / push.places) {
         push_item(QUEUE_GENERATE, slot);
         return;
@@ -36,7 +36,7 @@ void main() {
     Lane lane;
     Rng rng;
     lane.path.place = place_of(work[index]);
-    lane.path.sample_index = paths[slot].sample_index;
+    lane.path.sample_index = PATH_WORD(slot, PATH_SAMPLE);
     lane.path.pixel = index;
     lane.record = waiting_place(lane.path);
     generate(frame.media[0], lane, rng);

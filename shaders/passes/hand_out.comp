@@ -4,6 +4,7 @@
 #include "lib/pass.glsl"
 
 #include "sensors/camera.glsl"
+#include "lib/path_words.glsl"
 #include "lib/queue.glsl"
 
 // The next pixel of the work list, or NO_PIXEL.
@@ -19,7 +20,7 @@ void main() {
     uint pixel = take_pixel();
     if (pixel == NO_PIXEL)
         return; // no work left: the slot rests until the next batch
-    paths[slot].pixel = pixel;
-    paths[slot].place = place_of(pixel);
+    PATH_WORD(slot, PATH_PIXEL) = pixel;
+    PATH_WORD(slot, PATH_PLACE) = place_of(pixel);
     push_item(QUEUE_TRACK, slot);
 }

@@ -13,24 +13,17 @@ const bool SHADOW_RAYS_WALK =
     (int(NEE != NEE_NONE) &
      (int(TRANSMITTANCE != TRANSMITTANCE_ANALYTIC) | int(SHAPE == SHAPE_MESH) | int(HAS_SURFACES) | int(REPEATS))) != 0;
 
-// What the scene's estimators need of a walk that is laid aside. The rest is dropped, so that nothing computes it.
-Walk kept(Walk w) {
-    int shadow_traits = SHADOW_RAYS_WALK ? SHADOW_TRAITS : 0;
-    int traits = FLIGHT_TRAITS | shadow_traits;
-    bool marches = FREE_FLIGHT == FREE_FLIGHT_MARCH || (shadow_traits & TRAIT_MARCH) != 0;
-    bool adds_depth = !NULL_FLIGHT || (SHADOW_RAYS_WALK && !NULL_TRANSMITTANCE);
-    bool walks = (traits & TRAIT_CELLS) != 0;
-    bool cells = (traits & TRAIT_VOXELS) != 0 || (walks && HAS_CELLS);
-    bool listed = SEVERAL_MEDIA, bricks = CELL_BITS != 0;
-    bool controlled = (traits & TRAIT_CONTROL) != 0;
+// What the scene's estimators need of a walk that is laid aside: what rows of WALK_STATE ask for.
+#define WALK_CONDITIONS                                                                                               \
+    int shadow_traits = SHADOW_RAYS_WALK ? SHADOW_TRAITS : 0;                                                         \
+    int traits = FLIGHT_TRAITS | shadow_traits;                                                                       \
+    bool marches = FREE_FLIGHT == FREE_FLIGHT_MARCH || (shadow_traits & TRAIT_MARCH) != 0;                            \
+    bool adds_depth = !NULL_FLIGHT || (SHADOW_RAYS_WALK && !NULL_TRANSMITTANCE);                                      \
+    bool walks = (traits & TRAIT_CELLS) != 0;                                                                         \
+    bool cells = (traits & TRAIT_VOXELS) != 0 || (walks && HAS_CELLS);                                                \
+    bool listed = SEVERAL_MEDIA, bricks = CELL_BITS != 0;                                                             \
+    bool controlled = (traits & TRAIT_CONTROL) != 0;                                                                  \
     bool sets = (traits & TRAIT_SETS) != 0;
-#define KEEP(type, name, when)                                                                                        \
-    if (!(when))                                                                                                      \
-        w.name = type(0);
-    WALK_STATE(KEEP)
-#undef KEEP
-    return w;
-}
 
 // How far a segment may go, where that is not for the medium alone to say: a shadow ray, to a light that is not infinitely far.
 float cut_short(float t, float reach) {

@@ -7,18 +7,18 @@
 #define BINDING_GRID 1        // NanoVDB grids one after another, 32-bit words, unless they lie in windows
 #define BINDING_LEAF_TABLE 2  // one word per 8^3 block of the grid, see density.glsl
 #define BINDING_MAJORANTS 3   // float per majorant cell, see empty_space.h
-#define BINDING_PATHS 4       // PathState per slot
+#define BINDING_PATHS 4       // words of the path in each slot, see path_words.glsl
 #define BINDING_QUEUE_ITEMS 5 // slot numbers, QUEUE_COUNT arrays of the queue capacity
 #define BINDING_QUEUES 6      // QueueHeader per queue
 #define BINDING_FILM 7        // FilmPixel per pixel of the crop
 #define BINDING_COUNTERS 8    // Counters
 #define BINDING_WORK 9        // pixels of the batch that may meet the medium
 #define BINDING_BLACKBODY 10  // vec4, BLACKBODY_ENTRIES colours evenly spaced in temperature
-#define BINDING_BETAS 11      // path throughput per slot: float, or vec3 in a medium of chromatic coefficients
+#define BINDING_EMITTERS 11   // EmitterRow
 #define BINDING_CONTROLS 12   // ControlCell per majorant cell
 #define BINDING_TRIANGLES 13  // vec3, three corners per triangle, counterclockwise seen from without; render space
 #define BINDING_BVH 14        // BvhNode: of a medium's mesh, then of the surfaces
-#define BINDING_SUSPENDED 15  // Suspended per slot
+#define BINDING_SPLATS 15     // words, six per sample of each pixel: see splats.glsl
 #define BINDING_TRACE 16      // TraceHeader and TraceRecords, only where one path is followed
 #define BINDING_LATTICE 17    // vec4 per node of two lattices, see lattice.glsl
 #define BINDING_SAMPLES 18    // staged: vec3 radiance per sample that waits to be added to the film
@@ -33,10 +33,7 @@
 #define BINDING_MAPS 27       // MapKnot, a table for each medium that has a map; see value_map.glsl
 #define BINDING_POINTS 28     // vec3 per point of a sensor that reads flux at points, render space
 #define BINDING_LAYERS 29     // vec3 per layer of each path, then four of each pixel: see aovs.glsl
-// A scene has these or those, since devices may allow no more than thirty: particles fill no layers, and where they fly no
-// transmittances are cached; of several media none is a mesh or has a control grid.
-#define BINDING_SPLATS BINDING_LAYERS    // words, six per sample of each pixel: see splats.glsl
-#define BINDING_EMITTERS BINDING_LATTICE // EmitterRow
+// A scene has these or those, since devices may allow no more than thirty: of several media none is a mesh or has a control grid.
 #define BINDING_MEDIA BINDING_TRIANGLES  // MediumParams; see superposition.glsl
 #define BINDING_OVERLAPS BINDING_CONTROLS // words: what look-ups ask several media for, and which of them are where; see superposition.glsl
 // Test kernels only. They use none of the two, and drivers may allow no more buffers than there are.
@@ -104,7 +101,9 @@
 #define SPEC_TABLE_TEXELS 33 // 1: lights, surfaces, their pieces and the hierarchy of those, and black bodies are read as texels
 #define SPEC_PATHS 34        // PATHS_...
 #define SPEC_PERIODIC 35     // 1: a domain repeats
-#define SPEC_COUNT 36
+#define SPEC_SLOTS 36        // of paths, whose words of the same field lie together; 0: those of each path do, see path_words.glsl
+#define SPEC_COPIES 37       // 1: a path's words are copied in loops, see laid_aside.glsl
+#define SPEC_COUNT 38
 
 // Value of a constant in which several media differ: each has its own, in its row.
 #define EACH -1

@@ -9,11 +9,9 @@ SHARED_BEGIN
 
 #define STATE_FIELD(type, name) type name;
 #define STATE_FIELD_WHEN(type, name, when) type name;
-#define STATE_SPECTRUM(name, when) vec3 name;
-#define STATE_WALK(name, when) Walk name;
 
-// A path in flight at its last vertex, a slot each. Of a pixel in work of which no sample has begun (fused) there are its
-// index and place, and the rest says nothing yet.
+// A path at its last vertex. Of a pixel in work of which no sample has begun (fused) there are its index and place, and the
+// rest says nothing yet.
 struct PathState {
     VERTEX_STATE(STATE_FIELD)
 };
@@ -28,11 +26,6 @@ struct PartSearch {
 
 struct SurfaceSearch {
     SEEK_STATE(STATE_FIELD)
-};
-
-// A path laid aside amid a segment.
-struct Suspended {
-    SEGMENT_STATE(STATE_FIELD_WHEN, STATE_SPECTRUM, STATE_WALK)
 };
 
 // Staged: a place among the samples that wait to be added to the film, in order, for one pixel after another.

@@ -1,5 +1,6 @@
-// What is known of a path between two passes, a row a field: the structs in memory, what a lane holds, laying aside, taking
-// up and the layout's test are all made of these rows, so that none can be forgotten in one of them.
+// What is known of a path between two passes, a row a field: its words in memory, what a lane holds, laying aside, taking
+// up and their test are all made of these rows, so that none can be forgotten in one of them. Words follow one another in
+// the order of the rows, of those alone that a scene's paths have: see path_words.glsl.
 #ifndef SHARED_PATH_STATE_H
 #define SHARED_PATH_STATE_H
 
@@ -17,60 +18,74 @@
 #define TODO_CHECK 10u  // whether a surface is in the way of the shadow ray, before that begins
 #define TODO_GO 11u     // along a flight whose end is known, from where it has looked
 
+// Turns of a lane of a staged pass between two looks whether its path goes on elsewhere.
+#define STAGED_BURST 4u
+
 // Legs of a look from along a flight.
 #define LEG_ALONG 0u // to where it begins
 #define LEG_LOOK 1u  // toward the light, as all other looks
 
-// ROW(type, name). Of every path, at its last vertex: the camera, or a real collision. Its throughput beta is in a buffer
-// of its own, since its type depends on the scene; at a collision it includes that collision's albedo.
+// ROW(type, name). Of every path, at its last vertex: the camera, or a real collision.
 #define VERTEX_STATE(ROW)                                                                                             \
+    ROW(uint, todo)  /* TODO_...: what comes next */                                                                  \
+    ROW(uint, pixel) /* fused: index into the film; staged: into the work list */                                     \
+    ROW(uint, place) /* of the pixel in the picture, x | y << 16 */                                                   \
+    ROW(uint, sample_index)                                                                                           \
     ROW(vec3, position)  /* render space */                                                                           \
     ROW(vec3, direction) /* unit, of travel: the camera ray's, or that which led to this collision */                 \
     ROW(vec3, radiance)  /* gathered so far */                                                                        \
-    ROW(uint, pixel)     /* fused: index into the film; staged: into the work list */                                 \
-    ROW(uint, place)     /* of the pixel in the picture, x | y << 16 */                                               \
-    ROW(uint, sample_index)                                                                                           \
-    ROW(uint, draw)  /* random draws consumed; 0 at the camera, whose draw also holds the first free flight */        \
-    ROW(uint, depth) /* scattering events, this one included; 0 at the camera */                                      \
-    ROW(uint, medium) /* of several, the row of that which it collided with; at a surface AT_SURFACE + its primitive */ \
-    ROW(uint, todo)  /* TODO_...: what comes next */
+    ROW(uint, draw)   /* random draws consumed; 0 at the camera, whose draw also holds the first free flight */       \
+    ROW(uint, depth)  /* scattering events, this one included; 0 at the camera */                                     \
+    ROW(uint, medium) /* of several, the row of that which it collided with; at a surface AT_SURFACE + its primitive */
 
-// ROW(type, name, when): `when` is what has to hold for the field to mean something, see lane.glsl. A SPECTRUM_ROW has
-// three channels in memory, and one or three in a lane; a WALK_ROW is a Walk. Of a path amid a segment: a free flight,
-// or a shadow ray.
-#define SEGMENT_STATE(ROW, SPECTRUM_ROW, WALK_ROW)                                                                    \
-    WALK_ROW(walk, under_way)                                                                                         \
-    WALK_ROW(flight, seeing && flight_rests) /* to come back to from a shadow ray that was sent amid it */            \
-    SPECTRUM_ROW(T, seeing)                  /* of the shadow ray so far */                                           \
-    SPECTRUM_ROW(lit, looking && keeps_place) /* throughput of what it lights, */                                     \
-    ROW(vec3, position, looking && keeps_place) /* and where that is, render space */                                 \
-    ROW(uint, lit_medium, looking && keeps_place && several) /* of several, the row of that which it lights */        \
-    ROW(uint, resume, looking && keeps_place) /* what to do after it */                                               \
-    ROW(uint, leg, looking && looks_along) /* LEG_... */                                                              \
-    ROW(uint, steps, under_way)                /* of the segment */                                                   \
-    ROW(float, phase_pdf, (under_way || sets_out) && sees_sky) /* with which the flight's direction was drawn; 0 at the camera */     \
-    ROW(vec3, to_light, looking && chooses_light) /* unit */                                                          \
-    ROW(float, light_distance, looking && chooses_light) /* world units */                                            \
-    ROW(vec3, light, looking && chooses_light) /* what comes along the shadow ray if nothing is in between, per unit of the \
-                                                  throughput that it lights */                                        \
-    SPECTRUM_ROW(cached, has_cache)            /* transmittance that the shadow ray corrects */                       \
-    ROW(float, chance, looking && has_cache)   /* with which it was sent */                                           \
-    ROW(uint, label, looking && has_layers)    /* of what it brings: see aovs.glsl */                                 \
-    ROW(uint, first_label, has_layers)         /* part of it that is the same for all that comes later */             \
-    ROW(uint, is_particle, has_particles)      /* 1: it comes from a light, and looks toward the sensor */            \
-    ROW(float, begun_with, has_particles) /* its largest throughput at first, which roulette compares with */ \
-    ROW(uint, target, looking && has_particles) /* the film entry that what it lights is seen in */                   \
-    ROW(vec2, shares, weighs_families)         /* what its first segment has to say in its weights: see families.glsl */ \
-    ROW(PartSearch, search, under_way && SHAPE == SHAPE_MESH)                                                         \
-    ROW(SurfaceSearch, seek, seeking)                                                                                 \
-    ROW(float, reach, (under_way || (looks_along && sets_out)) && HAS_SURFACES) /* of the flight, to the surface that ends it, or FAR [world units] */ \
-    ROW(float, flown, under_way && repeats) /* of the flight, before it came to where the path's position now is [world units] */ \
-    ROW(uint, seams, seeking && repeats) /* 1: the segment has passed some, and goes on */                            \
-    ROW(uint, struck, (under_way || (looks_along && sets_out)) && HAS_SURFACES) /* that surface's primitive */                                       \
-    ROW(uint, lit_surface, looking && HAS_SURFACES) /* the primitive that the shadow ray lights, or NO_SURFACE */ \
-    ROW(uint, lamp_body, looking && HAS_SURFACES) /* the surface whose light it looks for, or NO_SURFACE */
+// Those of its words that passes without lanes know.
+#define PATH_TODO 0u
+#define PATH_PIXEL 1u
+#define PATH_PLACE 2u
+#define PATH_SAMPLE 3u
 
-// ROW(type, name, when): a segment as far as it has gone, and which estimators need the field; see kept() in segment.glsl.
+// ROW(type, name, when): `when` is what a scene has to have for its paths to have the field, see path_words.glsl. Also of
+// every path, wherever it is.
+#define PATH_STATE(ROW)                                                                                               \
+    ROW(Spectrum, beta, true)          /* throughput; at a collision it includes that collision's albedo */           \
+    ROW(Spectrum, cached, has_cache)   /* transmittance that the shadow ray corrects */                               \
+    ROW(uint, first_label, has_layers) /* part of the label of what it brings that is the same for all that comes later: see aovs.glsl */ \
+    ROW(uint, is_particle, has_particles)   /* 1: it comes from a light, and looks toward the sensor */               \
+    ROW(float, begun_with, has_particles)   /* its largest throughput at first, which roulette compares with */       \
+    ROW(vec2, shares, weighs_families) /* what its first segment has to say in its weights: see families.glsl */
+
+// Of one that looks, or has drawn a way that it does not go yet. (Not all passes know of several media.)
+#define LOOK_STATE(ROW)                                                                                               \
+    ROW(Spectrum, lit, keeps_place)         /* throughput of what a shadow ray lights, */                             \
+    ROW(vec3, position, keeps_place)        /* and where that is, render space */                                     \
+    ROW(uint, lit_medium, keeps_place)      /* of several, the row of that which it lights */                         \
+    ROW(uint, resume, keeps_place)          /* what to do after it */                                                 \
+    ROW(uint, leg, looks_along)             /* LEG_... */                                                             \
+    ROW(vec3, to_light, chooses_light)      /* unit */                                                                \
+    ROW(float, light_distance, chooses_light) /* world units */                                                       \
+    ROW(vec3, light, chooses_light)         /* what comes along the shadow ray if nothing is in between, per unit of the \
+                                               throughput that it lights */                                           \
+    ROW(float, chance, has_cache)           /* with which it was sent */                                              \
+    ROW(uint, label, has_layers)            /* of what it brings: see aovs.glsl */                                    \
+    ROW(uint, target, has_particles)        /* the film entry that what it lights is seen in */                       \
+    ROW(uint, lit_surface, has_surfaces)    /* the primitive that the shadow ray lights, or NO_SURFACE */             \
+    ROW(uint, lamp_body, has_surfaces)      /* the surface whose light it looks for, or NO_SURFACE */                 \
+    ROW(float, phase_pdf, sees_sky)         /* with which the flight's direction was drawn; 0 at the camera */        \
+    ROW(float, reach, has_surfaces) /* of the flight, to the surface that ends it, or FAR [world units] */            \
+    ROW(uint, struck, has_surfaces) /* that surface's primitive */
+
+// Of one that is amid a segment: a free flight, or a shadow ray.
+#define SEGMENT_STATE(ROW)                                                                                            \
+    ROW(Walk, walk, true)                                                                                             \
+    ROW(Walk, flight, flight_rests)   /* to come back to from a shadow ray that was sent amid it */                   \
+    ROW(Spectrum, T, sees)            /* of the shadow ray so far */                                                  \
+    ROW(uint, steps, true)            /* of the segment */                                                            \
+    ROW(PartSearch, search, has_parts)                                                                                \
+    ROW(SurfaceSearch, seek, has_surfaces)                                                                            \
+    ROW(float, flown, repeats) /* of the flight, before it came to where the path's position now is [world units] */  \
+    ROW(uint, seams, repeats && has_surfaces) /* 1: the segment has passed some, and goes on */
+
+// ROW(type, name, when): a segment as far as it has gone, and which estimators need the field; see segment.glsl.
 #define WALK_STATE(ROW)                                                                                               \
     ROW(vec3, origin, true)     /* medium space, where the present part of the ray within the medium begins */        \
     ROW(vec3, direction, true)  /* what one world unit of travel becomes in medium space */                           \
@@ -109,5 +124,23 @@
     ROW(uint, node)     /* of the hierarchy, to be visited next */                                                    \
     ROW(float, nearest) /* distance to the nearest surface so far, or how far the ray goes */                         \
     ROW(uint, primitive) /* what it is there; NO_SURFACE: nothing yet */
+
+// Words of a path that has all fields. Copied are some at a time; and paths begin with lines of caches, an odd number of lines
+// apart, so that they do not all want the same of their sets.
+#define WORDS_AT_ONCE 4
+#define WORDS_float 1
+#define WORDS_int 1
+#define WORDS_uint 1
+#define WORDS_vec2 2
+#define WORDS_vec3 3
+#define WORDS_ivec3 3
+#define WORDS_Spectrum 3
+#define WORDS(type, name) +WORDS_##type
+#define WORDS_WHEN(type, name, when) +WORDS_##type
+const int WORDS_Walk = 0 WALK_STATE(WORDS_WHEN);
+const int WORDS_PartSearch = 0 SEARCH_STATE(WORDS);
+const int WORDS_SurfaceSearch = 0 SEEK_STATE(WORDS);
+const int WORDS_Path = 0 VERTEX_STATE(WORDS) PATH_STATE(WORDS_WHEN) LOOK_STATE(WORDS_WHEN) SEGMENT_STATE(WORDS_WHEN);
+const int MOST_PATH_WORDS = (WORDS_Path + 31) / 32 * 32 + 16;
 
 #endif

@@ -1,4 +1,4 @@
-// A path as a lane holds it, and how it is laid aside and taken up again.
+// A path as a lane holds it.
 #ifndef LANE_GLSL
 #define LANE_GLSL
 #include "film/aovs.glsl"
@@ -8,13 +8,11 @@
 
 struct Lane {
     PathState path;
-    Spectrum beta;
     uint todo;
     uint record; // of its layers: fused, of its slot; staged, of the sample's place among those that wait
-#define LANE_FIELD(type, name, when) type name;
-#define LANE_SPECTRUM(name, when) Spectrum name;
-#define LANE_WALK(name, when) Walk name;
-    SEGMENT_STATE(LANE_FIELD, LANE_SPECTRUM, LANE_WALK)
+    PATH_STATE(STATE_FIELD_WHEN)
+    LOOK_STATE(STATE_FIELD_WHEN)
+    SEGMENT_STATE(STATE_FIELD_WHEN)
 };
 
 // The fused schedule's one pass has flights and shadow rays; of the staged ones each has its own, and what only the other
@@ -141,67 +139,6 @@ void add_light(inout Lane lane, vec3 light, uint label) {
 // Part of the label of light that the path gathers where it is `met`, at its first vertex or later.
 uint label_at(Lane lane, MediumParams met) {
     return lane.path.depth == 0u ? medium_label(met) : lane.first_label;
-}
-
-// What the rows of path_state.h ask for.
-#define STATE_CONDITIONS(next, amid)                                                                                   \
-    bool seeking = HAS_SURFACES && amid && (next == TODO_SEEK || next == TODO_CHECK);                                  \
-    bool repeats = REPEATS, flight_rests = NEE == NEE_TENTATIVE;                                                       \
-    bool seeing = SHADOW_RAYS_WALK && amid && (next == TODO_SEE || ((repeats || flight_rests) && next == TODO_CHECK)); \
-    bool looking = seeing || (SHADOW_RAYS_WALK && next == TODO_LOOK) ||                                                \
-                   (HAS_SURFACES && SHADOW_RAYS_WALK && amid && next == TODO_CHECK);                                   \
-    bool keeps_place = KEEPS_PLACE;                                                                                    \
-    bool several = SEVERAL_MEDIA;                                                                                      \
-    bool looks_along = LOOKS_ALONG;                                                                                    \
-    bool sets_out = SETS_OUT && (looking || seeking || sets_out_again(next));                                          \
-    bool sees_sky = SEES_SKY;                                                                                          \
-    bool chooses_light = LIGHTS != LIGHTS_LONE;                                                                        \
-    bool has_cache = SHADOW_RAYS_WALK && NEE == NEE_CACHED;                                                            \
-    bool has_layers = HAS_LAYERS;                                                                                      \
-    bool has_particles = HAS_PARTICLES;                                                                                \
-    bool weighs_families = PATHS == PATHS_BOTH;                                                                        \
-    bool under_way = (amid && next == TODO_FLY) || seeing || (looking && flight_rests) || (seeking && repeats);
-
-// `pixel`: see PathState. `amid`, a constant: whether the path may be amid a segment; else that is not compiled.
-void lay_aside(uint slot, uint pixel, Rng rng, Lane lane, const bool amid) {
-    lane.path.draw = rng.draw;
-    lane.path.todo = lane.todo;
-    lane.path.pixel = pixel;
-    paths[slot] = lane.path;
-    betas[slot] = lane.beta;
-    STATE_CONDITIONS(lane.todo, amid)
-    if (!under_way && !looking && !seeking && !sets_out && !has_cache && !has_layers && !has_particles)
-        return;
-#define LAY_ASIDE(type, name, when)                                                                                   \
-    if (when)                                                                                                         \
-        suspended[slot].name = lane.name;
-#define LAY_ASIDE_SPECTRUM(name, when)                                                                                \
-    if (when)                                                                                                         \
-        suspended[slot].name = vec3(lane.name);
-#define LAY_ASIDE_WALK(name, when)                                                                                    \
-    if (when)                                                                                                         \
-        suspended[slot].name = kept(lane.name);
-    SEGMENT_STATE(LAY_ASIDE, LAY_ASIDE_SPECTRUM, LAY_ASIDE_WALK)
-}
-
-void take_up(uint slot, inout Lane lane, out Rng rng, const bool amid) {
-    lane.path = paths[slot];
-    lane.beta = betas[slot];
-    lane.todo = lane.path.todo;
-    rng = pixel_rng(lane.path.place, lane.path.sample_index, lane.path.draw);
-    STATE_CONDITIONS(lane.todo, amid)
-    if (!under_way && !looking && !seeking && !sets_out && !has_cache && !has_layers && !has_particles)
-        return;
-#define TAKE_UP(type, name, when)                                                                                     \
-    if (when)                                                                                                         \
-        lane.name = suspended[slot].name;
-#define TAKE_UP_SPECTRUM(name, when)                                                                                  \
-    if (when)                                                                                                         \
-        lane.name = to_spectrum(suspended[slot].name);
-#define TAKE_UP_WALK(name, when)                                                                                      \
-    if (when)                                                                                                         \
-        lane.name = kept(suspended[slot].name);
-    SEGMENT_STATE(TAKE_UP, TAKE_UP_SPECTRUM, TAKE_UP_WALK)
 }
 
 #endif

@@ -4,6 +4,7 @@
 #include "lib/queue.glsl"
 #include "lib/trace.glsl"
 #include "sensors/camera.glsl"
+#include "stages/laid_aside.glsl"
 
 // Where its sample will wait.
 uint waiting_place(PathState path) {
@@ -18,7 +19,7 @@ void finish(uint slot, Lane lane) {
     uvec3 words = floatBitsToUint(measured(lane.path.radiance));
     words.x = words.x == NO_SAMPLE ? 0x7fc00000u : words.x; // another NaN: it is there
     waiting_samples[i] = words;
-    paths[slot].todo = TODO_TAKE;
+    PATH_WORD(slot, PATH_TODO) = TODO_TAKE;
     push_item(QUEUE_GENERATE, slot);
 }
 

@@ -5,7 +5,7 @@
 #include "stages/send.glsl"
 #include "stages/turn.glsl"
 
-const uint BURST = 4u; // turns: a lane without a path waits for half as many
+const uint BURST = STAGED_BURST; // turns: a lane without a path waits for half as many
 
 void run_segments(const uint queue, const uint laid_aside) {
     MediumParams v = frame.media[0];

@@ -47,8 +47,6 @@ void put(uvec4 v) {
     put(v.w);
 }
 
-#define path paths[1]
-#define laid_aside suspended[1]
 #define waiting sample_places[1]
 #define control_cell controls[1]
 #define light_row lights[1]

@@ -1,46 +1,4 @@
 // Every field of every shared struct, once, for host and kernel alike: PUT(field).
-#define PUT_VERTEX(type, name) PUT(path.name)
-VERTEX_STATE(PUT_VERTEX)
-#undef PUT_VERTEX
-
-#define PUT_WALK(type, name, when) PUT(laid_aside.walk.name)
-#define PUT_FLIGHT(type, name, when) PUT(laid_aside.flight.name)
-#define PUT_SEARCH(type, name) PUT(laid_aside.search.name)
-WALK_STATE(PUT_WALK)
-WALK_STATE(PUT_FLIGHT)
-PUT(laid_aside.T)
-PUT(laid_aside.lit)
-PUT(laid_aside.position)
-PUT(laid_aside.lit_medium)
-PUT(laid_aside.resume)
-PUT(laid_aside.leg)
-PUT(laid_aside.steps)
-PUT(laid_aside.phase_pdf)
-PUT(laid_aside.to_light)
-PUT(laid_aside.light_distance)
-PUT(laid_aside.light)
-PUT(laid_aside.cached)
-PUT(laid_aside.chance)
-PUT(laid_aside.label)
-PUT(laid_aside.first_label)
-PUT(laid_aside.is_particle)
-PUT(laid_aside.begun_with)
-PUT(laid_aside.target)
-PUT(laid_aside.shares)
-SEARCH_STATE(PUT_SEARCH)
-#define PUT_SEEK(type, name) PUT(laid_aside.seek.name)
-SEEK_STATE(PUT_SEEK)
-#undef PUT_SEEK
-PUT(laid_aside.reach)
-PUT(laid_aside.flown)
-PUT(laid_aside.seams)
-PUT(laid_aside.struck)
-PUT(laid_aside.lit_surface)
-PUT(laid_aside.lamp_body)
-#undef PUT_WALK
-#undef PUT_FLIGHT
-#undef PUT_SEARCH
-
 PUT(waiting.tenants)
 PUT(waiting.added)
 

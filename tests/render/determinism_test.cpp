@@ -94,6 +94,22 @@ TEST_CASE("the sizes of the machine change no bit", "[gpu][determinism]") {
     }
 }
 
+// On GPUs other kernels have other roundings.
+TEST_CASE("how paths lie in memory changes no bit", "[gpu][determinism]") {
+    if (!test_device().is_cpu())
+        return;
+    const Scene scene = cloud();
+    const Film usual = render_here(scene, 30).film;
+    for (const Schedule schedule : {Schedule::fused, Schedule::staged})
+        for (const PathMemory memory : path_memories) {
+            RenderJob job = with_tuning(512, 64, 16, 1);
+            job.plan.schedule = schedule;
+            job.plan.memory = memory;
+            CAPTURE(int(schedule), int(memory));
+            CHECK(same_bits(render_here(scene, 30, job).film, usual));
+        }
+}
+
 // llvmpipe ends all loops of an invocation after 65535 iterations, and says nothing: a lane that goes on for so long
 // loses what it was searching for, and its sample has other bits. A table of 65000 nodes is searched by 16 halvings and
 // a look at whether that was all; seven times a turn, to draw and to evaluate for the lamp, for the sun, and for the

@@ -12,8 +12,6 @@ using namespace vkvol;
 namespace {
 
 struct Structs {
-    shared::PathState path;
-    shared::Suspended laid_aside;
     shared::SamplePlace waiting;
     shared::ControlCell control_cell;
     shared::PhaseNode phase_node;
@@ -49,8 +47,8 @@ std::vector<std::uint32_t> list_words(const Structs& all) {
         words.resize(first + sizeof field / 4);
         std::memcpy(&words[first], &field, sizeof field);
     };
-    const auto& [path, laid_aside, waiting, control_cell, phase_node, map_knot, light_row, light_node, emitter_row,
-                 surface_row, piece, bvh_node, header, entry, counters, frame, push] = all;
+    const auto& [waiting, control_cell, phase_node, map_knot, light_row, light_node, emitter_row, surface_row, piece,
+                 bvh_node, header, entry, counters, frame, push] = all;
 #define PUT(field) put(field);
 #define PUT_EACH(field, count)                                                                                         \
     for (int k = 0; k < count; ++k)                                                                                    \
@@ -78,8 +76,6 @@ TEST_CASE("shared structs have one layout on host and device", "[gpu][layout]") 
 
     const auto storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     Commands commands(test_device());
-    const Buffer paths = second_of_two(commands, all.path, storage);
-    const Buffer laid_aside = second_of_two(commands, all.laid_aside, storage);
     const Buffer places = second_of_two(commands, all.waiting, storage);
     const Buffer controls = second_of_two(commands, all.control_cell, storage);
     const Buffer phase_nodes = second_of_two(commands, all.phase_node, storage);
@@ -100,8 +96,6 @@ TEST_CASE("shared structs have one layout on host and device", "[gpu][layout]") 
     const Buffer output(test_device(), "layout test", sizeof(Structs), storage, BufferPlace::device);
 
     BoundBuffers bound{};
-    bound[BINDING_PATHS] = &paths;
-    bound[BINDING_SUSPENDED] = &laid_aside;
     bound[BINDING_PLACES] = &places;
     bound[BINDING_CONTROLS] = &controls;
     bound[BINDING_PHASE] = &phase_nodes;

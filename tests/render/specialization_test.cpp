@@ -112,8 +112,8 @@ Specialization with(std::initializer_list<std::pair<int, int>> changes) {
 } // namespace
 
 TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "[gpu][specialization]") {
-    const std::set<int> always = {BINDING_FRAME, BINDING_PATHS,       BINDING_BETAS,  BINDING_SUSPENDED,
-                                  BINDING_FILM,  BINDING_QUEUE_ITEMS, BINDING_QUEUES, BINDING_COUNTERS};
+    const std::set<int> always = {BINDING_FRAME,       BINDING_PATHS,  BINDING_FILM,
+                                  BINDING_QUEUE_ITEMS, BINDING_QUEUES, BINDING_COUNTERS};
     const auto touches = [&](std::initializer_list<std::pair<int, int>> changes, std::set<int> more) {
         more.insert(always.begin(), always.end());
         CHECK(specialise(fused_spv, with(changes)).bindings == more);
@@ -204,17 +204,6 @@ TEST_CASE("what few scenes have is compiled in a form of its own", "[cpu][specia
         CHECK(!plain.bindings.contains(binding)); // declared they may be, by newer compilers
         CHECK(full.bindings.contains(binding));
     }
-}
-
-TEST_CASE("a grey path's throughput is one number, and its state holds nothing of other features",
-          "[gpu][specialization]") {
-    CHECK(read_kernel(Words(std::begin(fused_spv), std::end(fused_spv))).elements.at(BINDING_BETAS) == 1);
-    CHECK(
-        read_kernel(Words(std::begin(fused_chromatic_spv), std::end(fused_chromatic_spv))).elements.at(BINDING_BETAS) ==
-        3);
-    // Position, direction, radiance; pixel, place, sample, draw, depth, medium, and whether a segment was laid aside.
-    // No throughput, no shadow ray, no temperature.
-    CHECK(sizeof(shared::PathState) == 3 * sizeof(glm::vec3) + 7 * sizeof(std::uint32_t));
 }
 
 // What nobody asks a FULL kernel for would silently be what kernels without FULL have built in.
