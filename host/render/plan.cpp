@@ -80,10 +80,8 @@ Plan make_plan(const Device& device, const LoopSizes& loops, std::uint64_t pixel
         pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
     const std::uint32_t wide_slots = slots_that_fit(device, loops.layers, plan.most_film_bytes);
     plan.slots = pick(wish.slots, device.is_cpu() ? (staged ? 32768u : 8192u) : wide ? wide_slots : 1u << 18);
-    if (plan.memory == PathMemory::automatic)
-        plan.memory = !device.is_cpu()            ? PathMemory::by_field
-                      : device.writes_out_lanes() ? PathMemory::by_path_in_loops
-                                                  : PathMemory::by_path;
+    if (plan.copies == PathCopies::automatic)
+        plan.copies = device.writes_out_lanes() ? PathCopies::in_loops : PathCopies::by_word;
     plan.lanes = pick(wish.lanes, device.is_cpu() ? 512u : wide ? 1u << 16 : 1u << 17);
     plan.steps = pick(wish.steps, 4u);
     const std::uint32_t longest = longest_budget(loops, plan.steps, staged);

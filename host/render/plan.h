@@ -14,15 +14,14 @@ namespace vkvol {
 // a small picture fills a large device. See shaders/passes.
 enum class Schedule { automatic, fused, staged };
 
-// The words of paths in memory: those of each together, in loops or not, or those of each field; see laid_aside.glsl.
-enum class PathMemory { automatic, by_path, by_path_in_loops, by_field };
-constexpr PathMemory path_memories[] = {PathMemory::by_path, PathMemory::by_path_in_loops, PathMemory::by_field};
+// How the words of paths get to memory and back: one by one, or in loops; see laid_aside.glsl.
+enum class PathCopies { automatic, by_word, in_loops };
 
 // 0, automatic: what suits device and scene.
 struct Plan {
     Schedule schedule = Schedule::automatic;
     bool tries = false; // automatic: try both even where one is known to be faster
-    PathMemory memory = PathMemory::automatic;
+    PathCopies copies = PathCopies::automatic;
     std::uint32_t slots = 0;            // fused: pixels in work; staged: paths
     std::uint32_t waiting = 0;          // staged: room for samples that wait to be added to the film, or at least this
     std::uint32_t lanes = 0;            // invocations that share a queue of paths

@@ -119,8 +119,7 @@ void Wavefront::make_passes(const Specialization& specialization, unsigned form,
                             const std::function<void()>& meanwhile) {
     Specialization constants = specialization;
     constants[SPEC_STEPS] = static_cast<std::int32_t>(plan_.steps);
-    constants[SPEC_SLOTS] = plan_.memory == PathMemory::by_field ? static_cast<std::int32_t>(plan_.slots) : 0;
-    constants[SPEC_COPIES] = plan_.memory == PathMemory::by_path_in_loops ? 1 : 0;
+    constants[SPEC_COPIES] = plan_.copies == PathCopies::in_loops ? 1 : 0;
     const auto make = [&](Words spirv) {
         return std::make_unique<ComputePass>(device_, *bindings_, spirv, constants, cache);
     };

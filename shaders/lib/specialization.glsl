@@ -31,8 +31,7 @@ layout(constant_id = SPEC_TRACE) const int TRACE = 0;
 layout(constant_id = SPEC_TEXELS) const int TEXELS = 0;
 layout(constant_id = SPEC_TABLE_TEXELS) const int TABLE_TEXELS = 0;
 layout(constant_id = SPEC_LEAPS) const int LEAPS = 0;
-layout(constant_id = SPEC_SLOTS) const int SLOTS = 0;
-layout(constant_id = SPEC_COPIES) const int COPIED = 0;
+layout(constant_id = SPEC_COPIES) const int COPIES = 0;
 #if defined(SEVERAL) && !defined(FULL)
 #define FULL
 #endif

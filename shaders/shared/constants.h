@@ -101,9 +101,8 @@
 #define SPEC_TABLE_TEXELS 33 // 1: lights, surfaces, their pieces and the hierarchy of those, and black bodies are read as texels
 #define SPEC_PATHS 34        // PATHS_...
 #define SPEC_PERIODIC 35     // 1: a domain repeats
-#define SPEC_SLOTS 36        // of paths, whose words of the same field lie together; 0: those of each path do, see path_words.glsl
-#define SPEC_COPIES 37       // 1: a path's words are copied in loops, see laid_aside.glsl
-#define SPEC_COUNT 38
+#define SPEC_COPIES 36       // 1: a path's words are copied in loops, see laid_aside.glsl
+#define SPEC_COUNT 37
 
 // Value of a constant in which several media differ: each has its own, in its row.
 #define EACH -1

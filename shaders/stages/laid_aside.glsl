@@ -1,14 +1,13 @@
 // How a path is laid aside, and taken up again.
 //
 // The words of the fields that a scene's paths have follow one another, row by row, so that those of a path at a vertex come
-// first, then those of a look, then those of a segment: a path has as many as it needs where it is. Software drivers copy them
-// in a loop. Otherwise they write out each, for every lane, and what they compile doubles.
+// first, then those of a look, then those of a segment: a path has as many as it needs where it is. Where a driver writes out
+// each access to memory for every lane they are copied in loops, or what it has to compile doubles.
 #ifndef STAGE_LAID_ASIDE_GLSL
 #define STAGE_LAID_ASIDE_GLSL
 #include "lib/path_words.glsl"
 #include "stages/lane.glsl"
 
-const bool COPIES = COPIED != 0;
 uint copied[MOST_PATH_WORDS];
 
 // What the rows of path_state.h ask for: the same in all passes of a render.
@@ -36,45 +35,43 @@ uint rows_of(uint todo, const bool amid) {
     bool seeks = HAS_SURFACES && amid && (todo == TODO_SEEK || todo == TODO_CHECK);
     bool looks = SHADOW_RAYS_WALK && todo == TODO_LOOK;
     bool goes = amid && (todo == TODO_FLY || (SHADOW_RAYS_WALK && todo == TODO_SEE));
-    if (seeks || goes || (looks && rests) || (amid && SHADOW_RAYS_WALK && (REPEATS || rests) && todo == TODO_CHECK))
+    if (seeks || goes || (looks && rests))
         return AT_SEGMENT;
     return looks || sets_out_again(todo) ? AT_LOOK : AT_VERTEX;
 }
 
 // Where a path's first word is: in memory, or where it is copied to.
 uint begin_at(uint slot) {
-    return COPIES ? 0u : place_of_word(slot, 0u);
+    return COPIES != 0 ? 0u : slot * uint(MOST_PATH_WORDS);
 }
-// From one word to the next.
-const uint STEP = uint(COPIES) + uint(!COPIES) * WORD_STRIDE;
 
 // What most fields are in full: what calls other functions takes longer to inline, at every start.
 void put(uint word, inout uint at) {
-    if (COPIES)
+    if (COPIES != 0)
         copied[at] = word;
     else
         path_words[at] = word;
-    at += STEP;
+    at += 1u;
 }
 void put(float x, inout uint at) {
-    if (COPIES)
+    if (COPIES != 0)
         copied[at] = floatBitsToUint(x);
     else
         path_words[at] = floatBitsToUint(x);
-    at += STEP;
+    at += 1u;
 }
 void put(vec3 v, inout uint at) {
     uvec3 words = floatBitsToUint(v);
-    if (COPIES) {
+    if (COPIES != 0) {
         copied[at] = words.x;
         copied[at + 1u] = words.y;
         copied[at + 2u] = words.z;
     } else {
         path_words[at] = words.x;
-        path_words[at + STEP] = words.y;
-        path_words[at + 2u * STEP] = words.z;
+        path_words[at + 1u] = words.y;
+        path_words[at + 2u] = words.z;
     }
-    at += 3u * STEP;
+    at += 3u;
 }
 void put(int i, inout uint at) {
     put(uint(i), at);
@@ -90,27 +87,27 @@ void put(ivec3 v, inout uint at) {
 }
 
 void take(out uint word, inout uint at) {
-    if (COPIES)
+    if (COPIES != 0)
         word = copied[at];
     else
         word = path_words[at];
-    at += STEP;
+    at += 1u;
 }
 void take(out float x, inout uint at) {
-    if (COPIES)
+    if (COPIES != 0)
         x = uintBitsToFloat(copied[at]);
     else
         x = uintBitsToFloat(path_words[at]);
-    at += STEP;
+    at += 1u;
 }
 void take(out vec3 v, inout uint at) {
     uvec3 words;
-    if (COPIES)
+    if (COPIES != 0)
         words = uvec3(copied[at], copied[at + 1u], copied[at + 2u]);
     else
-        words = uvec3(path_words[at], path_words[at + STEP], path_words[at + 2u * STEP]);
+        words = uvec3(path_words[at], path_words[at + 1u], path_words[at + 2u]);
     v = uintBitsToFloat(words);
-    at += 3u * STEP;
+    at += 3u;
 }
 void take(out int i, inout uint at) {
     uint word;
@@ -211,15 +208,15 @@ void lay_aside(uint slot, uint pixel, Rng rng, Lane it, const bool amid) {
     put(it.path, at);
     PATH_STATE(PUT_WHEN)
     uint rows = rows_of(it.todo, amid), count = at;
-    if (may_look(amid) && (COPIES || rows >= AT_LOOK)) {
+    if (may_look(amid) && (COPIES != 0 || rows >= AT_LOOK)) {
         LOOK_STATE(PUT_WHEN)
         count = rows >= AT_LOOK ? at : count;
     }
-    if (may_be_amid(amid) && (COPIES || rows == AT_SEGMENT)) {
+    if (may_be_amid(amid) && (COPIES != 0 || rows == AT_SEGMENT)) {
         SEGMENT_STATE(PUT_WHEN)
         count = rows == AT_SEGMENT ? at : count;
     }
-    if (COPIES)
+    if (COPIES != 0)
         for (uint i = 0u; i < by_lane(count); i += WORDS_AT_ONCE)
             for (uint k = i; k < i + WORDS_AT_ONCE; ++k)
                 PATH_WORD(slot, k) = copied[k];
@@ -228,7 +225,7 @@ void lay_aside(uint slot, uint pixel, Rng rng, Lane it, const bool amid) {
 void take_up(uint slot, inout Lane it, out Rng rng, const bool amid) {
     STATE_CONDITIONS
     uint rows = rows_of(PATH_WORD(slot, PATH_TODO), amid);
-    if (COPIES) {
+    if (COPIES != 0) {
         uint count = words_of(it.path);
         PATH_STATE(COUNT_WHEN)
         if (rows >= AT_LOOK) {
@@ -244,10 +241,10 @@ void take_up(uint slot, inout Lane it, out Rng rng, const bool amid) {
     uint at = begin_at(slot);
     take(it.path, at);
     PATH_STATE(TAKE_WHEN)
-    if (may_look(amid) && (COPIES || rows >= AT_LOOK)) {
+    if (may_look(amid) && (COPIES != 0 || rows >= AT_LOOK)) {
         LOOK_STATE(TAKE_WHEN)
     }
-    if (may_be_amid(amid) && (COPIES || rows == AT_SEGMENT)) {
+    if (may_be_amid(amid) && (COPIES != 0 || rows == AT_SEGMENT)) {
         SEGMENT_STATE(TAKE_WHEN)
     }
     it.todo = it.path.todo;

@@ -95,17 +95,17 @@ TEST_CASE("the sizes of the machine change no bit", "[gpu][determinism]") {
 }
 
 // On GPUs other kernels have other roundings.
-TEST_CASE("how paths lie in memory changes no bit", "[gpu][determinism]") {
+TEST_CASE("how paths get to memory changes no bit", "[gpu][determinism]") {
     if (!test_device().is_cpu())
         return;
     const Scene scene = cloud();
     const Film usual = render_here(scene, 30).film;
     for (const Schedule schedule : {Schedule::fused, Schedule::staged})
-        for (const PathMemory memory : path_memories) {
+        for (const PathCopies copies : {PathCopies::by_word, PathCopies::in_loops}) {
             RenderJob job = with_tuning(512, 64, 16, 1);
             job.plan.schedule = schedule;
-            job.plan.memory = memory;
-            CAPTURE(int(schedule), int(memory));
+            job.plan.copies = copies;
+            CAPTURE(int(schedule), int(copies));
             CHECK(same_bits(render_here(scene, 30, job).film, usual));
         }
 }
