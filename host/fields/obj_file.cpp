@@ -1,5 +1,6 @@
 #include "obj_file.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
@@ -43,8 +44,23 @@ bool has_numbers(std::string_view line) {
     return word == "v" || word == "vn" || word == "vt" || word == "f";
 }
 
-// For parsers that know nothing of them: without a mark of UTF-8, without comments behind numbers, and with lines that
-// end in \ joined to the next; as many lines as before.
+// In names of materials. tinyobjloader ends names at blanks, from 2.0rc11 on, in one of the two places where it reads
+// them.
+constexpr char joint = '\x1f';
+
+void join_name(std::string& line) {
+    const std::string word = line.substr(0, line.find_first_of(" \t"));
+    if (word != "newmtl" && word != "usemtl")
+        return;
+    std::string name = line.substr(std::min(line.find_first_not_of(" \t", word.size()), line.size()));
+    name.resize(name.find_last_not_of(" \t") + 1);
+    std::replace(name.begin(), name.end(), '\t', joint);
+    std::replace(name.begin(), name.end(), ' ', joint);
+    line = word + ' ' + name;
+}
+
+// For parsers that know nothing of them: without a mark of UTF-8, without comments behind numbers, names in one piece,
+// and with lines that end in \ joined to the next; as many lines as before.
 std::string plain_lines(std::string_view text) {
     constexpr std::string_view mark = "\xef\xbb\xbf", blanks = " \t";
     text.remove_prefix(text.substr(0, mark.size()) == mark ? mark.size() : 0);
@@ -65,6 +81,7 @@ std::string plain_lines(std::string_view text) {
             ++joined;
             continue;
         }
+        join_name(line);
         plain += line;
         plain.append(1 + joined, '\n');
         line.clear();
@@ -140,9 +157,11 @@ std::optional<Rgb> diffuse_of(const tinyobj::material_t& material, Progress& pro
     const Rgb color(material.diffuse[0], material.diffuse[1], material.diffuse[2]);
     if (glm::all(glm::greaterThanEqual(color, Rgb(0.0))) && glm::all(glm::lessThanEqual(color, Rgb(brightest_light))))
         return color;
+    std::string name = material.name;
+    std::replace(name.begin(), name.end(), joint, ' ');
     progress.obj->warnings.push_back(
         one_line(fmt::format("{}: the Kd of material \"{}\" is no colour, and is left out; numbers >= 0 are",
-                             progress.path->string(), material.name)));
+                             progress.path->string(), name)));
     return std::nullopt;
 }
 
@@ -184,7 +203,7 @@ public:
                     std::map<std::string, int>* indices, std::string*, std::string*) override {
         const std::filesystem::path file = obj_.parent_path() / name;
         try {
-            std::istringstream stream(read_mesh_text(file));
+            std::istringstream stream(plain_lines(read_mesh_text(file)));
             std::string warning, error;
             tinyobj::LoadMtl(indices, materials, &stream, &warning, &error);
             return true;

@@ -37,11 +37,13 @@ std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
 
 // Of taking a path up and laying it aside.
 constexpr std::uint32_t copy_iterations = 2 * (MOST_PATH_WORDS / WORDS_AT_ONCE + 1);
+static_assert(MOST_PATH_WORDS % WORDS_AT_ONCE == 0);
 
 // Turns whose loops stay below the limit. Between bursts of turns a lane of a staged pass may pass its path on.
-std::uint32_t longest_budget(const LoopSizes& loops, std::uint32_t steps, bool staged) {
-    const std::uint32_t turn = turn_iterations(loops, steps) + (staged ? copy_iterations / STAGED_BURST : 0);
-    return std::clamp((most_iterations - 2 * copy_iterations) / turn, 1u, 1024u);
+std::uint32_t longest_budget(const LoopSizes& loops, const Plan& plan) {
+    const std::uint32_t copy = plan.copies == PathCopies::in_loops ? copy_iterations : 0;
+    const std::uint32_t in_burst = plan.schedule == Schedule::staged ? (copy + STAGED_BURST - 1) / STAGED_BURST : 0;
+    return std::clamp((most_iterations - copy) / (turn_iterations(loops, plan.steps) + in_burst), 1u, 1024u);
 }
 
 // Samples of a pixel that one lane loops over: the sky's, and those added to the film.
@@ -80,11 +82,12 @@ Plan make_plan(const Device& device, const LoopSizes& loops, std::uint64_t pixel
         pick(wish.most_film_bytes, std::min<std::uint64_t>(device.limits().maxStorageBufferRange, 1u << 30));
     const std::uint32_t wide_slots = slots_that_fit(device, loops.layers, plan.most_film_bytes);
     plan.slots = pick(wish.slots, device.is_cpu() ? (staged ? 32768u : 8192u) : wide ? wide_slots : 1u << 18);
+    plan.slots = std::min<std::uint64_t>(plan.slots, device.limits().maxStorageBufferRange / path_bytes);
     if (plan.copies == PathCopies::automatic)
         plan.copies = device.writes_out_lanes() ? PathCopies::in_loops : PathCopies::by_word;
     plan.lanes = pick(wish.lanes, device.is_cpu() ? 512u : wide ? 1u << 16 : 1u << 17);
     plan.steps = pick(wish.steps, 4u);
-    const std::uint32_t longest = longest_budget(loops, plan.steps, staged);
+    const std::uint32_t longest = longest_budget(loops, plan);
     plan.budget = std::min(pick(wish.budget, wide ? 32u : longest), longest);
     plan.step_limit = pick(wish.step_limit, 1u << 26);
     plan.sky_samples = sky_samples / (1 + loops.lights / 16);

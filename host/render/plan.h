@@ -20,9 +20,9 @@ enum class PathCopies { automatic, by_word, in_loops };
 // 0, automatic: what suits device and scene.
 struct Plan {
     Schedule schedule = Schedule::automatic;
-    bool tries = false; // automatic: try both even where one is known to be faster
-    PathCopies copies = PathCopies::automatic;
-    std::uint32_t slots = 0;            // fused: pixels in work; staged: paths
+    bool tries = false;                        // automatic: try both even where one is known to be faster
+    PathCopies copies = PathCopies::automatic; // how its driver compiles them best
+    std::uint32_t slots = 0;                   // fused: pixels in work; staged: paths
     std::uint32_t waiting = 0;          // staged: room for samples that wait to be added to the film, or at least this
     std::uint32_t lanes = 0;            // invocations that share a queue of paths
     std::uint32_t budget = 0;           // turns after which a lane lays its path aside

@@ -56,7 +56,7 @@ public:
     const VkPhysicalDeviceProperties& properties() const { return properties_; }
     bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
     // A kernel has each access to storage as often as a group has lanes, and takes as long to compile: Mesa's software
-    // driver, not of 22.3, but of 25.0.
+    // driver, not of 22.3, but of 25.0. Of those between nothing is known.
     bool writes_out_lanes() const { return info_.lavapipe >= 23; }
     bool has_timestamps() const { return timestamp_bits_ >= 36; }
     // Between two marks of one submit, counters that have begun anew between them included.

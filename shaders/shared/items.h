@@ -10,8 +10,8 @@ SHARED_BEGIN
 #define STATE_FIELD(type, name) type name;
 #define STATE_FIELD_WHEN(type, name, when) type name;
 
-// A path at its last vertex. Of a pixel in work of which no sample has begun (fused) there are its index and place, and the
-// rest says nothing yet.
+// A path at its last vertex, and what it knows of its segment. In memory they are words: see laid_aside.glsl. Of a pixel in work of
+// which no sample has begun (fused) there are its index and place, and the rest says nothing yet.
 struct PathState {
     VERTEX_STATE(STATE_FIELD)
 };

@@ -1,6 +1,6 @@
 // What is known of a path between two passes, a row a field: its words in memory, what a lane holds, laying aside, taking
 // up and their test are all made of these rows, so that none can be forgotten in one of them. Words follow one another in
-// the order of the rows, of those alone that a scene's paths have: see path_words.glsl.
+// the order of the rows, of those alone that a scene's paths have: see laid_aside.glsl.
 #ifndef SHARED_PATH_STATE_H
 #define SHARED_PATH_STATE_H
 
@@ -44,7 +44,7 @@
 #define PATH_PLACE 2u
 #define PATH_SAMPLE 3u
 
-// ROW(type, name, when): `when` is what a scene has to have for its paths to have the field, see path_words.glsl. Also of
+// ROW(type, name, when): `when` is what a scene has to have for its paths to have the field, see laid_aside.glsl. Also of
 // every path, wherever it is.
 #define PATH_STATE(ROW)                                                                                               \
     ROW(Spectrum, beta, true)          /* throughput; at a collision it includes that collision's albedo */           \
@@ -54,7 +54,8 @@
     ROW(float, begun_with, has_particles)   /* its largest throughput at first, which roulette compares with */       \
     ROW(vec2, shares, weighs_families) /* what its first segment has to say in its weights: see families.glsl */
 
-// Of one that looks, or has drawn a way that it does not go yet. (Not all passes know of several media.)
+// Of one that looks, or has drawn a way that it does not go yet. (Nothing here hangs on several media, of which `generate` does
+// not know.)
 #define LOOK_STATE(ROW)                                                                                               \
     ROW(Spectrum, lit, keeps_place)         /* throughput of what a shadow ray lights, */                             \
     ROW(vec3, position, keeps_place)        /* and where that is, render space */                                     \
@@ -74,7 +75,7 @@
     ROW(float, reach, has_surfaces) /* of the flight, to the surface that ends it, or FAR [world units] */            \
     ROW(uint, struck, has_surfaces) /* that surface's primitive */
 
-// Of one that is amid a segment: a free flight, or a shadow ray.
+// Of one that is amid a segment: a free flight, or a shadow ray. Of what `generate` lays aside nothing here is read.
 #define SEGMENT_STATE(ROW)                                                                                            \
     ROW(Walk, walk, true)                                                                                             \
     ROW(Walk, flight, flight_rests)   /* to come back to from a shadow ray that was sent amid it */                   \
@@ -125,8 +126,8 @@
     ROW(float, nearest) /* distance to the nearest surface so far, or how far the ray goes */                         \
     ROW(uint, primitive) /* what it is there; NO_SURFACE: nothing yet */
 
-// Words of a path that has all fields. Copied are some at a time; and paths begin with lines of caches, an odd number of lines
-// apart, so that they do not all want the same of their sets.
+// Words of a path that has all fields. Copied are some at a time; and paths begin with lines of caches, of 64 bytes, an odd
+// number of lines apart, so that they do not all want the same of their sets.
 #define WORDS_AT_ONCE 4
 #define WORDS_float 1
 #define WORDS_int 1
@@ -142,5 +143,14 @@ const int WORDS_PartSearch = 0 SEARCH_STATE(WORDS);
 const int WORDS_SurfaceSearch = 0 SEEK_STATE(WORDS);
 const int WORDS_Path = 0 VERTEX_STATE(WORDS) PATH_STATE(WORDS_WHEN) LOOK_STATE(WORDS_WHEN) SEGMENT_STATE(WORDS_WHEN);
 const int MOST_PATH_WORDS = (WORDS_Path + 31) / 32 * 32 + 16;
+#undef WORDS
+#undef WORDS_WHEN
+#undef WORDS_float
+#undef WORDS_int
+#undef WORDS_uint
+#undef WORDS_vec2
+#undef WORDS_vec3
+#undef WORDS_ivec3
+#undef WORDS_Spectrum
 
 #endif

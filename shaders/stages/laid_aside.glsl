@@ -2,7 +2,8 @@
 //
 // The words of the fields that a scene's paths have follow one another, row by row, so that those of a path at a vertex come
 // first, then those of a look, then those of a segment: a path has as many as it needs where it is. Where a driver writes out
-// each access to memory for every lane they are copied in loops, or what it has to compile doubles.
+// each access to memory for every lane they are copied in loops, or what it has to compile doubles. What is copied has all
+// rows, filled or not, so that each field is at a place that the driver knows.
 #ifndef STAGE_LAID_ASIDE_GLSL
 #define STAGE_LAID_ASIDE_GLSL
 #include "lib/path_words.glsl"
@@ -10,7 +11,7 @@
 
 uint copied[MOST_PATH_WORDS];
 
-// What the rows of path_state.h ask for: the same in all passes of a render.
+// What the rows of path_state.h ask for: the same in all passes of a render, but for walks, of which `generate` knows less.
 #define STATE_CONDITIONS                                                                                              \
     bool sees = SHADOW_RAYS_WALK;                                                                                     \
     bool flight_rests = SHADOW_RAYS_WALK && NEE == NEE_TENTATIVE;                                                     \
@@ -22,8 +23,8 @@ uint copied[MOST_PATH_WORDS];
     bool has_surfaces = HAS_SURFACES, has_parts = SHAPE == SHAPE_MESH, repeats = REPEATS;                             \
     bool has_layers = HAS_LAYERS, has_particles = HAS_PARTICLES, weighs_families = PATHS == PATHS_BOTH;
 
-// Which rows a path needs that does `todo` next. `amid`, a constant: whether it may be amid a segment.
-const uint AT_VERTEX = 0u, AT_LOOK = 1u, AT_SEGMENT = 2u;
+// Which rows a path needs that does `todo` next, each with those before. `amid`, a constant: whether it may be amid a segment.
+const uint VERTEX_ROWS = 0u, LOOK_ROWS = 1u, SEGMENT_ROWS = 2u;
 bool may_be_amid(const bool amid) {
     return amid || NEE == NEE_TENTATIVE;
 }
@@ -31,13 +32,12 @@ bool may_look(const bool amid) {
     return may_be_amid(amid) || SHADOW_RAYS_WALK || SETS_OUT;
 }
 uint rows_of(uint todo, const bool amid) {
-    const bool rests = NEE == NEE_TENTATIVE;
     bool seeks = HAS_SURFACES && amid && (todo == TODO_SEEK || todo == TODO_CHECK);
     bool looks = SHADOW_RAYS_WALK && todo == TODO_LOOK;
     bool goes = amid && (todo == TODO_FLY || (SHADOW_RAYS_WALK && todo == TODO_SEE));
-    if (seeks || goes || (looks && rests))
-        return AT_SEGMENT;
-    return looks || sets_out_again(todo) ? AT_LOOK : AT_VERTEX;
+    if (seeks || goes || (looks && NEE == NEE_TENTATIVE))
+        return SEGMENT_ROWS;
+    return looks || sets_out_again(todo) ? LOOK_ROWS : VERTEX_ROWS;
 }
 
 // Where a path's first word is: in memory, or where it is copied to.
@@ -45,7 +45,7 @@ uint begin_at(uint slot) {
     return COPIES != 0 ? 0u : slot * uint(MOST_PATH_WORDS);
 }
 
-// What most fields are in full: what calls other functions takes longer to inline, at every start.
+// The commonest types are spelled out: calls within calls take longer to inline, at every start.
 void put(uint word, inout uint at) {
     if (COPIES != 0)
         copied[at] = word;
@@ -208,18 +208,21 @@ void lay_aside(uint slot, uint pixel, Rng rng, Lane it, const bool amid) {
     put(it.path, at);
     PATH_STATE(PUT_WHEN)
     uint rows = rows_of(it.todo, amid), count = at;
-    if (may_look(amid) && (COPIES != 0 || rows >= AT_LOOK)) {
+    if (may_look(amid) && (COPIES != 0 || rows >= LOOK_ROWS)) {
         LOOK_STATE(PUT_WHEN)
-        count = rows >= AT_LOOK ? at : count;
+        count = rows >= LOOK_ROWS ? at : count;
     }
-    if (may_be_amid(amid) && (COPIES != 0 || rows == AT_SEGMENT)) {
+    if (may_be_amid(amid) && (COPIES != 0 || rows == SEGMENT_ROWS)) {
         SEGMENT_STATE(PUT_WHEN)
-        count = rows == AT_SEGMENT ? at : count;
+        count = rows == SEGMENT_ROWS ? at : count;
     }
     if (COPIES != 0)
-        for (uint i = 0u; i < by_lane(count); i += WORDS_AT_ONCE)
-            for (uint k = i; k < i + WORDS_AT_ONCE; ++k)
-                PATH_WORD(slot, k) = copied[k];
+        for (uint i = 0u; i < by_lane(count); i += WORDS_AT_ONCE) {
+            PATH_WORD(slot, i) = copied[i];
+            PATH_WORD(slot, i + 1u) = copied[i + 1u];
+            PATH_WORD(slot, i + 2u) = copied[i + 2u];
+            PATH_WORD(slot, i + 3u) = copied[i + 3u];
+        }
 }
 
 void take_up(uint slot, inout Lane it, out Rng rng, const bool amid) {
@@ -228,27 +231,38 @@ void take_up(uint slot, inout Lane it, out Rng rng, const bool amid) {
     if (COPIES != 0) {
         uint count = words_of(it.path);
         PATH_STATE(COUNT_WHEN)
-        if (rows >= AT_LOOK) {
+        if (rows >= LOOK_ROWS) {
             LOOK_STATE(COUNT_WHEN)
         }
-        if (rows == AT_SEGMENT) {
+        if (rows == SEGMENT_ROWS) {
             SEGMENT_STATE(COUNT_WHEN)
         }
-        for (uint i = 0u; i < by_lane(count); i += WORDS_AT_ONCE)
-            for (uint k = i; k < i + WORDS_AT_ONCE; ++k)
-                copied[k] = PATH_WORD(slot, k);
+        for (uint i = 0u; i < by_lane(count); i += WORDS_AT_ONCE) {
+            copied[i] = PATH_WORD(slot, i);
+            copied[i + 1u] = PATH_WORD(slot, i + 1u);
+            copied[i + 2u] = PATH_WORD(slot, i + 2u);
+            copied[i + 3u] = PATH_WORD(slot, i + 3u);
+        }
     }
     uint at = begin_at(slot);
     take(it.path, at);
     PATH_STATE(TAKE_WHEN)
-    if (may_look(amid) && (COPIES != 0 || rows >= AT_LOOK)) {
+    if (may_look(amid) && (COPIES != 0 || rows >= LOOK_ROWS)) {
         LOOK_STATE(TAKE_WHEN)
     }
-    if (may_be_amid(amid) && (COPIES != 0 || rows == AT_SEGMENT)) {
+    if (may_be_amid(amid) && (COPIES != 0 || rows == SEGMENT_ROWS)) {
         SEGMENT_STATE(TAKE_WHEN)
     }
     it.todo = it.path.todo;
     rng = pixel_rng(it.path.place, it.path.sample_index, it.path.draw);
 }
+
+#undef COUNT
+#undef COUNT_WHEN
+#undef PUT
+#undef PUT_WHEN
+#undef TAKE
+#undef TAKE_WHEN
+#undef TAKE_OR_CLEAR
 
 #endif

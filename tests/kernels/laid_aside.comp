@@ -1,5 +1,5 @@
 // Lays a path aside of which every field is another number, takes it up, and writes out what it was and what it is now, row by
-// row. inputs[0]: what it does next; inputs[1]: whether it may be amid a segment.
+// row. Inputs: what each does next, then whether they may be amid a segment.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "kernel.glsl"
@@ -88,8 +88,8 @@ void main() {
     if (slot >= push.lanes)
         return;
     STATE_CONDITIONS
-    uint todo = inputs[0];
-    bool amid = inputs[1] != 0u;
+    uint todo = inputs[slot];
+    bool amid = inputs[push.lanes] != 0u;
     Lane it;
     fill(it.path);
     PATH_STATE(FILL_WHEN)
@@ -112,10 +112,10 @@ void main() {
     compare(rng.draw, rng_after.draw);
     PATH_STATE(COMPARE_WHEN)
     uint rows = rows_of(todo, amid);
-    if (rows >= AT_LOOK) {
+    if (rows >= LOOK_ROWS) {
         LOOK_STATE(COMPARE_WHEN)
     }
-    if (rows == AT_SEGMENT) {
+    if (rows == SEGMENT_ROWS) {
         SEGMENT_STATE(COMPARE_WHEN)
     }
 }
