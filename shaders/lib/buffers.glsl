@@ -52,6 +52,7 @@ layout(scalar, binding = BINDING_PHASE) readonly buffer PhaseBlock { PhaseNode p
 layout(scalar, binding = BINDING_MAPS) readonly buffer MapBlock { MapKnot map_knots[]; };
 layout(scalar, binding = BINDING_LIGHTS) readonly buffer LightBlock { LightRow lights[]; };
 layout(scalar, binding = BINDING_SKY) readonly buffer SkyBlock { vec4 sky_texels[]; };
+layout(binding = BINDING_SKY_TEXELS) uniform utextureBuffer sky_map;
 layout(scalar, binding = BINDING_SKY_ALIAS) readonly buffer SkyAliasBlock { AliasEntry sky_alias[]; };
 layout(scalar, binding = BINDING_SURFACES) readonly buffer SurfaceBlock { SurfaceRow surfaces[]; };
 layout(scalar, binding = BINDING_PRIMITIVES) readonly buffer PrimitiveBlock { SurfacePrimitive primitives[]; };
@@ -82,5 +83,9 @@ layout(binding = BINDING_LEAF_TEXELS) uniform utextureBuffer leaf_texels;
 layout(binding = BINDING_MAJORANT_TEXELS) uniform textureBuffer majorant_texels;
 layout(binding = BINDING_LATTICE_TEXELS) uniform textureBuffer lattice_texels;
 layout(scalar, binding = BINDING_COUNTERS) buffer CounterBlock { Counters counters; };
+
+vec4 sky_texel(uint i) {
+    return TABLE_TEXELS != 0 ? uintBitsToFloat(texelFetch(sky_map, int(i))) : sky_texels[i];
+}
 
 #endif

@@ -34,7 +34,7 @@ vec3 sky_direction(vec2 place, out float breadth) {
 }
 
 vec4 sky_entry(uvec2 texel) {
-    return sky_texels[texel.y * frame.sky.width + texel.x];
+    return sky_texel(texel.y * frame.sky.width + texel.x);
 }
 
 // Radiance of a texel, or of what is next to one over the map's edge.

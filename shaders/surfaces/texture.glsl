@@ -5,12 +5,12 @@
 
 vec3 texel(uint first, ivec2 size, ivec2 at) {
     ivec2 inside = ivec2((at.x + size.x) % size.x, (at.y + size.y) % size.y);
-    return sky_texels[first + uint(inside.y * size.x + inside.x)].xyz;
+    return sky_texel(first + uint(inside.y * size.x + inside.x)).xyz;
 }
 
 // Between the middles of texels linear, or the nearest. `place`: across and upwards from its lower left, whose upper right is (1, 1).
 vec3 texture_color(uint texture, vec2 place) {
-    vec4 header = sky_texels[texture];
+    vec4 header = sky_texel(texture);
     ivec2 size = ivec2(abs(header.xy));
     vec2 within = fract(place * header.zw);
     vec2 at = vec2(within.x, 1.0 - within.y) * vec2(size) - 0.5;
