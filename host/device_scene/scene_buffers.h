@@ -53,7 +53,8 @@ public:
 
     // Whether all that kernels read at every step of a walk can be read as texels.
     bool texels() const { return texels_; }
-    // Once lights and surfaces are here: whether their tables, and the hierarchy, can; then they are bound so, too.
+    // Once lights, surfaces and textures are here: whether their tables, the hierarchy and the sky can; then they are
+    // bound so, too.
     bool find_table_texels(std::uint64_t most_bytes);
 
     BoundBuffers bound() const;

@@ -54,14 +54,16 @@ void join_name(std::string& line) {
         return;
     std::string name = line.substr(std::min(line.find_first_not_of(" \t", word.size()), line.size()));
     name.resize(name.find_last_not_of(" \t") + 1);
+    if (name.empty())
+        return;
     std::replace(name.begin(), name.end(), '\t', joint);
     std::replace(name.begin(), name.end(), ' ', joint);
     line = word + ' ' + name;
 }
 
 // For parsers that know nothing of them: without a mark of UTF-8, without comments behind numbers, names in one piece,
-// and with lines that end in \ joined to the next; as many lines as before.
-std::string plain_lines(std::string_view text) {
+// and, if `joins`, with lines that end in \ joined to the next; as many lines as before.
+std::string plain_lines(std::string_view text, bool joins = true) {
     constexpr std::string_view mark = "\xef\xbb\xbf", blanks = " \t";
     text.remove_prefix(text.substr(0, mark.size()) == mark ? mark.size() : 0);
     std::string plain, line; // `line`: as far as it has been joined
@@ -75,7 +77,7 @@ std::string plain_lines(std::string_view text) {
         if (has_numbers(line))
             line.resize(std::min(line.find('#'), line.size()));
         const std::size_t last = line.find_last_not_of(blanks);
-        if (last != std::string::npos && line[last] == '\\' && line[0] != '#' && !text.empty()) {
+        if (joins && last != std::string::npos && line[last] == '\\' && line[0] != '#' && !text.empty()) {
             line.resize(last);
             line += ' ';
             ++joined;
@@ -203,7 +205,7 @@ public:
                     std::map<std::string, int>* indices, std::string*, std::string*) override {
         const std::filesystem::path file = obj_.parent_path() / name;
         try {
-            std::istringstream stream(plain_lines(read_mesh_text(file)));
+            std::istringstream stream(plain_lines(read_mesh_text(file), false)); // a path may end with one
             std::string warning, error;
             tinyobj::LoadMtl(indices, materials, &stream, &warning, &error);
             return true;

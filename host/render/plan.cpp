@@ -37,7 +37,7 @@ std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
 
 // Of taking a path up and laying it aside.
 constexpr std::uint32_t copy_iterations = 2 * (MOST_PATH_WORDS / WORDS_AT_ONCE + 1);
-static_assert(MOST_PATH_WORDS % WORDS_AT_ONCE == 0);
+static_assert(WORDS_AT_ONCE == 4 && MOST_PATH_WORDS % WORDS_AT_ONCE == 0); // as laid_aside.glsl writes them out
 
 // Turns whose loops stay below the limit. Between bursts of turns a lane of a staged pass may pass its path on.
 std::uint32_t longest_budget(const LoopSizes& loops, const Plan& plan) {

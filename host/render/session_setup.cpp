@@ -222,7 +222,7 @@ void Session::compile() {
         trace_.emplace(device_, commands_);
     wavefront_ = make_wavefront(result_.plan, cache, [&] { device_scene_->compile_light_cache(cache.handle()); });
     device_scene_->fill_light_cache();
-    // Software drivers are 1.2 to 3.1 times as fast with one pass (tools/results): no trial is worth its time.
+    // Software drivers are faster with one pass (schedules.txt in tools/results): no trial is worth its time.
     const bool is_known = device_.is_cpu() && !job_.plan.tries;
     const bool has_paths = device_scene_->specialization()[SPEC_SHAPE] != SHAPE_NONE || !scene_.surfaces.empty();
     if (wish_.schedule == Schedule::automatic && !is_known && has_paths && !job_.trace && !job_.dry_run)

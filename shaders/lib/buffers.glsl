@@ -51,8 +51,8 @@ layout(binding = BINDING_BLACKBODY_TEXELS) uniform utextureBuffer blackbody_texe
 layout(scalar, binding = BINDING_PHASE) readonly buffer PhaseBlock { PhaseNode phase_nodes[]; };
 layout(scalar, binding = BINDING_MAPS) readonly buffer MapBlock { MapKnot map_knots[]; };
 layout(scalar, binding = BINDING_LIGHTS) readonly buffer LightBlock { LightRow lights[]; };
-layout(scalar, binding = BINDING_SKY) readonly buffer SkyBlock { vec4 sky_texels[]; };
-layout(binding = BINDING_SKY_TEXELS) uniform utextureBuffer sky_map;
+layout(scalar, binding = BINDING_SKY) readonly buffer SkyBlock { vec4 sky_storage[]; };
+layout(binding = BINDING_SKY_TEXELS) uniform utextureBuffer sky_texels;
 layout(scalar, binding = BINDING_SKY_ALIAS) readonly buffer SkyAliasBlock { AliasEntry sky_alias[]; };
 layout(scalar, binding = BINDING_SURFACES) readonly buffer SurfaceBlock { SurfaceRow surfaces[]; };
 layout(scalar, binding = BINDING_PRIMITIVES) readonly buffer PrimitiveBlock { SurfacePrimitive primitives[]; };
@@ -85,7 +85,7 @@ layout(binding = BINDING_LATTICE_TEXELS) uniform textureBuffer lattice_texels;
 layout(scalar, binding = BINDING_COUNTERS) buffer CounterBlock { Counters counters; };
 
 vec4 sky_texel(uint i) {
-    return TABLE_TEXELS != 0 ? uintBitsToFloat(texelFetch(sky_map, int(i))) : sky_texels[i];
+    return TABLE_TEXELS != 0 ? uintBitsToFloat(texelFetch(sky_texels, int(i))) : sky_storage[i];
 }
 
 #endif

@@ -52,7 +52,7 @@
 #define BINDING_SURFACE_TEXELS 38 // four to a row
 #define BINDING_LIGHT_TEXELS 39 // LIGHT_ROW_TEXELS to a row
 #define BINDING_BLACKBODY_TEXELS 40
-#define BINDING_SKY_TEXELS 41
+#define BINDING_SKY_TEXELS 41 // one to a texel of the sky, then of textures
 #define BINDING_COUNT 42
 
 #define WORKGROUP_SIZE 64
@@ -99,7 +99,7 @@
 #define SPEC_MAP_HALVINGS 30 // log2 of the knots in a map's table
 #define SPEC_UNBOUNDED 31    // 1: some medium is everywhere
 #define SPEC_LAYERS 32       // LAYERS_..., a sum
-#define SPEC_TABLE_TEXELS 33 // 1: lights, surfaces, their pieces the hierarchy of those, black bodies, the sky and textures are read as texels
+#define SPEC_TABLE_TEXELS 33 // 1: lights, surfaces, their pieces, the hierarchy of those, black bodies, the sky and textures are read as texels
 #define SPEC_PATHS 34        // PATHS_...
 #define SPEC_PERIODIC 35     // 1: a domain repeats
 #define SPEC_COPIES 36       // 1: a path's words are copied in loops, see laid_aside.glsl

@@ -75,7 +75,7 @@ TEST_CASE("an .obj file with comments, lines that go on, and a mark of UTF-8", "
     CHECK(written.vertices == plain.vertices);
     CHECK(written.triangles == plain.triangles);
     // Not so in a comment, which may end with a path, nor in names.
-    directory.write("a.mtl", "\xef\xbb\xbfnewmtl gold #1\nKd 1 0 0\nnewmtl  gold #2 \nKd 1 0.5 0\n");
+    directory.write("a.mtl", "\xef\xbb\xbfnewmtl gold #1\nKd 1 0 0\nnewmtl  gold #2 \nmap_Kd C:\\t\\\nKd 1 0.5 0\n");
     const Polygons named =
         read("# from C:\\\nmtllib a.mtl\nv 0 0 0 # C:\\\nv 1 0 0\nv 0 1 0\nusemtl gold #2\nf 1 2 3\n");
     CHECK(named.vertices.size() == 3);

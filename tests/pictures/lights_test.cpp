@@ -10,6 +10,7 @@
 #include "support/images.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
+#include "support/test_device.h"
 #include "support/thorough.h"
 #include "tests/reference/reference.h"
 
@@ -115,6 +116,21 @@ TEST_CASE("every light equals the reference's, in a ball and in a mesh", "[gpu][
             continue; // what else there is to see in a mesh ends at no lamp
         const Scene mesh = lit_by(medium(write_mesh(bodies), 1.0, 0.8, 0.3), 8.0, lit.lights, 256);
         CHECK_AGREEMENT(agree(render_here(mesh, 5).film, render_reference(mesh, 6), lit.name + ", mesh"));
+    }
+}
+
+// Software drivers read tables and skies as texels, unless they are too large. (GPUs do not.)
+TEST_CASE("lights are the same as texels and as storage", "[gpu][lights]") {
+    if (!test_device().is_cpu())
+        return;
+    RenderJob storage;
+    storage.plan.most_texel_bytes = 1;
+    for (const NamedLights& lit : all_lights()) {
+        if (lit.name != "sky" && lit.name != "square sky" && lit.name != "everything")
+            continue;
+        CAPTURE(lit.name);
+        const Scene scene = lit_by(medium(Sphere{{0.1, -0.1, 0.0}, 2.0}, 1.5, 0.95, -0.4), 5.0, lit.lights, 4);
+        CHECK(same_bits(render_here(scene, 1).film, render_here(scene, 1, storage).film));
     }
 }
 

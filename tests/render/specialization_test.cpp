@@ -158,6 +158,12 @@ TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "
     lights_touch(LIGHTS_TABLE | LIGHTS_TREE | LIGHTS_AIMED, {BINDING_LIGHTS, BINDING_LIGHT_TREE});
     lights_touch(LIGHTS_TABLE | LIGHTS_SKY, {BINDING_LIGHTS, BINDING_SKY, BINDING_SKY_ALIAS});
     lights_touch(LIGHTS_TABLE | LIGHTS_SKY | LIGHTS_EQUAL_AREA, {BINDING_LIGHTS, BINDING_SKY, BINDING_SKY_ALIAS});
+    std::set<int> texels = {BINDING_LIGHT_TEXELS, BINDING_SKY_TEXELS, BINDING_SKY_ALIAS};
+    texels.insert(always.begin(), always.end());
+    texels.insert(grid.begin(), grid.end());
+    const Specialization sky =
+        with({{SPEC_NEE, NEE_COLLISIONS}, {SPEC_LIGHTS, LIGHTS_TABLE | LIGHTS_SKY}, {SPEC_TABLE_TEXELS, 1}});
+    CHECK(specialise(fused_full_spv, sky).bindings == texels);
 }
 
 TEST_CASE("every feature costs instructions only where a scene has it", "[gpu][specialization]") {
