@@ -77,7 +77,7 @@ void check_patience(const Scene& scene, const Method& method, double depth) {
                         "until it meets {:g}, or check the unit of sigma_a and sigma_s",
                         depth, most_collisions));
     const double optical_step = scene.settings.march.optical_step;
-    if (method.free_flight == FREE_FLIGHT_ADAPTIVE && !(depth / optical_step <= most_steps))
+    if (method.flights_have(TRAIT_OPTICAL_STEPS) && !(depth / optical_step <= most_steps))
         throw InputError(fmt::format("<march> opticalStep: {:g} takes {:.3g} steps across the medium, more than a "
                                      "million; {:.3g} takes a thousand",
                                      optical_step, depth / optical_step, depth / 1000.0));

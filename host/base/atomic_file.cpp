@@ -1,10 +1,12 @@
 #include "atomic_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <new>
 #include <optional>
 #include <poll.h>
 #include <system_error>
@@ -127,23 +129,43 @@ void AtomicFile::wait_for_reader() noexcept {
         error_ = EINTR;
 }
 
+// What is for a pipe is kept until it is whole: writers go back to fill in where things are.
 bool AtomicFile::write(const void* data, std::size_t size, std::int64_t at) noexcept {
     const char* bytes = static_cast<const char*>(data);
-    if (special_ && at != position_)
-        error_ = ESPIPE; // a pipe cannot go back
-    while (size > 0 && !error_) {
-        const ssize_t written = special_ ? ::write(descriptor_, bytes, size) : pwrite(descriptor_, bytes, size, at);
-        if (written < 0 && errno == EAGAIN)
-            wait_for_reader();
-        else if (written < 0 && errno != EINTR)
+    if (special_ && !error_)
+        keep(bytes, size, static_cast<std::size_t>(at));
+    while (size > 0 && !special_ && !error_) {
+        const ssize_t written = pwrite(descriptor_, bytes, size, at);
+        if (written < 0 && errno != EINTR)
             error_ = errno;
         else if (written > 0) {
             bytes += written;
             size -= static_cast<std::size_t>(written);
-            position_ = at += written;
+            at += written;
         }
     }
     return !error_;
+}
+
+void AtomicFile::keep(const char* bytes, std::size_t size, std::size_t at) noexcept {
+    try {
+        kept_.resize(std::max(kept_.size(), at + size));
+        std::copy_n(bytes, size, kept_.begin() + static_cast<std::ptrdiff_t>(at));
+    } catch (const std::bad_alloc&) {
+        error_ = ENOMEM;
+    }
+}
+
+void AtomicFile::send_kept() noexcept {
+    for (std::size_t sent = 0; sent < kept_.size() && !error_;) {
+        const ssize_t written = ::write(descriptor_, kept_.data() + sent, kept_.size() - sent);
+        if (written < 0 && errno == EAGAIN)
+            wait_for_reader();
+        else if (written < 0 && errno != EINTR)
+            error_ = errno;
+        else if (written > 0)
+            sent += static_cast<std::size_t>(written);
+    }
 }
 
 // Some file systems know files without a name, but cannot give them one.
@@ -164,8 +186,11 @@ void AtomicFile::check() const {
 
 void AtomicFile::put_in_place() {
     check();
-    if (special_)
+    if (special_) {
+        send_kept();
+        check();
         return;
+    }
     if (fsync(descriptor_) != 0) // else a power cut could leave the new name on no bytes
         fail(errno);
     if (!named_)

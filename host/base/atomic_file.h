@@ -4,13 +4,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <vector>
 
 namespace vkvol {
 
 class AtomicFile {
 public:
     // Throws std::system_error if no file can be made in that place. A link stays a link: the file behind it is
-    // replaced. A device or pipe is written to; of a pipe a reader is waited for, until a signal comes.
+    // replaced. A device or pipe is written to, once all is there; of a pipe a reader is waited for, until a signal
+    // comes.
     explicit AtomicFile(const std::filesystem::path& name);
     // Without put_in_place nothing of the new file is left.
     ~AtomicFile();
@@ -26,6 +28,8 @@ public:
 
 private:
     void open_new();
+    void keep(const char* bytes, std::size_t size, std::size_t at) noexcept;
+    void send_kept() noexcept;
     void wait_for_reader() noexcept;
     void give_name();
 
@@ -34,8 +38,8 @@ private:
     bool interrupted_before_ = false;
     bool named_ = false; // temporary_ is there
     int descriptor_ = -1;
-    int error_ = 0; // errno of the first write that failed
-    std::int64_t position_ = 0;
+    int error_ = 0;          // errno of the first write that failed
+    std::vector<char> kept_; // of a special one, until it is whole
 };
 
 // Beside the target, so that it can be renamed, with the target's extension, which names the format.

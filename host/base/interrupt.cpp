@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <unistd.h>
+#include <utility>
 
 #include "error.h"
 
@@ -12,8 +13,11 @@ namespace {
 // Lock-free and async-signal-safe, unlike most else.
 volatile std::sig_atomic_t signals_seen = 0;
 
-void on_signal(int) {
-    if (signals_seen)
+thread_local const InterruptQuestion* question = nullptr;
+
+// A terminal that is closed sends more than one signal, and nobody is out of patience.
+void on_signal(int signal) {
+    if (signals_seen && signal == SIGINT)
         _exit(exit_interrupted);
     signals_seen = 1;
 }
@@ -34,7 +38,15 @@ void install_interrupt_handler() {
 }
 
 bool interrupted() {
-    return signals_seen != 0;
+    return signals_seen != 0 || (question && question->asked_());
+}
+
+InterruptQuestion::InterruptQuestion(std::function<bool()> asked) : asked_(std::move(asked)), before_(question) {
+    question = this;
+}
+
+InterruptQuestion::~InterruptQuestion() {
+    question = before_;
 }
 
 } // namespace vkvol

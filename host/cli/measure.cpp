@@ -199,6 +199,24 @@ std::vector<SpectralBand> bands_of(const MeasureOptions& options) {
     return bands;
 }
 
+// Of what a reading warns and is biased by: each line once, however many readings have it.
+void tell_once(const MeasureOptions& options, const Scene& scene, const RenderResult& result, Workshop& workshop) {
+    std::vector<std::string> warnings = scene.warnings;
+    warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
+    for (const std::string& warning : workshop.new_warnings(warnings))
+        tell(stderr, "vkvol: warning: {}\n", warning);
+    std::vector<std::string> notes;
+    if (!result.biased.empty())
+        notes.push_back("the readings are biased: " + result.biased);
+    if (options.request.noise_goal && !result.interrupted && result.samples > 1 && !relative_noise(result.film))
+        notes.push_back(
+            fmt::format("no light came in {} samples, and --noise has nothing to go by: such readings are 0 "
+                        "as far as these tell",
+                        result.samples));
+    for (const std::string& note : workshop.new_warnings(notes))
+        tell(stderr, "vkvol: note: {}\n", note);
+}
+
 } // namespace
 
 int run_measure(const MeasureOptions& options) {
@@ -215,24 +233,11 @@ int run_measure(const MeasureOptions& options) {
         of_values(options.sweeps, values, bands[band], [&] {
             const RenderScene loaded = load_render_scene(request_of(options, values, bands[band]), workshop.fields());
             const RenderResult result = measure(options, loaded.scene, static_cast<std::uint32_t>(band), workshop);
-            std::vector<std::string> warnings = loaded.scene.warnings;
-            warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
-            for (const std::string& warning : workshop.new_warnings(warnings))
-                if (!options.quiet)
-                    tell(stderr, "vkvol: warning: {}\n", warning);
             was_interrupted = result.interrupted;
             add_counts(told.counts, result.counts);
             told.counts.cleaned_voxels = std::max(told.counts.cleaned_voxels, result.counts.cleaned_voxels);
-            if (!result.biased.empty() && !options.quiet)
-                for (const std::string& why : workshop.new_warnings({"the readings are biased: " + result.biased}))
-                    tell(stderr, "vkvol: note: {}\n", why);
-            if (options.request.noise_goal && !was_interrupted && result.samples > 1 && !relative_noise(result.film) &&
-                !options.quiet)
-                for (const std::string& why : workshop.new_warnings({fmt::format(
-                         "no light came in {} samples, and --noise has nothing to go by: such readings are 0 "
-                         "as far as these tell",
-                         result.samples)}))
-                    tell(stderr, "vkvol: note: {}\n", why);
+            if (!options.quiet)
+                tell_once(options, loaded.scene, result, workshop);
             if (result.samples == 0 && !was_interrupted)
                 throw RenderError("ended before any sample was done");
             if (result.samples > 0) {

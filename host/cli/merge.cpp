@@ -180,6 +180,7 @@ FilmLayer merge_layer(const std::vector<MergeInput>& inputs, std::size_t which, 
 
 Film film_of(const std::vector<Moments>& moments, const Film& like, const Crop& window) {
     Film film;
+    film.is_premultiplied = like.is_premultiplied;
     film.is_correlated = like.is_correlated;
     film.picture_width = like.picture_width;
     film.picture_height = like.picture_height;

@@ -138,7 +138,7 @@ Metadata merged_metadata(const std::vector<MergeInput>& inputs, const Film& merg
     merge_counts(inputs, metadata);
     merge_bias(inputs, metadata);
     merge_times(inputs, metadata);
-    record_correlation(merged, metadata);
+    record_facts(merged, metadata);
     metadata["vkvol/mergedFrom"] = static_cast<int>(inputs.size());
     return metadata;
 }

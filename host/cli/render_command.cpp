@@ -57,6 +57,23 @@ void check_files(const RenderOptions& options, const RenderScene& loaded, const 
     checkpoint.check();
 }
 
+// Samples that are done are not lost to those that cannot be.
+RenderResult render_what_can_be(const Device& device, const Scene& scene, const RenderJob& job) {
+    Session session(device, scene, job);
+    std::exception_ptr failure;
+    try {
+        if (!job.dry_run)
+            session.render(scene.settings.spp);
+    } catch (const std::exception&) {
+        if (session.samples() == 0 || !session.can_go_on())
+            throw;
+        failure = std::current_exception();
+    }
+    RenderResult result = std::move(session.result());
+    result.failure = failure;
+    return result;
+}
+
 RenderResult render_with_progress(const RenderOptions& options, const Scene& scene, Workshop& workshop,
                                   CheckpointFile& file, LivePictures& live) {
     RenderJob job;
@@ -95,9 +112,11 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
     if (!live.empty())
         job.preview = [&](const RenderResult& result) { live.show(device, result, &progress); };
     try {
-        return render(device, scene, job);
+        return render_what_can_be(device, scene, job);
     } catch (const RenderError& error) {
         throw RenderError(error.what() + file.advice());
+    } catch (const InputError& error) {
+        throw InputError(error.what() + file.advice());
     }
 }
 
@@ -160,6 +179,8 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
         put(stdout, trace_table(result.trace, result.trace_origin, result.film.mean.front()));
     else if (!options.quiet)
         print_summary(options, device, result, shown.tone);
+    if (result.failure)
+        std::rethrow_exception(result.failure);
     if (result.interrupted)
         return exit_interrupted;
     return options.strict && result.counts.any_cap() ? exit_caps_hit : exit_done;

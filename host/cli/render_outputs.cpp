@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -30,6 +31,16 @@ std::string rescue(const Film& film, const Metadata& metadata) {
         return "";
     }
     return fmt::format("; the picture is kept as {}", file.string());
+}
+
+std::string message_of(const std::exception_ptr& failure) {
+    try {
+        if (failure)
+            std::rethrow_exception(failure);
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+    return "";
 }
 
 void append(std::string& list, const char* separator, const std::string& text) {
@@ -64,8 +75,10 @@ void RenderOutputs::write(const Device& device, const RenderResult& result, cons
         }
     const std::string kept = failures.empty() || exr_written ? "" : rescue(result.film, metadata);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (std::string failure;
-        !try_report(make_report(options_, scene_, device, result, shown, seconds, failures + kept), failure))
+    std::string error = message_of(result.failure);
+    if (!failures.empty())
+        append(error, "; ", failures + kept);
+    if (std::string failure; !try_report(make_report(options_, scene_, device, result, shown, seconds, error), failure))
         append(failures, "; ", failure);
     else if (options_.report)
         append(written, ", ", options_.report->string());

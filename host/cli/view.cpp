@@ -216,6 +216,10 @@ private:
                 board_.wait_for_wish(wish_number_, nap);
                 continue;
             }
+            if (!session_->can_go_on()) { // paths were abandoned while nobody looked, or it was paused
+                session_.reset();
+                return true;
+            }
             session_->render(scene_.settings.spp);
             if (!session_->result().interrupted)
                 break;

@@ -144,12 +144,12 @@ double unit_of_splats(double power, double across, double brightest) {
 // Part of what a light with a place sends out that may come to a ball about the origin, at most.
 double part_that_comes(const shared::LightRow& light, double radius) {
     const double distance = glm::length(glm::dvec3(light.position));
-    if (light.kind < LIGHT_POINT || light.kind == LIGHT_MAP || distance <= radius)
+    if (!(light.kind & LIGHT_PLACED) || distance <= radius)
         return 1.0;
     const double seen = radius * radius / (distance * distance); // over pi, the ball's solid angle
     if (light.kind == LIGHT_SPOT)
         return std::min(1.0, 0.5 * seen / light.none_beyond);
-    return light.kind > LIGHT_SPHERE ? seen : 0.25 * seen; // by the cosine, or alike into all directions
+    return light.kind & LIGHT_FLAT ? seen : 0.25 * seen; // by the cosine, or alike into all directions
 }
 
 // The brightest value that a pixel may get: of sources seen themselves, or mirrored; and of points, which light what is
@@ -160,7 +160,7 @@ double brightest_of(const Scene& scene, const LightTable& lights, const SurfaceT
     double brightest = std::max(channel_mean(scene.background), glow.most);
     for (const shared::LightRow& light : lights.rows) {
         double factor = 1.0;
-        if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
+        if ((light.kind & LIGHT_PLACED) && !(light.kind & LIGHT_SHAPED)) {
             const double nearest = std::max(double(glm::length(light.position)) - reach, std::ldexp(reach, -15));
             factor = reach > 0.0 ? 1.0 / (nearest * nearest) : 1.0;
         }

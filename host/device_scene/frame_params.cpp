@@ -233,9 +233,10 @@ shared::MarchParams make_march(const Scene& scene, Media media, const Method& me
     const double unit = march.unit == CoefficientUnit::voxel && voxel > 0.0 ? voxel : 1.0;
     const double step = march.step > 0.0 ? march.step * unit : voxel > 0.0 ? 0.5 * voxel : 0.2;
     // A series that ends unbiased does best from a coarse beginning.
-    const double usual_shadow_step = method.transmittance == TRANSMITTANCE_TELESCOPING ? 16.0 * step : step;
+    const bool unbiased = method.shadow_rays_have(TRAIT_MARCH) && !method.shadow_rays_have(TRAIT_INEXACT);
+    const double usual_shadow_step = unbiased ? 16.0 * step : step;
     const double shadow_step = march.shadow_step > 0.0 ? march.shadow_step * unit : usual_shadow_step;
-    if (method.free_flight == FREE_FLIGHT_MARCH)
+    if (method.flights_have(TRAIT_EQUAL_STEPS))
         check_step("step", step, diagonal, unit);
     if (method.shadow_rays_have(TRAIT_MARCH))
         check_step("shadowStep", shadow_step, diagonal, unit);

@@ -5,13 +5,13 @@
 #include <set>
 
 #include "camera_view.h"
+#include "estimator_traits.h"
 #include "layer_plan.h"
 #include "light_table.h"
 #include "medium_pieces.h"
 #include "pixel_filter.h"
 #include "placement.h"
 #include "scene_facts.h"
-#include "shared/estimators.h"
 #include "surface_table.h"
 
 namespace vkvol {
@@ -256,7 +256,7 @@ bool needs_full(const Specialization& constants) {
 
 bool shadow_rays_walk(const Specialization& constants, unsigned form) {
     return constants[SPEC_NEE] != NEE_NONE &&
-           (constants[SPEC_TRANSMITTANCE] != TRANSMITTANCE_ANALYTIC || constants[SPEC_SHAPE] == SHAPE_MESH ||
+           (!transmittance_has(constants[SPEC_TRANSMITTANCE], TRAIT_CLOSED) || constants[SPEC_SHAPE] == SHAPE_MESH ||
             constants[SPEC_PERIODIC] != 0 || (form & form_surfaces) != 0);
 }
 

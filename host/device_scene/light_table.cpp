@@ -210,7 +210,7 @@ PlacedLight placed(const Entry& entry, std::uint32_t row) {
     const float power =
         mean * (entry.place == Entry::Place::lamp ? entry.row.area : 1.0f) * (entry.fluence > 0.0 ? 1.0f : 1e-6f);
     PlacedLight light{entry.row.position - entry.reach, entry.row.position + entry.reach, std::max(power, 1e-30f), row};
-    if (entry.row.kind == LIGHT_SPOT || entry.row.kind > LIGHT_SPHERE) {
+    if (entry.row.kind & LIGHT_AIMED) {
         light.axis = entry.row.direction;
         light.reach = entry.cone;
     }

@@ -34,6 +34,7 @@ struct Film {
     std::vector<std::uint32_t> samples; // per pixel
     std::vector<FilmLayer> layers;      // those asked for
     std::vector<glm::dvec3> places;     // where a sensor of flux reads each, its patch's middle, world; else none
+    bool is_premultiplied = false; // what is behind the media is left out, and the layer `alpha` says how much of it
     // Errors of pixels go together: what moves has the same moments in all of them, particles are parts of several.
     bool is_correlated = false;
     // Then, of the sum of all pixels' means, if it is known. Else their variances add.

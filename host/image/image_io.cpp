@@ -212,6 +212,7 @@ void check_directory_writable(const path& target, const char* option) {
         return;
     // Only making a file tells: permissions, read-only file systems and quotas all have a say.
     const path probe = temporary_name(target);
+    unlink(probe.c_str()); // of a process long dead, with our number
     const int descriptor = open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     if (descriptor < 0)
         throw InputError(fmt::format("{}: no file can be made in {}: {}; name another place with {}", target.string(),
@@ -262,7 +263,7 @@ void write_exr(const path& target, const Film& film, const Metadata& metadata, c
 void write_display(const path& target, const Film& film, const ToneMapping& mapping) {
     write_atomically(target, "-o", [&](AtomicFile& file) {
         check_consistent(film);
-        const FilmLayer* alpha = film.layer("alpha");
+        const FilmLayer* alpha = film.is_premultiplied ? film.layer("alpha") : nullptr;
         const std::vector<std::uint8_t> pixels = alpha ? tone_map(film, mapping, *alpha) : tone_map(film, mapping);
         std::vector<std::string> channels = {"R", "G", "B"};
         if (alpha)
@@ -282,7 +283,7 @@ Film read_exr(const path& file, Metadata* metadata) {
         fail_to_read(file, *reader);
     const Metadata found = metadata_of(header);
     Film film = film_of(header, pixels, file);
-    read_correlation(found, film);
+    read_facts(found, film);
     if (metadata)
         *metadata = found;
     // Read as floats, whole numbers would be parts of the largest there is.
@@ -294,6 +295,16 @@ Film read_exr(const path& file, Metadata* metadata) {
 
 void write_text(const path& target, const std::string& text, const char* option) {
     write_atomically(target, option, [&](AtomicFile& file) { file.write(text.data(), text.size(), 0); });
+}
+
+void write_parts(const path& target, std::span<const std::span<const std::byte>> parts) {
+    write_atomically(target, "-o", [&](AtomicFile& file) {
+        std::int64_t at = 0;
+        for (const auto& part : parts) {
+            file.write(part.data(), part.size(), at);
+            at += static_cast<std::int64_t>(part.size());
+        }
+    });
 }
 
 } // namespace vkvol

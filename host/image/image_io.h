@@ -1,7 +1,9 @@
 // Image files: EXR for data (mean, variance, samples, metadata), PNG for looking at.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "film.h"
@@ -44,5 +46,7 @@ Film read_exr(const std::filesystem::path& path, Metadata* metadata = nullptr);
 
 // Writes text the same atomic way.
 void write_text(const std::filesystem::path& path, const std::string& text, const char* option = "-o");
+// Likewise bytes, one part after another.
+void write_parts(const std::filesystem::path& path, std::span<const std::span<const std::byte>> parts);
 
 } // namespace vkvol

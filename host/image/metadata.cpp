@@ -29,20 +29,25 @@ std::optional<std::uint64_t> count_of(const Metadata& metadata, const std::strin
 }
 
 namespace {
+constexpr const char* premultiplied_key = "vkvol/premultiplied";
 constexpr const char* correlated_key = "vkvol/correlated";
 constexpr const char* sum_variance_key = "vkvol/sumVariance"; // red, green, blue
 } // namespace
 
-void record_correlation(const Film& film, Metadata& metadata) {
+void record_facts(const Film& film, Metadata& metadata) {
     metadata.erase(correlated_key);
     metadata.erase(sum_variance_key);
+    metadata.erase(premultiplied_key);
+    if (film.is_premultiplied)
+        metadata[premultiplied_key] = 1;
     if (film.is_correlated)
         metadata[correlated_key] = 1;
     if (const auto& v = film.sum_variance; film.is_correlated && v)
         metadata[sum_variance_key] = fmt::format("{} {} {}", v->x, v->y, v->z);
 }
 
-void read_correlation(const Metadata& metadata, Film& film) {
+void read_facts(const Metadata& metadata, Film& film) {
+    film.is_premultiplied = text_of(metadata, premultiplied_key) == "1";
     film.is_correlated = text_of(metadata, correlated_key) == "1";
     film.sum_variance.reset();
     std::istringstream text(text_of(metadata, sum_variance_key));

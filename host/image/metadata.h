@@ -16,8 +16,9 @@ std::string text_of(const Metadata& metadata, const std::string& key);
 // else.
 std::optional<std::uint64_t> count_of(const Metadata& metadata, const std::string& key, const std::string& image);
 
-// How the errors of the film's pixels go together, whatever the metadata said of that before; and back.
-void record_correlation(const Film& film, Metadata& metadata);
-void read_correlation(const Metadata& metadata, Film& film);
+// How the errors of the film's pixels go together, and whether what is behind the media is left out, whatever the
+// metadata said of that before; and back.
+void record_facts(const Film& film, Metadata& metadata);
+void read_facts(const Metadata& metadata, Film& film);
 
 } // namespace vkvol

@@ -117,20 +117,20 @@ void MethodChooser::choose_flight() {
     flight = choices_.free_flight.value_or(preset_.free_flight);
     if (is_closed()) {
         const bool explicitly = choices_.free_flight.has_value();
-        if (flight == FREE_FLIGHT_REGULAR || (flight_has(flight, TRAIT_NULL) && !explicitly))
+        if (flight_has(flight, TRAIT_VOXELS) || (flight_has(flight, TRAIT_NULL) && !explicitly))
             flight = FREE_FLIGHT_ANALYTIC;
-    } else if (flight == FREE_FLIGHT_ANALYTIC) {
+    } else if (flight_has(flight, TRAIT_CLOSED)) {
         throw InputError(fmt::format("{}: analytic flights need constant density, and this medium's varies; use "
                                      "flight delta, or integrator ratioTracking",
                                      method_.integrator));
-    } else if (flight == FREE_FLIGHT_REGULAR && field_ != FIELD_GRID) {
+    } else if (flight_has(flight, TRAIT_VOXELS) && field_ != FIELD_GRID) {
         throw InputError(fmt::format("{}: regular flights go from voxel to voxel, and {}; use flight "
                                      "delta, or integrator ratioTracking",
                                      method_.integrator, without_voxels()));
-    } else if (flight == FREE_FLIGHT_DECOMPOSITION && field_ == FIELD_SUPERPOSITION) {
+    } else if (flight_has(flight, TRAIT_CONTROL) && field_ == FIELD_SUPERPOSITION) {
         warn("flights are delta: several volumes have no control density");
         flight = FREE_FLIGHT_DELTA;
-    } else if (flight == FREE_FLIGHT_REGULAR && bends_voxels()) {
+    } else if (flight_has(flight, TRAIT_VOXELS) && bends_voxels()) {
         warn(fmt::format("flights are delta: {}", no_polynomials));
         flight = FREE_FLIGHT_DELTA;
     }
@@ -232,22 +232,22 @@ void MethodChooser::choose_transmittance() {
         transmittance = is_closed() ? TRANSMITTANCE_ANALYTIC : TRANSMITTANCE_RATIO;
     }
     if (is_closed()) {
-        if (!choices_.transmittance || transmittance == TRANSMITTANCE_REGULAR)
+        if (!choices_.transmittance || transmittance_has(transmittance, TRAIT_VOXELS))
             transmittance = TRANSMITTANCE_ANALYTIC;
         return;
     }
-    if (transmittance == TRANSMITTANCE_RESIDUAL && field_ == FIELD_SUPERPOSITION) {
+    if (transmittance_has(transmittance, TRAIT_CONTROL) && field_ == FIELD_SUPERPOSITION) {
         if (method_.nee != NEE_NONE)
             warn("transmittance is by ratio tracking: several volumes have no control density");
         transmittance = TRANSMITTANCE_RATIO;
     }
-    if (transmittance == TRANSMITTANCE_REGULAR && field_ == FIELD_GRID && bends_voxels()) {
+    if (transmittance_has(transmittance, TRAIT_VOXELS) && field_ == FIELD_GRID && bends_voxels()) {
         if (method_.nee != NEE_NONE)
             warn(fmt::format("transmittance is by ratio tracking: {}", no_polynomials));
         transmittance = TRANSMITTANCE_RATIO;
     }
     const bool impossible =
-        transmittance == TRANSMITTANCE_ANALYTIC || (transmittance == TRANSMITTANCE_REGULAR && field_ != FIELD_GRID);
+        transmittance_has(transmittance, field_ != FIELD_GRID ? TRAIT_CLOSED | TRAIT_VOXELS : TRAIT_CLOSED);
     if (!impossible)
         return;
     if (method_.nee == NEE_NONE) {
@@ -255,7 +255,7 @@ void MethodChooser::choose_transmittance() {
         return;
     }
     const std::string why =
-        transmittance == TRANSMITTANCE_ANALYTIC
+        transmittance_has(transmittance, TRAIT_CLOSED)
             ? "analytic transmittance needs constant density, and this medium's varies"
             : fmt::format("regular transmittance goes from voxel to voxel, and {}", without_voxels());
     throw InputError(
@@ -317,7 +317,7 @@ void MethodChooser::check_channels() const {
 } // namespace
 
 bool is_through(const Method& method) {
-    if (method.scattering == SCATTERING_NONE && method.free_flight == FREE_FLIGHT_ANALYTIC)
+    if (method.scattering == SCATTERING_NONE && method.flights_have(TRAIT_CLOSED))
         return true;
     return method.scattering != SCATTERING_MULTIPLE && method.flights_have(TRAIT_MARCH);
 }
@@ -331,8 +331,8 @@ bool is_analytic_in_nothing(const Scene& scene) {
         return false;
     const AxisChoices& choices = scene.settings.choices;
     const Integrator& preset = choose_integrator(scene);
-    const bool analytic = choices.free_flight.value_or(preset.free_flight) == FREE_FLIGHT_ANALYTIC ||
-                          choices.transmittance.value_or(preset.transmittance) == TRANSMITTANCE_ANALYTIC;
+    const bool analytic = flight_has(choices.free_flight.value_or(preset.free_flight), TRAIT_CLOSED) ||
+                          transmittance_has(choices.transmittance.value_or(preset.transmittance), TRAIT_CLOSED);
     return analytic && !any_medium(scene, [](const Volume& volume) {
                const auto* file = std::get_if<GridFile>(&volume.shape);
                return !file || !is_empty_grid(*file);

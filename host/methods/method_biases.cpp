@@ -105,8 +105,7 @@ void BiasFinder::find_biases() {
     else if (method_.flights_have(TRAIT_MARCH) && is_through(method_) && method_.nee != NEE_NONE &&
              method_.scattering != SCATTERING_NONE)
         add(bias_flight_steps, "the march takes the light of one point for that of a whole step");
-    if (method_.shadow_rays_have(TRAIT_MARCH) && method_.transmittance != TRANSMITTANCE_TELESCOPING &&
-        field_ != FIELD_CONSTANT)
+    if (method_.shadow_rays_have(TRAIT_INEXACT) && field_ != FIELD_CONSTANT)
         add(bias_shadow_steps, "shadow rays take the density of one point for that of a whole step");
     // The other null-collision estimators weight what exceeds the majorant.
     const bool needs_majorant = method_.flights_have(TRAIT_BOUND) || method_.shadow_rays_have(TRAIT_BOUND);

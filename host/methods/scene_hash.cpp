@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "digest.h"
+#include "estimator_traits.h"
 #include "memory_grids.h"
 #include "method.h"
 #include "preset.h"
@@ -317,7 +318,7 @@ void add_method(Writer& writer, const RenderSettings& settings, const Method& me
     const March& march = settings.march;
     if (method.biases & bias_flight_steps) {
         writer.add("flight", glm::dvec3(method.free_flight, march.step, method.emission_at));
-        if (method.free_flight == FREE_FLIGHT_ADAPTIVE) // its steps end at the faces of majorant cells, too
+        if (method.flights_have(TRAIT_OPTICAL_STEPS)) // its steps end at the faces of majorant cells, too
             writer.add("steps", glm::dvec3(march.optical_step, settings.majorant_scale, settings.majorant_cell));
     }
     if (method.biases & bias_shadow_steps)

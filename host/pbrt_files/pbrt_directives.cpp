@@ -30,8 +30,10 @@ glm::dvec3 unit(const glm::dvec3& v) {
 PbrtDirectives::PbrtDirectives(PbrtTokens tokens, PbrtScene& scene) : tokens_(std::move(tokens)), scene_(scene) {
     state_.material.thing.type = "diffuse";
     add_transforms();
+    add_coordinate_systems();
     add_settings();
     add_world();
+    add_things();
 }
 
 void PbrtDirectives::note(const PbrtPlace& place, const std::string& message) {
@@ -150,6 +152,14 @@ void PbrtDirectives::add_transforms() {
             state_.transform = m;
     };
     handlers_["ConcatTransform"] = [=, this](const PbrtToken& token) { concatenate(checked(token, matrix())); };
+    handlers_["TransformTimes"] = [this](const PbrtToken&) {
+        tokens_.number();
+        tokens_.number();
+    };
+    handlers_["ActiveTransform"] = [this](const PbrtToken& token) { read_active_transform(token); };
+}
+
+void PbrtDirectives::add_coordinate_systems() {
     handlers_["CoordinateSystem"] = [this](const PbrtToken&) {
         coordinate_systems_[name("a name in quotes")] = state_.transform;
     };
@@ -161,11 +171,6 @@ void PbrtDirectives::add_transforms() {
         else
             state_.transform = system->second;
     };
-    handlers_["TransformTimes"] = [this](const PbrtToken&) {
-        tokens_.number();
-        tokens_.number();
-    };
-    handlers_["ActiveTransform"] = [this](const PbrtToken& token) { read_active_transform(token); };
 }
 
 void PbrtDirectives::read_active_transform(const PbrtToken& directive) {
@@ -241,6 +246,14 @@ void PbrtDirectives::add_world() {
         handlers_[end] = [this](const PbrtToken& token) { pop(token); };
     handlers_["Attribute"] = [this](const PbrtToken& token) { read_attribute(token); };
     handlers_["ReverseOrientation"] = [this](const PbrtToken&) { state_.is_reversed = !state_.is_reversed; };
+    handlers_["Include"] = [this](const PbrtToken& token) {
+        const std::string file = name("a file in quotes");
+        tokens_.include(scene_.folder / file, token.place);
+    };
+    handlers_["Import"] = [this](const PbrtToken& token) { import(token); };
+}
+
+void PbrtDirectives::add_things() {
     handlers_["MediumInterface"] = [this](const PbrtToken&) { read_medium_interface(); };
     handlers_["Material"] = [this](const PbrtToken& token) { state_.material = {thing(token, "material"), false}; };
     handlers_["NamedMaterial"] = [this](const PbrtToken& token) {
@@ -277,11 +290,6 @@ void PbrtDirectives::add_world() {
     handlers_["ObjectBegin"] = [this](const PbrtToken& token) { begin_object(token); };
     handlers_["ObjectEnd"] = [this](const PbrtToken& token) { end_object(token); };
     handlers_["ObjectInstance"] = [this](const PbrtToken&) { read_instance(); };
-    handlers_["Include"] = [this](const PbrtToken& token) {
-        const std::string file = name("a file in quotes");
-        tokens_.include(scene_.folder / file, token.place);
-    };
-    handlers_["Import"] = [this](const PbrtToken& token) { import(token); };
 }
 
 void PbrtDirectives::import(const PbrtToken& directive) {

@@ -32,8 +32,10 @@ private:
     using Handler = std::function<void(const PbrtToken&)>;
 
     void add_transforms();
+    void add_coordinate_systems();
     void add_settings();
     void add_world();
+    void add_things();
     void concatenate(const glm::dmat4& transform);
     glm::dmat4 matrix();
     glm::dmat4 look_at();

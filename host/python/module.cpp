@@ -10,7 +10,9 @@
 #include "device_json.h"
 #include "error.h"
 #include "integrators.h"
+#include "interrupt.h"
 #include "memory_grids.h"
+#include "printable.h"
 #include "python_session.h"
 #include "version.h"
 
@@ -144,14 +146,69 @@ RenderRequest request_of(const py::dict& options) {
     return request;
 }
 
-// What Python raises while a render goes on ends it, and is raised when that has come to rest. Python's objects are
-// kept only meanwhile: nothing that refers to this one can be found by Python's collector through it.
+// What Python raises while this program works on this thread ends the work, and is raised when that has come to rest.
+thread_local std::unique_ptr<py::error_already_set> raised;
+
+bool ask() {
+    const py::gil_scoped_acquire acquire;
+    if (!raised && PyErr_CheckSignals() != 0)
+        raised = std::make_unique<py::error_already_set>();
+    return raised != nullptr;
+}
+
+// Without Python's lock.
+template <class Work> void run(const Work& work) {
+    std::exception_ptr failure;
+    {
+        const py::gil_scoped_release release;
+        const InterruptQuestion question(&ask);
+        try {
+            work();
+        } catch (abi::__forced_unwind&) { // a daemon thread, at the interpreter's end
+            throw;
+        } catch (...) {
+            failure = std::current_exception();
+        }
+    }
+    if (const auto error = std::move(raised)) // which is why
+        throw py::error_already_set(*error);
+    if (failure)
+        std::rethrow_exception(failure);
+}
+
+// Who is told of this thread's render. Python's objects are kept only meanwhile: nothing that refers to a session can
+// be found by Python's collector through it.
+class Told {
+public:
+    explicit Told(const py::object& progress) : before_(now_) { now_ = &progress; }
+    ~Told() { now_ = before_; }
+    Told(const Told&) = delete;
+    Told& operator=(const Told&) = delete;
+
+    static void tell(double samples, std::optional<double> noise) {
+        const py::gil_scoped_acquire acquire;
+        if (raised || !now_ || now_->is_none())
+            return;
+        try {
+            (*now_)(samples, noise);
+        } catch (py::error_already_set& error) {
+            raised = std::make_unique<py::error_already_set>(error);
+        }
+    }
+
+private:
+    static thread_local const py::object* now_;
+    const py::object* const before_;
+};
+
+thread_local const py::object* Told::now_ = nullptr;
+
 class SessionObject {
 public:
     SessionObject(const SceneSource& source, const py::dict& options, bool strict) {
         Callbacks callbacks;
-        callbacks.progress = [this](double samples, std::optional<double> noise) { tell(samples, noise); };
-        callbacks.interrupted = [this] { return ask(); };
+        callbacks.progress = &Told::tell;
+        callbacks.interrupted = &ask;
         const RenderRequest request = request_of(options);
         run([&] { session_ = std::make_unique<PythonSession>(source, request, strict, std::move(callbacks)); });
     }
@@ -162,17 +219,9 @@ public:
     SessionObject(const SessionObject&) = delete;
     SessionObject& operator=(const SessionObject&) = delete;
 
-    std::uint32_t render(std::optional<std::uint32_t> samples, py::object progress) {
-        if (!progress_.is_none()) // by what this calls
-            throw RenderError("this session is rendering");
-        progress_ = std::move(progress);
-        try {
-            run([&] { session_->render(samples); });
-        } catch (...) {
-            progress_ = py::none();
-            throw;
-        }
-        progress_ = py::none();
+    std::uint32_t render(std::optional<std::uint32_t> samples, const py::object& progress) {
+        const Told told(progress);
+        run([&] { session_->render(samples); });
         return session_->samples();
     }
 
@@ -185,56 +234,37 @@ public:
     const PythonSession& session() const { return *session_; }
 
 private:
-    template <class Work> void run(const Work& work) {
-        std::exception_ptr failure;
-        {
-            const py::gil_scoped_release release;
-            try {
-                work();
-            } catch (abi::__forced_unwind&) { // a daemon thread, at the interpreter's end
-                throw;
-            } catch (...) {
-                failure = std::current_exception();
-            }
-        }
-        if (const auto raised = std::move(raised_)) // which is why
-            throw py::error_already_set(*raised);
-        if (failure)
-            std::rethrow_exception(failure);
-    }
-
-    void tell(double samples, std::optional<double> noise) {
-        const py::gil_scoped_acquire acquire;
-        if (raised_ || progress_.is_none())
-            return;
-        try {
-            progress_(samples, noise);
-        } catch (py::error_already_set& error) {
-            raised_ = std::make_unique<py::error_already_set>(error);
-        }
-    }
-
-    bool ask() {
-        const py::gil_scoped_acquire acquire;
-        if (!raised_ && PyErr_CheckSignals() != 0)
-            raised_ = std::make_unique<py::error_already_set>();
-        return raised_ != nullptr;
-    }
-
-    py::object progress_ = py::none();
-    // By what this thread's call has called: others may wait for the same session.
-    static thread_local std::unique_ptr<py::error_already_set> raised_;
     std::unique_ptr<PythonSession> session_;
 };
 
-thread_local std::unique_ptr<py::error_already_set> SessionObject::raised_;
+// Names of files may be no UTF-8.
+std::vector<std::string> printable_all(std::vector<std::string> texts) {
+    for (std::string& text : texts)
+        text = printable(text, true);
+    return texts;
+}
 
 void add_errors(py::module_& module) {
     const py::exception<std::exception> error(module, "Error");
     const py::handle value_error = PyExc_ValueError, runtime_error = PyExc_RuntimeError;
-    py::register_exception<InputError>(module, "InputError", py::make_tuple(error, value_error));
-    py::register_exception<DeviceError>(module, "DeviceError", py::make_tuple(error, runtime_error));
-    py::register_exception<RenderError>(module, "RenderError", py::make_tuple(error, runtime_error));
+    static const py::exception<InputError> input_error(module, "InputError", py::make_tuple(error, value_error));
+    static const py::exception<DeviceError> device_error(module, "DeviceError", py::make_tuple(error, runtime_error));
+    static const py::exception<RenderError> render_error(module, "RenderError", py::make_tuple(error, runtime_error));
+    py::register_exception_translator([](std::exception_ptr thrown) {
+        const auto raise = [](const py::object& type, const std::exception& error) {
+            PyErr_SetString(type.ptr(), printable(error.what(), true).c_str());
+        };
+        try {
+            if (thrown)
+                std::rethrow_exception(thrown);
+        } catch (const InputError& error) {
+            raise(input_error, error);
+        } catch (const DeviceError& error) {
+            raise(device_error, error);
+        } catch (const RenderError& error) {
+            raise(render_error, error);
+        }
+    });
 }
 
 void add_classes(py::module_& module) {
@@ -263,8 +293,7 @@ void add_classes(py::module_& module) {
             [](const PythonPicture& picture, const std::filesystem::path& file, const std::optional<std::string>& curve,
                const py::object& exposure) {
                 const ToneRequest tone = tone_of(curve, exposure);
-                const py::gil_scoped_release release;
-                write_picture(picture, file, tone);
+                run([&] { write_picture(picture, file, tone); });
             },
             py::arg("file"), py::arg("tonemap"), py::arg("exposure"));
     py::class_<SessionObject>(module, "Session")
@@ -273,8 +302,9 @@ void add_classes(py::module_& module) {
         .def("render", &SessionObject::render, py::arg("samples"), py::arg("progress"))
         .def("picture", &SessionObject::picture)
         .def_property_readonly("samples", [](const SessionObject& s) { return s.session().samples(); })
-        .def_property_readonly("assumed", [](const SessionObject& s) { return s.session().assumed(); })
-        .def_property_readonly("warnings", [](const SessionObject& s) { return s.session().warnings(); });
+        .def_property_readonly("assumed", [](const SessionObject& s) { return printable(s.session().assumed(), true); })
+        .def_property_readonly("warnings",
+                               [](const SessionObject& s) { return printable_all(s.session().warnings()); });
 }
 
 } // namespace

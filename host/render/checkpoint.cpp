@@ -1,12 +1,15 @@
 #include "checkpoint.h"
 
 #include <bit>
+#include <cstddef>
 #include <cstring>
 #include <fmt/format.h>
 #include <fstream>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
+#include <vector>
 
 #include "digest.h"
 #include "error.h"
@@ -24,10 +27,6 @@ using Json = nlohmann::json;
 
 // magic, bytes of the header, header (JSON), film, sums, layers, pixels, digest of all before.
 constexpr char magic[] = {'v', 'k', 'v', 'o', 'l', 'c', 'h', '5'};
-
-template <class T> void append(std::string& text, std::span<const T> values) {
-    text.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
-}
 
 Json header_of(const Checkpoint& c) {
     Json non_finite = Json::array();
@@ -169,17 +168,20 @@ RenderIdentity identify(const shared::FrameParams& frame, const Specialization& 
 void save_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint) {
     const std::string header = header_of(checkpoint).dump();
     const std::uint64_t header_size = header.size();
-    std::string bytes(magic, sizeof magic);
-    append(bytes, std::span<const std::uint64_t>(&header_size, 1));
-    bytes += header;
-    append(bytes, std::span<const shared::FilmPixel>(checkpoint.film));
-    append(bytes, std::span<const shared::FilmPixel>(checkpoint.sums));
-    append(bytes, std::span<const glm::vec3>(checkpoint.layers));
+    std::string begin(magic, sizeof magic);
+    begin.append(reinterpret_cast<const char*>(&header_size), sizeof header_size);
+    begin += header;
+    std::vector<std::span<const std::byte>> parts{
+        std::as_bytes(std::span(begin)), std::as_bytes(std::span(checkpoint.film)),
+        std::as_bytes(std::span(checkpoint.sums)), std::as_bytes(std::span(checkpoint.layers))};
     if (checkpoint.pixels)
-        append(bytes, std::span<const std::uint32_t>(*checkpoint.pixels));
-    const std::uint64_t sum = checksum(bytes);
-    append(bytes, std::span<const std::uint64_t>(&sum, 1));
-    write_text(file, bytes);
+        parts.push_back(std::as_bytes(std::span(*checkpoint.pixels)));
+    Digest digest;
+    for (const auto& part : parts)
+        digest.add(part);
+    const std::uint64_t sum = digest.value();
+    parts.push_back(std::as_bytes(std::span(&sum, 1)));
+    write_parts(file, parts);
 }
 
 bool is_checkpoint(const std::filesystem::path& file) {

@@ -64,9 +64,11 @@ void Session::render(std::uint32_t samples) {
     while (done_ < wanted_ && !is_good_enough() && !stopping()) {
         try {
             enter_moments();
-        } catch (const std::exception&) {
-            if (job_.checkpoint) // what was rendered outlives a moment that cannot be made ready
+        } catch (const std::exception&) { // what was rendered outlives a moment that cannot be made ready
+            if (job_.checkpoint) // to go on from
                 save_checkpoint();
+            end_rendering();
+            result_.interrupted = true;
             throw;
         }
         if (batch_ == 0)
@@ -90,10 +92,14 @@ void Session::render(std::uint32_t samples) {
     }
     if (job_.checkpoint && done_ < wanted_ && !result_.reached_goal && !gave_up_)
         save_checkpoint();
+    end_rendering();
+    if (done_ >= wanted_ || result_.reached_goal) // what ended it came too late
+        result_.interrupted = false;
+}
+
+void Session::end_rendering() {
     result_.render_seconds += watch_.lap();
     result_.samples = done_;
-    if (done_ >= wanted_) // what ended it came too late
-        result_.interrupted = false;
 }
 
 void Session::begin_again() {
@@ -117,7 +123,6 @@ void Session::begin_again() {
 }
 
 RenderResult& Session::result() {
-    check_ready();
     if (!job_.dry_run)
         develop_film();
     if (trace_)
@@ -363,6 +368,7 @@ void Session::gather() {
 void Session::develop_film() {
     bring_home();
     Film& film = result_.film;
+    film.is_premultiplied = scene_.holds_out;
     film.is_correlated = moving_ || method_.paths != PATHS_CAMERA;
     film.picture_width = scene_.picture.width;
     film.picture_height = scene_.picture.height;

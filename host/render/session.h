@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <exception>
 #include <functional>
 #include <future>
 #include <memory>
@@ -74,6 +75,7 @@ struct RenderResult {
     bool glows = false;         // the medium does, by <medium> or <emission>
     std::string biased;         // why its mean is not exact; empty: it is
     std::string by_chance;      // which light nothing but chance finds; empty: none
+    std::string scene_hash;     // of the files as they were when it began; see scene_hash.h
     std::string specialization; // in words: what the kernels were compiled for
     Plan plan;
     std::vector<PassFigures> passes; // of the session's own device, as is the plan
@@ -82,6 +84,7 @@ struct RenderResult {
     double load_seconds = 0, upload_seconds = 0, pipeline_seconds = 0, render_seconds = 0;
     std::uint64_t device_bytes = 0; // of all buffers
     MediaFigures media;
+    std::exception_ptr failure;             // what ended it early, between batches; the film is whole
     MediumOutline outline;                  // to explain the picture by
     std::vector<shared::TraceRecord> trace; // positions relative to trace_origin
     glm::dvec3 trace_origin{0.0};           // world space
@@ -97,9 +100,12 @@ public:
     Session(const Device& device, const Scene& scene, const RenderJob& job);
 
     // Until every pixel has `samples` in all, or the job ends it before. May be called again, for more; time limits
-    // count from each call. A scene that moves is made ready for each moment, in the time of rendering.
+    // count from each call. A scene that moves is made ready for each moment, in the time of rendering; if that fails
+    // what was rendered is whole, and can be had.
     void render(std::uint32_t samples);
     std::uint32_t samples() const { return done_; } // per pixel, finished for every pixel
+    // Not after paths were abandoned, or a device failed.
+    bool can_go_on() const { return !gave_up_; }
 
     // As if made anew with the job's seed as it is now, without reading, uploading or compiling again; only how long
     // lanes work at a time goes by the device as met before. Of one device, without checkpoints, and where nothing
@@ -154,6 +160,7 @@ private:
     std::uint32_t first_check() const; // of the noise; samples per pixel, a power of two
     std::uint32_t until_next_check() const;
     std::uint64_t next_sample() const { return std::uint64_t{job_.sample_offset} + done_; }
+    void end_rendering();
     void enter_moment();
     std::uint32_t until_next_moment() const;
     bool is_good_enough();

@@ -23,7 +23,8 @@ namespace {
 
 // Tracking steps in a turn, as suits the scene; 0: not known.
 std::uint32_t steps_per_turn(const Specialization& s, const LoadedMedium& medium) {
-    const bool at_once = s[SPEC_FREE_FLIGHT] == FREE_FLIGHT_ANALYTIC && s[SPEC_TRANSMITTANCE] == TRANSMITTANCE_ANALYTIC;
+    const bool at_once =
+        flight_has(s[SPEC_FREE_FLIGHT], TRAIT_CLOSED) && transmittance_has(s[SPEC_TRANSMITTANCE], TRAIT_CLOSED);
     if (at_once && s[SPEC_SHAPE] != SHAPE_MESH)
         return 1;
     const bool walks = flight_has(s[SPEC_FREE_FLIGHT], TRAIT_NULL) &&
@@ -51,6 +52,7 @@ MediaFigures figures_of(const Assets& assets) {
 } // namespace
 
 Session::Session(const Device& device, const Scene& scene, const RenderJob& job) : Session(device, scene, job, true) {
+    result_.scene_hash = scene_hash(scene);
     make_followers(scene);
     compile_all();
     watch_.lap();

@@ -191,11 +191,15 @@ std::string bias_of(const RenderResult& result) {
 Metadata make_metadata(const RenderRequest& request, const Scene& scene, const Device& device,
                        const RenderResult& result) {
     const auto most = std::max_element(result.film.samples.begin(), result.film.samples.end());
+    // Whoever takes a picture amid a render has asked for no more than it has.
+    std::optional<std::uint32_t> asked;
+    if (!result.interrupted && !result.reached_goal && !request.time_limit)
+        asked = result.samples;
     Metadata metadata{{"Software", std::string("vkvol ") + version},
                       {"samplesPerPixel", static_cast<int>(*most)},
                       {"renderTimeSeconds", static_cast<float>(result.render_seconds)},
                       {"vkvol/version", std::string(version)},
-                      {"vkvol/sceneHash", scene_hash(scene)},
+                      {"vkvol/sceneHash", result.scene_hash},
                       {"vkvol/integrator", result.integrator},
                       {"vkvol/biased", bias_of(result)},
                       {"vkvol/specialization", result.specialization},
@@ -203,7 +207,7 @@ Metadata make_metadata(const RenderRequest& request, const Scene& scene, const D
                       {"vkvol/seed", std::to_string(request.seed)},
                       {"vkvol/sampleOffset", static_cast<int>(request.sample_offset)},
                       {"vkvol/interrupted", result.interrupted ? 1 : 0},
-                      {"vkvol/asked", asked_text(request, scene)},
+                      {"vkvol/asked", asked_text(request, scene, asked)},
                       {"vkvol/device", of_all_devices(device, result, &DeviceInfo::name)},
                       {"vkvol/driver", of_all_devices(device, result, &DeviceInfo::driver)},
                       {"vkvol/capsHit", result.counts.any_cap() ? 1 : 0},
@@ -215,7 +219,7 @@ Metadata make_metadata(const RenderRequest& request, const Scene& scene, const D
                       {"vkvol/abandonedPaths", metadata_count(result.counts.abandoned)},
                       {"vkvol/nonFiniteSamples", metadata_count(result.counts.non_finite)},
                       {"vkvol/cleanedVoxels", metadata_count(result.counts.cleaned_voxels)}};
-    record_correlation(result.film, metadata);
+    record_facts(result.film, metadata);
     if (!scene.units.empty())
         metadata["vkvol/units"] = scene.units;
     if (const std::string layers = layers_text(scene); !layers.empty())
@@ -240,7 +244,7 @@ std::string make_report(const RenderRequest& request, const Scene& scene, const 
     report["version"] = version;
     report["error"] = error.empty() ? Json() : Json(error);
     report["scene"] = request.scene.string();
-    report["sceneHash"] = scene_hash(scene);
+    report["sceneHash"] = result.scene_hash;
     report["integrator"] = result.integrator;
     report["biased"] = bias_of(result);
     report["foundByChance"] = result.by_chance;

@@ -66,12 +66,13 @@ std::string layers_text(const Scene& scene) {
     return text;
 }
 
-std::string asked_text(const RenderRequest& request, const Scene& scene) {
+std::string asked_text(const RenderRequest& request, const Scene& scene, std::optional<std::uint32_t> samples) {
     const Crop crop = resolve_crop(request.crop, scene.picture);
-    std::string text = fmt::format(
-        "{} samples from {} of seed {}, {} seconds, noise {}, window {},{},{},{}, layers {}{}", scene.settings.spp,
-        request.sample_offset, request.seed, request.time_limit.value_or(0.0), request.noise_goal.value_or(0.0),
-        crop.x0, crop.x1, crop.y0, crop.y1, scene.layers, scene.holds_out ? ", alpha" : "");
+    std::string text =
+        fmt::format("{} samples from {} of seed {}, {} seconds, noise {}, window {},{},{},{}, layers {}{}",
+                    samples.value_or(scene.settings.spp), request.sample_offset, request.seed,
+                    request.time_limit.value_or(0.0), request.noise_goal.value_or(0.0), crop.x0, crop.x1, crop.y0,
+                    crop.y1, scene.layers, scene.holds_out ? ", alpha" : "");
     if (const auto& exposure = scene.camera.exposure)
         text += fmt::format(", exposed {} s at f/{}, ISO {}, {} cd/m^2", exposure->shutter, exposure->f_number,
                             exposure->iso, exposure->luminance_unit);

@@ -1,6 +1,8 @@
 // What a request changes of a scene that has been read.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "field_cache.h"
@@ -17,7 +19,8 @@ std::string apply_request(const RenderRequest& request, bool has_view, Scene& sc
 std::string layers_text(const Scene& scene);
 
 // All that decides which samples a picture of the scene holds, which layers, and how it is shown, in one line.
-std::string asked_text(const RenderRequest& request, const Scene& scene);
+// `samples`: per pixel; without, as many as the scene says.
+std::string asked_text(const RenderRequest& request, const Scene& scene, std::optional<std::uint32_t> samples = {});
 
 // The window in pixels; the whole picture without a request. Throws InputError if it is empty or leaves the picture.
 Crop resolve_crop(const std::optional<CropRequest>& request, const Picture& picture);

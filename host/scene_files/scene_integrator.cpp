@@ -117,10 +117,10 @@ void SceneReader::warn_about_steps(const Scene& scene, const Method& method) con
 
     const XmlElement march = one("march");
     const bool shadows = method.shadow_rays_have(TRAIT_MARCH);
-    const bool step = method.free_flight == FREE_FLIGHT_MARCH || (shadows && !march.has("shadowStep"));
-    const bool jitter = method.flights_have(TRAIT_MARCH) || (shadows && method.transmittance == TRANSMITTANCE_MARCH);
+    const bool step = method.flights_have(TRAIT_EQUAL_STEPS) || (shadows && !march.has("shadowStep"));
+    const bool jitter = method.flights_have(TRAIT_JITTERED) || method.shadow_rays_have(TRAIT_JITTERED);
     for (const auto& [name, used] : {std::pair{"step", step}, std::pair{"shadowStep", shadows},
-                                     std::pair{"opticalStep", method.free_flight == FREE_FLIGHT_ADAPTIVE},
+                                     std::pair{"opticalStep", method.flights_have(TRAIT_OPTICAL_STEPS)},
                                      std::pair{"jitter", jitter}, std::pair{"unit", takes_steps}})
         if (march.has(name) && !used)
             march.warn(fmt::format("<march> {} is without effect: {} takes no such steps", name, method.integrator));

@@ -142,29 +142,36 @@ TriangleSurface box_of(const Box& box) {
     return shape;
 }
 
+struct MaterialChoice {
+    const char* name;
+    MaterialKind kind;
+    double color; // unless another is asked for
+};
+constexpr MaterialChoice material_choices[] = {
+    {"diffuse", MaterialKind::diffuse, 0.5},     {"mirror", MaterialKind::mirror, 1.0},
+    {"conductor", MaterialKind::conductor, 1.0}, {"dielectric", MaterialKind::dielectric, 1.0},
+    {"coated", MaterialKind::coated, 0.5},       {"thinDielectric", MaterialKind::thin_dielectric, 1.0}};
+
+const MaterialChoice& material_choice(const XmlElement& element) {
+    const std::string name = element.attribute("material", "diffuse");
+    std::vector<std::string> names;
+    for (const MaterialChoice& choice : material_choices) {
+        if (name == choice.name)
+            return choice;
+        names.emplace_back(choice.name);
+    }
+    element.fail_attribute(
+        "material", fmt::format("<{}> material: '{}' is unknown{}", element.name(), name, name_hint(name, names)));
+}
+
 } // namespace
 
 Material SceneReader::material(const XmlElement& element) const {
-    struct Choice {
-        const char* name;
-        MaterialKind kind;
-        double color; // unless another is asked for
-    };
-    constexpr Choice choices[] = {
-        {"diffuse", MaterialKind::diffuse, 0.5},     {"mirror", MaterialKind::mirror, 1.0},
-        {"conductor", MaterialKind::conductor, 1.0}, {"dielectric", MaterialKind::dielectric, 1.0},
-        {"coated", MaterialKind::coated, 0.5},       {"thinDielectric", MaterialKind::thin_dielectric, 1.0}};
-    const std::string name = element.attribute("material", "diffuse");
-    const auto* choice =
-        std::find_if(std::begin(choices), std::end(choices), [&](const Choice& each) { return name == each.name; });
-    if (choice == std::end(choices))
-        element.fail_attribute("material", fmt::format("<{}> material: '{}' is unknown{}", element.name(), name,
-                                                       name_hint(name, {"diffuse", "mirror", "conductor", "dielectric",
-                                                                        "coated", "thinDielectric"})));
+    const MaterialChoice& choice = material_choice(element);
     Material material;
-    material.kind = choice->kind;
+    material.kind = choice.kind;
     const bool colored = element.has("r") || element.has("g") || element.has("b");
-    const double usual = element.has("texture") ? 1.0 : choice->color;
+    const double usual = element.has("texture") ? 1.0 : choice.color;
     material.color = colored ? color(element) : Rgb(usual * element.attribute_number("multiplier", 1.0, not_negative));
     for (int i = 0; i < 3; ++i)
         if (material.color[i] > share.high)

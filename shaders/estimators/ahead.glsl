@@ -8,8 +8,8 @@
 
 // Not where each step gathers something, or may need no look-up; noise is not waited for.
 bool looks_ahead() {
-    bool walks = NULL_FLIGHT && FREE_FLIGHT != FREE_FLIGHT_DECOMPOSITION;
-    bool shadows_walk = NULL_TRANSMITTANCE && TRANSMITTANCE != TRANSMITTANCE_RESIDUAL;
+    bool walks = NULL_FLIGHT && !CONTROLLED_FLIGHT;
+    bool shadows_walk = NULL_TRANSMITTANCE && !CONTROLLED_TRANSMITTANCE;
     bool gathers = EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS;
     return FIELD == FIELD_GRID && walks && NEE != NEE_TENTATIVE && !gathers && (!SHADOW_RAYS_WALK || shadows_walk);
 }

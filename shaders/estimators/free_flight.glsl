@@ -23,9 +23,9 @@ float begin_flight(MediumParams v, Spectrum beta, float e, float select) {
 void begin_flight_part(MediumParams v, inout Walk w) {
     if ((FLIGHT_TRAITS & TRAIT_CELLS) != 0)
         begin_cells(v, false, w);
-    if (FREE_FLIGHT == FREE_FLIGHT_REGULAR)
+    if ((FLIGHT_TRAITS & TRAIT_VOXELS) != 0)
         begin_voxels(v, w);
-    if (FREE_FLIGHT == FREE_FLIGHT_MARCH)
+    if ((FLIGHT_TRAITS & TRAIT_EQUAL_STEPS) != 0)
         begin_march(frame.march.step, w);
 }
 
@@ -36,7 +36,7 @@ uint fly(MediumParams v, Collision c, uint event, inout Walk w, inout Rng rng, i
          out Spectrum deposit, inout Tally tally) {
     deposit = to_spectrum(vec3(0.0));
     if (NULL_FLIGHT && event == EVENT_COLLIDED) {
-        float share = FREE_FLIGHT == FREE_FLIGHT_DECOMPOSITION ? decomposition_share(c) : c.sigma_t / c.sigma_maj;
+        float share = CONTROLLED_FLIGHT ? decomposition_share(c) : c.sigma_t / c.sigma_maj;
         deposit = beta * c.ratio * share * c.share;
         switch (FREE_FLIGHT) {
         case FREE_FLIGHT_DELTA:

@@ -29,8 +29,8 @@ void begin_transmittance(uvec4 words, inout Walk w) {
 // Called for each part of the ray within the medium.
 void begin_transmittance_part(MediumParams v, inout Walk w) {
     if (NULL_TRANSMITTANCE)
-        begin_cells(v, TRANSMITTANCE == TRANSMITTANCE_RESIDUAL, w);
-    if (TRANSMITTANCE == TRANSMITTANCE_REGULAR)
+        begin_cells(v, CONTROLLED_TRANSMITTANCE, w);
+    if ((SHADOW_TRAITS & TRAIT_VOXELS) != 0)
         begin_voxels(v, w);
     if (MARCHED_TRANSMITTANCE)
         begin_march(frame.march.shadow_step, w);

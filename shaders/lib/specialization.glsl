@@ -121,13 +121,15 @@ const int SHADOW_TRAITS = TRANSMITTANCE_TRAITS(TRANSMITTANCE);
 const bool NULL_FLIGHT = (FLIGHT_TRAITS & TRAIT_NULL) != 0;
 const bool NULL_TRANSMITTANCE = (SHADOW_TRAITS & TRAIT_NULL) != 0;
 const bool MARCHED_TRANSMITTANCE = (SHADOW_TRAITS & TRAIT_MARCH) != 0;
+const bool CONTROLLED_FLIGHT = (FLIGHT_TRAITS & TRAIT_CONTROL) != 0;
+const bool CONTROLLED_TRANSMITTANCE = (SHADOW_TRAITS & TRAIT_CONTROL) != 0;
 
 // Where light scatters at most once a march samples no collision: it goes through and gathers along the ray. (A
 // function, with a variable, for the sake of glslang 12: see SHADOW_RAYS_WALK.)
 bool goes_through() {
     bool marches = (FLIGHT_TRAITS & TRAIT_MARCH) != 0;
     return (SCATTERING != SCATTERING_MULTIPLE && marches) ||
-           (SCATTERING == SCATTERING_NONE && FREE_FLIGHT == FREE_FLIGHT_ANALYTIC);
+           (SCATTERING == SCATTERING_NONE && (FLIGHT_TRAITS & TRAIT_CLOSED) != 0);
 }
 
 #endif

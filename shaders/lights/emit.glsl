@@ -83,7 +83,7 @@ Particle from_light(LightRow light, vec2 where, vec2 u, inout Rng rng) {
         vec3 normal = in_any_direction(where);
         p = from_surface(light.position + light.extent * normal, normal, abs(light.position) + light.extent,
                          4.0 * PI * light.area * light.radiance, u);
-    } else if (SEES_LAMPS && light.kind > LIGHT_SPHERE) {
+    } else if (SEES_LAMPS && (light.kind & LIGHT_FLAT) != 0u) {
         vec3 reach = abs(light.position) + abs(light.edge_u) + abs(light.edge_v);
         p = from_surface(flat_point(light, where), light.direction, reach, PI * light.area * light.radiance, u);
     } else if (light.kind == LIGHT_POINT) {

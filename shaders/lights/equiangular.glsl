@@ -27,7 +27,7 @@ vec2 lit_part(LightRow light, vec3 off, vec3 direction) {
     float a = dot(direction, light.direction), b = dot(off, light.direction);
     float c = 1.0 - light.none_beyond;
     vec2 part = vec2(-FAR, FAR);
-    if (light.kind == LIGHT_DISK || light.kind == LIGHT_RECTANGLE) {
+    if ((light.kind & LIGHT_FLAT) != 0u) {
         float x = -b / a;
         part = a > 0.0 ? vec2(x, FAR) : a < 0.0 ? vec2(-FAR, x) : part;
     } else if (light.kind == LIGHT_SPOT && c > 0.0) {
@@ -61,7 +61,7 @@ Stretch stretch_of(MediumParams v, LightRow light, vec3 position, vec3 direction
     float size = s.t.y - s.t.x;
     if (UNBOUNDED != 0)
         size = min(size, 100.0 / v.usual_sigma_t);
-    float least = max(0.3 * sqrt(light.kind >= LIGHT_SPHERE ? light.area : 0.0), 1.0e-5 * size);
+    float least = max(0.3 * sqrt((light.kind & LIGHT_SHAPED) != 0u ? light.area : 0.0), 1.0e-5 * size);
     vec3 off = apart - s.foot * direction;
     s.off = max(length(off), max(least, 1.0e-30));
     vec2 lit = s.foot + lit_part(light, -off, direction);
@@ -98,7 +98,7 @@ float assumed_flight_pdf(MediumParams v, Stretch s, float t) {
 }
 
 bool has_place(LightRow light) {
-    return light.kind >= LIGHT_POINT && light.kind != LIGHT_MAP;
+    return (light.kind & LIGHT_PLACED) != 0u;
 }
 
 // Weight of a collision at distance t of a flight, from where this light is looked at.

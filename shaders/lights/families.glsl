@@ -27,9 +27,9 @@ float sensor_share(vec3 position, vec3 ray, float distance) {
 vec2 light_shares(LightRow light, float cosine, float pdf) {
     float radius = frame.particles.radius;
     vec2 shares = vec2(0.0);
-    if (light.kind >= LIGHT_SPHERE)
+    if ((light.kind & LIGHT_SHAPED) != 0u)
         shares = vec2(cosine / PI, 4.0 / (light.area * (light.kind == LIGHT_SPHERE ? 4.0 : 1.0)));
-    else if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT)
+    else if ((light.kind & LIGHT_PLACED) != 0u)
         shares = vec2(INV_4PI, CERTAIN);
     else if (radius > 0.0)
         shares = vec2(-1.0, pdf > 0.0 ? 4.0 * PI * pdf : CERTAIN) / (PI * radius * radius);
@@ -50,7 +50,7 @@ float lamp_cosine(LightRow light, vec3 from, vec3 direction, float distance) {
 
 // Shares of a light that a path finds along `direction`.
 vec2 shares_of_found(LightRow light, vec3 from, vec3 direction, float distance, float pdf) {
-    float cosine = light.kind >= LIGHT_SPHERE ? lamp_cosine(light, from, direction, distance) : 1.0;
+    float cosine = (light.kind & LIGHT_SHAPED) != 0u ? lamp_cosine(light, from, direction, distance) : 1.0;
     return shares_at(light_shares(light, cosine, pdf), distance);
 }
 

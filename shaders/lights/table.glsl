@@ -55,7 +55,7 @@ LightSample sample_shapeless(LightRow light, vec3 from, vec2 u, inout Rng rng) {
 LightSample sample_light(Scatterer s, LightRow light, vec3 from, vec3 travel, uvec4 words, inout Rng rng) {
     vec2 u = to_uniform(words).zw;
     LightSample drawn;
-    if (SEES_LAMPS && light.kind >= LIGHT_SPHERE)
+    if (SEES_LAMPS && (light.kind & LIGHT_SHAPED) != 0u)
         drawn = sample_lamp(s, light, from, travel, u, to_tap(words).z);
     else
         drawn = sample_shapeless(light, from, u, rng);

@@ -24,7 +24,7 @@ Collision no_collision(MediumParams v) {
 // One step of the walk. EVENT_COLLIDED: a tentative collision, described in `c`; the distance to the next one is drawn.
 // `seeing`: the walk is a shadow ray's.
 uint next_collision(MediumParams v, bool seeing, inout Walk w, inout Rng rng, inout Tally tally, out Collision c) {
-    bool residual = TRANSMITTANCE == TRANSMITTANCE_RESIDUAL && seeing;
+    bool residual = CONTROLLED_TRANSMITTANCE && seeing;
     c.sigma_maj = w.sigma_maj;
     c.sigma_c = v.sigma_t * w.control;
     c.ratio = to_spectrum(v.sigma_ratio);
@@ -43,7 +43,7 @@ uint next_collision(MediumParams v, bool seeing, inout Walk w, inout Rng rng, in
     c.u = u.y;
     c.sigma_t = c.sigma_maj;
     // Below the control density a collision is real, whatever the density.
-    bool certain = FREE_FLIGHT == FREE_FLIGHT_DECOMPOSITION && !seeing && c.u * c.sigma_maj < c.sigma_c;
+    bool certain = CONTROLLED_FLIGHT && !seeing && c.u * c.sigma_maj < c.sigma_c;
     if (!certain) {
         Matter met = matter_in(v, w.cell_row, w.origin + w.t * w.direction, to_tap(words), to_choice(words));
         c.sigma_t = v.sigma_t * met.density;

@@ -74,7 +74,7 @@ void load_cell(MediumParams v, bool residual, inout Walk w) {
     bool cells = HAS_CELLS;
     uint i = cell_entry(v, w.cell, w.cell_edge);
     w.cell_row = i;
-    if (residual || FREE_FLIGHT == FREE_FLIGHT_DECOMPOSITION)
+    if (residual || CONTROLLED_FLIGHT)
         w.control = cells ? controls[i].control : v.control;
     if (residual)
         w.sigma_maj = v.sigma_t * (cells ? controls[i].residual : v.residual);

@@ -30,7 +30,7 @@ LightSample look_from_sensor(vec3 from, vec3 ray, inout Rng rng, out uint row) {
     row = choose_light(from, true, words, rng, chance);
     LightRow light = light_at(row);
     LightSample drawn;
-    if (SEES_LAMPS && light.kind >= LIGHT_SPHERE)
+    if (SEES_LAMPS && (light.kind & LIGHT_SHAPED) != 0u)
         drawn = sample_lamp_by_ray(light, from, ray, u, to_tap(words).z);
     else
         drawn = sample_shapeless(light, from, u, rng);

@@ -11,13 +11,13 @@
 // since glslang 12 branches for nested `&&` and `||`, and takes the outcome for a constant nevertheless.)
 const bool SHADOW_RAYS_WALK =
     (int(NEE != NEE_NONE) &
-     (int(TRANSMITTANCE != TRANSMITTANCE_ANALYTIC) | int(SHAPE == SHAPE_MESH) | int(HAS_SURFACES) | int(REPEATS))) != 0;
+     (int((SHADOW_TRAITS & TRAIT_CLOSED) == 0) | int(SHAPE == SHAPE_MESH) | int(HAS_SURFACES) | int(REPEATS))) != 0;
 
 // What the scene's estimators need of a walk that is laid aside: what rows of WALK_STATE ask for.
 #define WALK_CONDITIONS                                                                                               \
     int shadow_traits = SHADOW_RAYS_WALK ? SHADOW_TRAITS : 0;                                                         \
     int traits = FLIGHT_TRAITS | shadow_traits;                                                                       \
-    bool marches = FREE_FLIGHT == FREE_FLIGHT_MARCH || (shadow_traits & TRAIT_MARCH) != 0;                            \
+    bool marches = (FLIGHT_TRAITS & TRAIT_EQUAL_STEPS) != 0 || (shadow_traits & TRAIT_MARCH) != 0;                    \
     bool adds_depth = !NULL_FLIGHT || (SHADOW_RAYS_WALK && !NULL_TRANSMITTANCE);                                      \
     bool walks = (traits & TRAIT_CELLS) != 0;                                                                         \
     bool cells = (traits & TRAIT_VOXELS) != 0 || (walks && HAS_CELLS);                                                \

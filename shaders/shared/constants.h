@@ -202,14 +202,19 @@
 #define LIGHTS_AIMED 32 // of those that have a place, some that do not shine into all directions
 #define LIGHTS_EQUAL_AREA 16 // a map of the sky, and that a square one; see equal_area.glsl
 
+// Kinds of lights: each a number of its own, and what else is to be known of it.
+#define LIGHT_PLACED 16 // is at a place; the others are infinitely far
+#define LIGHT_SHAPED 32 // and of some size, which sensors see: a lamp
+#define LIGHT_FLAT 64   // which shines by the cosine
+#define LIGHT_AIMED 128 // does not shine into all directions
 #define LIGHT_DIRECTIONAL 0
 #define LIGHT_SUN 1 // in the sky
-#define LIGHT_POINT 2
-#define LIGHT_SPOT 3
-#define LIGHT_MAP 4 // of the sky
-#define LIGHT_SPHERE 5
-#define LIGHT_DISK 6
-#define LIGHT_RECTANGLE 7
+#define LIGHT_MAP 2 // of the sky
+#define LIGHT_POINT (3 | LIGHT_PLACED)
+#define LIGHT_SPOT (4 | LIGHT_PLACED | LIGHT_AIMED)
+#define LIGHT_SPHERE (5 | LIGHT_PLACED | LIGHT_SHAPED)
+#define LIGHT_DISK (6 | LIGHT_PLACED | LIGHT_SHAPED | LIGHT_FLAT | LIGHT_AIMED)
+#define LIGHT_RECTANGLE (7 | LIGHT_PLACED | LIGHT_SHAPED | LIGHT_FLAT | LIGHT_AIMED)
 
 // What a surface is made of. A plane has no end; there are few, and no hierarchy holds them.
 #define SURFACE_TRIANGLES 0
@@ -228,8 +233,8 @@
 #define MATERIAL_ROUGH_DIELECTRIC 6
 #define MATERIAL_THIN_DIELECTRIC 7 // both sides of a pane at once
 // No materials, but further bits of SPEC_MATERIALS.
-#define SMOOTH_FACES 8 // some triangles have normals of their own
-#define TEXTURED 9     // some surfaces have a texture
+#define SMOOTH_FACES 16 // some triangles have normals of their own
+#define TEXTURED 17     // some surfaces have a texture
 
 // What a piece of surfaces is that rays do not meet.
 #define DETAIL_NORMALS 1 // a, b, c: of a triangle's corners; surface: the piece that is their places, or 0

@@ -216,7 +216,7 @@ struct AliasEntry {
 
 // A light of several; which fields mean something depends on its kind.
 struct LightRow {
-    uint kind; // LIGHT_...
+    uint kind; // LIGHT_..., with what is known of it
     AliasEntry alias;
     float chance;    // with which it is chosen; of the first that is in a tree, with which the tree is
     vec3 position;   // render space

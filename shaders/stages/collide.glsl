@@ -141,7 +141,7 @@ float collision_along(MediumParams v, Walk w, vec3 deposit, Rng rng) {
 
 // The first collision of a flight that goes through: at each step as much as that takes away.
 void note_step(MediumParams v, MediumParams met, Spectrum deposit, float t, Lane lane, Rng rng) {
-    if (FREE_FLIGHT == FREE_FLIGHT_ANALYTIC)
+    if ((FLIGHT_TRAITS & TRAIT_CLOSED) != 0)
         t = lane.walk.start + collision_along(v, lane.walk, vec3(deposit), rng);
     vec3 position = lane.path.position + t * lane.path.direction;
     note_collision(lane.record, vec3(deposit), position, lane.path.direction, flown_before(lane) + t, albedo_at(met, position));

@@ -25,7 +25,7 @@ bool survives(inout Lane lane, float u) {
 uvec4 first_words(bool looks, inout Rng rng) {
     uint drawn = rng.draw;
     uvec4 words = next_words(rng);
-    if (looks && TRANSMITTANCE == TRANSMITTANCE_ANALYTIC)
+    if (looks && (SHADOW_TRAITS & TRAIT_CLOSED) != 0)
         rng.draw = drawn;
     return words;
 }

@@ -103,6 +103,38 @@ TEST_CASE("pipes are read and written", "[gpu][command]") {
     CHECK(written.code == exit_done);
     CHECK_FALSE(folder.text("a.png").empty());
     CHECK(folder.text("copy.png") == folder.text("a.png"));
+    // Whoever writes an EXR goes back in it.
+    REQUIRE(mkfifo(folder.file("p.exr").c_str(), 0600) == 0);
+    const Run picture = folder.script("cat p.exr >copy.exr & \"$vkvol\" ball.xml -q -o p.exr -o a.exr; code=$?; wait; "
+                                      "\"$vkvol\" compare copy.exr a.exr && exit $code");
+    CHECK(picture.code == exit_done);
+    CHECK_THAT(picture.text, Contains("identical"));
+}
+
+TEST_CASE("two signals at once are one", "[gpu][command]") {
+    const Folder folder("");
+    const Run run = folder.script(
+        "\"$vkvol\" ball.xml --spp 1000000000 -q -o h.exr & sleep 3; kill -TERM $!; kill -TERM $!; wait $!");
+    CHECK(run.code == exit_interrupted);
+    CHECK(fs::exists(folder.file("h.exr")));
+}
+
+TEST_CASE("what a dead process with our number left is no obstacle", "[gpu][command]") {
+    const Folder folder("");
+    const Run run = folder.script("sh -c ': >.a.$$.tmp.exr; exec \"$0\" ball.xml -q -o a.exr' \"$vkvol\"");
+    CHECK(run.code == exit_done);
+    CHECK(fs::exists(folder.file("a.exr")));
+}
+
+TEST_CASE("a layer of alpha changes no PNG", "[gpu][command]") {
+    const Folder folder("");
+    REQUIRE(folder.vkvol("ball.xml -q -o a.png").code == exit_done);
+    REQUIRE(folder.vkvol("ball.xml -q --aov alpha -o b.png -o b.exr").code == exit_done);
+    CHECK(folder.text("b.png") == folder.text("a.png"));
+    REQUIRE(folder.vkvol("ball.xml -q --alpha -o c.png -o c.exr").code == exit_done);
+    CHECK(folder.text("c.png") != folder.text("a.png"));
+    REQUIRE(folder.vkvol("develop c.exr -o d.png").code == exit_done);
+    CHECK(folder.text("d.png") == folder.text("c.png"));
 }
 
 TEST_CASE("a reader who has seen enough is no error", "[gpu][command]") {

@@ -141,12 +141,12 @@ void save_input(Target& target, const Range& range, std::uint64_t k, const std::
     waitpid(child, nullptr, 0);
 }
 
-// Removed with all that is in it. Two folders deep: what inputs call "../density_fields" is to be here, and not there
-// by chance.
+// Removed with all that is in it. Three folders deep: what inputs call "../../density_fields" is to be here, and not
+// there by chance.
 struct Scratch {
     std::filesystem::path own =
         std::filesystem::temp_directory_path() / fmt::format("vkvol_fuzz_{}", static_cast<long>(getpid()));
-    std::filesystem::path path = own / "inputs";
+    std::filesystem::path path = own / "inputs" / "scenes";
     Scratch() { std::filesystem::create_directories(path); }
     ~Scratch() {
         std::error_code ignored;

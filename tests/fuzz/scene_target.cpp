@@ -1,11 +1,14 @@
-// Scene files: built from the vocabulary, or taken from scenes/, then damaged as elements, as words and as bytes.
+// Scene files: built as their schema allows, or taken from scenes/, then damaged as elements, as words and as bytes.
 #include <algorithm>
 #include <fmt/format.h>
+#include <optional>
+#include <regex>
+#include <span>
 #include <string_view>
-#include <utility>
 
 #include "corpus.h"
 #include "mutate.h"
+#include "scene_schema.h"
 #include "scene_words.h"
 #include "scene_xml.h"
 #include "target.h"
@@ -35,205 +38,110 @@ std::string one_of(std::string_view alternatives, Random& random) {
     return std::string(alternatives.substr(0, alternatives.find('|')));
 }
 
-std::string attribute_value(std::string_view name, Source& random) {
+std::string value_of(const std::string& name, const ValueKind& kind, Source& random) {
     if (random.at_edge())
         return random.pick(edge_values);
-    if (name == "unit")
-        return one_of("voxel|world|world", random);
-    if (name == "model")
-        return one_of("color|blackbody", random);
-    if (name == "brightness")
-        return one_of("planck|peak", random);
-    if (name == "grid")
-        return one_of("density|temperature|density|colour|other", random);
-    if (name == "baseDir")
-        return one_of(".|./|", random);
-    if (name == "file")
-        return one_of("phase.txt|ball.obj|none.txt|.", random);
-    if (name == "jitter" || name == "mirror")
-        return one_of("true|false", random);
-    if (name == "scattering")
-        return one_of("none|single|multiple", random);
-    if (name == "flight")
-        return one_of("analytic|regular|march|adaptive|delta|weighted|decomposition|spectral", random);
-    if (name == "transmittance")
-        return one_of("analytic|regular|delta|ratio|residual|march|telescoping|jackknife", random);
-    if (name == "nee")
-        return one_of("none|collisions|tentative", random);
-    if (name == "emission")
-        return one_of("collisions|steps", random);
-    if (name == "mis")
-        return one_of("balance|power|light|phase", random);
-    if (name == "mapping")
-        return one_of("equirectangular|equalArea", random);
-    if (name == "distance")
-        return one_of("flights|mixed", random);
-    if (name == "up" && random.one_in(2))
-        return one_of("x|y|z", random);
-    if (name == "lookAt" || name == "up")
-        return one_of("0 0 0|1 2 3|0 0", random);
-    if (name == "values")
-        return one_of("1 0 0 0 0 1 0 0 0 0 1 0|1 2 3 4 0 2 0 1 1 0 3 2 0 0 0 1|1 0 0", random);
-    if (name == "albedo" || (name == "emission" && random.one_in(2)))
-        return one_of("0.5|0.9 0.5 0.2|1|0 1", random);
-    if (name == "kelvin")
-        return one_of("|2000|6500", random);
-    if (name == "material")
-        return one_of("diffuse|mirror|conductor|dielectric|coated|thinDielectric", random);
-    if (name == "normals")
-        return one_of("file|flat|smooth", random);
-    if (name == "metal")
-        return one_of("gold|copper|silver|aluminium|tin", random);
-    if (name == "sides")
-        return one_of("1|2", random);
-    if (name == "eta" || name == "k")
-        return one_of("1.5|0.2 0.9 1.1|1 2", random);
-    if (name == "octaves" || name == "cell")
-        return std::to_string(1 + random.below(16));
-    if (name == "lacunarity" || name == "reference")
-        return one_of("2|1|100|640", random);
-    return number(random);
+    if (!kind.words.empty() && !(kind.is_number && random.one_in(2)))
+        return random.pick(kind.words);
+    const auto* texts = std::find_if(std::begin(ordinary_texts), std::end(ordinary_texts),
+                                     [&](const Texts& texts) { return texts.name == name; });
+    if (texts != std::end(ordinary_texts))
+        return one_of(texts->alternatives, random);
+    std::string value;
+    for (std::uint64_t n = kind.least + random.below(kind.most - kind.least + 1); n > 0; --n) {
+        const auto highest = static_cast<std::uint64_t>(std::clamp(kind.high, 1.0, 200.0));
+        value +=
+            (value.empty() ? "" : " ") + (kind.is_whole ? std::to_string(random.below(highest) + 1) : number(random));
+    }
+    return value;
 }
 
-const Words& words_of(std::string_view name) {
-    return *std::find_if(std::begin(grammar), std::end(grammar),
-                         [&](const Words& words) { return words.element == name; });
-}
+// Of elements that exclude each other a scene, or a volume, mostly has one.
+constexpr std::string_view exclusive[][6] = {
+    {"densityField", "densityField", "sphere", "box", "everywhere", "models"},
+    {"camera", "camera", "camera", "irradiance", "fluence", "absorption"},
+    {"heyneygreenstein_g", "heynegreenstein_g", "phase", "phase", "phase", "phase"},
+};
 
-std::string element(const Words& words, Source& random) {
-    std::string xml = fmt::format("  <{}", words.element);
-    const bool all = random.one_in(2) || std::string_view(words.element).starts_with("sigma");
-    for (const char* name : words.attributes)
-        if (name && (all ? !(std::string_view(name) == "unit" && random.one_in(2)) : random.one_in(3)))
-            xml += fmt::format(" {}=\"{}\"", name, attribute_value(name, random));
-    const std::string_view kind = words.text;
-    if (kind.empty())
-        return xml + "/>\n";
-    const std::string text = random.at_edge() ? random.pick(edge_values)
-                             : kind == "n"    ? number(random)
-                             : kind == "i"    ? std::to_string(1 + random.below(200))
-                                              : one_of(kind, random);
-    return xml + fmt::format(">{}</{}>\n", text, words.element);
-}
+class SceneMaker {
+public:
+    SceneMaker(const SceneSchema& schema, Source& random) : schema_(schema), random_(random) {}
 
-// A map of a grid's values by points, most of which ascend.
-std::string map_by_points(Source& random) {
-    const bool transfer = random.one_in(2);
-    const char* name = transfer ? "transferFunction" : "densityMap";
-    std::string xml = fmt::format("  <{}>\n", name);
-    double value = 0.0;
-    for (std::uint64_t points = random.below(6); points > 0; --points) {
-        std::string point = element(point_grammar[transfer], random);
-        if (const std::size_t at = point.find("value=\""); at != std::string::npos && !random.one_in(20)) {
-            value += random.one_in(4) ? 0.0 : 0.1 * static_cast<double>(random.below(5));
-            const std::size_t begin = at + 7;
-            point.replace(begin, point.find('"', begin) - begin, fmt::format("{}", value));
+    std::string scene() { return element(schema_.root(), 0, ""); }
+
+    // Any, in one line or several, as at the place of another.
+    std::string part() {
+        const ChildKind* at = &schema_.root();
+        do
+            at = &random_.pick(at->kind->children);
+        while (!at->kind->children.empty() && !random_.one_in(3));
+        return element(*at, 1, "");
+    }
+
+private:
+    // `ascending`: the value of its first attribute, if not empty.
+    std::string element(const ChildKind& child, int depth, const std::string& ascending) {
+        const std::string indent(2 * static_cast<std::size_t>(depth), ' ');
+        std::string xml = indent + "<" + child.name;
+        const std::uint64_t rarity = random_.pick(rarities);
+        for (const AttributeKind& attribute : child.kind->attributes) {
+            const bool is_first = &attribute == child.kind->attributes.data() && !ascending.empty();
+            if (attribute.is_required || is_first || random_.one_in(rarity))
+                xml += fmt::format(" {}=\"{}\"", attribute.name,
+                                   is_first ? ascending : value_of(attribute.name, attribute.value, random_));
         }
-        xml += point;
+        const std::string inner = children(*child.kind, depth);
+        const std::string text = child.kind->text ? value_of(child.name, *child.kind->text, random_) : "";
+        if (inner.empty() && text.empty())
+            return xml + "/>\n";
+        return xml + ">" + text + (inner.empty() ? "" : "\n" + inner + indent) + "</" + child.name + ">\n";
     }
-    return xml + fmt::format("  </{}>\n", name);
-}
 
-// A volume with some of the elements that a medium has.
-std::string volume(Source& random) {
-    const char* names[] = {"a", "b", "c", ""};
-    std::string xml = "  <volume";
-    for (const char* attribute : {"name", "like"})
-        if (random.one_in(3))
-            xml += fmt::format(" {}=\"{}\"", attribute, names[random.below(4)]);
-    xml += ">\n";
-    if (!random.one_in(4))
-        xml += element(grammar[random.below(4)], random);
-    for (const char* name :
-         {"noise", "layers", "sigma_a", "sigma_s", "phase", "medium", "emission", "albedo", "densityMap"})
-        if (random.one_in(3))
-            xml += element(words_of(name), random);
-    if (random.one_in(4))
-        xml += map_by_points(random);
-    if (random.one_in(2)) {
-        xml += "  <transform>\n";
-        for (std::uint64_t steps = random.below(4); steps > 0; --steps)
-            xml += element(random.pick(step_grammar), random);
-        xml += "  </transform>\n";
+    std::string children(const ElementKind& kind, int depth) {
+        std::vector<std::string_view> chosen;
+        for (const auto& names : exclusive)
+            chosen.push_back(random_.pick(names));
+        std::string xml;
+        for (const ChildKind& child : kind.children) {
+            const bool may_be = child.repeats || random_.one_in(40) || !is_excluded(child.name, chosen);
+            const std::uint64_t rarity = is_among(child.name, chosen) && depth < 2 ? 2 : 5;
+            double value = 0.0; // of points of maps, and heights of layers, which ascend
+            for (std::uint64_t n = child.repeats ? random_.below(4) : random_.one_in(rarity); n > 0 && may_be; --n) {
+                value += random_.one_in(4) ? 0.0 : 0.1 * static_cast<double>(1 + random_.below(5));
+                const bool ascends = kind.children.size() == 1 && !child.kind->attributes.empty() &&
+                                     child.kind->attributes.front().is_required && !random_.one_in(20);
+                xml += element(child, depth + 1, ascends ? fmt::format("{}", value) : "");
+            }
+        }
+        return xml;
     }
-    return xml + "  </volume>\n";
-}
 
-// With what it holds between its tags.
-std::string surface(Source& random) {
-    const Words& words = random.pick(surface_grammar);
-    std::string xml = element(words, random);
-    xml.replace(xml.rfind("/>"), 2, ">");
-    if (random.one_in(3))
-        xml += element(random.pick(shine_grammar), random);
-    if (std::string_view(words.element) == "mesh" && random.one_in(2))
-        for (const Words& part : part_grammar)
-            if (!random.one_in(5))
-                xml += element(part, random);
-    if (random.one_in(3)) {
-        xml += "  <transform>\n";
-        for (std::uint64_t steps = random.below(3); steps > 0; --steps)
-            xml += element(random.pick(step_grammar), random);
-        xml += "  </transform>\n";
+    static bool is_among(std::string_view name, const std::vector<std::string_view>& names) {
+        return std::find(names.begin(), names.end(), name) != names.end();
     }
-    return xml + fmt::format("  </{}>\n", words.element);
-}
+    static bool is_excluded(std::string_view name, const std::vector<std::string_view>& chosen) {
+        const auto has = [&](const auto& names) {
+            return std::find(std::begin(names), std::end(names), name) != std::end(names);
+        };
+        return std::any_of(std::begin(exclusive), std::end(exclusive), has) && !is_among(name, chosen);
+    }
 
-std::string build(Source& random) {
-    std::string xml = "<options>\n";
-    if (random.one_in(3)) {
-        xml += "  <volumes>\n";
-        for (std::uint64_t volumes = random.below(4); volumes > 0; --volumes)
-            xml += volume(random);
-        xml += "  </volumes>\n";
-    }
-    switch (random.below(5)) { // one medium, mostly
-    case 0:
-        xml += element(grammar[0], random);
-        break;
-    case 1:
-        xml += "  <models><model>ball.obj</model></models>\n";
-        break;
-    default:
-        xml += element(grammar[1 + random.below(3)], random);
-    }
-    bool both_sigmas[2] = {false, false};
-    for (std::size_t i = 4; i < std::size(grammar); ++i) {
-        const std::string_view name = grammar[i].element;
-        if (!random.one_in(4) || ((name == "noise" || name == "layers") && !random.one_in(3)))
-            continue;
-        if (name.starts_with("sigma") && std::exchange(both_sigmas[name.back() == 's'], true))
-            continue;
-        xml += element(grammar[i], random);
-    }
-    if (random.one_in(6))
-        xml += map_by_points(random);
-    if (random.one_in(4)) {
-        xml += "  <surfaces>\n";
-        for (std::uint64_t surfaces = random.below(4); surfaces > 0; --surfaces)
-            xml += surface(random);
-        xml += "  </surfaces>\n";
-    }
-    if (random.one_in(3)) {
-        xml += "  <lights>\n";
-        for (std::uint64_t lights = random.below(4); lights > 0; --lights)
-            xml += element(random.pick(light_grammar), random);
-        xml += "  </lights>\n";
-    }
-    return xml + "</options>\n";
-}
+    static constexpr std::uint64_t rarities[] = {1, 2, 4, 12};
+    const SceneSchema& schema_;
+    Source& random_;
+};
 
 // Between < and >, or an element on its line.
-void damage_elements(std::string& xml, Source& random) {
+void damage_elements(std::string& xml, const SceneSchema& schema, Source& random) {
     switch (random.below(6)) {
     case 0: {
-        const std::string added = element(random.one_in(4) ? random.pick(light_grammar) : random.pick(grammar), random);
+        const std::string added = SceneMaker(schema, random).part();
         const std::size_t line = xml.find('\n', random.below(xml.size()));
         xml.insert(line == std::string::npos ? xml.size() : line + 1, added);
         break;
     }
     case 1: { // deep nesting
-        const std::string name = random.pick(element_names);
+        const std::string name = random.pick(schema.names());
         const std::uint64_t depth = 1 + random.below(random.one_in(20) ? 20000 : 20);
         std::string open, close;
         for (std::uint64_t i = 0; i < depth; ++i) {
@@ -247,7 +155,7 @@ void damage_elements(std::string& xml, Source& random) {
     }
     case 2: { // something very long
         std::string piece = random.pick(edge_values);
-        piece += random.pick(element_names);
+        piece += random.pick(schema.names());
         const std::uint64_t times = 1 + random.below(random.one_in(20) ? 10000 : 100);
         std::string many;
         for (std::uint64_t i = 0; i < times; ++i)
@@ -256,7 +164,7 @@ void damage_elements(std::string& xml, Source& random) {
         break;
     }
     case 3:
-        replace_token(xml, random, element_names);
+        replace_token(xml, random, schema.names());
         break;
     default:
         shuffle_lines(xml, random);
@@ -272,6 +180,7 @@ public:
         directory_ = directory;
         write_scene_files(directory);
         const std::filesystem::path scenes = source_directory() / "scenes";
+        schema_.emplace(scenes / "vkvol.xsd");
         for (const std::filesystem::path& folder : {scenes, scenes / "thesis"})
             for (const auto& entry : std::filesystem::directory_iterator(folder))
                 if (entry.path().extension() == ".xml")
@@ -279,16 +188,17 @@ public:
         std::sort(files_.begin(), files_.end()); // directories have no order of their own
         for (const std::filesystem::path& file : files_)
             corpus_.push_back(read_file(file));
+        make_named_files();
     }
 
     std::string make(Random& seeded) override {
         Source random(seeded);
-        std::string xml = random.one_in(3) ? random.pick(corpus_) : build(random);
+        std::string xml = random.one_in(3) ? random.pick(corpus_) : SceneMaker(*schema_, random).scene();
         if (random.one_in(3))
             for (std::uint64_t n = 1 + random.below(4); n > 0 && !xml.empty(); --n)
-                replace_token(xml, random, edge_values);
+                replace_token(xml, random, random.one_in(4) ? std::span<const char* const>(edge_values) : words_);
         if (random.one_in(6) && !xml.empty())
-            damage_elements(xml, random);
+            damage_elements(xml, *schema_, random);
         if (random.one_in(6))
             mutate_bytes(xml, random, random.pick(corpus_));
         return xml;
@@ -297,14 +207,13 @@ public:
     void use(const std::string& input, Random& seeded) override {
         Source random(seeded);
         Defines defines;
-        if (random.one_in(8) || input.find("$a") != std::string::npos)
+        if (random.one_in(50) || input.find("$a") != std::string::npos)
             defines["a"] = number(random);
         if (input.find("$long") != std::string::npos)
             defines["long"] = std::string(random.below(100000), 'x');
         SceneOverrides overrides;
         if (random.one_in(10))
-            overrides.integrator = one_of(words_of("integrator").text, random) +
-                                   (random.one_in(2) ? ":flight=" + attribute_value("flight", random) : "");
+            overrides.integrator = integrator(random);
         if (random.one_in(20))
             overrides.grid = directory_ / "cloud.nvdb";
         Scene scene = parse_scene(input, directory_ / "scene.xml", defines, overrides);
@@ -317,9 +226,39 @@ public:
     }
 
 private:
+    // What the corpus names, so that it is read further than to there.
+    void make_named_files() {
+        const std::regex name(R"re(baseDir="([^"$]*)">([^<$]*[.](nvdb|obj))<)re");
+        for (const std::string& xml : corpus_)
+            for (std::sregex_iterator match(xml.begin(), xml.end(), name), end; match != end; ++match) {
+                std::string folder = (*match)[1];
+                std::replace(folder.begin(), folder.end(), '\\', '/');
+                const std::filesystem::path file = directory_ / folder / (*match)[2].str();
+                std::filesystem::create_directories(file.parent_path());
+                std::filesystem::copy_file(directory_ / ((*match)[3] == "obj" ? "ball.obj" : "fire.nvdb"), file,
+                                           std::filesystem::copy_options::skip_existing);
+            }
+        for (const char* value : edge_values)
+            if (std::string_view(value).find_first_of("<>&$\"'\x01") == std::string_view::npos)
+                words_.push_back(value);
+    }
+
+    // A name, and mostly one of its axes.
+    std::string integrator(Source& random) {
+        const std::vector<ChildKind>& all = schema_->root().kind->children;
+        const ElementKind& kind = *std::find_if(all.begin(), all.end(), [](const ChildKind& child) {
+                                       return child.name == "integrator";
+                                   })->kind;
+        const AttributeKind& axis = random.pick(kind.attributes);
+        return value_of("integrator", *kind.text, random) +
+               (random.one_in(2) ? ":" + axis.name + "=" + value_of(axis.name, axis.value, random) : "");
+    }
+
     std::filesystem::path directory_;
+    std::optional<SceneSchema> schema_;
     std::vector<std::filesystem::path> files_;
     std::vector<std::string> corpus_;
+    std::vector<const char*> words_; // edge values that leave XML well formed
 };
 
 } // namespace

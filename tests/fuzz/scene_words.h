@@ -1,170 +1,47 @@
-// The vocabulary of scene files, and values that are ordinary, at an edge, or none.
+// Values of scene files that are ordinary, at an edge, or none.
 #pragma once
-
-#include <array>
 
 namespace vkvol::fuzz {
 
-inline constexpr const char* element_names[] = {"densityField",
-                                                "sphere",
-                                                "box",
-                                                "everywhere",
-                                                "layers",
-                                                "layer",
-                                                "models",
-                                                "noise",
-                                                "sigma_a",
-                                                "sigma_s",
-                                                "heyneygreenstein_g",
-                                                "phase",
-                                                "medium",
-                                                "emission",
-                                                "albedo",
-                                                "densityMap",
-                                                "transferFunction",
-                                                "light",
-                                                "lights",
-                                                "surfaces",
-                                                "directional",
-                                                "sun",
-                                                "point",
-                                                "spot",
-                                                "sky",
-                                                "backgroundColor",
-                                                "camera",
-                                                "irradiance",
-                                                "periodic",
-                                                "film",
-                                                "fluence",
-                                                "absorption",
-                                                "units",
-                                                "motionBlur",
-                                                "pixelFilter",
-                                                "width",
-                                                "height",
-                                                "rayPerPixelCount",
-                                                "maxDepth",
-                                                "integrator",
-                                                "march",
-                                                "filter",
-                                                "russianRoulette",
-                                                "majorant",
-                                                "lightRayDensityMultiplier",
-                                                "shadowRayDensityMultiplier",
-                                                "stepSize",
-                                                "importanceSampling",
-                                                "fileName",
-                                                "multiThreaded",
-                                                "multiThreadedChunkSize",
-                                                "diffuseRebounds",
-                                                "heynegreenstein_g",
-                                                "intersectionHandler",
-                                                "model",
-                                                "rebound",
-                                                "options"};
-
-// The words of an element, after its name; what it holds between its tags comes first.
-struct Words {
-    const char* element;
-    const char* text; // "": none; "n": number; "i": whole number; else alternatives separated by |
-    std::array<const char*, 12> attributes;
+// What the schema calls text, or numbers in a row, is mostly one of these; by the name of its attribute or element.
+struct Texts {
+    const char* name;
+    const char* alternatives; // separated by |
 };
 
-inline constexpr Words grammar[] = {
-    {"densityField", "cloud.nvdb|cloud.vdb|fire.nvdb|none.nvdb", {"baseDir", "grid", "velocity", "framesPerSecond"}},
-    {"sphere", "", {"x", "y", "z", "radius"}},
-    {"box", "", {"x", "y", "z", "width", "height", "depth"}},
-    {"everywhere", "", {}},
-    {"noise", "", {"frequency", "octaves", "gain", "lacunarity"}},
-    {"layers", "", {"up", "scaleHeight", "height", "bottom", "top"}},
-    {"sigma_a", "n", {"unit"}},
-    {"sigma_s", "n", {"unit"}},
-    {"sigma_a", "", {"r", "g", "b"}},
-    {"sigma_s", "", {"r", "g", "b"}},
-    {"heyneygreenstein_g", "n", {}},
-    {"phase", "henyeyGreenstein|rayleigh|draine", {"alpha"}},
-    {"phase", "doubleHenyeyGreenstein", {"second", "share"}},
-    {"phase", "droplets", {"diameter"}},
-    {"phase", "rayleigh", {"depolarization"}},
-    {"phase", "table", {"file", "baseDir"}},
-    {"medium", "", {"r", "g", "b", "multiplier"}},
-    {"emission",
-     "",
-     {"r", "g", "b", "multiplier", "grid", "model", "temperatureScale", "temperatureOffset", "temperatureCutoff",
-      "referenceTemperature", "brightness"}},
-    {"albedo", "", {"grid"}},
-    {"densityMap", "", {"gain", "offset", "threshold"}},
-    {"light", "", {"x", "y", "z", "zenith", "azimuth", "r", "g", "b", "multiplier", "group"}},
-    {"backgroundColor", "", {"r", "g", "b", "multiplier", "group"}},
-    {"camera", "", {"x", "y", "z", "pitch", "yaw", "roll", "fov"}},
-    {"camera", "", {"z", "projection", "viewHeight", "lensRadius", "focus", "blades", "bladeRotation"}},
-    {"film", "", {"aov", "alpha"}},
-    {"irradiance", "", {"x", "y", "z", "lookAt", "up", "width", "height"}},
-    {"fluence", "0 1 0|0 1 0 2 3 4|", {"file", "baseDir"}},
-    {"periodic", "", {"x", "y", "z"}},
-    {"units", "radiance|reflectance|transmittance", {}},
-    {"motionBlur", "", {"open", "close"}},
-    {"absorption", "", {"x", "y", "z", "width", "height", "depth", "cells"}},
-    {"camera", "", {"z", "shutter", "fNumber", "iso", "luminanceUnit"}},
-    {"pixelFilter", "box|tent|gaussian|blackmanHarris", {"radius"}},
-    {"width", "i", {"reference", "startOffset"}},
-    {"height", "i", {"reference", "startOffset"}},
-    {"rayPerPixelCount", "i", {}},
-    {"maxDepth", "i", {}},
-    {"integrator",
-     "deltaTracking|ratioTracking|cachedRatioTracking|ratioNEE|deltaTrackingNEE|residualRatioTracking|weightedTracking|"
-     "decompositionTracking|spectralTracking|unbiasedRayMarching|regularTracking|rayMarching|adaptiveRayMarching|"
-     "densitySampling|homogeneousRayMarcherNEE|homogeneousRayMarcherImproved|heterogeneousPerlinNoise|nanoVDBSimple|"
-     "nanoVDBEmission|lightTracing|bidirectional",
-     {"scattering", "flight", "transmittance", "nee", "emission", "mis", "distance", "paths"}},
-    {"march", "", {"step", "shadowStep", "opticalStep", "jitter", "unit"}},
-    {"filter", "nearest|trilinear|stochastic", {}},
-    {"russianRoulette", "", {"threshold"}},
-    {"majorant", "", {"scale", "cell"}},
-    {"lightRayDensityMultiplier", "n", {}},
-    {"shadowRayDensityMultiplier", "n", {}},
-    {"stepSize", "", {"min", "max", "multiplier"}},
-    {"importanceSampling", "true|false", {}},
-    {"fileName", "a|b.png", {}},
-    {"multiThreaded", "true|0", {"freeThreads"}},
-    {"multiThreadedChunkSize", "i", {}}};
-
-// Within <densityMap> and <transferFunction>.
-inline constexpr Words point_grammar[] = {{"point", "", {"value", "density"}},
-                                          {"point", "", {"value", "sigma_t", "albedo", "emission"}}};
-
-// Within <transform>.
-inline constexpr Words step_grammar[] = {{"translate", "", {"x", "y", "z"}},
-                                         {"rotate", "", {"x", "y", "z", "angle"}},
-                                         {"scale", "", {"value", "x", "y", "z"}},
-                                         {"matrix", "", {"values"}}};
-
-// Within <surfaces>, and what each of them may hold.
-inline constexpr Words surface_grammar[] = {
-    {"sphere", "", {"x", "y", "z", "radius", "material", "ior", "roughness", "multiplier"}},
-    {"disk", "", {"x", "y", "z", "lookAt", "radius", "material", "metal", "roughness", "checker", "repeat"}},
-    {"plane", "", {"x", "y", "z", "lookAt", "material", "eta", "k"}},
-    {"rectangle", "", {"x", "lookAt", "up", "width", "height", "r", "g", "b", "multiplier"}},
-    {"box", "", {"x", "y", "z", "width", "height", "depth", "material"}},
-    {"mesh", "", {"file", "baseDir", "normals", "material", "multiplier"}}};
-inline constexpr Words part_grammar[] = {{"vertices", "0 0 0 1 0 0 0 1 0|0 0 0 1 0 0 0 1 0 0 0 1|0 0", {}},
-                                         {"normals", "0 0 1 0 0 1 0 0 1|0 0 0 0 0 1 1 1 1 2 0 0|1", {}},
-                                         {"places", "0 0 1 0 0 1|0 0 1 1 5 5 -1 -1", {}},
-                                         {"triangles", "0 1 2|0 2 1 0 1 3 0 3 2 1 2 3|0 1 9|0 1 -1|0 1", {}}};
-inline constexpr Words shine_grammar[] = {{"emission", "", {"r", "g", "b", "multiplier", "sides"}},
-                                          {"emission", "", {"kelvin", "multiplier"}}};
-
-// Within <lights>.
-inline constexpr Words light_grammar[] = {
-    {"directional", "", {"x", "y", "z", "r", "g", "b", "kelvin", "multiplier"}},
-    {"sun", "", {"x", "y", "z", "zenith", "azimuth", "r", "g", "b", "kelvin", "multiplier", "angle", "limbDarkening"}},
-    {"point", "", {"x", "y", "z", "r", "g", "b", "kelvin", "power", "group"}},
-    {"spot", "", {"x", "y", "z", "lookAt", "angle", "blend", "kelvin", "multiplier"}},
-    {"sphere", "", {"x", "y", "z", "radius", "kelvin", "multiplier"}},
-    {"disk", "", {"x", "y", "z", "lookAt", "radius", "r", "power"}},
-    {"rectangle", "", {"x", "y", "z", "lookAt", "up", "width", "height", "b", "multiplier"}},
-    {"daylight", "", {"x", "y", "z", "turbidity", "ground", "multiplier"}},
-    {"sky", "sky.exr|none.exr", {"baseDir", "mapping", "rotation", "mirror", "kelvin", "multiplier"}}};
+inline constexpr Texts ordinary_texts[] = {
+    {"densityField", "cloud.nvdb|cloud.vdb|fire.nvdb|none.nvdb"},
+    {"sky", "sky.exr|none.exr"},
+    {"model", "ball.obj|none.obj"},
+    {"file", "phase.txt|ball.obj|none.txt|."},
+    {"texture", "sky.exr|none.png"},
+    {"fileName", "a|b.png"},
+    {"baseDir", ".|./|"},
+    {"grid", "density|temperature|density|colour|other"},
+    {"velocity", "density|other"},
+    {"name", "a|b|c|"},
+    {"like", "a|b|c"},
+    {"group", "key|fill|"},
+    {"aov", "direct,indirect|depth|albedo,normal|none"},
+    {"albedo", "0.5|0.9 0.5 0.2|1|0 1"},
+    {"emission", "0.5|2 1 0|0|0 1"},
+    {"kelvin", "|2000|6500"},
+    {"values", "1 0 0 0 0 1 0 0 0 0 1 0|1 2 3 4 0 2 0 1 1 0 3 2 0 0 0 1|1 0 0"},
+    {"vertices", "0 0 0 1 0 0 0 1 0|0 0 0 1 0 0 0 1 0 0 0 1|0 0"},
+    {"normals", "0 0 1 0 0 1 0 0 1|0 0 0 0 0 1 1 1 1 2 0 0|1"},
+    {"places", "0 0 1 0 0 1|0 0 1 1 5 5 -1 -1"},
+    {"triangles", "0 1 2|0 2 1 0 1 3 0 3 2 1 2 3|0 1 9|0 1 -1|0 1"},
+    {"fluence", "0 1 0|0 1 0 2 3 4|"},
+    {"lookAt", "0 0 0|1 2 3|0 0"},
+    {"jitter", "true|false"},
+    {"mirror", "true|false"},
+    {"alpha", "true|0.5"},
+    {"exact", "true|false"},
+    {"importanceSampling", "true|false"},
+    {"multiThreaded", "true|0"},
+    {"lacunarity", "2|1|100"},
+    {"reference", "1|100|640"},
+};
 
 inline constexpr const char* ordinary_numbers[] = {"0.5",
                                                    "0.25",

@@ -294,7 +294,7 @@ TEST_CASE("variances of sums are merged, and compared by", "[cpu][merge][compare
     CHECK(merged.film.sum_variance->x == Approx((16.0 * 8.0 + 144.0 * 4.0) / 256.0));
     CHECK(merged.film.sum_variance->z == Approx(160.0 * 2.0 / 256.0));
     Film read;
-    read_correlation(merged.metadata, read);
+    read_facts(merged.metadata, read);
     REQUIRE(read.sum_variance);
     CHECK(*read.sum_variance == *merged.film.sum_variance);
     // The sums differ by their noise as independent pixels, which is far above the variance of 8 that they say.

@@ -305,7 +305,7 @@ TEST_CASE("a moment that cannot be leaves what was rendered", "[motion]") {
     CHECK(session.result().film.samples.front() == session.samples());
 }
 
-TEST_CASE("a moment whose files are gone leaves a checkpoint", "[motion]") {
+TEST_CASE("a moment whose files are gone leaves a picture and a checkpoint", "[motion]") {
     const RadianceMap map{4, 2, std::vector<glm::vec3>(8, glm::vec3(1.0f)), 0};
     const std::filesystem::path sky = write_sky(map).file;
     const Scene scene = parse_at(fmt::format(R"(<width>8</width><height>8</height><camera x="${{= F}}" z="5"/><sphere/>
@@ -324,6 +324,12 @@ TEST_CASE("a moment whose files are gone leaves a checkpoint", "[motion]") {
     CHECK_THROWS_AS(session.render(4096), InputError);
     REQUIRE(kept);
     CHECK(kept->done >= 2);
+    CHECK(session.can_go_on());
+    const RenderResult& result = session.result();
+    CHECK(result.interrupted);
+    CHECK(result.samples == kept->done);
+    CHECK(result.film.samples.front() == kept->done);
+    CHECK_THROWS_AS(session.render(4096), RenderError);
 }
 
 // The reference at times that are drawn one by one.

@@ -74,28 +74,27 @@ bool is_null_flight(int free_flight) {
 }
 
 bool is_null_transmittance(int transmittance) {
-    return transmittance == TRANSMITTANCE_DELTA || transmittance == TRANSMITTANCE_RATIO ||
-           transmittance == TRANSMITTANCE_RESIDUAL;
+    return transmittance_has(transmittance, TRAIT_NULL);
 }
 
 bool flies(int free_flight, const MediumRecipe& recipe) {
     const bool homogeneous = recipe.kind == MediumKind::sphere || recipe.kind == MediumKind::cubes;
-    if (free_flight == FREE_FLIGHT_ANALYTIC)
+    if (flight_has(free_flight, TRAIT_CLOSED))
         return homogeneous;
-    if (free_flight == FREE_FLIGHT_REGULAR && (recipe.kind != MediumKind::grid || bends(recipe)))
+    if (flight_has(free_flight, TRAIT_VOXELS) && (recipe.kind != MediumKind::grid || bends(recipe)))
         return false;
     if (recipe.is_mapped && recipe.filter == Filter::stochastic)
         return false;
     if (!is_null_flight(free_flight))
         return recipe.filter != Filter::stochastic;
-    return free_flight == FREE_FLIGHT_SPECTRAL || grey(recipe.sigma_t);
+    return !flight_has(free_flight, TRAIT_GREY) || grey(recipe.sigma_t);
 }
 
 bool sees(int transmittance, const MediumRecipe& recipe) {
     const bool homogeneous = recipe.kind == MediumKind::sphere || recipe.kind == MediumKind::cubes;
-    if (transmittance == TRANSMITTANCE_ANALYTIC)
+    if (transmittance_has(transmittance, TRAIT_CLOSED))
         return homogeneous;
-    if (transmittance == TRANSMITTANCE_REGULAR && (recipe.kind != MediumKind::grid || bends(recipe)))
+    if (transmittance_has(transmittance, TRAIT_VOXELS) && (recipe.kind != MediumKind::grid || bends(recipe)))
         return false;
     if (recipe.is_mapped && recipe.filter == Filter::stochastic)
         return false;

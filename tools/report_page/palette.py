@@ -8,7 +8,8 @@ The colours are told apart with every kind of colour vision, stand out from the 
 KNOWN = ("deltaTracking", "ratioTracking", "ratioNEE", "deltaTrackingNEE", "residualRatioTracking", "weightedTracking",
          "decompositionTracking", "spectralTracking", "unbiasedRayMarching", "regularTracking", "rayMarching",
          "adaptiveRayMarching", "densitySampling", "homogeneousRayMarcherNEE", "homogeneousRayMarcherImproved",
-         "heterogeneousPerlinNoise", "nanoVDBSimple", "nanoVDBEmission", "lightTracing", "bidirectional")
+         "heterogeneousPerlinNoise", "nanoVDBSimple", "nanoVDBEmission", "lightTracing", "bidirectional",
+         "cachedRatioTracking")
 
 LIGHT = ("#2780f2", "#8d3601", "#199c55", "#bc55ae", "#a78e11", "#2c0c92", "#6c6c6c", "#4e121e")
 DARK = ("#1cbcfd", "#e38928", "#57f796", "#9d6994", "#fbe405", "#5161de", "#eeeeee", "#d63c4e")
