@@ -284,6 +284,25 @@ std::size_t make_bricks(const std::vector<Member>& members, PieceStore& pieces, 
     return count;
 }
 
+// Places are numbers of 24 bits, from the middle of all volumes.
+void check_places(const Member& member, const glm::dvec3& origin) {
+    if (is_everywhere(member.volume))
+        return;
+    const AxisBox box = box_around({member});
+    const glm::dvec3 far_corner = glm::max(glm::abs(box.low - origin), glm::abs(box.high - origin)),
+                     size = box.high - box.low;
+    const double far = std::max({far_corner.x, far_corner.y, far_corner.z});
+    const double voxel =
+        member.loaded.field ? member.loaded.field->voxel_size() : 0.01 * std::min({size.x, size.y, size.z});
+    if (far * 0x1p-24 > 0.25 * voxel)
+        throw InputError(
+            fmt::format("{}this volume is up to {:.3g} world units from the middle of all, where single "
+                        "precision no longer tells places a quarter of its {} apart ({:.3g} units); move the "
+                        "volumes together, or leave some out",
+                        member.volume.place.empty() ? "" : member.volume.place + ": ", far,
+                        member.loaded.field ? "voxels" : "width's hundredth", 0.25 * voxel));
+}
+
 // Cells as small as the smallest that any medium wants, as far as there may be so many: everywhere, or where small
 // media are.
 Superposition lay_out(const std::vector<Member>& members, const glm::dvec3& camera, PieceStore& pieces) {
@@ -301,9 +320,11 @@ Superposition lay_out(const std::vector<Member>& members, const glm::dvec3& came
     const double longest = std::max({size.x, size.y, size.z}), volume = size.x * size.y * size.z;
     if (!(longest < 1e6 * 8.0 * wanted))
         throw InputError(
-            fmt::format("the volumes reach {:.3g} world units across, a million times what the smallest of "
-                        "them measures; move them together, or leave some out",
+            fmt::format("the volumes reach {:.3g} world units across, more than a million times what the smallest of "
+                        "them measures; move them together, leave some out, or lower the top of what has <layers>",
                         longest));
+    for (const Member& member : members)
+        check_places(member, origin);
     const double alike = std::max({wanted, std::cbrt(volume / most_cells), longest / 1024.0});
     Superposition best = empty_cells(box, origin, std::min(alike, longest / 4.0), 0, has_ring);
     if (alike <= wanted)

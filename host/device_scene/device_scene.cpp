@@ -25,8 +25,11 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
       layers_(plan_layers(scene)), form_(is_chromatic(scene) || method.paths != PATHS_CAMERA ? form_chromatic : 0),
       text_(kernel_text(specialization_, assets, is_chromatic(scene))),
       origin_(render_origin(scene, assets.media, whole_of(assets))), cache_directions_(cache_layout(scene).directions) {
+    if (!scene.surfaces.empty())
+        surfaces_ = make_surface_table(scene.surfaces, origin_,
+                                       assets.sky ? static_cast<std::uint32_t>(assets.sky->texels.size()) : 0);
     if (specialization_[SPEC_LIGHTS] != LIGHTS_LONE)
-        make_lights(scene, assets);
+        make_lights(scene, method, assets);
     if (assets.superposition)
         upload_media(scene, method, assets, most_texel_bytes);
     // Devices may allow as few as 65536 texels to a buffer.
@@ -35,7 +38,7 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
     if (needs_full(specialization_))
         form_ |= form_full;
     if (!scene.surfaces.empty())
-        make_surfaces(scene, assets);
+        make_surfaces(assets);
     if (method.paths != PATHS_CAMERA)
         make_emitters(scene, method, assets);
     specialization_[SPEC_TABLE_TEXELS] = buffers_.find_table_texels(most_texel_bytes) ? 1 : 0;
@@ -51,13 +54,15 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
     }
 }
 
-void DeviceScene::make_lights(const Scene& scene, const Assets& assets) {
+void DeviceScene::make_lights(const Scene& scene, const Method& method, const Assets& assets) {
     double radius = lit_radius(scene, assets, frame_.media[0]);
     if (const std::optional<SurfaceBounds> bounds = bounds_of(scene.surfaces)) {
         const double reach = reach_of(*bounds, origin_);
         radius = any_medium(scene, is_everywhere) ? std::min(radius, reach) : std::max(radius, reach);
     }
     lights_ = make_light_table(scene, assets, origin_, radius);
+    if (method.paths != PATHS_CAMERA)
+        keep_apart(lights_.rows, surfaces_);
     frame_.choices = lights_.choices;
     frame_.sky_count = lights_.sky_count;
     frame_.lamp_first = lights_.lamp_first;
@@ -78,10 +83,8 @@ void DeviceScene::upload_media(const Scene& scene, const Method& method, const A
     buffers_.upload_media(device_, commands_, media_, overlaps.words, most_texel_bytes);
 }
 
-void DeviceScene::make_surfaces(const Scene& scene, const Assets& assets) {
+void DeviceScene::make_surfaces(const Assets& assets) {
     form_ |= form_full | form_surfaces;
-    surfaces_ = make_surface_table(scene.surfaces, origin_,
-                                   assets.sky ? static_cast<std::uint32_t>(assets.sky->texels.size()) : 0);
     const bool has_mesh = !assets.superposition && !assets.media.empty() && assets.media.front().bvh;
     const std::vector<shared::BvhNode> none;
     const std::vector<shared::BvhNode>& before = has_mesh ? assets.media.front().bvh->nodes : none;
@@ -111,9 +114,9 @@ double DeviceScene::reach_of_all(const Scene& scene, const Assets& assets) const
 
 void DeviceScene::make_emitters(const Scene& scene, const Method& method, const Assets& assets) {
     const std::span<const shared::MediumParams> rows = media_.empty() ? std::span(frame_.media, 1) : media();
-    const EmitterTable table =
-        make_emitter_table(scene, method, lights_, surfaces_, glow_of(scene, assets.media, rows),
-                           assets.sky ? &*assets.sky : nullptr, frame_.period, reach_of_all(scene, assets), origin_);
+    const EmitterTable table = make_emitter_table(
+        scene, method, lights_, surfaces_, glow_of(scene, assets.media, rows), assets.sky ? &*assets.sky : nullptr,
+        frame_.period, reach_of_all(scene, assets), origin_, double(frame_.crop_width) * frame_.crop_height);
     frame_.particles = table.params;
     text_ += method.paths == PATHS_LIGHT ? ", by particles" : ", and by particles";
     buffers_.upload_emitters(device_, commands_, table);

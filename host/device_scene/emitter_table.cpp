@@ -1,5 +1,6 @@
 #include "emitter_table.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_access.hpp>
 #include <limits>
@@ -152,17 +153,56 @@ double part_that_comes(const shared::LightRow& light, double radius) {
     return light.kind & LIGHT_FLAT ? seen : 0.25 * seen; // by the cosine, or alike into all directions
 }
 
+// The most, roughly, that a particle brings which leaves a lamp or surface of those the sensor sees: its part of all
+// that is sent out, over the patch that a pixel has there, and over all pixels. `eye`: render space.
+double brightest_in_view(const Scene& scene, const LightTable& lights, const SurfaceTable& surfaces, glm::dvec3 eye,
+                         double power, double pixels) {
+    constexpr double toward_edges = 8.0; // of the view pixels have smaller patches, and lamps' pieces are nearer
+    double nearest = std::numeric_limits<double>::infinity();
+    const auto take = [&](const glm::dvec3& middle, double extent) {
+        nearest = std::min(nearest, std::max(glm::distance(middle, eye) - extent, std::ldexp(extent, -10)));
+    };
+    for (const shared::LightRow& light : lights.rows)
+        if (light.kind & LIGHT_SHAPED)
+            take(light.position, std::max(double(light.extent), double(glm::length(light.edge_u + light.edge_v))));
+    for (std::size_t i = 0; i < surfaces.met; ++i) {
+        const shared::SurfacePrimitive& p = surfaces.primitives[i];
+        if (surfaces.rows[p.surface].emission == glm::vec3(0.0f) || p.shape == SURFACE_PLANE)
+            continue;
+        const bool is_triangle = p.shape == SURFACE_TRIANGLES;
+        const glm::vec3 middle = is_triangle ? (p.a + p.b + p.c) / 3.0f : p.a;
+        take(middle, is_triangle ? std::max({glm::distance(p.a, middle), glm::distance(p.b, middle),
+                                             glm::distance(p.c, middle)})
+                                 : p.c.x);
+    }
+    if (!std::isfinite(nearest))
+        return 0.0;
+    const double pixel = camera_rays(scene.camera, scene.picture).pixel_at(nearest);
+    return pixel > 0.0 ? toward_edges * power / (pi * pixel * pixel * pixels) : 0.0;
+}
+
+// Where nothing bounds the scene: how far its lights are from the eye, or else the first plane; or a unit of length.
+double usual_length(const LightTable& lights, const SurfaceTable& surfaces, glm::dvec3 eye) {
+    double farthest = 0.0;
+    for (const shared::LightRow& light : lights.rows)
+        if (light.kind & LIGHT_PLACED)
+            farthest = std::max(farthest, glm::distance(glm::dvec3(light.position), eye));
+    for (std::size_t i = 0; i < surfaces.planes && farthest == 0.0; ++i)
+        farthest = std::abs(glm::dot(glm::dvec3(surfaces.primitives[i].b), glm::dvec3(surfaces.primitives[i].a) - eye));
+    return farthest > 0.0 ? farthest : 1.0;
+}
+
 // The brightest value that a pixel may get: of sources seen themselves, or mirrored; and of points, which light what is
 // near them without bound, as from a thirty-thousandth of `reach`, so that what is lit from all of it has 24 bits.
-// `reach` 0, where nothing bounds the scene: as from a unit of length.
+// `bounded`: whether something bounds the scene; else points light as from `reach` itself.
 double brightest_of(const Scene& scene, const LightTable& lights, const SurfaceTable& surfaces, const Glow& glow,
-                    const SkyMap* sky, double reach) {
+                    const SkyMap* sky, double reach, bool bounded) {
     double brightest = std::max(channel_mean(scene.background), glow.most);
     for (const shared::LightRow& light : lights.rows) {
         double factor = 1.0;
         if ((light.kind & LIGHT_PLACED) && !(light.kind & LIGHT_SHAPED)) {
             const double nearest = std::max(double(glm::length(light.position)) - reach, std::ldexp(reach, -15));
-            factor = reach > 0.0 ? 1.0 / (nearest * nearest) : 1.0;
+            factor = 1.0 / (bounded ? nearest * nearest : reach * reach);
         }
         brightest = std::max(brightest, factor * channel_mean(light.radiance));
     }
@@ -200,9 +240,29 @@ Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumPar
     return glow;
 }
 
+void keep_apart(std::vector<shared::LightRow>& lights, const SurfaceTable& surfaces) {
+    constexpr std::size_t most_pairs = 20'000'000; // a tenth of a second
+    if (lights.size() * surfaces.met > most_pairs)
+        return;
+    for (std::size_t i = surfaces.planes; i < surfaces.met; ++i) {
+        const shared::SurfacePrimitive& p = surfaces.primitives[i];
+        if (p.shape == SURFACE_SPHERE)
+            continue;
+        const glm::dvec3 a = p.a, b = p.b, c = p.c;
+        const bool is_triangle = p.shape == SURFACE_TRIANGLES;
+        const glm::dvec3 normal = is_triangle ? glm::normalize(glm::cross(b - a, c - a)) : b;
+        const glm::dvec3 reach =
+            is_triangle ? glm::max(glm::max(glm::abs(a), glm::abs(b)), glm::abs(c)) : glm::abs(a) + double(p.c.x);
+        const double spare = SURFACE_SPARE * std::max({reach.x, reach.y, reach.z});
+        for (shared::LightRow& light : lights)
+            if ((light.kind & LIGHT_PLACED) && std::abs(glm::dot(normal, glm::dvec3(light.position) - a)) <= spare)
+                light.apart = std::max(light.apart, static_cast<float>(spare));
+    }
+}
+
 EmitterTable make_emitter_table(const Scene& scene, const Method& method, const LightTable& lights,
                                 const SurfaceTable& surfaces, const Glow& glow, const SkyMap* sky,
-                                const shared::PeriodParams& period, double radius, glm::dvec3 origin) {
+                                const shared::PeriodParams& period, double radius, glm::dvec3 origin, double pixels) {
     EmitterTable table;
     const bool bounded = std::isfinite(radius);
     table.params.radius = bounded ? static_cast<float>(radius * 1.0001) : 0.0f;
@@ -225,7 +285,8 @@ EmitterTable make_emitter_table(const Scene& scene, const Method& method, const 
         emitters.add(SOURCE_GLOW, glow.power);
     }
     emitters.finish();
-    const double reach = bounded && radius > 0.0 ? radius : 1.0;
+    const glm::dvec3 eye = scene.camera.position - origin;
+    const double reach = bounded && radius > 0.0 ? radius : usual_length(lights, surfaces, eye);
     // What a sensor counts is absorbed, too; a camera sees what leaves.
     double shown = emitters.power() - (method.paths == PATHS_LIGHT && !counts ? glow.hidden : 0.0);
     // Where paths share with particles nothing is much brighter than what may come of far lights.
@@ -234,7 +295,9 @@ EmitterTable make_emitter_table(const Scene& scene, const Method& method, const 
     // But a particle brings its part of all that its light sends out, and numbers have to hold that.
     shown = std::max(shown, emitters.power() * 0x1p-20);
     // A sensor counts particles, and sees nothing itself.
-    const double brightest = counts ? 0.0 : brightest_of(scene, lights, surfaces, glow, sky, bounded ? reach : 0.0);
+    double brightest = counts ? 0.0 : brightest_of(scene, lights, surfaces, glow, sky, reach, bounded);
+    if (!counts && method.paths == PATHS_LIGHT)
+        brightest = std::max(brightest, brightest_in_view(scene, lights, surfaces, eye, emitters.power(), pixels));
     table.params.unit =
         static_cast<float>(unit_of_splats(shown, counts ? sensor : 4.0 * pi * pi * reach * reach, brightest));
     return table;

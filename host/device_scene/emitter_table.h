@@ -26,11 +26,15 @@ struct Glow {
 // `rows`: as many as the scene has volumes.
 Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumParams> rows);
 
+// Lights in the plane of what is far larger than they are far from the origin: by how much particles begin off it.
+void keep_apart(std::vector<shared::LightRow>& lights, const SurfaceTable& surfaces);
+
 // What a scene sends out, in render space. Each kind of source is chosen in proportion to its power, roughly, and never
 // with less than a tenth of an even chance. `radius`: of a ball about the origin that holds all there is, and a sensor
-// that counts particles; not finite where nothing does. `sky`: its map, if any. `origin` of render space.
+// that counts particles; not finite where nothing does. `sky`: its map, if any. `origin` of render space; `pixels`
+// of the window.
 EmitterTable make_emitter_table(const Scene& scene, const Method& method, const LightTable& lights,
                                 const SurfaceTable& surfaces, const Glow& glow, const SkyMap* sky,
-                                const shared::PeriodParams& period, double radius, glm::dvec3 origin);
+                                const shared::PeriodParams& period, double radius, glm::dvec3 origin, double pixels);
 
 } // namespace vkvol

@@ -26,12 +26,12 @@ GridBytes build(const std::string& name, glm::ivec3 dims, const GridPlace& place
             for (int x = 0; x < dims.x; ++x, ++i)
                 if (const Value value = value_at(i); value != nothing)
                     accessor.setValue({x, y, z}, value);
-    // Where colours are looked up beyond the outermost voxels these go on: zeros at the array's ends are some. Of
-    // densities they are nothing.
+    // The box of active voxels is the array's: a map may make a medium of zeros, and where colours are looked up beyond
+    // the outermost voxels these go on.
     const auto mark = [&](glm::ivec3 voxel, std::size_t at) {
         accessor.setValue({voxel.x, voxel.y, voxel.z}, value_at(at));
     };
-    if (i > 0 && name != "density") {
+    if (i > 0) {
         mark({0, 0, 0}, 0);
         mark(dims - 1, i - 1);
     }

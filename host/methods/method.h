@@ -11,12 +11,14 @@ namespace vkvol {
 // Where the mean of many samples is not the exact value; sums of these. What they depend on is in the scene hash.
 enum Bias : unsigned {
     bias_none = 0,
-    bias_flight_steps = 1,        // depends on March::step or ::optical_step, and jitter
-    bias_shadow_steps = 2,        // depends on March::shadow_step and jitter
-    bias_majorant = 4,            // depends on RenderSettings::majorant_scale
-    bias_specular_view = 8,       // what smooth mirrors, coats and glass show is missing
-    bias_caustics = 16,           // what they throw of lights without extent is
-    bias_caustics_in_mirrors = 32 // what they throw of these and show as well is
+    bias_flight_steps = 1,         // depends on March::step or ::optical_step, and jitter
+    bias_shadow_steps = 2,         // depends on March::shadow_step and jitter
+    bias_majorant = 4,             // depends on RenderSettings::majorant_scale
+    bias_specular_view = 8,        // what smooth mirrors, coats and glass show is missing
+    bias_caustics = 16,            // what they throw of lights without extent is
+    bias_caustics_in_mirrors = 32, // what they throw of these and show as well is
+    bias_single_at_surfaces =
+        64 // with single scattering, what they show and throw is, and light of what only paths meet
 };
 
 struct Method {

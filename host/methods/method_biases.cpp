@@ -44,6 +44,10 @@ private:
     Method& method_;
 };
 
+bool shines(const Surface& surface) {
+    return surface.emission != Rgb(0.0);
+}
+
 // Whether there are caustics of lights that no path may meet.
 bool BiasFinder::has_thrown_light() const {
     const auto has_no_extent = [](const Light& light) { return !is_lamp(light) && !is_met_by_chance(light); };
@@ -70,7 +74,6 @@ std::string BiasFinder::who_finds_caustics() const {
 void BiasFinder::find_chances() {
     const bool has_extent = std::any_of(scene_.lights.begin(), scene_.lights.end(),
                                         [](const Light& light) { return is_lamp(light) || is_met_by_chance(light); });
-    const auto shines = [](const Surface& surface) { return surface.emission != Rgb(0.0); };
     std::vector<const char*> found;
     const bool by_particles = method_.paths == PATHS_BOTH && particles_come_from_afar(scene_);
     const bool both_can = !why_no_particles(scene_, true, false);
@@ -85,7 +88,7 @@ void BiasFinder::find_chances() {
                               "looks for"
                             : "what smooth mirrors, coats and glass throw of lights, which integrator bidirectional "
                               "looks for if they have a place");
-    if (method_.paths != PATHS_LIGHT && any_surface(shines))
+    if (method_.paths != PATHS_LIGHT && method_.scattering != SCATTERING_SINGLE && any_surface(shines))
         found.push_back(
             "light of surfaces that no shadow ray looks for (meshes, boxes, planes, balls that shine inwards; all "
             "where there are more than 256, or in domains that repeat)");
@@ -111,6 +114,10 @@ void BiasFinder::find_biases() {
     const bool needs_majorant = method_.flights_have(TRAIT_BOUND) || method_.shadow_rays_have(TRAIT_BOUND);
     if (needs_majorant && scene_.settings.majorant_scale < 1.0)
         add(bias_majorant, "the majorant is scaled below the density");
+    if (method_.scattering == SCATTERING_SINGLE && (any_surface(is_smooth) || any_surface(shines)))
+        add(bias_single_at_surfaces,
+            "single scattering ends at the first surface: what mirrors, coats and glass show is "
+            "missing, and so is what surfaces scatter of others that no shadow ray looks for");
     if (any_surface(is_smooth) && method_.paths == PATHS_LIGHT && !reads_flux(scene_.camera))
         add(bias_specular_view, "what smooth mirrors, coats and glass show is missing, which no particle finds");
     if (has_thrown_light() && method_.paths == PATHS_CAMERA) {

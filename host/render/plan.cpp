@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <fmt/format.h>
 
+#include "error.h"
 #include "shared/constants.h"
 #include "shared/items.h"
 
@@ -35,8 +37,10 @@ std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
     return iterations + loops.phase + loops.lights + records;
 }
 
-// Of taking a path up and laying it aside.
-constexpr std::uint32_t copy_iterations = 2 * (MOST_PATH_WORDS / WORDS_AT_ONCE + 1);
+// Of taking a path up and laying it aside, and adding what a lane has seen.
+constexpr std::uint32_t copy_iterations = 2 * (MOST_PATH_WORDS / WORDS_AT_ONCE + 1) + TALLIED + 1;
+static_assert(offsetof(shared::Counters, paths) == TALLY_FIRST * sizeof(std::uint32_t) &&
+              offsetof(shared::Counters, majorant_violations) == (TALLY_FIRST + TALLIED - 1) * sizeof(std::uint32_t));
 static_assert(WORDS_AT_ONCE == 4 && MOST_PATH_WORDS % WORDS_AT_ONCE == 0); // as laid_aside.glsl writes them out
 
 // Turns whose loops stay below the limit. Between bursts of turns a lane of a staged pass may pass its path on.
@@ -87,6 +91,13 @@ Plan make_plan(const Device& device, const LoopSizes& loops, std::uint64_t pixel
         plan.copies = device.writes_out_lanes() ? PathCopies::in_loops : PathCopies::by_word;
     plan.lanes = pick(wish.lanes, device.is_cpu() ? 512u : wide ? 1u << 16 : 1u << 17);
     plan.steps = pick(wish.steps, 4u);
+    if (turn_iterations(loops, plan.steps) > most_iterations)
+        plan.steps = 1;
+    if (device.is_cpu() && turn_iterations(loops, plan.steps) > most_iterations)
+        throw InputError(
+            fmt::format("{} volumes overlap somewhere, and software drivers end sums over so many, and the "
+                        "octaves of their noise, before they are done; leave some out, or render on a GPU",
+                        loops.media));
     const std::uint32_t longest = longest_budget(loops, plan);
     plan.budget = std::min(pick(wish.budget, wide ? 32u : longest), longest);
     plan.step_limit = pick(wish.step_limit, 1u << 26);

@@ -74,10 +74,11 @@ Layers SceneReader::layer_table(const XmlElement& element, Volume& volume) const
 
 void SceneReader::read_layers(Volume& volume) const {
     const XmlElement element = one("layers");
-    if (!element.exists())
+    const bool may_have = std::holds_alternative<Box>(volume.shape) || is_everywhere(volume);
+    if (!element.exists() || (!may_have && is_behind_shape("layers")))
         return;
     element.allow({"up", "scaleHeight", "height", "bottom", "top"}, false, {"layer"});
-    if (!std::holds_alternative<Box>(volume.shape) && !is_everywhere(volume))
+    if (!may_have)
         element.fail("<layers> are for a <box>, or <everywhere>; remove them, or take one of these");
     if (volume.noise)
         element.fail("<layers> beside <noise>; a volume has one density: remove one");

@@ -124,7 +124,10 @@ void SceneReader::read_map(Volume& volume) const {
                         "remove one",
                         density.place()));
     const XmlElement& element = density.exists() ? density : transfer;
-    if (!std::holds_alternative<GridFile>(volume.shape))
+    const bool has_grid = std::holds_alternative<GridFile>(volume.shape);
+    if (!has_grid && is_behind_shape(density.exists() ? "densityMap" : "transferFunction"))
+        return;
+    if (!has_grid)
         element.fail(fmt::format("<{}> maps the values of a <densityField>, and this volume has none; remove it",
                                  element.name()));
     if (transfer.exists())
@@ -137,7 +140,8 @@ void SceneReader::read_map(Volume& volume) const {
 
 void SceneReader::take_transfer(Volume& volume, ValueMap map) const {
     for (const char* name : {"sigma_a", "sigma_s"})
-        if (const XmlElement other = one(name); other.exists())
+        if (const XmlElement other = one(name);
+            other.exists() && scope_of(name) <= std::min(scope_of("transferFunction"), scope_of("layers")))
             other.fail(fmt::format("<{}> beside points that have sigma_t and albedo; remove one", name));
     map.is_transfer = true;
     volume.map = std::move(map);

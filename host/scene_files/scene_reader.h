@@ -83,6 +83,11 @@ private:
     std::optional<Shape> shape(const std::string& integrator, std::string& place) const;
     XmlElement shape_element(const std::string& integrator) const;
     XmlElement shape_element(pugi::xml_node scope, const std::string& integrator) const;
+    // Of those in force, by the volume itself, what it is like, and so on, the first that has it; or their number.
+    std::size_t scope_of(const char* name) const;
+    // Of a volume with a shape of its own, whether this is of what it is like, whose density may have been another
+    // kind.
+    bool is_behind_shape(const char* name) const;
     Sphere sphere(const XmlElement& element) const;
     Box box(const XmlElement& element) const;
     Everywhere everywhere(const XmlElement& element) const;

@@ -43,6 +43,20 @@ XmlElement SceneReader::shape_element(const std::string& integrator) const {
     return {document_, {}};
 }
 
+std::size_t SceneReader::scope_of(const char* name) const {
+    std::size_t i = 0;
+    while (i < scopes_.size() && !find_one(document_, scopes_[i], {name}))
+        ++i;
+    return i;
+}
+
+bool SceneReader::is_behind_shape(const char* name) const {
+    std::size_t shape = 0;
+    while (shape < scopes_.size() && !shape_element(scopes_[shape], "").exists())
+        ++shape;
+    return shape < scope_of(name);
+}
+
 XmlElement SceneReader::shape_element(pugi::xml_node scope, const std::string& integrator) const {
     const Integrator* row = find_integrator(integrator);
     const bool of_thesis = row && row->origin != Integrator::Origin::own;
@@ -166,7 +180,7 @@ MeshFiles SceneReader::mesh_files() const {
 std::optional<Noise> SceneReader::noise(const Volume& volume) const {
     const bool is_grid = std::holds_alternative<GridFile>(volume.shape);
     const XmlElement element = one("noise");
-    if (!element.exists())
+    if (!element.exists() || ((is_grid || is_everywhere(volume)) && is_behind_shape("noise")))
         return std::nullopt;
     element.allow({"frequency", "octaves", "gain", "lacunarity"});
     Noise noise;

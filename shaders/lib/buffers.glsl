@@ -83,6 +83,7 @@ layout(binding = BINDING_LEAF_TEXELS) uniform utextureBuffer leaf_texels;
 layout(binding = BINDING_MAJORANT_TEXELS) uniform textureBuffer majorant_texels;
 layout(binding = BINDING_LATTICE_TEXELS) uniform textureBuffer lattice_texels;
 layout(scalar, binding = BINDING_COUNTERS) buffer CounterBlock { Counters counters; };
+layout(scalar, binding = BINDING_COUNTERS) buffer CounterWordBlock { uint counter_words[]; }; // the same
 
 vec4 sky_texel(uint i) {
     return TABLE_TEXELS != 0 ? uintBitsToFloat(texelFetch(sky_texels, int(i))) : sky_storage[i];

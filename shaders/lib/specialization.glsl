@@ -88,7 +88,7 @@ const bool HAS_SURFACES = false;
 #ifdef SEVERAL
 #define KIND(CONSTANT, v, kind) (CONSTANT == EACH ? v.kinds.kind : CONSTANT)
 const bool SEVERAL_MEDIA = true;
-const bool HAS_CELLS = true; // of majorants
+const bool HAS_CELLS = SHAPE != SHAPE_NONE; // of majorants
 const bool LAYERED = false;  // by itself
 #else
 #define KIND(CONSTANT, v, kind) CONSTANT
@@ -98,7 +98,7 @@ const bool LAYERED = FIELD == FIELD_LAYERS;
 #else
 const bool LAYERED = false;
 #endif
-const bool HAS_CELLS = (int(FIELD == FIELD_GRID) | int(LAYERED)) != 0;
+const bool HAS_CELLS = (int(SHAPE != SHAPE_NONE) & (int(FIELD == FIELD_GRID) | int(LAYERED))) != 0;
 #endif
 
 const bool SEES_SKY = (LIGHTS & LIGHTS_SKY) != 0;

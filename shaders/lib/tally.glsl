@@ -4,17 +4,17 @@
 #include "lib/buffers.glsl"
 
 struct Tally {
+    uint paths;
     uint real_collisions;
     uint null_collisions;
     uint lookups;
     uint cells;
     uint shadow_rays;
-    uint violations;
-    uint depth_caps;
-    uint step_caps;
     uint room;
     uint steps;
-    uint paths;
+    uint depth_caps;
+    uint step_caps;
+    uint violations;
     uint non_finite;
     uint dropped_place; // of the first sample that was not finite
     uint dropped_sample;
@@ -39,22 +39,39 @@ void add_film_tally(Tally tally) {
         count_dropped(tally.non_finite, tally.dropped_place, tally.dropped_sample);
 }
 
-void add_tally(Tally tally) {
-    add_film_tally(tally);
+void add_all(Tally tally) {
+    atomicAdd(counters.paths, tally.paths);
     atomicAdd(counters.real_collisions, tally.real_collisions);
     atomicAdd(counters.null_collisions, tally.null_collisions);
     atomicAdd(counters.lookups, tally.lookups);
     atomicAdd(counters.cells, tally.cells);
-    atomicAdd(counters.room, tally.room);
-    atomicAdd(counters.steps, tally.steps);
     if (NEE != NEE_NONE)
         atomicAdd(counters.shadow_rays, tally.shadow_rays);
-    if (tally.violations != 0u)
-        atomicAdd(counters.majorant_violations, tally.violations);
+    atomicAdd(counters.room, tally.room);
+    atomicAdd(counters.steps, tally.steps);
     if (tally.depth_caps != 0u)
         atomicAdd(counters.depth_caps, tally.depth_caps);
     if (tally.step_caps != 0u)
         atomicAdd(counters.step_caps, tally.step_caps);
+    if (tally.violations != 0u)
+        atomicAdd(counters.majorant_violations, tally.violations);
+}
+
+// Where a driver writes out each access to memory for every lane: the same by one.
+void add_in_loop(Tally t) {
+    uint seen[TALLIED] = uint[](t.paths, t.real_collisions, t.null_collisions, t.lookups, t.cells, t.shadow_rays, t.room, t.steps,
+                                t.depth_caps, t.step_caps, t.violations);
+    for (uint i = 0u; i < by_lane(uint(TALLIED)); ++i)
+        atomicAdd(counter_words[uint(TALLY_FIRST) + i], seen[i]);
+}
+
+void add_tally(Tally tally) {
+    if (COPIES != 0)
+        add_in_loop(tally);
+    else
+        add_all(tally);
+    if (tally.non_finite != 0u)
+        count_dropped(tally.non_finite, tally.dropped_place, tally.dropped_sample);
 }
 
 #endif

@@ -57,14 +57,14 @@ Particle from_afar(vec3 toward, vec3 light, vec2 u) {
 }
 
 // From a point, which may lie in a surface's plane: it begins beyond where rounding might have that before it.
-Particle from_point(vec3 position, vec3 direction, vec3 light) {
-    float apart = HAS_SURFACES ? 2.0 * spare_at(position) : 0.0;
-    return particle(position + apart * direction, direction, light, SHINES_UNSEEN);
+Particle from_point(LightRow row, vec3 direction, vec3 light) {
+    float apart = HAS_SURFACES ? 2.0 * max(spare_at(row.position), row.apart) : 0.0;
+    return particle(row.position + apart * direction, direction, light, SHINES_UNSEEN);
 }
 
-// Off the surface that it may be, whose largest coordinates are these: see SurfacePoint.
-Particle from_surface(vec3 position, vec3 normal, vec3 reach, vec3 light, vec2 u) {
-    float apart = HAS_SURFACES ? spare_at(reach) : 0.0;
+// Off the surface that it may be, whose largest coordinates are these (see SurfacePoint), and `least` off what it lies in.
+Particle from_surface(vec3 position, vec3 normal, vec3 reach, float least, vec3 light, vec2 u) {
+    float apart = HAS_SURFACES ? max(spare_at(reach), least) : 0.0;
     Particle p = particle(position + apart * normal, by_cosine(normal, u), light, SHINES_FLAT);
     p.normal = normal;
     return p;
@@ -73,7 +73,7 @@ Particle from_surface(vec3 position, vec3 normal, vec3 reach, vec3 light, vec2 u
 Particle from_spot(LightRow light, vec2 u) {
     float x = light.none_beyond * u.x;
     vec3 direction = turned(light.direction, x, u.y);
-    return from_point(light.position, direction, 2.0 * PI * light.none_beyond * spot_falloff(light, x) * light.radiance);
+    return from_point(light, direction, 2.0 * PI * light.none_beyond * spot_falloff(light, x) * light.radiance);
 }
 
 Particle from_light(LightRow light, vec2 where, vec2 u, inout Rng rng) {
@@ -81,13 +81,13 @@ Particle from_light(LightRow light, vec2 where, vec2 u, inout Rng rng) {
     Particle p;
     if (SEES_LAMPS && light.kind == LIGHT_SPHERE) {
         vec3 normal = in_any_direction(where);
-        p = from_surface(light.position + light.extent * normal, normal, abs(light.position) + light.extent,
+        p = from_surface(light.position + light.extent * normal, normal, abs(light.position) + light.extent, 0.0,
                          4.0 * PI * light.area * light.radiance, u);
     } else if (SEES_LAMPS && (light.kind & LIGHT_FLAT) != 0u) {
         vec3 reach = abs(light.position) + abs(light.edge_u) + abs(light.edge_v);
-        p = from_surface(flat_point(light, where), light.direction, reach, PI * light.area * light.radiance, u);
+        p = from_surface(flat_point(light, where), light.direction, reach, light.apart, PI * light.area * light.radiance, u);
     } else if (light.kind == LIGHT_POINT) {
-        p = from_point(light.position, in_any_direction(u), 4.0 * PI * light.radiance);
+        p = from_point(light, in_any_direction(u), 4.0 * PI * light.radiance);
     } else if (light.kind == LIGHT_SPOT) {
         p = from_spot(light, u);
     } else {

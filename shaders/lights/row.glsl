@@ -28,6 +28,7 @@ LightRow light_at(uint i) {
     row.body = f.w;
     row.full_within = uintBitsToFloat(g.x);
     row.none_beyond = uintBitsToFloat(g.y);
+    row.apart = uintBitsToFloat(g.z);
     return row;
 }
 

@@ -19,6 +19,7 @@ struct Shear {
     vec3 origin;   // with that axis turned to z
     vec2 slope;    // of the ray
     float inverse; // world distance per unit of z
+    float scale;   // a power of two by which lengths across the ray are about 1 at most
 };
 
 // What the steps of a search need of their ray.
@@ -44,14 +45,15 @@ Shear make_shear(Ray ray) {
     precise vec2 slope = d.xy * inverse;
     s.inverse = inverse;
     s.slope = slope;
+    s.scale = 1.0;
     return s;
 }
 
-// xy: the vertex projected along the ray; z: the world distance at which the ray passes it. Coordinates below 2^-40 are
-// taken for 0, so that the rounding error of a product of two is a number of normal size.
+// xy: the vertex projected along the ray, times the scale; z: the world distance at which the ray passes it. Coordinates below
+// 2^-40 are taken for 0, so that the rounding error of a product of two is a number of normal size.
 vec3 project(Shear s, vec3 vertex) {
     precise vec3 v = turn_to_z(vertex, s.axis) - s.origin;
-    precise vec2 p = v.xy - s.slope * v.z;
+    precise vec2 p = (v.xy - s.slope * v.z) * s.scale;
     precise float t = v.z * s.inverse;
     return vec3(abs(p.x) < SMALLEST ? 0.0 : p.x, abs(p.y) < SMALLEST ? 0.0 : p.y, t);
 }
@@ -131,11 +133,18 @@ void add_crossing(Shear s, uint i, inout PartSearch c) {
 // where the ray passes the projected triangle: so the point at t is within 28 u R of the triangle's box. The slab
 // test's own distances, at most 2 sqrt(3) R where they matter, err by at most 5 u of themselves, or 18 u R. The rest is
 // spare.
+// 1 over the largest power of two that is no more than x.
+float inverse_power(float x) {
+    uint exponent = clamp(floatBitsToUint(x) >> 23u, 1u, 253u);
+    return uintBitsToFloat(254u - exponent << 23u);
+}
+
 MeshRay make_mesh_ray(uint root, uint bvh_nodes, Ray ray) {
     MeshRay m;
     m.shear = make_shear(ray);
     vec3 reach = bvh_nodes > 0u ? max(abs(bvh[root].low), abs(bvh[root].high)) + abs(ray.origin) : vec3(0.0);
     float margin = spare_at(reach);
+    m.shear.scale = inverse_power(max(reach.x, max(reach.y, reach.z)));
     m.before = ray.origin + margin;
     m.after = ray.origin - margin;
     // Components so small that their inverse would overflow are taken for 1e-30, which moves the ray by nothing.

@@ -232,8 +232,8 @@ struct LightRow {
     uint body;       // of a lamp that is a surface, that; else NO_SURFACE
     float full_within; // of a spot, 1 - cos of angles to its axis: full intensity within,
     float none_beyond; // none beyond
-    uint unused_a;   // so that it is whole texels: see lights/row.glsl
-    uint unused_b;
+    float apart;     // from its place: so far on no surface that it lies in is before it, by rounding
+    uint unused;     // so that it is whole texels: see lights/row.glsl
 };
 
 // A surface; which fields mean something depends on its kinds.

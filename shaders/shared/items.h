@@ -57,6 +57,10 @@ struct FilmPixel {
 
 #define NON_FINITE_RECORDS 4
 
+// Words of Counters that a Tally has, as it has them: so many, from here on.
+#define TALLY_FIRST 2
+#define TALLIED 11
+
 // What happened since the host last read them; 32 bits hold one submit's worth.
 struct Counters {
     uint next_work;  // of the batch's work list handed out so far: pixels (fused) or samples (staged); may run past the end

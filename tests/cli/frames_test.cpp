@@ -229,7 +229,7 @@ TEST_CASE("a sequence that is gone on with passes over the frames that are there
     CHECK(std::filesystem::exists(scene.file("a.4.png")));
     // With other samples, or another integrator or window, they are no longer what was asked for.
     const std::vector<const char*> others{"--spp 3",        "--seed 4",        "--integrator ratioTracking",
-                                          "--crop 0,4,0,4", "--noise 50%",     "--time 9",
+                                          "--crop 0,4,0,4", "--noise 50%",     "--time 0.2",
                                           "--aov depth",    "--report r.json", "-D unused=1"};
     for (const char* other : in_turn(others, 2)) {
         const bool is_wrong = std::string(other).starts_with("-D");

@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
+#include "error.h"
 #include "frame_params.h"
 #include "loaded_medium.h"
 #include "overlap_words.h"
@@ -257,6 +258,25 @@ TEST_CASE("small clouds in a wide haze equal the reference", "[gpu][image][sever
     scene.volumes.push_back(medium(Sphere{{14.0, 13.0, -15.0}, 3.0}, 0.5, 0.5));
     scene.settings.integrator = "";
     CHECK_AGREEMENT(agree(render_here(scene, 7).film, render_reference(scene, 8), "far apart"));
+}
+
+TEST_CASE("volumes of another shape leave what is of another kind of density", "[cpu][xml][several]") {
+    const std::string noise = "<volume name='a'><sphere/><noise/><sigma_s>2</sigma_s></volume>";
+    const std::string layers = "<volume name='a'><box/><layers scaleHeight='1'/></volume>";
+    const std::string map = "<volume name='a'><densityField>c.nvdb</densityField><densityMap gain='2'/></volume>";
+    const std::string transfer = "<volume name='a'><densityField>c.nvdb</densityField><sigma_s>2</sigma_s></volume>";
+    const Scene grid = parse_volumes(noise + "<volume like='a'><densityField>c.nvdb</densityField></volume>");
+    CHECK_FALSE(grid.volumes.at(1).noise);
+    CHECK(grid.volumes.at(1).sigma_s == Rgb(2.0));
+    CHECK(parse_volumes(noise + "<volume like='a'><box/></volume>").volumes.at(1).noise);
+    CHECK_FALSE(parse_volumes(layers + "<volume like='a'><sphere/></volume>").volumes.at(1).layers);
+    CHECK_FALSE(parse_volumes(map + "<volume like='a'><sphere/></volume>").volumes.at(1).map.exists());
+    CHECK(parse_volumes(transfer +
+                        "<volume like='a'><transferFunction><point value='1' sigma_t='3'/></transferFunction>"
+                        "</volume>")
+              .volumes.at(1)
+              .sigma_s == Rgb(1.0));
+    CHECK_THROWS_AS(parse_volumes(map + "<volume like='a'><sphere/><densityMap gain='3'/></volume>"), InputError);
 }
 
 TEST_CASE("volumes that are like another", "[cpu][xml][several]") {

@@ -9,6 +9,7 @@
 #include "method.h"
 #include "preset.h"
 #include "scene_hash.h"
+#include "scene_xml.h"
 #include "session.h"
 #include "shared/constants.h"
 #include "support/images.h"
@@ -405,22 +406,26 @@ TEST_CASE("lamps that lie in the plane of a surface shine before it", "[gpu][par
     const std::vector<Light> lamps = {
         PointLight{middle + 0.2 * x, Rgb(5.0)}, SpotLight{middle - 0.3 * z, down, Rgb(9.0), 60.0, 0.5},
         DiskLight{middle + 0.4 * z, down, 0.3, Rgb(6.0)}, RectangleLight{middle, 0.3 * x, 0.2 * z, Rgb(8.0)}};
-    TriangleSurface square;
-    for (const auto& [u, w] : {std::pair(-1.5, -1.5), std::pair(1.5, -1.5), std::pair(1.5, 1.5), std::pair(-1.5, 1.5)})
-        square.vertices.push_back(middle + u * x + w * z);
-    square.triangles = {{0, 1, 2}, {0, 2, 3}};
-    Surface ceiling = with_material(square, MaterialKind::diffuse);
-    ceiling.material.color = Rgb(0.0);
-    for (const Light& lamp : in_turn(lamps, 2)) {
-        Scene scene = still({}, {lamp});
-        scene.volumes.clear();
-        scene.background = Rgb(0.0);
-        const Film open = render_here(scene, 1).film;
-        scene.surfaces.push_back(ceiling);
-        for (const char* integrator : {"ratioTracking", "lightTracing"})
-            CHECK_AGREEMENT(agree(render_here(by(scene, integrator), 2).film, open,
-                                  fmt::format("lamp {} in a ceiling, {}", lamp.index(), integrator)));
-    }
+    const auto square = [&](double half) {
+        TriangleSurface square;
+        for (const auto& [u, w] : {std::pair(-1, -1), std::pair(1, -1), std::pair(1, 1), std::pair(-1, 1)})
+            square.vertices.push_back(middle + u * half * x + w * half * z);
+        square.triangles = {{0, 1, 2}, {0, 2, 3}};
+        return square;
+    };
+    for (const Light& lamp : in_turn(lamps, 2))
+        for (const double half : {1.5, 1500.0}) {
+            Surface ceiling = with_material(square(half), MaterialKind::diffuse);
+            ceiling.material.color = Rgb(0.0);
+            Scene scene = still({}, {lamp});
+            scene.volumes.clear();
+            scene.background = Rgb(0.0);
+            const Film open = render_here(scene, 1).film;
+            scene.surfaces.push_back(ceiling);
+            for (const char* integrator : {"ratioTracking", "lightTracing"})
+                CHECK_AGREEMENT(agree(render_here(by(scene, integrator), 2).film, open,
+                                      fmt::format("lamp {} in a ceiling of {}, {}", lamp.index(), half, integrator)));
+        }
 }
 
 // Splats are numbers of so many digits, and what paths from the camera bring are splats as well.
@@ -437,6 +442,35 @@ TEST_CASE("what is seen may be far brighter than what particles bring", "[gpu][p
     scene.volumes.front().sigma_a = scene.volumes.front().sigma_s = Rgb(1e-3);
     scene.volumes.front().Le = Rgb(1e4);
     CHECK(render_here(by(scene, "bidirectional"), 1).counts.non_finite == 0);
+}
+
+// A lamp that a few pixels see a part of brings each far more than all of it would on average.
+TEST_CASE("what is seen of a lamp is all there, however little of it", "[gpu][particles]") {
+    Scene scene = parse_scene(R"(<options><surfaces><rectangle lookAt="0 1 0" width="200" height="200"/></surfaces>
+        <lights><sphere y="1" radius=".05"/></lights><camera y="1" z="1.25" fov="1"/><width>20</width>
+        <height>20</height><rayPerPixelCount>4096</rayPerPixelCount></options>)",
+                              "lamp.xml");
+    const RenderResult result = render_here(by(scene, "lightTracing"), 1);
+    CHECK(result.counts.non_finite == 0);
+    CHECK_AGREEMENT(agree_with_means(result.film, std::vector<Rgb>(400, Rgb(1.0)), "lamp"));
+}
+
+TEST_CASE("splats are as fine in units of any length", "[gpu][particles]") {
+    const auto mean = [](double length) {
+        const Scene scene = parse_scene(
+            fmt::format(R"(<options><surfaces><plane/></surfaces><lights><point y="{0}" multiplier="{1}"/></lights>
+                <camera y="{2}" lookAt="0 0 0" up="0 0 1" fov="30"/><width>8</width><height>8</height>
+                <rayPerPixelCount>64</rayPerPixelCount></options>)",
+                        length, length * length, 2.0 * length),
+            "plane.xml");
+        const RenderResult result = render_here(by(scene, "bidirectional"), 1);
+        CHECK(result.counts.non_finite == 0);
+        return image_mean(result.film).value.x;
+    };
+    const double usual = mean(1.0);
+    CHECK(usual > 0.0);
+    for (const double length : {5e-5, 1e5})
+        CHECK(mean(length) == Approx(usual).epsilon(1e-3)); // the same paths
 }
 
 TEST_CASE("negative estimates are splats too", "[gpu][particles]") {
