@@ -137,7 +137,7 @@ files told apart by name and size alone ~ host/methods/scene_hash.cpp ~ digest_o
 samples lost where a moment cannot be made ready ~ host/render/session.cpp ~ if (job_.checkpoint) // to go on from ~ if (job_.checkpoint && device_scene_) // to go on from ~ [motion]
 depth of single samples merged as if exact ~ host/cli/merge.cpp ~ * apart * apart ~ * 0.0 * apart ~ [merge]
 sums over pixels without a variance ~ host/cli/compare.cpp ~ if (is_correlated || a.samples[i] != 1 || b.samples[i] != 1) ~ if (true) ~ [compare]
-splats without room for what is seen ~ host/device_scene/emitter_table.cpp ~ brightest_of(scene, lights, surfaces, glow, sky, bounded ? reach : 0.0) ~ 0.0 ~ [particles]
+splats without room for what is seen ~ host/device_scene/emitter_table.cpp ~ counts ? 0.0 : brightest_of(scene, lights, surfaces, glow, sky, reach, bounded) ~ counts ? brightest_of(scene, lights, surfaces, glow, sky, reach, bounded) : 0.0 ~ [particles]
 maps that glow without particles ~ host/device_scene/emitter_table.cpp ~ channel_mean(emission.constant) + channel_mean(most_map_emission(scene.volumes[i])) ~ channel_mean(emission.constant) ~ [particles]
 places on textures not in the hash ~ host/methods/scene_hash.cpp ~ writer.add("place", glm::dvec3(places[corner], 0.0)); ~ (void)places; ~ [xml][surfaces]
 frames that are exposed otherwise passed over ~ host/report/requested_scene.cpp ~ if (const auto& exposure = scene.camera.exposure) ~ if (const auto& exposure = scene.camera.exposure; false) ~ [command]
