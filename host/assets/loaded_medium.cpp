@@ -65,12 +65,22 @@ std::vector<const DensityField*> distinct_grids(Media media) {
     return grids;
 }
 
+namespace {
+
+bool glows_by_grid(const Volume& volume) {
+    return volume.temperature.color * most_sigma_a(volume) != Rgb(0.0);
+}
+
+} // namespace
+
 std::vector<GridFile> grid_files(const Scene& scene) {
     std::vector<GridFile> files;
     for (const Volume& volume : scene.volumes)
         if (const auto* file = std::get_if<GridFile>(&volume.shape))
-            for (const std::string& grid : {file->grid, volume.temperature.grid, volume.albedo_grid})
-                files.push_back(file->beside(grid));
+            for (const std::string& grid : {file->grid, glows_by_grid(volume) ? volume.temperature.grid : "",
+                                            volume.albedo_grid, volume.drift.exists() ? volume.drift.grid : ""})
+                if (!grid.empty())
+                    files.push_back(file->beside(grid));
     return files;
 }
 
@@ -193,7 +203,7 @@ void Loader::load_albedo(const Volume& volume, const GridFile& file, LoadedMediu
 // A file without that grid, or one that holds no heat, does not glow: a warning, no error.
 void Loader::load_temperature(const Volume& volume, const GridFile& file, LoadedMedium& loaded) {
     const TemperatureEmission& emission = volume.temperature;
-    if (emission.color * most_sigma_a(volume) == Rgb(0.0))
+    if (!glows_by_grid(volume))
         return;
     if (!fields_.has(file.beside(emission.grid)))
         return warn(loaded, fmt::format("{}: has no grid \"{}\": <emission> is without effect", file.path.string(),
@@ -384,11 +394,7 @@ Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
     check_scene_limits(scene);
     FieldCache own;
     FieldCache& fields = kept ? *kept : own;
-    std::vector<GridFile> files = grid_files(scene);
-    for (const Volume& volume : scene.volumes)
-        if (const auto* file = std::get_if<GridFile>(&volume.shape); file && volume.drift.exists())
-            files.push_back(file->beside(volume.drift.grid));
-    fields.retain(files);
+    fields.retain(grid_files(scene));
     Loader loader(scene, method, fields);
     Assets assets;
     assets.media.reserve(scene.volumes.size());

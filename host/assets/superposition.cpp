@@ -284,23 +284,27 @@ std::size_t make_bricks(const std::vector<Member>& members, PieceStore& pieces, 
     return count;
 }
 
-// Places are numbers of 24 bits, from the middle of all volumes.
+// Places are numbers of 24 bits, from the middle of all volumes. Along each axis of the world they are to tell a
+// quarter of a voxel, or of a hundredth of the volume, apart.
 void check_places(const Member& member, const glm::dvec3& origin) {
     if (is_everywhere(member.volume))
         return;
     const AxisBox box = box_around({member});
-    const glm::dvec3 far_corner = glm::max(glm::abs(box.low - origin), glm::abs(box.high - origin)),
-                     size = box.high - box.low;
-    const double far = std::max({far_corner.x, far_corner.y, far_corner.z});
-    const double voxel =
-        member.loaded.field ? member.loaded.field->voxel_size() : 0.01 * std::min({size.x, size.y, size.z});
-    if (far * 0x1p-24 > 0.25 * voxel)
-        throw InputError(
-            fmt::format("{}this volume is up to {:.3g} world units from the middle of all, where single "
-                        "precision no longer tells places a quarter of its {} apart ({:.3g} units); move the "
-                        "volumes together, or leave some out",
-                        member.volume.place.empty() ? "" : member.volume.place + ": ", far,
-                        member.loaded.field ? "voxels" : "width's hundredth", 0.25 * voxel));
+    for (int axis = 0; axis < 3; ++axis) {
+        const double size = box.high[axis] - box.low[axis];
+        const double far = std::max(std::abs(box.low[axis] - origin[axis]), std::abs(box.high[axis] - origin[axis]));
+        double least = 0.01 * size;
+        if (member.loaded.field) { // as long as the longest edge of a voxel along the axis
+            const glm::dmat4& map = member.loaded.field->index_to_world;
+            least = std::max({std::abs(map[0][axis]), std::abs(map[1][axis]), std::abs(map[2][axis])});
+        }
+        if (far * 0x1p-24 > 0.25 * least)
+            throw InputError(
+                fmt::format("{}this volume is up to {:.3g} world units from the middle of all, where single "
+                            "precision tells no places apart that are nearer than {:.3g}; move the volumes "
+                            "together, or leave some out",
+                            member.volume.place.empty() ? "" : member.volume.place + ": ", far, far * 0x1p-24));
+    }
 }
 
 // Cells as small as the smallest that any medium wants, as far as there may be so many: everywhere, or where small

@@ -122,7 +122,7 @@ AtomicFile::~AtomicFile() {
 }
 
 // What was interrupted before is written all the same, as long as it is read.
-void AtomicFile::wait_for_reader() noexcept {
+void AtomicFile::wait_for_reader() {
     constexpr int milliseconds = 100;
     pollfd wanted{descriptor_, POLLOUT, 0};
     if (poll(&wanted, 1, milliseconds) <= 0 && interrupted() && !interrupted_before_)
@@ -156,7 +156,7 @@ void AtomicFile::keep(const char* bytes, std::size_t size, std::size_t at) noexc
     }
 }
 
-void AtomicFile::send_kept() noexcept {
+void AtomicFile::send_kept() {
     for (std::size_t sent = 0; sent < kept_.size() && !error_;) {
         const ssize_t written = ::write(descriptor_, kept_.data() + sent, kept_.size() - sent);
         if (written < 0 && errno == EAGAIN)

@@ -29,8 +29,8 @@ public:
 private:
     void open_new();
     void keep(const char* bytes, std::size_t size, std::size_t at) noexcept;
-    void send_kept() noexcept;
-    void wait_for_reader() noexcept;
+    void send_kept();
+    void wait_for_reader();
     void give_name();
 
     std::filesystem::path target_, temporary_;

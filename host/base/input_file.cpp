@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <memory>
 #include <poll.h>
+#include <string_view>
 #include <unistd.h>
 
 #include "atomic_file.h"
@@ -106,6 +107,8 @@ std::string read_input_text(const path& file, std::size_t longest, const std::st
         else if (errno != EINTR && errno != EAGAIN)
             throw InputError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
     }
+    if (constexpr std::string_view mark = "\xef\xbb\xbf"; text.starts_with(mark)) // that it is UTF-8
+        text.erase(0, mark.size());
     return text;
 }
 

@@ -60,7 +60,7 @@ IntegratorRequest same_light(const Estimator& of, const Integrator& preset) {
 }
 
 bool is_unbiased(const Estimator& estimator) {
-    return estimator.method.biases == bias_none;
+    return (estimator.method.biases & ~bias_single_at_surfaces) == bias_none; // which all of one picture have
 }
 
 bool marches(const Method& method) {

@@ -37,6 +37,7 @@ int run_init(const InitOptions& options) {
     if (!is_special(output) && std::filesystem::exists(std::filesystem::symlink_status(output, ignored)))
         throw InputError(fmt::format("{}: is there already, and would be lost; remove it, or name another with -o",
                                      output.string()));
+    check_directory_writable(output);
     std::string xml = first_scene, assumed;
     if (!options.grid.empty()) {
         FileSceneOptions file;

@@ -65,7 +65,7 @@ RenderResult render_what_can_be(const Device& device, const Scene& scene, const 
         if (!job.dry_run)
             session.render(scene.settings.spp);
     } catch (const std::exception&) {
-        if (session.samples() == 0 || !session.can_go_on())
+        if (session.samples() == 0 || !session.has_whole_film())
             throw;
         failure = std::current_exception();
     }
@@ -115,8 +115,6 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
         return render_what_can_be(device, scene, job);
     } catch (const RenderError& error) {
         throw RenderError(error.what() + file.advice());
-    } catch (const InputError& error) {
-        throw InputError(error.what() + file.advice());
     }
 }
 
@@ -179,8 +177,11 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
         put(stdout, trace_table(result.trace, result.trace_origin, result.film.mean.front()));
     else if (!options.quiet)
         print_summary(options, device, result, shown.tone);
-    if (result.failure)
+    if (result.failure) {
+        tell(stderr, "vkvol: note: {} samples per pixel were done, and are written{}\n", result.samples,
+             checkpoint.advice());
         std::rethrow_exception(result.failure);
+    }
     if (result.interrupted)
         return exit_interrupted;
     return options.strict && result.counts.any_cap() ? exit_caps_hit : exit_done;
@@ -189,7 +190,7 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
 } // namespace
 
 std::vector<GridFile> check_picture(const RenderOptions& options, Workshop& workshop) {
-    const RenderScene loaded = load_render_scene(options, workshop.fields());
+    const RenderScene loaded = load_render_scene(options, workshop.fields(), false);
     resolve_crop(options.crop, loaded.scene.picture);
     check_files(options, loaded, CheckpointFile(options));
     return grid_files(loaded.scene);

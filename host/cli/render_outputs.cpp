@@ -75,7 +75,8 @@ void RenderOutputs::write(const Device& device, const RenderResult& result, cons
         }
     const std::string kept = failures.empty() || exr_written ? "" : rescue(result.film, metadata);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    std::string error = message_of(result.failure);
+    const std::string why = message_of(result.failure);
+    std::string error = why;
     if (!failures.empty())
         append(error, "; ", failures + kept);
     if (std::string failure; !try_report(make_report(options_, scene_, device, result, shown, seconds, error), failure))
@@ -83,7 +84,8 @@ void RenderOutputs::write(const Device& device, const RenderResult& result, cons
     else if (options_.report)
         append(written, ", ", options_.report->string());
     if (!failures.empty())
-        throw RenderError(failures + (written.empty() ? "" : "; written: " + written) + kept);
+        throw RenderError((why.empty() ? "" : why + "; ") + failures +
+                          (written.empty() ? "" : "; written: " + written) + kept);
 }
 
 void RenderOutputs::write_report(const Device& device, const RenderResult& result, const std::string& error) {

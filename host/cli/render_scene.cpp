@@ -47,7 +47,7 @@ RenderScene make_scene(const RenderOptions& options) {
 
 } // namespace
 
-RenderScene load_render_scene(const RenderOptions& options, FieldCache& fields) {
+RenderScene load_render_scene(const RenderOptions& options, FieldCache& fields, bool frames) {
     RenderScene result;
     if (is_grid_file(options.scene))
         result = make_scene(options);
@@ -60,7 +60,7 @@ RenderScene load_render_scene(const RenderOptions& options, FieldCache& fields) 
                                    options.strict,
                                    {},
                                    options.grid_has_frame ? std::set<std::string>{"F"} : std::set<std::string>{}});
-    const std::string given = apply_request(options, !result.xml.empty(), result.scene, fields);
+    const std::string given = apply_request(options, !result.xml.empty() || !frames, result.scene, fields);
     if (!given.empty())
         result.assumed = given;
     return result;

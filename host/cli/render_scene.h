@@ -14,7 +14,8 @@ struct RenderScene {
 };
 
 // With the samples, size and view of the command line; `fields` as in framing.h. Throws InputError.
-RenderScene load_render_scene(const RenderOptions& options, FieldCache& fields);
+// `frames`: whether a camera may be given or moved, for which grids are read.
+RenderScene load_render_scene(const RenderOptions& options, FieldCache& fields, bool frames = true);
 
 // Was it made, and are pictures to be written that it can lie beside?
 bool is_kept(const RenderOptions& options, const RenderScene& scene);

@@ -153,6 +153,44 @@ double part_that_comes(const shared::LightRow& light, double radius) {
     return light.kind & LIGHT_FLAT ? seen : 0.25 * seen; // by the cosine, or alike into all directions
 }
 
+double extent_of(const shared::LightRow& light) {
+    return light.kind & LIGHT_FLAT ? glm::length(light.edge_u) + glm::length(light.edge_v) : double(light.extent);
+}
+
+// A triangle or a disk.
+struct FlatPiece {
+    explicit FlatPiece(const shared::SurfacePrimitive& p)
+        : corners{p.a, p.b, p.c}, radius(p.shape == SURFACE_TRIANGLES ? 0.0 : double(p.c.x)) {
+        const bool is_disk = p.shape != SURFACE_TRIANGLES;
+        normal = is_disk ? corners[1] : glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+        double reach = 0.0;
+        for (int k = 0; k < (is_disk ? 1 : 3); ++k)
+            reach = std::max({reach, std::abs(corners[k].x), std::abs(corners[k].y), std::abs(corners[k].z)});
+        spare = SURFACE_SPARE * reach;
+    }
+
+    // As nearly as rays know it: see lies_in, surfaces/nearest.glsl.
+    bool holds(const glm::dvec3& place, double extent) const {
+        const double off = glm::dot(normal, place - corners[0]);
+        if (!(std::abs(off) <= 0.125 * spare))
+            return false;
+        const glm::dvec3 foot = place - off * normal;
+        if (radius > 0.0)
+            return glm::distance(foot, corners[0]) <= radius + extent;
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec3 edge = corners[(k + 1) % 3] - corners[k];
+            if (glm::dot(glm::cross(edge, foot - corners[k]), normal) < -extent * glm::length(edge))
+                return false;
+        }
+        return true;
+    }
+
+    glm::dvec3 corners[3];
+    double radius;
+    glm::dvec3 normal;
+    double spare;
+};
+
 // The most, roughly, that a particle brings which leaves a lamp or surface of those the sensor sees: its part of all
 // that is sent out, over the patch that a pixel has there, and over all pixels. `eye`: render space.
 double brightest_in_view(const Scene& scene, const LightTable& lights, const SurfaceTable& surfaces, glm::dvec3 eye,
@@ -164,7 +202,7 @@ double brightest_in_view(const Scene& scene, const LightTable& lights, const Sur
     };
     for (const shared::LightRow& light : lights.rows)
         if (light.kind & LIGHT_SHAPED)
-            take(light.position, std::max(double(light.extent), double(glm::length(light.edge_u + light.edge_v))));
+            take(light.position, extent_of(light));
     for (std::size_t i = 0; i < surfaces.met; ++i) {
         const shared::SurfacePrimitive& p = surfaces.primitives[i];
         if (surfaces.rows[p.surface].emission == glm::vec3(0.0f) || p.shape == SURFACE_PLANE)
@@ -194,15 +232,16 @@ double usual_length(const LightTable& lights, const SurfaceTable& surfaces, glm:
 
 // The brightest value that a pixel may get: of sources seen themselves, or mirrored; and of points, which light what is
 // near them without bound, as from a thirty-thousandth of `reach`, so that what is lit from all of it has 24 bits.
-// `bounded`: whether something bounds the scene; else points light as from `reach` itself.
+// `bounded`: whether something bounds the scene, about the origin.
 double brightest_of(const Scene& scene, const LightTable& lights, const SurfaceTable& surfaces, const Glow& glow,
                     const SkyMap* sky, double reach, bool bounded) {
     double brightest = std::max(channel_mean(scene.background), glow.most);
     for (const shared::LightRow& light : lights.rows) {
         double factor = 1.0;
         if ((light.kind & LIGHT_PLACED) && !(light.kind & LIGHT_SHAPED)) {
-            const double nearest = std::max(double(glm::length(light.position)) - reach, std::ldexp(reach, -15));
-            factor = 1.0 / (bounded ? nearest * nearest : reach * reach);
+            const double beyond = bounded ? double(glm::length(light.position)) - reach : 0.0;
+            const double nearest = std::max(beyond, std::ldexp(reach, -15));
+            factor = 1.0 / (nearest * nearest);
         }
         brightest = std::max(brightest, factor * channel_mean(light.radiance));
     }
@@ -241,22 +280,17 @@ Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumPar
 }
 
 void keep_apart(std::vector<shared::LightRow>& lights, const SurfaceTable& surfaces) {
-    constexpr std::size_t most_pairs = 20'000'000; // a tenth of a second
+    constexpr std::size_t most_pairs = 100'000'000; // half a second; of more nothing is kept apart
     if (lights.size() * surfaces.met > most_pairs)
         return;
     for (std::size_t i = surfaces.planes; i < surfaces.met; ++i) {
         const shared::SurfacePrimitive& p = surfaces.primitives[i];
         if (p.shape == SURFACE_SPHERE)
             continue;
-        const glm::dvec3 a = p.a, b = p.b, c = p.c;
-        const bool is_triangle = p.shape == SURFACE_TRIANGLES;
-        const glm::dvec3 normal = is_triangle ? glm::normalize(glm::cross(b - a, c - a)) : b;
-        const glm::dvec3 reach =
-            is_triangle ? glm::max(glm::max(glm::abs(a), glm::abs(b)), glm::abs(c)) : glm::abs(a) + double(p.c.x);
-        const double spare = SURFACE_SPARE * std::max({reach.x, reach.y, reach.z});
+        const FlatPiece piece(p);
         for (shared::LightRow& light : lights)
-            if ((light.kind & LIGHT_PLACED) && std::abs(glm::dot(normal, glm::dvec3(light.position) - a)) <= spare)
-                light.apart = std::max(light.apart, static_cast<float>(spare));
+            if ((light.kind & LIGHT_PLACED) && piece.holds(light.position, extent_of(light)))
+                light.apart = std::max(light.apart, static_cast<float>(piece.spare));
     }
 }
 

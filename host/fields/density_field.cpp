@@ -58,6 +58,10 @@ std::string list_names(const std::vector<std::string>& names) {
                                           list_names(names))));
 }
 
+std::string place_of(const GridFile& file) {
+    return one_line(fmt::format("{}: \"{}\"", file.path.string(), file.grid));
+}
+
 GridBytes read_grid(const GridFile& file, GridValues values) {
     const std::vector<std::string> names = grid_names(file);
     if (std::find(names.begin(), names.end(), file.grid) == names.end())
@@ -67,8 +71,10 @@ GridBytes read_grid(const GridFile& file, GridValues values) {
     if (file_ending(file.path) == ".vdb")
         return read_vdb_grid(file.path, file.grid, values);
     const std::vector<GridEntry> entries = read_nvdb_entries(file.path);
-    return read_nvdb_grid(file.path, *std::find_if(entries.begin(), entries.end(),
-                                                   [&](const GridEntry& entry) { return entry.name == file.grid; }));
+    const GridEntry& entry =
+        *std::find_if(entries.begin(), entries.end(), [&](const GridEntry& each) { return each.name == file.grid; });
+    check_grid_size(entry.memory, place_of(file));
+    return read_nvdb_grid(file.path, entry);
 }
 
 } // namespace
@@ -218,8 +224,7 @@ bool is_empty_grid(const GridFile& file) {
 }
 
 DensityField load_density_field(const GridFile& file, GridValues values) {
-    return make_density_field(read_grid(file, values),
-                              one_line(fmt::format("{}: \"{}\"", file.path.string(), file.grid)), values);
+    return make_density_field(read_grid(file, values), place_of(file), values);
 }
 
 } // namespace vkvol

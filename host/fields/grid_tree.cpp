@@ -94,10 +94,7 @@ public:
     Builder(DensityField& field, const std::string& place) : field_(field), place_(place) {}
 
     void build() {
-        if (field_.bytes.size() > largest_grid)
-            throw InputError(fmt::format("{}: the grid takes {:.1f} GiB, and 8 GiB are the most; crop it or write it "
-                                         "quantised (nanovdb_convert --fp8 takes a quarter of the bytes of floats)",
-                                         place_, field_.bytes.size() / 1073741824.0));
+        check_grid_size(field_.bytes.size(), place_);
         auto* grid = at<nanovdb::GridData>(0);
         const std::size_t tree_offset = sizeof(nanovdb::GridData);
         const auto* tree = at<nanovdb::TreeData<3>>(tree_offset);
@@ -378,6 +375,13 @@ private:
 };
 
 } // namespace
+
+void check_grid_size(std::size_t bytes, const std::string& place) {
+    if (bytes > largest_grid)
+        throw InputError(fmt::format("{}: the grid takes {:.1f} GiB, and 8 GiB are the most; crop it or write it "
+                                     "quantised (nanovdb_convert --fp8 takes a quarter of the bytes of floats)",
+                                     place, double(bytes) / 1073741824.0));
+}
 
 void read_tree(DensityField& field, const std::string& place) {
     if (field.type == GRID_COLOR)

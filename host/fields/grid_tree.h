@@ -8,6 +8,9 @@
 
 namespace vkvol {
 
+// Throws InputError for a grid of more bytes than the table of leaves can tell apart, before or after it is read.
+void check_grid_size(std::size_t bytes, const std::string& place);
+
 // Fills what of `field` follows from its bytes and type: transform, box, leaf table, cleaned values. No offset in the
 // file is trusted. Throws InputError, in which `place` stands for the grid.
 void read_tree(DensityField& field, const std::string& place);

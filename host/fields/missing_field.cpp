@@ -44,7 +44,8 @@ std::string make_field_arguments(const std::string& stem) {
 
 std::string missing_field_hint(const path& file) {
     if (file.filename().string().find("##") != std::string::npos)
-        return "in a scene file the number of the frame that -f renders is $F4, e.g. smoke.$F4.vdb";
+        return "#### is the number of a frame: say which, -f files or -f 1..48; in a scene file it is $F4, e.g. "
+               "smoke.$F4.vdb";
     if (const std::string arguments = make_field_arguments(file.stem().string()); !arguments.empty())
         return fmt::format("make it with `{} {} -o {}`", make_field_command(), arguments, file.string());
     return "check the path, which starts from the scene file's directory in a scene, and from the current one after "

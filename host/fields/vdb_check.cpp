@@ -131,7 +131,8 @@ private:
                                          one_line(shown_name(grid.name)), colors ? " or colours (vec3s)" : "",
                                          value_bytes_ > 0
                                              ? "<albedo> and <emission model=\"color\"> take grids of colours"
-                                             : "only float and half are read"));
+                                         : allowed == GridValues::vectors ? "velocities are vec3s"
+                                                                          : "only float and half are read"));
         check_grid(grid);
         if (grid.parent.empty())
             return;
@@ -149,6 +150,12 @@ private:
 
     void check_grid(const Descriptor& grid) {
         seek(grid.position);
+        body(grid);
+        if (position_ != grid.end)
+            damaged("the end of a grid");
+    }
+
+    void body(const Descriptor& grid) {
         compression_ = get<std::uint32_t>();
         if (compression_ > (compress_zip | compress_active | compress_blosc))
             damaged("a grid's compression");
@@ -156,8 +163,6 @@ private:
         transform();
         if (grid.parent.empty())
             tree();
-        if (position_ != grid.end)
-            damaged("the end of a grid");
     }
 
     void read(void* data, std::uint64_t bytes) {
@@ -208,9 +213,9 @@ private:
                             "with a current program",
                             file_.string(), version, oldest_version, newest_version));
         skip(8); // of the library
-        if (get<std::uint8_t>() != 1)
-            throw InputError(
-                fmt::format("{}: an OpenVDB stream without offsets; save it again as a file", file_.string()));
+        const auto offsets = get<std::uint8_t>();
+        if (offsets > 1)
+            damaged("whether grids have offsets");
         skip(36); // UUID
         metadata();
         std::vector<Descriptor> grids;
@@ -223,6 +228,8 @@ private:
             grid.position = get<std::uint64_t>();
             grid.blocks = get<std::uint64_t>();
             grid.end = get<std::uint64_t>();
+            if (offsets == 0)
+                streamed(grid);
             const bool in_order =
                 !grid.parent.empty() || (grid.position <= grid.blocks && grid.blocks <= grid.end); // a tree has blocks
             if (grid.position < position_ || grid.end < grid.position || !in_order || grid.end > size_)
@@ -233,6 +240,20 @@ private:
             seek(grid.end);
         }
         return grids;
+    }
+
+    // Of a stream all grids are read, one after another.
+    void streamed(Descriptor& grid) {
+        value_bytes_ = value_bytes(grid.type);
+        if (value_bytes_ == 0)
+            throw InputError(
+                fmt::format("{}: is a stream without offsets, which is read as a whole, and its grid \"{}\" is "
+                            "none of floats or colours; save it again as a file, or without that grid",
+                            file_.string(), one_line(shown_name(grid.name))));
+        grid.position = grid.blocks = position_;
+        body(grid);
+        grid.end = position_;
+        seek(grid.position);
     }
 
     // Notes whether values are halves.
@@ -302,7 +323,7 @@ private:
         const auto known = map_doubles.find(string());
         if (known == map_doubles.end())
             throw InputError(
-                fmt::format("{}: has a transform of unknown kind; resample the grid to an affine one, e.g. in "
+                fmt::format("{}: a grid has a transform of unknown kind; resample the grid to an affine one, e.g. in "
                             "Houdini with VDB Resample",
                             file_.string()));
         skip(known->second * sizeof(double));

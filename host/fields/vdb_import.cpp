@@ -76,6 +76,7 @@ template <class Grid> GridBytes to_nanovdb(Grid& grid) {
     if (grid.activeVoxelCount() == 0) // tiles that are not active are background
         grid.tree().clear();
     const auto handle = nanovdb::openToNanoVDB(grid);
+    grid.tree().clear(); // no three copies at a time
     GridBytes bytes(handle.size());
     std::memcpy(bytes.edit(), handle.data(), handle.size());
     return bytes;

@@ -59,13 +59,13 @@ void Session::render(std::uint32_t samples) {
     next_noise_ = noise_seconds;
     next_preview_ = 0.0;
     checkpoint_at_ = 0.0;
-    stopped_ = result_.interrupted = false;
+    stopped_ = result_.interrupted = result_.time_is_over = false;
     stopped_at_.reset();
     while (done_ < wanted_ && !is_good_enough() && !stopping()) {
         try {
             enter_moments();
         } catch (const std::exception&) { // what was rendered outlives a moment that cannot be made ready
-            if (job_.checkpoint) // to go on from
+            if (job_.checkpoint)          // to go on from
                 save_checkpoint();
             end_rendering();
             result_.interrupted = true;
@@ -248,7 +248,7 @@ bool Session::stopping() {
     if (job_.interrupted && job_.interrupted())
         result_.interrupted = stopped_ = true;
     else if (job_.time_limit && watch_.seconds() >= *job_.time_limit)
-        stopped_ = true;
+        result_.time_is_over = stopped_ = true;
     return stopped_;
 }
 
@@ -379,9 +379,8 @@ void Session::develop_film() {
     if (method_.paths != PATHS_CAMERA && !moving_ && done_ > 0)
         if (const auto of_sample = variance_of_sums(read_sums(commands_, bands_, width())))
             film.sum_variance = *of_sample / double(done_);
-    film.layers =
-        develop_layers(device_scene_->layers(), read_layers(commands_, bands_, width(), device_scene_->frame().layers),
-                       film.samples, device_scene_->origin());
+    film.layers = develop_layers(film_scene_.plan, read_layers(commands_, bands_, width(), film_scene_.layers),
+                                 film.samples, film_scene_.origin);
 }
 
 RenderResult render(const Device& device, const Scene& scene, const RenderJob& job) {

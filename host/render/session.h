@@ -84,6 +84,7 @@ struct RenderResult {
     double load_seconds = 0, upload_seconds = 0, pipeline_seconds = 0, render_seconds = 0;
     std::uint64_t device_bytes = 0; // of all buffers
     MediaFigures media;
+    bool time_is_over = false;              // which ended it
     std::exception_ptr failure;             // what ended it early, between batches; the film is whole
     MediumOutline outline;                  // to explain the picture by
     std::vector<shared::TraceRecord> trace; // positions relative to trace_origin
@@ -104,8 +105,10 @@ public:
     // what was rendered is whole, and can be had.
     void render(std::uint32_t samples);
     std::uint32_t samples() const { return done_; } // per pixel, finished for every pixel
-    // Not after paths were abandoned, or a device failed.
-    bool can_go_on() const { return !gave_up_; }
+    // Not after paths were abandoned, a device failed, or a moment could not be made ready.
+    bool can_go_on() const { return !gave_up_ && device_scene_ && wavefront_; }
+    // Not while nobody knows what it has of a batch that failed.
+    bool has_whole_film() const { return !gave_up_; }
 
     // As if made anew with the job's seed as it is now, without reading, uploading or compiling again; only how long
     // lanes work at a time goes by the device as met before. Of one device, without checkpoints, and where nothing
@@ -204,6 +207,11 @@ private:
     LoopSizes loops_;
     Commands commands_;
     std::optional<DeviceScene> device_scene_;
+    struct { // what of it the film needs, also where a moment cannot be made ready
+        LayerPlan plan;
+        shared::AovParams layers{};
+        glm::dvec3 origin{0.0};
+    } film_scene_;
     FieldCache own_fields_;                  // of what moves, without a workshop's
     std::optional<PipelineCache> own_cache_; // without a workshop's
     std::vector<Band> bands_;

@@ -133,6 +133,7 @@ void Session::load() {
     if (is_first)
         make_film();
     device_scene_->set_records(records_);
+    film_scene_ = {device_scene_->layers(), device_scene_->frame().layers, device_scene_->origin()};
     if (is_first)
         begin_identity(assets);
     result_.glows = device_scene_->emits() && std::none_of(assets.media.begin(), assets.media.end(), has_colour);

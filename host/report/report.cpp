@@ -193,7 +193,7 @@ Metadata make_metadata(const RenderRequest& request, const Scene& scene, const D
     const auto most = std::max_element(result.film.samples.begin(), result.film.samples.end());
     // Whoever takes a picture amid a render has asked for no more than it has.
     std::optional<std::uint32_t> asked;
-    if (!result.interrupted && !result.reached_goal && !request.time_limit)
+    if (!result.interrupted && !result.reached_goal && !result.time_is_over)
         asked = result.samples;
     Metadata metadata{{"Software", std::string("vkvol ") + version},
                       {"samplesPerPixel", static_cast<int>(*most)},

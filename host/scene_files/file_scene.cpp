@@ -69,6 +69,9 @@ DensityField load_density(const std::filesystem::path& file, const std::vector<s
     for (const std::string& name : candidates(names)) {
         std::string reason;
         if (std::optional<DensityField> field = load({file, name}, reason)) {
+            if (!reasons.empty())
+                view.warnings.push_back(
+                    one_line(fmt::format("{}: \"{}\" is taken for the density: {}", file.string(), name, reasons)));
             view.grid = name;
             return std::move(*field);
         }

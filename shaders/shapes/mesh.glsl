@@ -19,7 +19,7 @@ struct Shear {
     vec3 origin;   // with that axis turned to z
     vec2 slope;    // of the ray
     float inverse; // world distance per unit of z
-    float scale;   // a power of two by which lengths across the ray are about 1 at most
+    float scale;   // a power of two, 1 but for tiny meshes, whose lengths across the ray are then about 1
 };
 
 // What the steps of a search need of their ray.
@@ -128,23 +128,23 @@ void add_crossing(Shear s, uint i, inout PartSearch c) {
     c.first = min(c.first, t);
 }
 
+// 1 over the largest power of two that is no more than x < 1; else 1.
+float scale_up(float x) {
+    uint exponent = clamp(floatBitsToUint(x) >> 23u, 1u, 127u);
+    return uintBitsToFloat(254u - exponent << 23u);
+}
+
 // Boxes are enlarged by 2^-18 R, R the greatest distance along an axis between the ray's origin and the mesh, which
 // with u = 2^-24 is 64 u R. Projecting moves a vertex by at most 10 u R, and a computed t is within 10 u R sqrt(3) of
 // where the ray passes the projected triangle: so the point at t is within 28 u R of the triangle's box. The slab
 // test's own distances, at most 2 sqrt(3) R where they matter, err by at most 5 u of themselves, or 18 u R. The rest is
 // spare.
-// 1 over the largest power of two that is no more than x.
-float inverse_power(float x) {
-    uint exponent = clamp(floatBitsToUint(x) >> 23u, 1u, 253u);
-    return uintBitsToFloat(254u - exponent << 23u);
-}
-
 MeshRay make_mesh_ray(uint root, uint bvh_nodes, Ray ray) {
     MeshRay m;
     m.shear = make_shear(ray);
     vec3 reach = bvh_nodes > 0u ? max(abs(bvh[root].low), abs(bvh[root].high)) + abs(ray.origin) : vec3(0.0);
     float margin = spare_at(reach);
-    m.shear.scale = inverse_power(max(reach.x, max(reach.y, reach.z)));
+    m.shear.scale = scale_up(max(reach.x, max(reach.y, reach.z)));
     m.before = ray.origin + margin;
     m.after = ray.origin - margin;
     // Components so small that their inverse would overflow are taken for 1e-30, which moves the ray by nothing.

@@ -6,27 +6,16 @@
 #include "stages/shadow.glsl"
 
 #ifdef SURFACES
-// Whether rounding may have the primitive before a light, or sensor, that lies in it. (Rays along what is far larger than that is
-// away meet it some way off.)
-bool lies_in(uint primitive, vec3 place) {
-    SurfacePoint at = surface_point(primitive, place);
-    vec3 off = place - at.position;
-    return dot(off, off) <= at.apart * at.apart;
-}
-
 // Goes on with the search for some nodes. What is in the way of a shadow ray ends it, and the search.
 void seek(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     bool looks = at_shadow_ray(lane.todo == TODO_CHECK);
     Ray ray = Ray(looks ? looking_from(lane) : lane.path.position, looks ? looking_along(lane) : lane.path.direction);
     uint from = begins_at(looks, lane);
     MeshRay mesh_ray = make_mesh_ray(frame.first_surface_node, frame.surface_nodes, ray);
-    vec3 to = ray.origin + looking_as_far_as(lane) * ray.direction;
+    float reach = looks && !REPEATS ? looking_as_far_as(lane) : FAR;
     bool over = looks && lane.seek.primitive != NO_SURFACE;
     for (int k = 0; k < SURFACE_NODES_PER_TURN && !over; ++k) {
-        over = step_seek(mesh_ray, ray, from, looks ? lane.lamp_body : NO_SURFACE, lane.seek);
-        // A loop, since software drivers do both sides of an `if`; it is seldom entered.
-        for (bool met = looks && lane.seek.primitive != NO_SURFACE; met; met = false)
-            lane.seek.primitive = lies_in(lane.seek.primitive, to) ? NO_SURFACE : lane.seek.primitive;
+        over = step_seek(mesh_ray, ray, from, looks ? lane.lamp_body : NO_SURFACE, reach, lane.seek);
         over = over || (looks && lane.seek.primitive != NO_SURFACE);
     }
     if (over && looks && lane.seek.primitive != NO_SURFACE) {

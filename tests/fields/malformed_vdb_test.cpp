@@ -146,7 +146,8 @@ TEST_CASE("counts, sizes and places in .vdb files are not believed", "[cpu][dens
                }),
                Contains("\"smoke\", which the file does not have"));
     CHECK_THAT(error_of([](VdbFile& f) { f.version = 219; }), Contains("version 219"));
-    CHECK_THAT(error_of([](VdbFile& f) { f.offsets = 0; }), Contains("offsets"));
+    CHECK_THAT(error_of([](VdbFile& f) { f.offsets = 0; }), is_read); // one after another
+    CHECK_THAT(error_of([](VdbFile& f) { f.offsets = 2; }), Contains("offsets"));
 }
 
 TEST_CASE("a .vdb file cut anywhere is an error", "[cpu][density]") {

@@ -1,9 +1,11 @@
 // .vdb files that OpenVDB itself writes: all that can be read of them is, whatever lies beside it.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
 #include <nanovdb/NanoVDB.h> // before OpenVDB's, which has macros
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <unistd.h>
 
@@ -66,6 +68,29 @@ openvdb::FloatGrid::Ptr ramp(const char* name, float background = 0.0f) {
 }
 
 } // namespace
+
+TEST_CASE("grids that follow one another without offsets are read", "[cpu][density]") {
+    const auto density = grid_named("density"), heat = grid_named("temperature", 2.0f);
+    for (int i = 0; i < 300; ++i) {
+        density->tree().setValue({i % 7, i % 11, i}, 0.01f * float(i + 1));
+        heat->tree().setValue({i, 0, 0}, 900.0f);
+    }
+    heat->setSaveFloatAsHalf(true);
+    const VdbFile file({density, heat});
+    const auto write = [&](const openvdb::GridCPtrVec& grids) {
+        std::ofstream out(file.path(), std::ios::binary);
+        openvdb::io::Stream(out).write(grids);
+    };
+    const DensityField whole = file.field(), whole_heat = file.field("temperature");
+    write({density, heat});
+    CHECK(std::ranges::equal(file.field().bytes.span(), whole.bytes.span()));
+    CHECK(std::ranges::equal(file.field("temperature").bytes.span(), whole_heat.bytes.span()));
+    CHECK(read_vdb_entries(file.path()).size() == 2);
+    const auto number = openvdb::Int32Grid::create();
+    number->setName("id");
+    write({density, number}); // which nothing here knows the end of
+    CHECK_THROWS_WITH(file.field(), Contains("\"id\" is none of floats") && Contains("save it again as a file"));
+}
 
 TEST_CASE("an empty grid in a .vdb file is read, and its neighbours are", "[cpu][density]") {
     const VdbFile file({grid_named("shadow"), ramp("density")});

@@ -6,7 +6,9 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <nanovdb/util/IO.h>
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
+#include <sstream>
 #include <zlib.h>
 
 #include "image_io.h"
@@ -193,14 +195,15 @@ std::vector<std::string> make_vdbs(const std::filesystem::path& scratch) {
     openvdb::initialize();
     std::vector<std::string> files;
     const std::filesystem::path path = scratch / "corpus.vdb";
+    constexpr std::size_t uuid_at = 21, uuid_size = 36; // random: an input is to be always the same
+    constexpr const char* no_uuid = "00000000-0000-4000-8000-000000000000";
     const auto write = [&](const openvdb::GridPtrVec& grids, std::uint32_t compression) {
         openvdb::io::File file(path.string());
         file.setCompression(compression);
         file.write(grids);
         file.close();
         files.push_back(read_file(path));
-        constexpr std::size_t uuid_at = 21, uuid_size = 36; // random: an input is to be always the same
-        files.back().replace(uuid_at, uuid_size, "00000000-0000-4000-8000-000000000000");
+        files.back().replace(uuid_at, uuid_size, no_uuid);
     };
     const auto grid = openvdb::FloatGrid::create(0.0f);
     grid->setName("density");
@@ -234,6 +237,10 @@ std::vector<std::string> make_vdbs(const std::filesystem::path& scratch) {
     write({grid, instance}, 2);
     write({grid, grid, vectors}, 0); // two of one name
     std::filesystem::remove(path);
+    std::ostringstream stream;
+    openvdb::io::Stream(stream).write(openvdb::GridCPtrVec{half, heat});
+    files.push_back(stream.str());
+    files.back().replace(uuid_at, uuid_size, no_uuid);
     return files;
 }
 

@@ -207,6 +207,23 @@ TEST_CASE("small media in wide ones have cells of their own, which bound the sum
     CHECK(met > 10000);
 }
 
+TEST_CASE("volumes are where single precision tells their parts apart", "[cpu][several]") {
+    const auto loads = [](const Volume& first, const Volume& second) {
+        Scene scene = scene_of(first, 10.0, 8);
+        scene.volumes.push_back(second);
+        load_assets(scene, choose_method(scene));
+    };
+    const Volume flat = medium(Box{{0.0, 0.0, 0.0}, {1e5, 1.0, 1e5}}, 1e-4, 0.5);
+    CHECK_NOTHROW(loads(flat, medium(Box{{0.0, 1.0, 0.0}, {1e5, 1.0, 1e5}}, 1e-4, 0.5)));
+    // Voxels of 0.3, of which a quarter is 2^-24 of 1.26e6.
+    const Volume cloud = medium(write_grid(cloud_grid()), 1.0, 0.8);
+    Volume other = cloud;
+    other.transform = glm::translate(glm::dmat4(1.0), {1e6, 0.0, 0.0});
+    CHECK_NOTHROW(loads(cloud, other));
+    other.transform = glm::translate(glm::dmat4(1.0), {5e6, 0.0, 0.0});
+    CHECK_THROWS_WITH(loads(cloud, other), Contains("move the volumes together"));
+}
+
 TEST_CASE("reaches of cells in bricks end where anything is", "[cpu][several]") {
     Scene scene = cloud_in_haze();
     scene.volumes.pop_back();

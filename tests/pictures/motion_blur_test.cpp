@@ -308,10 +308,11 @@ TEST_CASE("a moment that cannot be leaves what was rendered", "[motion]") {
 TEST_CASE("a moment whose files are gone leaves a picture and a checkpoint", "[motion]") {
     const RadianceMap map{4, 2, std::vector<glm::vec3>(8, glm::vec3(1.0f)), 0};
     const std::filesystem::path sky = write_sky(map).file;
-    const Scene scene = parse_at(fmt::format(R"(<width>8</width><height>8</height><camera x="${{= F}}" z="5"/><sphere/>
+    Scene scene = parse_at(fmt::format(R"(<width>8</width><height>8</height><camera x="${{= F}}" z="5"/><sphere/>
         <lights><sky>{}</sky></lights>)",
-                                             sky.string()),
-                                 0);
+                                       sky.string()),
+                           0);
+    scene.layers = layer_groups | layer_position;
     RenderJob job;
     job.crop = {0, 8, 0, 8};
     std::optional<Checkpoint> kept;
@@ -324,7 +325,8 @@ TEST_CASE("a moment whose files are gone leaves a picture and a checkpoint", "[m
     CHECK_THROWS_AS(session.render(4096), InputError);
     REQUIRE(kept);
     CHECK(kept->done >= 2);
-    CHECK(session.can_go_on());
+    CHECK_FALSE(session.can_go_on());
+    CHECK(session.has_whole_film());
     const RenderResult& result = session.result();
     CHECK(result.interrupted);
     CHECK(result.samples == kept->done);

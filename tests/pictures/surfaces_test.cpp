@@ -473,6 +473,49 @@ TEST_CASE("surfaces among media equal the reference, by both schedules", "[gpu][
     CHECK_AGREEMENT(agree(render_here(bare, 1).film, render_reference(bare, 2), "no medium"));
 }
 
+TEST_CASE("single scattering says what it misses at surfaces", "[cpu][surfaces]") {
+    Scene scene = still_life();
+    scene.settings.integrator = "ratioTracking";
+    scene.settings.choices.scattering = SCATTERING_SINGLE;
+    CHECK_THAT(choose_method(with_preset(scene)).biased, Contains("ends at the first surface"));
+    std::erase_if(scene.surfaces,
+                  [](const Surface& surface) { return surface.material.kind != MaterialKind::diffuse; });
+    REQUIRE_FALSE(scene.surfaces.empty());
+    CHECK(choose_method(with_preset(scene)).biased.empty());
+}
+
+TEST_CASE("no sun shines through a triangle, a disk or a ball, nor a point through what it touches",
+          "[gpu][surfaces]") {
+    Scene scene = from_above(0.1, 8);
+    scene.settings.spp = 16;
+    scene.settings.integrator = "ratioTracking";
+    Surface floor;
+    floor.shape = PlaneSurface{};
+    floor.material = grey(0.5);
+    TriangleSurface triangle;
+    triangle.vertices = {{-30.0, 1.0, -30.0}, {0.0, 1.0, 30.0}, {30.0, 1.0, -30.0}};
+    triangle.triangles = {{0, 1, 2}};
+    const std::vector<decltype(Surface::shape)> shades = {triangle, DiskSurface{{0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}, 20.0},
+                                                          BallSurface{{0.0, 11.0, 0.0}, 10.0}};
+    for (const auto& shade : shades)
+        for (const Light& light :
+             {Light(DirectionalLight{{0.0, 1.0, 0.0}, Rgb(1.0)}), Light(PointLight{{0.0, 21.0, 0.0}, Rgb(400.0)})}) {
+            Surface hides = floor;
+            hides.shape = shade;
+            hides.material = grey(0.0);
+            scene.lights = {light};
+            scene.surfaces = {floor};
+            scene.camera.position = {0.0, 0.5, 0.0};
+            const Film lit = render_here(scene, 1).film;
+            scene.surfaces = {floor, hides};
+            const Film dark = render_here(scene, 1).film;
+            CAPTURE(shade.index(), light.index());
+            CHECK(lit.mean.front().x > 0.0f);
+            for (const glm::vec3& pixel : dark.mean)
+                CHECK(pixel.x == 0.0f);
+        }
+}
+
 // What comes straight from it, exp(-sigma_t) in each channel; what the fog scatters is cut off.
 TEST_CASE("surfaces shine through fog of different extinctions", "[gpu][image][surfaces]") {
     const Rgb sigma_t(0.4, 0.8, 1.0);

@@ -189,6 +189,7 @@ TEST_CASE("init writes a scene to start from, and over nothing", "[gpu][command]
     const Run again = folder.vkvol("init");
     CHECK(again.code == exit_bad_input);
     CHECK_THAT(again.text, Contains("scene.xml: is there already"));
+    CHECK(folder.vkvol("init -o nowhere/scene.xml").code == exit_bad_input);
     CHECK(text_of(folder.file("scene.xml")) == first);
 
     REQUIRE(folder.vkvol("init 'fields & $more/a.nvdb' -q").text.empty());

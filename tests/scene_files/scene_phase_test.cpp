@@ -74,6 +74,7 @@ TEST_CASE("scenes of other phase functions have other hashes", "[cpu][method]") 
 
 TEST_CASE("tables of phase functions are read, and their mistakes named by line", "[cpu][phase]") {
     CHECK(trouble_with("0 1\n180 1\n").empty());
+    CHECK(trouble_with("\xef\xbb\xbf" + std::string("0 1\n180 1\n")).empty()); // as some editors save UTF-8
     CHECK(trouble_with("# x\n\n0, 1; # start\n90\t0\r\n180 2e0\n").empty());
     CHECK(trouble_with("0 1\n90 x\n180 1\n").starts_with("2: 'x' is no number"));
     CHECK(trouble_with("0 1\n90 -1\n180 1\n").starts_with("2: value -1"));

@@ -4,7 +4,7 @@ The colours are told apart with every kind of colour vision, stand out from the 
 (tests/tools/report_test.py computes both), and never stand alone: shapes and names say the same.
 """
 
-# As `vkvol integrators` lists them; what else is measured takes the next free place.
+# Each has its colour; what else is measured takes the next free place.
 KNOWN = ("deltaTracking", "ratioTracking", "ratioNEE", "deltaTrackingNEE", "residualRatioTracking", "weightedTracking",
          "decompositionTracking", "spectralTracking", "unbiasedRayMarching", "regularTracking", "rayMarching",
          "adaptiveRayMarching", "densitySampling", "homogeneousRayMarcherNEE", "homogeneousRayMarcherImproved",
