@@ -10,6 +10,7 @@
 #include "alias_table.h"
 #include "camera_rays.h"
 #include "scene_facts.h"
+#include "sensor_params.h"
 
 namespace vkvol {
 
@@ -125,8 +126,10 @@ double place_sensor(const Scene& scene, glm::dvec3 origin, shared::ParticleParam
     const SensorBox box = sensor_box(scene.camera, scene.picture);
     const glm::dvec3 low = box.low - origin, high = box.high - origin;
     params.sensor_low = low;
-    const double margin = 1e-5 * std::max(double(params.above) - params.below, glm::length(high - low));
     const glm::dvec3 open = params.open;
+    const double height = std::max(std::abs(glm::dot(open, low)), std::abs(glm::dot(open, high)));
+    const double margin = std::max({1e-5 * std::max(double(params.above) - params.below, glm::length(high - low)),
+                                    2.0 * shift_of_sensor(scene, origin), 0x1p-20 * height});
     params.below = static_cast<float>(std::min(double(params.below), glm::dot(open, low) - margin));
     params.above = static_cast<float>(std::max(double(params.above), glm::dot(open, high) + margin));
     if (scene.camera.projection == Projection::absorption)

@@ -35,7 +35,7 @@ static_assert(sizeof(shared::GridParams) == 4 * 12 + 2 * 4);
 static_assert(sizeof(shared::AlbedoParams) == sizeof(shared::GridParams) + 3 * 16);
 static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 6 * 4);
 static_assert(sizeof(shared::LayerParams) == 12 + 3 * 4);
-static_assert(sizeof(shared::MediumParams) == 3 * 16 + 4 * 12 + sizeof(shared::GridParams) + 12 + 6 * 4 + 2 * 12 +
+static_assert(sizeof(shared::MediumParams) == 3 * 16 + 4 * 12 + sizeof(shared::GridParams) + 12 + 6 * 4 + 3 * 12 +
                                                   sizeof(shared::PhaseParams) + sizeof(shared::AlbedoParams) +
                                                   sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) +
                                                   sizeof(shared::LayerParams) + 12 + sizeof(shared::MediumKinds));
@@ -151,6 +151,7 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
         has_chromatic_extinction(scene) && largest(sigma_t) > 0.0 ? sigma_t / largest(sigma_t) : Rgb(1.0);
     params.usual_sigma_t = static_cast<float>(std::max(largest(sigma_t) * usual_density(volume, loaded), 1e-30));
     params.albedo = albedo_of(volume);
+    params.absorbed = 1.0 - albedo_of(volume);
     if (loaded.albedo) {
         params.albedo_grid.grid = make_grid(*loaded.albedo, layout);
         fill_rows(params.albedo_grid.to_index, index_to_world(*loaded.albedo), origin);

@@ -64,8 +64,8 @@ void Session::render(std::uint32_t samples) {
     while (done_ < wanted_ && !is_good_enough() && !stopping()) {
         try {
             enter_moments();
-        } catch (const std::exception&) { // what was rendered outlives a moment that cannot be made ready
-            if (job_.checkpoint)          // to go on from
+        } catch (const std::exception&) {
+            if (job_.checkpoint) // what was rendered outlives a moment that cannot be made ready
                 save_checkpoint();
             end_rendering();
             result_.interrupted = true;

@@ -35,4 +35,10 @@ vec3 albedo_at(MediumParams v, vec3 position) {
     return albedo;
 }
 
+// What of a collision there is no scattering.
+vec3 absorbed_at(MediumParams v, vec3 position) {
+    bool varies = KIND(ALBEDO, v, albedo) == ALBEDO_GRID || KIND(MAP, v, map) >= MAP_ALBEDO;
+    return varies ? 1.0 - albedo_at(v, position) : v.absorbed;
+}
+
 #endif

@@ -41,7 +41,7 @@ vec3 emitted_radiance(MediumParams v, vec3 position) {
         radiance += mapped_emission(v, mapped_value(v, position));
     bool varies = KIND(ALBEDO, v, albedo) == ALBEDO_GRID || KIND(MAP, v, map) >= MAP_ALBEDO;
     if (varies)
-        radiance *= 1.0 - albedo_at(v, position);
+        radiance *= absorbed_at(v, position);
     return radiance;
 }
 

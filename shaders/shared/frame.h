@@ -188,6 +188,7 @@ struct MediumParams {
     float usual_sigma_t; // what it comes to with the usual density, roughly
     vec3 sigma_ratio; // of the channels to that, in [0, 1]
     vec3 albedo;      // sigma_s / sigma_t
+    vec3 absorbed;    // sigma_a / sigma_t, to all digits: of an albedo near 1 the difference to 1 has few
     AlbedoParams albedo_grid;
     PhaseParams phase;
     EmissionParams emission;

@@ -105,7 +105,7 @@ void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, i
                            flown_before(lane) + lane.walk.start + lane.walk.t, albedo);
     if (COUNTS_ABSORBED)
         if (is_particle(lane))
-            count_absorbed(lane.path.position, vec3(lane.beta) * (1.0 - albedo), lane);
+            count_absorbed(lane.path.position, vec3(lane.beta) * absorbed_at(met, lane.path.position), lane);
     lane.beta *= to_spectrum(albedo);
     bool capped = SCATTERING != SCATTERING_NONE && lane.path.depth >= frame.max_depth;
     tally.depth_caps += capped ? 1u : 0u;

@@ -427,6 +427,35 @@ TEST_CASE("the error of absorbed power is known where little is absorbed", "[gpu
     }
 }
 
+TEST_CASE("what is absorbed is known to all digits", "[gpu][counted]") {
+    const auto absorbed = [](double share) { // of what collides, by nearly the same paths
+        Scene scene = absorption({0.0, 0.0, 0.0}, glm::dvec3(1.0), {1, 1, 1}, 2048);
+        scene.volumes = {medium(Box{{0.0, 0.0, 0.0}, glm::dvec3(1.0)}, 2.0, 1.0 - share)};
+        scene.periodic = Periodic{{-0.5, 0.0, -0.5}, {0.5, 0.0, 0.5}};
+        scene.lights = {DirectionalLight{up, Rgb(1.0)}};
+        return image_mean(render_here(scene, 1).film).value.x / share;
+    };
+    const double usual = absorbed(1e-4);
+    for (const double share : {1e-6, 1e-8})
+        CHECK(absorbed(share) == Approx(usual).epsilon(2e-3));
+}
+
+TEST_CASE("a sensor that looks up at the sun reads it, however high", "[gpu][counted]") {
+    for (const bool has_ground : {true, false})
+        for (const double height : {3.0, 1000.0}) {
+            Scene scene = parse_scene(
+                fmt::format(
+                    R"(<options><box y=".5" width="1" height="1" depth="1"/><sigma_s>1</sigma_s><sigma_a>0</sigma_a>
+                    <periodic x="-.5 .5" z="-.5 .5"/>{}<light y="1" r="1" g="1" b="1"/>
+                    <irradiance y="{}" lookAt="0 {} 0"/><rayPerPixelCount>256</rayPerPixelCount></options>)",
+                    has_ground ? "<surfaces><plane/></surfaces>" : "", height, height + 1.0),
+                "up.xml");
+            REQUIRE(choose_method(with_preset(scene)).paths == PATHS_LIGHT);
+            CAPTURE(has_ground, height);
+            CHECK(image_mean(render_here(scene, 1).film).value.x == Approx(1.0).epsilon(1e-4));
+        }
+}
+
 TEST_CASE("boxes in which absorption is read, in scene files", "[cpu][counted]") {
     const auto parse = [](const std::string& elements) {
         return parse_scene("<options><sphere/><sigma_a>1</sigma_a>" + elements + "</options>", "s.xml");

@@ -85,7 +85,8 @@ def radar_cloud(folder, work):
 
 
 def landsat_cloud(folder, work):
-    """Case 3, seen from a satellite (Landsat): 128 x 128 columns of 30 m, each even from .2 km up, to a metre. The first line is at high z."""
+    """Case 3, seen from a satellite (Landsat): 128 x 128 columns of 30 m, each even from .2 km up, to a metre. The first line is at low z, which is the
+    last row of a sensor that looks up: T's lines are turned."""
     numpy, _ = grids.module()
     width, base, metre = 3.84, .2, .001
     depths = numpy.array(field(folder, "scene43.tau.128x128")).reshape(128, 128)
@@ -97,8 +98,11 @@ def landsat_cloud(folder, work):
     for what in ("R", "T", "Iu"):
         top = base + metre * int(metres.max())
         scene = cloud + scenes.periodic(width, width) + scenes.sun(1.0, 1.0) + sensor(what, top, base, width, 128, width, 128)
-        yield Case("Landsat's cloud", what, SOURCE, scene, [f"column {i % 128 + 1}, line {i // 128 + 1}" for i in range(128 * 128)],
-                   consensus(folder, 3, what), [], scale=math.pi if what[0] == "I" else 1.0, mean=mean_of(folder, 3, what), least=.06 if what == "Iu" else .03,
+        lines = range(127, -1, -1) if what == "T" else range(128)
+        places = [128 * line + column for line in lines for column in range(128)]
+        published = consensus(folder, 3, what)
+        yield Case("Landsat's cloud", what, SOURCE, scene, [f"column {i % 128 + 1}, line {i // 128 + 1}" for i in places],
+                   [published[i] for i in places], [], scale=math.pi if what[0] == "I" else 1.0, mean=mean_of(folder, 3, what), least=.06 if what == "Iu" else .03,
                    samples=64, is_map=True)
 
 

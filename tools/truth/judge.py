@@ -26,11 +26,13 @@ def limit(count, alpha=0.01):
 
 def scatter(case, rows):
     """Of a consensus whose own is not published: by how much neighbouring figures differ at random from the readings. From second
-    differences, so that whatever differs smoothly, or all alike, is no part of it."""
+    differences, so that whatever differs smoothly, or all alike, is no part of it. No more than a tenth of the figures, so that a wrong
+    map cannot excuse itself."""
     apart = [case.scale * mean - published for (mean, _), published in zip(rows, case.published, strict=True)]
     rough = [a - 2.0 * b + c for a, b, c in zip(apart, apart[1:], apart[2:])]
     own = sum((case.scale * error) ** 2 for _, error in rows) / len(rows)
-    return math.sqrt(max(0.0, sum(x * x for x in rough) / (6.0 * len(rough)) - own))
+    most = 0.1 * sum(map(abs, case.published)) / len(case.published)
+    return min(math.sqrt(max(0.0, sum(x * x for x in rough) / (6.0 * len(rough)) - own)), most)
 
 
 def judge(case, rows):
