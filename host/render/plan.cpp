@@ -27,7 +27,7 @@ std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
         iterations += 2 + 1 + MESH_NODES_PER_TURN * node;
     if (loops.surfaces) // planes when a segment begins, then a search, in which what is met is asked whether the light
                         // lies in it
-        iterations += MOST_PLANES + 1 + 1 + SURFACE_NODES_PER_TURN * (node + MESH_LEAF * 2);
+        iterations += MOST_PLANES + 1 + 1 + SURFACE_NODES_PER_TURN * node + 2;
     const std::uint32_t octaves = loops.octaves > 0 ? loops.octaves + 1 : 0;
     const std::uint32_t search = loops.halvings > 0 ? loops.halvings + 1 : 0;
     const std::uint32_t of_one = octaves + search;

@@ -15,8 +15,16 @@ void seek(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     float reach = looks && !REPEATS ? looking_as_far_as(lane) : FAR;
     bool over = looks && lane.seek.primitive != NO_SURFACE;
     for (int k = 0; k < SURFACE_NODES_PER_TURN && !over; ++k) {
-        over = step_seek(mesh_ray, ray, from, looks ? lane.lamp_body : NO_SURFACE, reach, lane.seek);
+        over = step_seek(mesh_ray, ray, from, looks ? lane.lamp_body : NO_SURFACE, lane.seek);
         over = over || (looks && lane.seek.primitive != NO_SURFACE);
+    }
+    // What the light lies in is passed over, and the search goes on (but for what else is in that leaf). A loop, since software
+    // drivers do both sides of an `if`; it is entered once for what a look meets.
+    for (bool met = reach < FAR && over && lane.seek.primitive != NO_SURFACE; met; met = false) {
+        bool passes = lies_in(lane.seek.primitive, ray, lane.seek.nearest, reach);
+        lane.seek.primitive = passes ? NO_SURFACE : lane.seek.primitive;
+        lane.seek.nearest = passes ? seeking_as_far_as(lane) : lane.seek.nearest;
+        over = !passes || lane.seek.node >= frame.surface_nodes;
     }
     if (over && looks && lane.seek.primitive != NO_SURFACE) {
         end_shadow(v, EVENT_OPAQUE, lane);

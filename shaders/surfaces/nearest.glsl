@@ -11,14 +11,10 @@ bool lies_in(uint i, Ray ray, float t, float reach) {
     return (reach - t) * abs(dot(at.normal, ray.direction)) <= 0.125 * at.apart;
 }
 
-// `body`: the row of what is passed over, since it is the light that the ray goes to; or NO_SURFACE. `reach`: how far the ray goes to
-// a light or sensor; or FAR.
-void take_nearer(MeshRay m, Ray ray, uint i, uint from, uint body, float reach, inout SurfaceSearch s) {
+// `body`: the row of what is passed over, since it is the light that the ray goes to; or NO_SURFACE.
+void take_nearer(MeshRay m, Ray ray, uint i, uint from, uint body, inout SurfaceSearch s) {
     SurfacePrimitive p = primitive_at(i);
     float t = p.surface != body ? meet_primitive(m, ray, p, i, from) : FAR;
-    // A loop, since software drivers do both sides of an `if`; it is seldom entered.
-    for (bool hides = reach < FAR && t < s.nearest; hides; hides = false)
-        t = lies_in(i, ray, t, reach) ? FAR : t;
     s.primitive = t < s.nearest ? i : s.primitive;
     s.nearest = min(s.nearest, t);
 }
@@ -47,13 +43,13 @@ BvhNode surface_node(uint i) {
 }
 
 // One node: on to the next in depth-first order, or past its subtree. True once the search is over.
-bool step_seek(MeshRay m, Ray ray, uint from, uint body, float reach, inout SurfaceSearch s) {
+bool step_seek(MeshRay m, Ray ray, uint from, uint body, inout SurfaceSearch s) {
     if (s.node < frame.surface_nodes) {
         BvhNode node = surface_node(frame.first_surface_node + s.node);
         bool met = meets(m, node, 0.0, s.nearest);
         uint first = node.leaf >> 3u, last = first + (met ? node.leaf & 7u : 0u);
         for (uint k = first; k < last; ++k) // at most MESH_LEAF
-            take_nearer(m, ray, k, from, body, reach, s);
+            take_nearer(m, ray, k, from, body, s);
         s.node = met && node.leaf == 0u ? s.node + 1u : node.skip;
     }
     return s.node >= frame.surface_nodes;
