@@ -414,7 +414,7 @@ TEST_CASE("lamps that lie in the plane of a surface shine before it", "[gpu][par
         return square;
     };
     for (const Light& lamp : in_turn(lamps, 2))
-        for (const double half : {1.5, 1500.0}) {
+        for (const double half : {1.5, 1500.0, 1.5e5}) {
             Surface ceiling = with_material(square(half), MaterialKind::diffuse);
             ceiling.material.color = Rgb(0.0);
             Scene scene = still({}, {lamp});
@@ -422,9 +422,12 @@ TEST_CASE("lamps that lie in the plane of a surface shine before it", "[gpu][par
             scene.background = Rgb(0.0);
             const Film open = render_here(scene, 1).film;
             scene.surfaces.push_back(ceiling);
-            for (const char* integrator : {"ratioTracking", "lightTracing"})
+            for (const char* integrator : {"ratioTracking", "lightTracing"}) {
+                if (half > 1e5 && integrator == std::string("lightTracing"))
+                    continue; // particles begin half a unit off so large a ceiling
                 CHECK_AGREEMENT(agree(render_here(by(scene, integrator), 2).film, open,
                                       fmt::format("lamp {} in a ceiling of {}, {}", lamp.index(), half, integrator)));
+            }
         }
 }
 
