@@ -47,9 +47,7 @@ void record_facts(const Film& film, Metadata& metadata) {
 }
 
 void read_facts(const Metadata& metadata, Film& film) {
-    // Pictures of before there was such a key say it in what was asked for.
-    film.is_premultiplied = text_of(metadata, premultiplied_key) == "1" ||
-                            text_of(metadata, "vkvol/asked").find(", alpha") != std::string::npos;
+    film.is_premultiplied = text_of(metadata, premultiplied_key) == "1";
     film.is_correlated = text_of(metadata, correlated_key) == "1";
     film.sum_variance.reset();
     std::istringstream text(text_of(metadata, sum_variance_key));

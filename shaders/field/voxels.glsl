@@ -65,7 +65,8 @@ Block block_of(MediumParams v, Walk w) {
     ivec3 origin = v.density.voxel_min - 1;
     int size = max(int(v.cell_size), 1); // 0, as the number of cells, where there is no medium
     ivec3 cell = clamp((w.cell - origin) / size, ivec3(0), max(v.cell_dims - 1, 0));
-    bool empty = SHAPE == SHAPE_NONE ? true : FILTER != FILTER_NEAREST && cell_majorant(uint((cell.x * v.cell_dims.y + cell.y) * v.cell_dims.z + cell.z)) <= 0.0;
+    uint entry = uint((cell.x * v.cell_dims.y + cell.y) * v.cell_dims.z + cell.z);
+    bool empty = SHAPE == SHAPE_NONE ? true : FILTER != FILTER_NEAREST && cell_majorant(entry) <= 0.0;
     return empty ? Block(origin + cell * size, size, true) : Block(w.cell, 1, false);
 }
 
