@@ -65,11 +65,11 @@ const std::string lit_ball = "<sphere/><sigma_a>0.5</sigma_a><sigma_s>2</sigma_s
                              picture;
 
 // Before a sky; it fills the picture.
-const std::string slab = "<box width=\"20\" height=\"20\" depth=\"1\"/><sigma_a>0.5</sigma_a><sigma_s>2</sigma_s>"
-                         "<backgroundColor r=\"0.5\" g=\"0.5\" b=\"0.5\"/><camera z=\"5\" fov=\"30\"/>" +
-                         picture;
+const std::string slab_text = "<box width=\"20\" height=\"20\" depth=\"1\"/><sigma_a>0.5</sigma_a><sigma_s>2</sigma_s>"
+                              "<backgroundColor r=\"0.5\" g=\"0.5\" b=\"0.5\"/><camera z=\"5\" fov=\"30\"/>" +
+                              picture;
 
-const std::string ball_before_sky = with(slab, "<box width=\"20\" height=\"20\" depth=\"1\"/>", "<sphere/>");
+const std::string ball_before_sky = with(slab_text, "<box width=\"20\" height=\"20\" depth=\"1\"/>", "<sphere/>");
 
 struct Row {
     std::string good, from, to; // what spoils it
@@ -95,8 +95,8 @@ const std::string camera = "<camera z=\"5\" fov=\"30\"/>";
 } // namespace
 
 TEST_CASE("a room that no light enters is explained", "[gpu][explain]") {
-    const Found room =
-        explanation_of("<surfaces><box width=\"12\" height=\"12\" depth=\"12\"/></surfaces>" + light + camera + picture);
+    const Found room = explanation_of("<surfaces><box width=\"12\" height=\"12\" depth=\"12\"/></surfaces>" + light +
+                                      camera + picture);
     CHECK(room.picture == "black");
     CHECK(room.cause == "shadowed");
     CHECK(explanation_of("<surfaces><plane y=\"-1\"/></surfaces>" + light + camera + picture).cause == "");
@@ -162,21 +162,21 @@ TEST_CASE("media that cannot be seen are explained", "[gpu][explain]") {
     const std::string fine = with(ball_before_sky, "<rayPerPixelCount>4", "<rayPerPixelCount>64");
     check({fine, "<sigma_a>0.5</sigma_a><sigma_s>2</sigma_s>", "<sigma_a>0.0003</sigma_a><sigma_s>0.0102</sigma_s>",
            "background", "indistinct", "less than a screen shows"});
-    check({slab, "<sigma_a>0.5</sigma_a><sigma_s>2</sigma_s>", "<sigma_a>20</sigma_a><sigma_s>0</sigma_s>", "black",
-           "absorbsAll", "its optical depth reaches 2"});
-    check(
-        {slab, sigma_s, "<sigma_s>2e4</sigma_s><maxDepth>0</maxDepth>", "black", "depthLimit", "ended at maxDepth 0"});
-    const std::string fog = with(slab, "<sigma_a>0.5</sigma_a>",
+    check({slab_text, "<sigma_a>0.5</sigma_a><sigma_s>2</sigma_s>", "<sigma_a>20</sigma_a><sigma_s>0</sigma_s>",
+           "black", "absorbsAll", "its optical depth reaches 2"});
+    check({slab_text, sigma_s, "<sigma_s>2e4</sigma_s><maxDepth>0</maxDepth>", "black", "depthLimit",
+           "ended at maxDepth 0"});
+    const std::string fog = with(slab_text, "<sigma_a>0.5</sigma_a>",
                                  "<lightRayDensityMultiplier>10</lightRayDensityMultiplier><sigma_a>0.005</sigma_a>");
     check({fog, camera, "<camera fov=\"30\"/>", "noise", "inside", "stands inside of the medium"});
-    check({slab, camera + picture,
+    check({slab_text, camera + picture,
            "<camera fov=\"30\"/><lightRayDensityMultiplier>4000</lightRayDensityMultiplier><integrator "
            "scattering=\"none\">deltaTracking</integrator>" +
                picture,
            "black", "inside", "stands inside of the medium"});
     check({fog, camera, "<camera projection=\"equirectangular\"/>", "noise", "inside",
            "move the camera out or lower sigma_a"});
-    const std::string lit_slab = with(slab, "<backgroundColor r=\"0.5\" g=\"0.5\" b=\"0.5\"/>",
+    const std::string lit_slab = with(slab_text, "<backgroundColor r=\"0.5\" g=\"0.5\" b=\"0.5\"/>",
                                       "<light x=\"0\" y=\"0\" z=\"1\" r=\"5\" g=\"5\" b=\"5\"/>");
     check({lit_slab, "z=\"1\" r", "z=\"-1\" r", "", "", ""}); // thin enough to be seen from behind
     const std::string thick = with(lit_slab, "<sigma_a>0.5</sigma_a>", "<sigma_a>20</sigma_a>");

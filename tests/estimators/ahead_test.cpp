@@ -8,15 +8,17 @@
 
 #include "ahead.spv.h"
 #include "ahead_chromatic.spv.h"
+#include "support/numbers.h"
 #include "support/test_medium.h"
 
 using namespace vkvol;
 using shared::AheadOutput;
 using shared::RayInput;
+using test_numbers::collided;
+using test_numbers::left;
+using test_numbers::opaque;
 
 namespace {
-
-constexpr std::uint32_t collided = 1, left = 2, opaque = 4;
 
 enum class Segment : std::uint32_t { flight = 0, shadow_ray = 1 };
 

@@ -7,17 +7,18 @@
 #include <cmath>
 #include <cstring>
 
+#include "support/numbers.h"
 #include "support/test_medium.h"
 #include "tests/reference/quadrature.h"
 
 using namespace vkvol;
 using shared::FlightOutput;
 using shared::RayInput;
+using test_numbers::collided;
+using test_numbers::left;
+using test_numbers::u;
 
 namespace {
-
-constexpr std::uint32_t collided = 1, left = 2;
-constexpr double u = 0x1p-24; // unit roundoff
 
 // The most comparisons that a test case here makes, over all that it generates.
 constexpr double significance_of(double comparisons) {
@@ -47,7 +48,7 @@ void check_flights(const TestMedium& medium, const reference::Ray& ray, const st
     CHECK(kolmogorov_smirnov_p(uniforms) > significance);
 }
 
-MediumRecipe recipe_of(MediumKind kind, int free_flight, Filter filter, double majorant_scale) {
+MediumRecipe flight_recipe(MediumKind kind, int free_flight, Filter filter, double majorant_scale) {
     MediumRecipe recipe;
     recipe.kind = kind;
     recipe.filter = filter;
@@ -79,7 +80,7 @@ TEST_CASE("unbiased flights follow the optical depth in every medium", "[gpu][fr
     const int flight = GENERATE(FREE_FLIGHT_ANALYTIC, FREE_FLIGHT_REGULAR, FREE_FLIGHT_DELTA, FREE_FLIGHT_WEIGHTED,
                                 FREE_FLIGHT_DECOMPOSITION, FREE_FLIGHT_SPECTRAL);
     for (const Case& c : cases) {
-        MediumRecipe recipe = recipe_of(c.kind, flight, c.filter, c.majorant_scale);
+        MediumRecipe recipe = flight_recipe(c.kind, flight, c.filter, c.majorant_scale);
         recipe.is_mapped = c.is_mapped;
         // Those without majorants need not be seen with several.
         if (!flies(flight, recipe) || (!is_null_flight(flight) && c.majorant_scale > 2.0))
@@ -108,7 +109,7 @@ TEST_CASE("unbiased flights follow the optical depth in every medium", "[gpu][fr
 TEST_CASE("regular tracking collides where the optical depth is the sampled one", "[gpu][free_flight]") {
     const Filter filter = GENERATE(Filter::trilinear, Filter::nearest);
     const double sigma_t = GENERATE(1.0, 8.0);
-    MediumRecipe recipe = recipe_of(MediumKind::grid, FREE_FLIGHT_REGULAR, filter, 1.0);
+    MediumRecipe recipe = flight_recipe(MediumKind::grid, FREE_FLIGHT_REGULAR, filter, 1.0);
     recipe.sigma_t = Rgb(sigma_t);
     recipe.grid.translation = glm::dvec3(0.0);
     const TestMedium medium(recipe);
@@ -143,7 +144,7 @@ TEST_CASE("decomposition tracking flies delta tracking's paths with fewer lookup
     const Filter filter = GENERATE(Filter::trilinear, Filter::stochastic, Filter::nearest);
     const double scale = GENERATE(1.0, 2.0);
     const auto fly = [&](int flight, double& lookups) {
-        MediumRecipe recipe = recipe_of(MediumKind::grid, flight, filter, scale);
+        MediumRecipe recipe = flight_recipe(MediumKind::grid, flight, filter, scale);
         recipe.grid.first = glm::ivec3(-3); // cells amid it have a least density of 0.4 or more
         recipe.grid.last = glm::ivec3(18);
         recipe.grid.cell = 4;
@@ -173,7 +174,7 @@ namespace {
 // Root mean square over rays of what the escape probability is off by. Without jitter a ray's optical depth is the same
 // for every flight, so with equidistant u the share of escapes is exact to 1 / count.
 double escape_error(int flight, MediumKind kind, double step) {
-    MediumRecipe recipe = recipe_of(kind, flight, Filter::trilinear, 1.0);
+    MediumRecipe recipe = flight_recipe(kind, flight, Filter::trilinear, 1.0);
     recipe.estimators.settings.march = {step, step, 1.5 * step, false, CoefficientUnit::world};
     recipe.sigma_t = Rgb(1.5);
     recipe.noise = {1.5, 1, 0.5, 2.0}; // smooth over the longest step
@@ -224,7 +225,7 @@ TEST_CASE("marches with tiny steps are as good as unbiased", "[gpu][free_flight]
     const MediumKind kind =
         GENERATE(MediumKind::grid, MediumKind::noise_sphere, MediumKind::cubes, MediumKind::noise_cubes);
     CAPTURE(flight, int(kind));
-    MediumRecipe recipe = recipe_of(kind, flight, Filter::trilinear, 1.0);
+    MediumRecipe recipe = flight_recipe(kind, flight, Filter::trilinear, 1.0);
     recipe.estimators.settings.march = {0.01, 0.01, 0.02, true, CoefficientUnit::world};
     const TestMedium medium(recipe);
     check_flights(medium, medium.ray(), medium.fly(medium.flights_along(medium.ray(), 10000, 7)),
@@ -235,7 +236,7 @@ TEST_CASE("leaps over empty cells change no flight and no shadow", "[gpu][free_f
     const int flight = GENERATE(FREE_FLIGHT_ADAPTIVE, FREE_FLIGHT_DELTA, FREE_FLIGHT_WEIGHTED,
                                 FREE_FLIGHT_DECOMPOSITION, FREE_FLIGHT_SPECTRAL);
     CAPTURE(flight);
-    MediumRecipe recipe = recipe_of(MediumKind::grid, flight, Filter::trilinear, 1.0);
+    MediumRecipe recipe = flight_recipe(MediumKind::grid, flight, Filter::trilinear, 1.0);
     const auto [linear, translation] = std::pair(recipe.grid.linear, recipe.grid.translation);
     recipe.grid = sparse_recipe();
     recipe.grid.linear = linear;

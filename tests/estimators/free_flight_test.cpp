@@ -8,6 +8,7 @@
 
 #include "flight.spv.h"
 #include "kernels/test_items.h"
+#include "support/numbers.h"
 #include "support/statistics.h"
 #include "support/test_grids.h"
 #include "support/test_scene.h"
@@ -16,11 +17,12 @@
 using namespace vkvol;
 using shared::FlightOutput;
 using shared::RayInput;
+using test_numbers::collided;
+using test_numbers::infinity;
+using test_numbers::left;
 
 namespace {
 
-constexpr std::uint32_t collided = 1, left = 2;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr float longest = 38.81624f; // exponential variate, -log(2^-56)
 
 Volume medium_of(double sigma_t) {

@@ -18,7 +18,7 @@ using namespace vkvol;
 
 namespace {
 
-double random(std::uint32_t i, std::uint32_t which) {
+double uniform(std::uint32_t i, std::uint32_t which) {
     return reference::pcg4d({i, which, 3, 4})[0] * 0x1p-32;
 }
 
@@ -26,14 +26,14 @@ double random(std::uint32_t i, std::uint32_t which) {
 std::vector<Light> many_lights(int points) {
     std::vector<Light> lights;
     for (int i = 0; i < points; ++i) {
-        const auto at = [&](std::uint32_t which) { return 20.0 * random(std::uint32_t(i), which) - 10.0; };
-        lights.push_back(PointLight{{at(0), at(1), at(2)}, Rgb(std::pow(10.0, 3.0 * random(std::uint32_t(i), 3)))});
+        const auto at = [&](std::uint32_t which) { return 20.0 * uniform(std::uint32_t(i), which) - 10.0; };
+        lights.push_back(PointLight{{at(0), at(1), at(2)}, Rgb(std::pow(10.0, 3.0 * uniform(std::uint32_t(i), 3)))});
     }
     for (int i = 0; i < points / 4; ++i) { // aimed
-        const auto at = [&](std::uint32_t which) { return 20.0 * random(std::uint32_t(i), which) - 10.0; };
+        const auto at = [&](std::uint32_t which) { return 20.0 * uniform(std::uint32_t(i), which) - 10.0; };
         const glm::dvec3 position(at(4), at(5), at(6)), axis = glm::normalize(glm::dvec3(at(7), at(8), at(9)));
         if (i % 2 == 0)
-            lights.push_back(SpotLight{position, axis, Rgb(30.0), 10.0 + 170.0 * random(std::uint32_t(i), 10), 0.5});
+            lights.push_back(SpotLight{position, axis, Rgb(30.0), 10.0 + 170.0 * uniform(std::uint32_t(i), 10), 0.5});
         else
             lights.push_back(DiskLight{position, axis, 0.3, Rgb(50.0)});
     }
@@ -120,10 +120,10 @@ TEST_CASE("looks at a thousand lights find the light of all", "[gpu][lights]") {
 TEST_CASE("looks from a surface at a thousand lamps find the light of all that shine there", "[gpu][lights]") {
     std::vector<Light> lights;
     for (std::uint32_t i = 0; i < 1000; ++i) {
-        const auto at = [&](std::uint32_t which) { return 20.0 * random(i, which) - 10.0; };
+        const auto at = [&](std::uint32_t which) { return 20.0 * uniform(i, which) - 10.0; };
         const glm::dvec3 position(at(4), at(5), at(6)), axis = glm::normalize(glm::dvec3(at(7), at(8), at(9)));
         if (i % 2 == 0)
-            lights.push_back(SpotLight{position, axis, Rgb(30.0), 10.0 + 170.0 * random(i, 10), random(i, 11)});
+            lights.push_back(SpotLight{position, axis, Rgb(30.0), 10.0 + 170.0 * uniform(i, 10), uniform(i, 11)});
         else
             lights.push_back(DiskLight{position, axis, 0.02, Rgb(3e4)});
     }

@@ -7,6 +7,7 @@
 
 #include "empty_space.h"
 #include "kernels/test_items.h"
+#include "support/numbers.h"
 #include "support/test_grids.h"
 #include "support/test_scene.h"
 #include "walk.spv.h"
@@ -14,6 +15,7 @@
 using namespace vkvol;
 using shared::RayInput;
 using shared::WalkStep;
+using test_numbers::left;
 
 namespace {
 
@@ -76,7 +78,7 @@ void check_walk(const TestGrid& grid, const RayInput& ray, const std::vector<Wal
     }
     REQUIRE(steps.size() < walk_steps);
     REQUIRE(steps.size() <= static_cast<std::size_t>(m.dims.x + m.dims.y + m.dims.z));
-    REQUIRE(steps.back().event == 2u); // left
+    REQUIRE(steps.back().event == left);
     double t = inside.t0, tau = 0.0;
     for (const WalkStep& step : steps) {
         REQUIRE(step.cell == glm::clamp(step.cell, glm::ivec3(0), m.dims - 1));

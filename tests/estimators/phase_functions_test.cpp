@@ -11,6 +11,7 @@
 #include "support/agreement.h"
 #include "support/images.h"
 #include "support/kernel_runner.h"
+#include "support/numbers.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
 #include "support/thorough.h"
@@ -20,10 +21,9 @@
 
 using namespace vkvol;
 using std::numbers::pi;
+using test_numbers::ulp;
 
 namespace {
-
-constexpr double ulp = 0x1p-23;
 
 double random(std::uint32_t i, std::uint32_t which) {
     return reference::pcg4d({i, which, 7, 9})[0] * 0x1p-32;

@@ -9,6 +9,7 @@
 #include "kernels/test_items.h"
 #include "phase.spv.h"
 #include "support/kernel_runner.h"
+#include "support/numbers.h"
 #include "support/statistics.h"
 #include "tests/reference/phase.h"
 
@@ -16,12 +17,12 @@ using namespace vkvol;
 using shared::PhaseInput;
 using shared::PhaseOutput;
 using std::numbers::pi;
+using test_numbers::ulp;
 
 namespace {
 
 constexpr float all_g[] = {0.0f,  1e-4f,  -1e-4f, 0.2f,    -0.2f,   0.8f,    -0.8f,
                            0.95f, -0.95f, 0.999f, -0.999f, 0.9999f, -0.9999f};
-constexpr double ulp = 0x1p-23;
 constexpr float largest_u = 1.0f - 0x1p-24f;
 
 // The density per solid angle at the distance x from the peak, in terms that keep their digits there.

@@ -5,16 +5,16 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/numbers.h"
 #include "support/test_medium.h"
 #include "tests/reference/quadrature.h"
 
 using namespace vkvol;
 using shared::FlightOutput;
+using test_numbers::left;
+using test_numbers::u;
 
 namespace {
-
-constexpr std::uint32_t left = 2;
-constexpr double u = 0x1p-24; // unit roundoff
 
 // Telescoping may ask for more steps than a test allows, in at most one of 2^13 estimates even of a short ray. Such
 // estimates are left out: what is left are those with refinements below some J, whose mean is the T of a march with 2^J
@@ -54,7 +54,7 @@ void check_means(const TestMedium& medium, const std::vector<reference::Ray>& ra
     }
 }
 
-MediumRecipe recipe_of(MediumKind kind, int transmittance, Filter filter, double majorant_scale) {
+MediumRecipe transmittance_recipe(MediumKind kind, int transmittance, Filter filter, double majorant_scale) {
     MediumRecipe recipe;
     recipe.kind = kind;
     recipe.filter = filter;
@@ -89,7 +89,7 @@ TEST_CASE("unbiased transmittance has the mean of the quadrature in every medium
     const int estimator = GENERATE(TRANSMITTANCE_REGULAR, TRANSMITTANCE_DELTA, TRANSMITTANCE_RATIO,
                                    TRANSMITTANCE_RESIDUAL, TRANSMITTANCE_TELESCOPING);
     for (const Case& c : cases) {
-        MediumRecipe recipe = recipe_of(c.kind, estimator, c.filter, c.majorant_scale);
+        MediumRecipe recipe = transmittance_recipe(c.kind, estimator, c.filter, c.majorant_scale);
         recipe.is_mapped = c.is_mapped;
         if (!sees(estimator, recipe) || (!is_null_transmittance(estimator) && c.majorant_scale > 2.0))
             continue;
@@ -108,7 +108,7 @@ TEST_CASE("chromatic transmittance has the mean of the quadrature in every chann
         GENERATE(TRANSMITTANCE_ANALYTIC, TRANSMITTANCE_REGULAR, TRANSMITTANCE_MARCH, TRANSMITTANCE_DELTA,
                  TRANSMITTANCE_RATIO, TRANSMITTANCE_RESIDUAL, TRANSMITTANCE_TELESCOPING);
     for (const MediumKind kind : {MediumKind::grid, MediumKind::noise_sphere, MediumKind::cubes}) {
-        MediumRecipe recipe = recipe_of(kind, estimator, Filter::trilinear, 1.0);
+        MediumRecipe recipe = transmittance_recipe(kind, estimator, Filter::trilinear, 1.0);
         recipe.sigma_t = sigma_t;
         if (estimator == TRANSMITTANCE_MARCH) // so fine that the bias is below 1e-5: see the order below
             recipe.estimators.settings.march.shadow_step = 0.02;
@@ -131,7 +131,7 @@ TEST_CASE("ratio and residual estimates bear majorants that do not bound", "[gpu
     CAPTURE(estimator, int(kind));
     // Delta loses what exceeds; at half the majorants that is little in this grid.
     const double scale = estimator == TRANSMITTANCE_DELTA ? 0.2 : 0.5;
-    const TestMedium medium(recipe_of(kind, estimator, Filter::trilinear, scale));
+    const TestMedium medium(transmittance_recipe(kind, estimator, Filter::trilinear, scale));
     const auto rays = medium.random_rays(100, 3, 0.3, 1.5);
     shared::Counters counters{};
     medium.see(rays, 100, 1, &counters);
@@ -152,7 +152,7 @@ TEST_CASE("ratio and residual estimates bear majorants that do not bound", "[gpu
 TEST_CASE("regular transmittance is exact to rounding", "[gpu][transmittance]") {
     const Filter filter = GENERATE(Filter::trilinear, Filter::nearest);
     const double sigma_t = 1.5, rho_max = 2.0;
-    MediumRecipe recipe = recipe_of(MediumKind::grid, TRANSMITTANCE_REGULAR, filter, 1.0);
+    MediumRecipe recipe = transmittance_recipe(MediumKind::grid, TRANSMITTANCE_REGULAR, filter, 1.0);
     recipe.sigma_t = Rgb(sigma_t);
     const TestMedium medium(recipe);
     const auto rays = medium.random_rays(1000, 4, 0.0, 20.0);
@@ -177,7 +177,7 @@ TEST_CASE("regular transmittance is exact to rounding", "[gpu][transmittance]") 
 namespace {
 
 MediumRecipe march_recipe(double step, bool jitter) {
-    MediumRecipe recipe = recipe_of(MediumKind::noise_sphere, TRANSMITTANCE_MARCH, Filter::trilinear, 1.0);
+    MediumRecipe recipe = transmittance_recipe(MediumKind::noise_sphere, TRANSMITTANCE_MARCH, Filter::trilinear, 1.0);
     recipe.estimators.settings.march = {step, step, 0.1, jitter, CoefficientUnit::world};
     recipe.noise = {1.0, 1, 0.5, 2.0}; // smooth over the longest step
     recipe.sigma_t = Rgb(2.0);
@@ -248,7 +248,7 @@ TEST_CASE("marched transmittance has the bias of its order", "[gpu][transmittanc
 // which are rounded by 1e-6 would be off by more than what they are to tell. The bound is of the coarsest march, of a
 // few hundred steps that are each rounded by u.
 TEST_CASE("telescoping knows a constant density by each estimate", "[gpu][transmittance]") {
-    MediumRecipe recipe = recipe_of(MediumKind::sphere, TRANSMITTANCE_TELESCOPING, Filter::trilinear, 1.0);
+    MediumRecipe recipe = transmittance_recipe(MediumKind::sphere, TRANSMITTANCE_TELESCOPING, Filter::trilinear, 1.0);
     recipe.estimators.settings.march.shadow_step = 0.05;
     const TestMedium medium(recipe);
     const auto rays = medium.random_rays(4, 7, least, most);
@@ -271,7 +271,7 @@ TEST_CASE("telescoping begins anywhere and has the same mean", "[gpu][transmitta
     const double step = GENERATE(0.3, 1.0, 100.0); // the last: one step per part, the largest bias to take away
     const MediumKind kind = GENERATE(MediumKind::grid, MediumKind::noise_cubes);
     CAPTURE(step, int(kind));
-    MediumRecipe recipe = recipe_of(kind, TRANSMITTANCE_TELESCOPING, Filter::trilinear, 1.0);
+    MediumRecipe recipe = transmittance_recipe(kind, TRANSMITTANCE_TELESCOPING, Filter::trilinear, 1.0);
     recipe.estimators.settings.march.shadow_step = step;
     const TestMedium medium(recipe);
     const auto rays = medium.random_rays(80, 6, least, most);

@@ -9,6 +9,7 @@
 #include <iostream>
 #include <random>
 
+#include "support/numbers.h"
 #include "support/statistics.h"
 #include "support/test_scene.h"
 #include "test_paths.h"
@@ -19,11 +20,11 @@
 using namespace vkvol;
 using shared::FlightOutput;
 using shared::RayInput;
+using test_numbers::left;
 
 namespace {
 
-constexpr std::uint32_t left = 2;
-constexpr std::uint32_t samples = 8; // per segment
+constexpr std::uint32_t samples_per_segment = 8;
 
 struct Estimator {
     const char* name;
@@ -81,16 +82,16 @@ Row measure(const LoadedMedium& loaded, const Volume& volume, const Segments& se
                           0.0f, glm::vec3(1.0f)});
     KernelRunner runner(transmittance_spv, scene.specialization, scene.kernel);
     runner.push.step_limit = 60000; // software drivers leave loops silently after 65535 iterations
-    runner.push.sample_end = samples;
-    const auto threads = static_cast<std::uint32_t>(inputs.size() * samples);
+    runner.push.sample_end = samples_per_segment;
+    const auto threads = static_cast<std::uint32_t>(inputs.size() * samples_per_segment);
     const auto outputs = runner.run<FlightOutput>(std::span<const RayInput>(inputs), threads, threads);
     Row row;
     RunningMean errors;
     for (std::size_t segment = 0; segment < inputs.size(); ++segment) {
         const double T = std::exp(-volume.sigma_a.x * segments.D[segment]);
         RunningMean mean;
-        for (std::uint32_t k = 0; k < samples; ++k) {
-            const FlightOutput& o = outputs[segment * samples + k];
+        for (std::uint32_t k = 0; k < samples_per_segment; ++k) {
+            const FlightOutput& o = outputs[segment * samples_per_segment + k];
             row.lookups += o.lookups / double(threads);
             row.steps += o.steps / double(threads);
             if (o.event == left) // telescoping: all but one in 2^13

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "kernels/test_items.h"
+#include "support/numbers.h"
 #include "support/statistics.h"
 #include "support/test_grids.h"
 #include "support/test_scene.h"
@@ -16,10 +17,10 @@
 using namespace vkvol;
 using shared::FlightOutput;
 using shared::RayInput;
+using test_numbers::infinity;
+using test_numbers::left;
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Volume absorber(double sigma_t) {
     Volume volume;
@@ -43,7 +44,7 @@ std::vector<RunningMean> estimate(const TestScene& scene, const std::vector<refe
     const auto outputs = runner.run<FlightOutput>(std::span<const RayInput>(inputs), threads, threads);
     std::vector<RunningMean> means(rays.size());
     for (std::size_t i = 0; i < outputs.size(); ++i) {
-        REQUIRE(outputs[i].event == 2u); // left
+        REQUIRE(outputs[i].event == left);
         means[i / count].add(outputs[i].weight.x);
     }
     return means;

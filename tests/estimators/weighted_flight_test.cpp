@@ -5,14 +5,16 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/numbers.h"
 #include "support/test_medium.h"
 
 using namespace vkvol;
 using shared::FlightOutput;
+using test_numbers::collided;
+using test_numbers::left;
 
 namespace {
 
-constexpr std::uint32_t collided = 1, left = 2;
 constexpr int bin_count = 6; // of depth; comparisons per channel: one more, the escapes
 
 // Flights that set out with throughput `beta`.

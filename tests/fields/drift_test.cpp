@@ -17,7 +17,7 @@ DensityField field_of(const GridRecipe& recipe, GridValues values = GridValues::
     return make_density_field(make_grid_bytes(recipe), "test", values);
 }
 
-GridRecipe smoke(Storage storage = Storage::float32) {
+GridRecipe drifting_smoke(Storage storage = Storage::float32) {
     GridRecipe recipe;
     recipe.first = {-6, -3, 2};
     recipe.last = {19, 11, 14};
@@ -29,7 +29,7 @@ GridRecipe smoke(Storage storage = Storage::float32) {
 }
 
 GridRecipe velocities(glm::ivec3 first, glm::ivec3 last, const std::function<glm::vec3(glm::ivec3)>& velocity) {
-    GridRecipe recipe = smoke();
+    GridRecipe recipe = drifting_smoke();
     recipe.first = first;
     recipe.last = last;
     recipe.value = nullptr;
@@ -65,7 +65,7 @@ const glm::ivec3 wide_low(-48), wide_high(63);
 
 TEST_CASE("what drifts by whole voxels is the grid, moved", "[cpu][motion][grid]") {
     for (const Storage storage : {Storage::float32, Storage::fp8}) {
-        const DensityField field = field_of(smoke(storage));
+        const DensityField field = field_of(drifting_smoke(storage));
         // Voxels are half a unit: 4, -6 and 3 units a second are 16, -24 and 12 voxels in two seconds.
         const DensityField wind =
             field_of(velocities(wide_low, wide_high, [](glm::ivec3) { return glm::vec3(4.0f, -6.0f, 3.0f); }),
@@ -79,7 +79,7 @@ TEST_CASE("what drifts by whole voxels is the grid, moved", "[cpu][motion][grid]
 }
 
 TEST_CASE("velocities are looked up where they are", "[cpu][motion][grid]") {
-    const DensityField field = field_of(smoke());
+    const DensityField field = field_of(drifting_smoke());
     const auto swirl = [](glm::ivec3 v) {
         return glm::vec3(0.3f * float(v.y) + 0.7f, -0.25f * float(v.x), 0.5f * float(voxel_noise(v, 5)) - 0.2f);
     };
@@ -106,7 +106,7 @@ TEST_CASE("velocities are looked up where they are", "[cpu][motion][grid]") {
 
 // Each component in the middle of its lower face: there, half a voxel before the voxel's middle along its own axis.
 TEST_CASE("velocities on faces are looked up there", "[cpu][motion][grid]") {
-    const DensityField field = field_of(smoke());
+    const DensityField field = field_of(drifting_smoke());
     const auto wind_at = [](glm::dvec3 v) { return glm::dvec3(0.5 * v.x + 1.0, -0.25 * v.y, 0.125 * v.z - 0.5); };
     GridBytes bytes = make_grid_bytes(velocities(wide_low, wide_high, [&](glm::ivec3 v) {
         glm::vec3 wind;
@@ -123,7 +123,7 @@ TEST_CASE("velocities on faces are looked up there", "[cpu][motion][grid]") {
 }
 
 TEST_CASE("nothing moves where there is no velocity", "[cpu][motion][grid]") {
-    const DensityField field = field_of(smoke());
+    const DensityField field = field_of(drifting_smoke());
     const DensityField wind =
         field_of(velocities({0, 0, 0}, {5, 40, 40}, [](glm::ivec3) { return glm::vec3(0.0f, 2.5f, 0.0f); }),
                  GridValues::vectors);
@@ -134,7 +134,7 @@ TEST_CASE("nothing moves where there is no velocity", "[cpu][motion][grid]") {
 }
 
 TEST_CASE("colours drift as densities do", "[cpu][motion][grid]") {
-    GridRecipe recipe = smoke();
+    GridRecipe recipe = drifting_smoke();
     recipe.color = [](glm::ivec3 v) { return glm::vec3(voxel_noise(v, 1), voxel_noise(v, 2), voxel_noise(v, 3)); };
     const DensityField field = field_of(recipe, GridValues::numbers_or_colors);
     const DensityField wind = field_of(
@@ -155,7 +155,7 @@ TEST_CASE("colours drift as densities do", "[cpu][motion][grid]") {
 
 // Where a grid's values are mapped, its box is where the medium is.
 TEST_CASE("the box of what drifts does not shrink", "[cpu][motion][grid]") {
-    GridRecipe recipe = smoke();
+    GridRecipe recipe = drifting_smoke();
     recipe.background = -1.0f; // so that zeros are active
     recipe.value = [](glm::ivec3 v) { return v.x > 3 && v.x < 8 ? 1.0f : 0.0f; };
     DensityField field = field_of(recipe);
@@ -168,13 +168,13 @@ TEST_CASE("the box of what drifts does not shrink", "[cpu][motion][grid]") {
 }
 
 TEST_CASE("what is said of velocities that are none", "[cpu][motion][grid]") {
-    const DensityField field = field_of(smoke());
-    CHECK_THROWS_WITH(field_of(smoke(), GridValues::vectors), Contains("velocities are vectors (Vec3f)"));
+    const DensityField field = field_of(drifting_smoke());
+    CHECK_THROWS_WITH(field_of(drifting_smoke(), GridValues::vectors), Contains("velocities are vectors (Vec3f)"));
     const DensityField storm = field_of(
         velocities(wide_low, wide_high, [](glm::ivec3) { return glm::vec3(1e5f, 0.0f, 0.0f); }), GridValues::vectors);
     CHECK_THROWS_WITH(drifted(field, storm, 1.0), Contains("2e+05 voxels") && Contains("raise framesPerSecond"));
     // Far from it.
-    const DensityField near = field_of(smoke());
+    const DensityField near = field_of(drifting_smoke());
     const DensityField gale =
         field_of(velocities({-700, -700, -700}, {-700, -700, -700}, [](glm::ivec3) { return glm::vec3(1900.0f); }),
                  GridValues::vectors);

@@ -11,14 +11,12 @@ using Catch::Contains;
 
 namespace {
 
-using Directory = TestDirectory;
-
 const std::string tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl red\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
 } // namespace
 
 TEST_CASE("a material library that cannot be read is named", "[cpu][mesh]") {
-    const Directory directory;
+    const TestDirectory directory;
     for (const std::string name : {"none.mtl", "/dev/zero", "."}) {
         CAPTURE(name);
         const Mesh mesh = load_mesh({{directory.write("mesh.obj", "mtllib " + name + "\n" + tetrahedron)}});
@@ -33,7 +31,7 @@ TEST_CASE("a material library that cannot be read is named", "[cpu][mesh]") {
 }
 
 TEST_CASE("a material whose colour is none is left out", "[cpu][mesh]") {
-    const Directory directory;
+    const TestDirectory directory;
     for (const std::string number : {"-1", "1e30"}) {
         CAPTURE(number);
         directory.write("red.mtl", "newmtl red\nKd 0.5 " + number + " 0\n");

@@ -13,7 +13,7 @@ using Catch::Contains;
 
 namespace {
 
-struct Directory : TestDirectory {
+struct MeshDirectory : TestDirectory {
     Mesh load(const std::string& text) const { return load_mesh({{write("mesh.obj", text)}}); }
     std::string error(const std::string& text) const {
         try {
@@ -45,7 +45,7 @@ const std::string letter =
 } // namespace
 
 TEST_CASE("an .obj file of quads, texture coordinates, groups and Windows line ends", "[mesh]") {
-    const Directory directory;
+    const MeshDirectory directory;
     Mesh mesh = directory.load(cube);
     CHECK(mesh.vertices.size() == 8);
     CHECK(mesh.triangles.size() == 12);
@@ -84,7 +84,7 @@ TEST_CASE("an .obj file with comments, lines that go on, and a mark of UTF-8", "
 }
 
 TEST_CASE("vertices at one position are welded, faces turned outward, slivers dropped or kept", "[mesh]") {
-    const Directory directory;
+    const MeshDirectory directory;
     const Mesh box = directory.load(as_obj(make_box(glm::dvec3(-1.0), glm::dvec3(1.0), 4)));
     CHECK(box.vertices.size() == 6 * 16 + 2);
     CHECK(volume(box) == Approx(8.0));
@@ -124,7 +124,7 @@ TEST_CASE("vertices at one position are welded, faces turned outward, slivers dr
 }
 
 TEST_CASE("polygons that are not convex are covered, and nothing else", "[mesh]") {
-    const Directory directory;
+    const MeshDirectory directory;
     // All triangles face as the polygon does, and their areas sum up to its.
     const auto area = [](const Polygons& faces, std::size_t from, std::size_t count, const glm::dvec3& normal) {
         double sum = 0.0;
@@ -157,7 +157,7 @@ TEST_CASE("polygons that are not convex are covered, and nothing else", "[mesh]"
 }
 
 TEST_CASE("materials", "[mesh]") {
-    const Directory directory;
+    const MeshDirectory directory;
     directory.write("two.mtl", "newmtl red\nKd 0.75 0.25 0.125\nnewmtl blue\nKd 0 0 1\n");
     const std::string head = "mtllib two.mtl\n" + cube_vertices;
     const std::string caps = "f 4 3 2 1\nf 5 6 7 8\n";
@@ -180,7 +180,7 @@ TEST_CASE("materials", "[mesh]") {
 }
 
 TEST_CASE("what is no closed surface is refused, with the remedy", "[mesh]") {
-    const Directory directory;
+    const MeshDirectory directory;
     CHECK_THAT(directory.error(cube_vertices + "f 4 3 2 1\n" + cube_sides),
                Contains("4 edges") && Contains("close the"));
     CHECK_THAT(directory.error(cube_vertices + "f 4 3 2 1\nf 8 7 6 5\n" + cube_sides),

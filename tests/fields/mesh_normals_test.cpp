@@ -10,8 +10,6 @@ using namespace vkvol;
 
 namespace {
 
-using Directory = TestDirectory;
-
 TriangleSurface loaded(const std::filesystem::path& file, MeshNormals normals = MeshNormals::of_file,
                        const glm::dmat4& transform = glm::dmat4(1.0), MaterialKind kind = MaterialKind::diffuse) {
     Scene scene;
@@ -34,7 +32,7 @@ const std::string roof = corners + "f 1 2 3\nf 1 4 2\n";
 } // namespace
 
 TEST_CASE("normals are those of the file, turned with the mesh and to the side of its faces", "[cpu][mesh][surfaces]") {
-    const Directory directory;
+    const TestDirectory directory;
     const auto file = directory.write("a.obj", corners + "vn 0.6 0 0.8\nvn 0 0 -2\nf 1//1 2//2 3\n");
     const TriangleSurface mesh = loaded(file);
     REQUIRE(mesh.normals.size() == 1);
@@ -54,7 +52,7 @@ TEST_CASE("normals are those of the file, turned with the mesh and to the side o
 }
 
 TEST_CASE("smooth normals are the means of faces about a corner", "[cpu][mesh][surfaces]") {
-    const Directory directory;
+    const TestDirectory directory;
     const TriangleSurface mesh = loaded(directory.write("roof.obj", roof), MeshNormals::smooth);
     REQUIRE(mesh.normals.size() == 2);
     const glm::dvec3 both = glm::normalize(glm::dvec3(0.0, 1.0, 1.0));
@@ -82,7 +80,7 @@ TEST_CASE("smooth normals are the means of faces about a corner", "[cpu][mesh][s
 }
 
 TEST_CASE("normals of a .ply file, and of glass", "[cpu][mesh][surfaces]") {
-    const Directory directory;
+    const TestDirectory directory;
     const std::string ball = as_obj(make_icosphere(1));
     std::string normals;
     for (const glm::dvec3& vertex : make_icosphere(1).vertices) // of a ball they are its vertices

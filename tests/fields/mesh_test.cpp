@@ -10,15 +10,15 @@
 #include "mesh.spv.h"
 #include "support/kernel_runner.h"
 #include "support/mesh_chords.h"
+#include "support/numbers.h"
 #include "support/test_meshes.h"
 
 using namespace vkvol;
 using shared::MeshInput;
 using shared::MeshOutput;
+using test_numbers::u;
 
 namespace {
-
-constexpr double u = 0x1p-24; // unit roundoff
 
 Line to_line(const MeshInput& ray) {
     return {glm::dvec3(ray.origin), glm::dvec3(ray.direction)};

@@ -9,15 +9,15 @@
 #include "noise.h"
 #include "noise.spv.h"
 #include "support/kernel_runner.h"
+#include "support/numbers.h"
 #include "tests/reference/reference_noise.h"
 
 using namespace vkvol;
 using shared::NoiseInput;
 using shared::NoiseOutput;
+using test_numbers::u;
 
 namespace {
-
-constexpr double u = 0x1p-24; // unit roundoff
 
 using Table = std::array<int, 256>;
 

@@ -22,10 +22,10 @@ using Catch::Contains;
 
 namespace {
 
-class VdbFile {
+class WrittenVdb {
 public:
-    explicit VdbFile(const openvdb::GridPtrVec& grids, const char* ending = ".vdb",
-                     std::uint32_t compression = openvdb::io::Archive::DEFAULT_COMPRESSION_FLAGS)
+    explicit WrittenVdb(const openvdb::GridPtrVec& grids, const char* ending = ".vdb",
+                        std::uint32_t compression = openvdb::io::Archive::DEFAULT_COMPRESSION_FLAGS)
         : path_(std::filesystem::temp_directory_path() / fmt::format("vkvol_written_{}{}", getpid(), ending)) {
         openvdb::initialize();
         openvdb::io::File file(path_.string());
@@ -33,9 +33,9 @@ public:
         file.write(grids);
         file.close();
     }
-    ~VdbFile() { std::filesystem::remove(path_); }
-    VdbFile(const VdbFile&) = delete;
-    VdbFile& operator=(const VdbFile&) = delete;
+    ~WrittenVdb() { std::filesystem::remove(path_); }
+    WrittenVdb(const WrittenVdb&) = delete;
+    WrittenVdb& operator=(const WrittenVdb&) = delete;
 
     const std::filesystem::path& path() const { return path_; }
     DensityField field(const std::string& grid = "density") const { return load_density_field({path_, grid}); }
@@ -76,7 +76,7 @@ TEST_CASE("grids that follow one another without offsets are read", "[cpu][densi
         heat->tree().setValue({i, 0, 0}, 900.0f);
     }
     heat->setSaveFloatAsHalf(true);
-    const VdbFile file({density, heat});
+    const WrittenVdb file({density, heat});
     const auto write = [&](const openvdb::GridCPtrVec& grids) {
         std::ofstream out(file.path(), std::ios::binary);
         openvdb::io::Stream(out).write(grids);
@@ -93,7 +93,7 @@ TEST_CASE("grids that follow one another without offsets are read", "[cpu][densi
 }
 
 TEST_CASE("an empty grid in a .vdb file is read, and its neighbours are", "[cpu][density]") {
-    const VdbFile file({grid_named("shadow"), ramp("density")});
+    const WrittenVdb file({grid_named("shadow"), ramp("density")});
     CHECK(file.field("shadow").active_voxels == 0);
     CHECK(file.field().active_voxels == 20);
     CHECK(file.field().value({7, 1, 2}) == 8.0f);
@@ -105,7 +105,7 @@ TEST_CASE("an empty grid in a .vdb file is read, and its neighbours are", "[cpu]
 TEST_CASE("a grid of tiles alone, without leaves, is read", "[cpu][density]") {
     const auto tiles = grid_named("density");
     tiles->tree().addTile(1, {8, 16, 24}, 0.5f, true);
-    const VdbFile file({tiles});
+    const WrittenVdb file({tiles});
     CHECK(file.field().active_voxels == 512);
     CHECK(file.field().value({8, 16, 24}) == 0.5f);
     CHECK(file.field().value({15, 23, 31}) == 0.5f);
@@ -122,7 +122,7 @@ TEST_CASE("grids of colours are read where colours are wanted, with every compre
     for (const bool half : {false, true})
         for (const std::uint32_t compression : {0u, 2u, 3u, 6u}) {
             colors->setSaveFloatAsHalf(half);
-            const VdbFile file({ramp("density"), colors}, ".vdb", compression);
+            const WrittenVdb file({ramp("density"), colors}, ".vdb", compression);
             const DensityField field = load_density_field({file.path(), "Cd"}, GridValues::numbers_or_colors);
             CHECK(field.type == GRID_COLOR);
             CHECK(field.color({7, 1, 2}) == glm::vec3(8.0f, 2.0f, 0.875f));
@@ -145,17 +145,17 @@ TEST_CASE("a grid that shares another's tree is read with its own transform", "[
     instance->setTree(original->treePtr());
     instance->setName("twin");
     instance->setTransform(openvdb::math::Transform::createLinearTransform(0.25));
-    const VdbFile file({original, instance});
+    const WrittenVdb file({original, instance});
     CHECK(file.field().value({7, 1, 2}) == 8.0f);
     CHECK(file.field("twin").value({7, 1, 2}) == 8.0f);
     CHECK(file.field("twin").voxel_size() == Approx(0.25));
-    CHECK(std::filesystem::file_size(file.path()) < std::filesystem::file_size(VdbFile({original}).path()) + 1000);
+    CHECK(std::filesystem::file_size(file.path()) < std::filesystem::file_size(WrittenVdb({original}).path()) + 1000);
 }
 
 TEST_CASE("of several grids of one name the first has it, and all can be named", "[cpu][density]") {
     const auto second = ramp("density");
     second->tree().setValue({7, 1, 2}, 100.0f);
-    const VdbFile file({ramp("density"), second});
+    const WrittenVdb file({ramp("density"), second});
     const std::vector<VdbEntry> entries = read_vdb_entries(file.path());
     REQUIRE(entries.size() == 2);
     CHECK(entries[0].name == "density");
@@ -165,7 +165,7 @@ TEST_CASE("of several grids of one name the first has it, and all can be named",
 }
 
 TEST_CASE("a grid without a name is read by its number", "[cpu][density]") {
-    const VdbFile file({ramp("")});
+    const WrittenVdb file({ramp("")});
     const std::vector<VdbEntry> entries = read_vdb_entries(file.path());
     REQUIRE(entries.size() == 1);
     CHECK(entries[0].name == "[0]");
@@ -175,7 +175,7 @@ TEST_CASE("a grid without a name is read by its number", "[cpu][density]") {
 TEST_CASE("a grid of a type that nobody knows costs itself alone", "[cpu][density]") {
     const auto vectors = openvdb::Vec3SGrid::create();
     vectors->setName("velocity");
-    const VdbFile file({vectors, ramp("density")});
+    const WrittenVdb file({vectors, ramp("density")});
     file.replace("Tree_vec3s_5_4_3", "Tree_quark_7_7_7");
     CHECK(file.field().value({7, 1, 2}) == 8.0f);
     CHECK_THROWS_WITH(file.field("velocity"), Contains("is not a grid of floats"));
@@ -186,7 +186,7 @@ TEST_CASE("a grid of a type that nobody knows costs itself alone", "[cpu][densit
 }
 
 TEST_CASE("a damaged grid costs itself alone", "[cpu][density]") {
-    const VdbFile file({ramp("density"), ramp("heat")});
+    const WrittenVdb file({ramp("density"), ramp("heat")});
     file.replace("ScaleMap", "SkaleMap"); // of the first
     CHECK_THROWS_WITH(file.field(), Contains("transform of unknown kind"));
     CHECK(file.field("heat").value({7, 1, 2}) == 8.0f);
@@ -196,7 +196,7 @@ TEST_CASE("a background other than 0 counts in the box of active voxels, and is 
     const auto grid = grid_named("density", 0.25f);
     grid->tree().setValue({0, 0, 0}, 1.0f);
     grid->tree().setValue({40, 40, 40}, 1.0f);
-    const VdbFile file({grid, ramp("heat")});
+    const WrittenVdb file({grid, ramp("heat")});
     const DensityField field = file.field();
     CHECK(field.background == 0.25f);
     CHECK(field.value({0, 0, 1}) == 0.25f);
@@ -216,7 +216,7 @@ TEST_CASE("a background other than 0 counts in the box of active voxels, and is 
 }
 
 TEST_CASE("endings in upper case are those in lower case", "[cpu][density]") {
-    const VdbFile file({ramp("density")}, ".VDB");
+    const WrittenVdb file({ramp("density")}, ".VDB");
     CHECK(file.field().value({7, 1, 2}) == 8.0f);
     const std::filesystem::path nvdb = std::filesystem::temp_directory_path() / fmt::format("vkvol_{}.NVDB", getpid());
     std::filesystem::copy_file(std::filesystem::path(VKVOL_TEST_FIELDS) / "ramp.nvdb", nvdb,

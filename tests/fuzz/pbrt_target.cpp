@@ -13,38 +13,38 @@ namespace vkvol::fuzz {
 
 namespace {
 
-constexpr const char* words[] = {"[",
-                                 "]",
-                                 "\"",
-                                 "#",
-                                 "true",
-                                 "false",
-                                 "\"rgb L\"",
-                                 "\"float radius\"",
-                                 "\"sphere\"",
-                                 "\"disk\"",
-                                 "\"plymesh\"",
-                                 "\"trianglemesh\"",
-                                 "\"bilinearmesh\"",
-                                 "\"interface\"",
-                                 "\"homogeneous\"",
-                                 "\"nanovdb\"",
-                                 "\"dielectric\"",
-                                 "\"conductor\"",
-                                 "\"infinite\"",
-                                 "\"spot\"",
-                                 "\"distant\"",
-                                 "\"blackbody L\"",
-                                 "\"spectrum L\"",
-                                 "\"texture reflectance\"",
-                                 "\"metal-Au-eta\"",
-                                 "\"none.ply\"",
-                                 "\"ball.ply\"",
-                                 "\"spherical\"",
-                                 "\"orthographic\"",
-                                 "\"checkerboard\"",
-                                 "\"texture tex1\"",
-                                 "\"float illuminance\""};
+constexpr const char* pbrt_words[] = {"[",
+                                      "]",
+                                      "\"",
+                                      "#",
+                                      "true",
+                                      "false",
+                                      "\"rgb L\"",
+                                      "\"float radius\"",
+                                      "\"sphere\"",
+                                      "\"disk\"",
+                                      "\"plymesh\"",
+                                      "\"trianglemesh\"",
+                                      "\"bilinearmesh\"",
+                                      "\"interface\"",
+                                      "\"homogeneous\"",
+                                      "\"nanovdb\"",
+                                      "\"dielectric\"",
+                                      "\"conductor\"",
+                                      "\"infinite\"",
+                                      "\"spot\"",
+                                      "\"distant\"",
+                                      "\"blackbody L\"",
+                                      "\"spectrum L\"",
+                                      "\"texture reflectance\"",
+                                      "\"metal-Au-eta\"",
+                                      "\"none.ply\"",
+                                      "\"ball.ply\"",
+                                      "\"spherical\"",
+                                      "\"orthographic\"",
+                                      "\"checkerboard\"",
+                                      "\"texture tex1\"",
+                                      "\"float illuminance\""};
 constexpr const char* directives[] = {
     "AttributeBegin",
     "AttributeEnd",
@@ -104,7 +104,7 @@ public:
                 replace_token(text, random, edge_values);
                 break;
             case 1:
-                replace_token(text, random, words);
+                replace_token(text, random, pbrt_words);
                 break;
             case 2: {
                 const std::size_t line = text.find('\n', random.below(text.size()));

@@ -17,7 +17,7 @@ std::string normalised(const std::string& text) {
     return to_text(ranges_of(text));
 }
 
-Metadata render(int seed, int offset, int samples) {
+Metadata render_range(int seed, int offset, int samples) {
     return {{"vkvol/seed", std::to_string(seed)}, {"vkvol/sampleOffset", offset}, {"samplesPerPixel", samples}};
 }
 
@@ -34,7 +34,7 @@ TEST_CASE("sample ranges are sorted, and joined where they touch", "[cpu][merge]
 
 TEST_CASE("the sample ranges of a render", "[cpu][merge]") {
     const auto text = [](const Metadata& metadata) { return to_text(sample_ranges_of(metadata, "image.exr")); };
-    CHECK(text(render(7, 64, 32)) == "7:64-96");
+    CHECK(text(render_range(7, 64, 32)) == "7:64-96");
     CHECK(text({{"vkvol/seed", 5}, {"samplesPerPixel", 2}}) == "5:0-2"); // from the beginning
     CHECK(text({}) == "unknown");
     CHECK(text({{"vkvol/seed", 5}}) == "unknown");
@@ -70,9 +70,9 @@ TEST_CASE("sample ranges that make no sense are refused", "[cpu][merge]") {
     CHECK_THROWS_AS(sample_ranges_of({{"vkvol/ranges", 3}}, "image.exr"), InputError);
     CHECK_THROWS_WITH(sample_ranges_of({{"vkvol/seed", "x"}, {"samplesPerPixel", 1}}, "image.exr"),
                       "image.exr: vkvol/seed is 'x'; expected a whole number");
-    CHECK_THROWS_AS(sample_ranges_of(render(0, -5, 8), "image.exr"), InputError);
-    CHECK_THROWS_AS(sample_ranges_of(render(0, 5, 0), "image.exr"), InputError);
-    Metadata beyond = render(0, 0, 5);
+    CHECK_THROWS_AS(sample_ranges_of(render_range(0, -5, 8), "image.exr"), InputError);
+    CHECK_THROWS_AS(sample_ranges_of(render_range(0, 5, 0), "image.exr"), InputError);
+    Metadata beyond = render_range(0, 0, 5);
     beyond["vkvol/sampleOffset"] = "18446744073709551615";
     CHECK_THROWS_AS(sample_ranges_of(beyond, "image.exr"), InputError);
 }

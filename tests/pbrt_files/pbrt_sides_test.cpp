@@ -15,7 +15,7 @@ namespace {
 const std::string media = "MakeNamedMedium \"a\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 1 1 1 ]\n"
                           "MakeNamedMedium \"b\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 2 2 2 ]\n"
                           "Material \"interface\" ";
-const std::string ball = " Shape \"sphere\" ";
+const std::string sided_ball = " Shape \"sphere\" ";
 // Its points go round as seen from outside.
 const std::string box =
     " Shape \"trianglemesh\" \"point3 P\" [ -1 -1 -1  1 -1 -1  1 1 -1  -1 1 -1  -1 -1 1  1 -1 1  1 1 1  -1 1 1 ]"
@@ -40,22 +40,23 @@ void check_noted(const std::string& text, const std::string& expected) {
 
 TEST_CASE("pbrt's normals say which medium is within", "[cpu][pbrt]") {
     using All = std::vector<double>;
-    CHECK(absorbs("MediumInterface \"a\" \"\"" + ball) == All{1});
-    CHECK(absorbs("ReverseOrientation MediumInterface \"\" \"a\"" + ball) == All{1});
-    CHECK(absorbs("ReverseOrientation Scale -1 1 1 MediumInterface \"a\" \"\"" + ball) ==
-          All{1}); // a mirror turns a ball about,
-    CHECK(absorbs("Scale -1 1 1 MediumInterface \"\" \"a\"" + ball) == All{1});
+    CHECK(absorbs("MediumInterface \"a\" \"\"" + sided_ball) == All{1});
+    CHECK(absorbs("ReverseOrientation MediumInterface \"\" \"a\"" + sided_ball) == All{1});
+    CHECK(absorbs("ReverseOrientation Scale -1 1 1 MediumInterface \"a\" \"\"" + sided_ball) ==
+          All{1}); // a mirror turns a sided_ball about,
+    CHECK(absorbs("Scale -1 1 1 MediumInterface \"\" \"a\"" + sided_ball) == All{1});
     CHECK(absorbs("Scale -1 1 1 MediumInterface \"a\" \"\"" + box) == All{1}); // and no triangles
     CHECK(absorbs("MediumInterface \"a\" \"\"" + box) == All{1});
     CHECK(absorbs("ReverseOrientation MediumInterface \"\" \"a\"" + box) == All{1});
-    CHECK(absorbs("MediumInterface \"b\" \"a\"" + ball + "MediumInterface \"a\" \"\" Scale 3 3 3" + ball) == All{2, 1});
-    CHECK(absorbs("ReverseOrientation MediumInterface \"a\" \"\"" + ball).empty());
+    CHECK(absorbs("MediumInterface \"b\" \"a\"" + sided_ball + "MediumInterface \"a\" \"\" Scale 3 3 3" + sided_ball) ==
+          All{2, 1});
+    CHECK(absorbs("ReverseOrientation MediumInterface \"a\" \"\"" + sided_ball).empty());
     // An instance carries normals along, whatever it does to space.
     const auto object = [](const std::string& text) {
         return "ObjectBegin \"o\" MediumInterface \"a\" \"\" " + text + " ObjectEnd Scale -1 1 1 ObjectInstance \"o\"";
     };
-    CHECK(absorbs(object(ball)) == All{1});
-    CHECK(absorbs(object("Scale -1 1 1" + ball)).empty());
+    CHECK(absorbs(object(sided_ball)) == All{1});
+    CHECK(absorbs(object("Scale -1 1 1" + sided_ball)).empty());
     CHECK(absorbs(object(box)) == All{1});
 }
 
@@ -92,16 +93,16 @@ TEST_CASE("pbrt's disks have their front where a mirror puts it", "[cpu][pbrt]")
 }
 
 TEST_CASE("pbrt's nameless area light ends what shines, and others are refused", "[cpu][pbrt]") {
-    const Scene scene = world_of("AreaLightSource \"diffuse\"" + ball + "AreaLightSource \"\"" + ball);
+    const Scene scene = world_of("AreaLightSource \"diffuse\"" + sided_ball + "AreaLightSource \"\"" + sided_ball);
     REQUIRE(scene.surfaces.size() == 2);
     CHECK(scene.surfaces[0].emission != Rgb(0.0));
     CHECK(scene.surfaces[1].emission == Rgb(0.0));
-    CHECK_THROWS_WITH(world_of("AreaLightSource \"spheric\"" + ball), Contains("\"diffuse\" is the only one"));
+    CHECK_THROWS_WITH(world_of("AreaLightSource \"spheric\"" + sided_ball), Contains("\"diffuse\" is the only one"));
 }
 
 TEST_CASE("pbrt's cropwindow is rounded in single precision", "[cpu][pbrt]") {
     const auto width = [](const char* text) {
-        return scene_of("Film \"rgb\" " + std::string(text) + " Camera \"perspective\" WorldBegin " + ball)
+        return scene_of("Film \"rgb\" " + std::string(text) + " Camera \"perspective\" WorldBegin " + sided_ball)
             .picture.width;
     };
     CHECK(width("\"integer xresolution\" 800 \"float cropwindow\" [ .3 .6 0 1 ]") == 480 - 240);
@@ -109,30 +110,30 @@ TEST_CASE("pbrt's cropwindow is rounded in single precision", "[cpu][pbrt]") {
 }
 
 TEST_CASE("pbrt's media that are not rendered as in pbrt are named", "[cpu][pbrt]") {
-    check_noted("ReverseOrientation MediumInterface \"a\" \"\"" + ball,
+    check_noted("ReverseOrientation MediumInterface \"a\" \"\"" + sided_ball,
                 "medium \"a\" is outside of this, as its normals point");
-    check_noted("MediumInterface \"b\" \"a\"" + ball + "MediumInterface \"a\" \"\" Scale 3 3 3" + ball,
+    check_noted("MediumInterface \"b\" \"a\"" + sided_ball + "MediumInterface \"a\" \"\" Scale 3 3 3" + sided_ball,
                 "medium \"a\" goes on within");
     check_noted(
         "MakeNamedMaterial \"g\" \"string type\" \"dielectric\" NamedMaterial \"g\" MediumInterface \"b\" \"a\"" +
-            ball + "Material \"interface\" MediumInterface \"a\" \"\" Scale 3 3 3" + ball,
+            sided_ball + "Material \"interface\" MediumInterface \"a\" \"\" Scale 3 3 3" + sided_ball,
         "medium \"a\" goes on within");
-    CHECK(
-        scene_of("Integrator \"path\" Camera \"perspective\" WorldBegin " + media + "MediumInterface \"a\" \"\"" + ball)
-            .warnings.size() == 1);
+    CHECK(scene_of("Integrator \"path\" Camera \"perspective\" WorldBegin " + media + "MediumInterface \"a\" \"\"" +
+                   sided_ball)
+              .warnings.size() == 1);
     check_noted("MediumInterface \"a\" \"\" Shape \"sphere\" \"float zmax\" 0",
                 "\"sphere\" encloses medium \"a\", which is left out");
-    check_noted("MediumInterface \"a\" \"\" Shape \"plymesh\" \"string filename\" \"a.ply\"" + ball,
+    check_noted("MediumInterface \"a\" \"\" Shape \"plymesh\" \"string filename\" \"a.ply\"" + sided_ball,
                 "\"plymesh\" encloses medium \"a\", which is left out");
     const std::string grid =
         "MakeNamedMedium \"g\" \"string type\" \"uniformgrid\" \"integer nx\" 1 \"integer ny\" 1 \"integer nz\" 1 "
         "\"float density\" [ 0 ] \"point3 p0\" [ -1 -1 -1 ] \"point3 p1\" [ 1 1 1 ] MediumInterface \"g\" \"\" ";
     const std::string not_cut = "the grid of medium \"g\" reaches beyond this";
-    check_noted(grid + ball, not_cut);
+    check_noted(grid + sided_ball, not_cut);
     check_noted(grid + "Scale .9 2 2" + box, not_cut);
     check_noted(grid + "Shape \"plymesh\" \"string filename\" \"a.ply\"", "the grid of medium \"g\" fills its box");
-    check_noted(grid + "MediumInterface \"\" \"g\"" + ball, "the grid of medium \"g\" goes on within");
-    for (const std::string& whole : {box, "Scale 1.8 1.8 1.8" + ball})
+    check_noted(grid + "MediumInterface \"\" \"g\"" + sided_ball, "the grid of medium \"g\" goes on within");
+    for (const std::string& whole : {box, "Scale 1.8 1.8 1.8" + sided_ball})
         for (const std::string& warning : world_of(media + grid + whole).warnings)
             CHECK_THAT(warning, !Contains(not_cut));
     const auto fog = [](const std::string& lights) {
@@ -148,7 +149,7 @@ TEST_CASE("pbrt's media that are not rendered as in pbrt are named", "[cpu][pbrt
 TEST_CASE("images of pbrt's textures that are taken otherwise are named", "[cpu][pbrt]") {
     const auto check = [](const std::string& parameter, const std::string& expected) {
         check_noted("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" " + parameter +
-                        " Material \"diffuse\" \"texture reflectance\" \"t\"" + ball,
+                        " Material \"diffuse\" \"texture reflectance\" \"t\"" + sided_ball,
                     expected);
     };
     check("\"float scale\" 3", "taken 3 times, and once here");
@@ -158,13 +159,13 @@ TEST_CASE("images of pbrt's textures that are taken otherwise are named", "[cpu]
     check("\"string mapping\" \"planar\"", "mapping \"planar\" is left out");
     for (const char* usual : {"\"string mapping\" \"uv\"", "\"float uscale\" 2"})
         CHECK(world_of(std::string("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" ") + usual +
-                       " Material \"diffuse\" \"texture reflectance\" \"t\"" + ball)
+                       " Material \"diffuse\" \"texture reflectance\" \"t\"" + sided_ball)
                   .warnings.empty());
     // Textures of colours and of numbers may share a name.
     const Scene scene =
         world_of("Texture \"t\" \"spectrum\" \"constant\" \"rgb value\" [ .8 .1 .1 ] Texture \"t\" \"float\" "
                  "\"constant\" \"float value\" .05 Material \"diffuse\" \"texture reflectance\" \"t\"" +
-                 ball);
+                 sided_ball);
     CHECK(near(scene.surfaces.at(0).material.color, {.8, .1, .1}));
     CHECK_THROWS_WITH(world_of("Texture \"t\" \"color\" \"constant\""), Contains("expected \"spectrum\" or \"float\""));
 }
@@ -173,7 +174,7 @@ TEST_CASE("blocks and imported files leave pbrt's state as they find it", "[cpu]
     const std::string red = "Material \"diffuse\" \"rgb reflectance\" [ .8 .1 .1 ] ",
                       green = "Material \"diffuse\" \"rgb reflectance\" [ .1 .8 .1 ] ";
     const auto colors = [&](const std::string& text, const std::filesystem::path& file = "s.pbrt") {
-        const std::string whole = "Camera \"perspective\" WorldBegin " + red + text + ball;
+        const std::string whole = "Camera \"perspective\" WorldBegin " + red + text + sided_ball;
         std::vector<glm::dvec3> all;
         for (const Surface& surface : parse_scene(translate_pbrt(read_pbrt(whole, file)), file.string()).surfaces)
             all.push_back(surface.material.color);
@@ -181,9 +182,9 @@ TEST_CASE("blocks and imported files leave pbrt's state as they find it", "[cpu]
     };
     CHECK(near(colors("TransformBegin " + green + "TransformEnd").back(), {.8, .1, .1}));
     const TestDirectory directory;
-    directory.write("green.inc", green + "AttributeBegin" + ball);
+    directory.write("green.inc", green + "AttributeBegin" + sided_ball);
     directory.write("nothing.inc", "# nothing");
-    directory.write("nested.inc", "Import \"green.inc\"" + ball);
+    directory.write("nested.inc", "Import \"green.inc\"" + sided_ball);
     directory.write("ends.inc", "AttributeEnd");
     const std::filesystem::path file = directory.path / "s.pbrt";
     const std::vector<glm::dvec3> seen =
@@ -197,11 +198,11 @@ TEST_CASE("blocks and imported files leave pbrt's state as they find it", "[cpu]
     CHECK(near(colors("Include \"plain.inc\"", file).back(), {.1, .8, .1}));
     CHECK_THROWS_WITH(colors("Include \"green.inc\"", file), Contains("an AttributeBegin lacks its AttributeEnd"));
     // Coordinate systems are a file's own.
-    directory.write("system.inc", "CoordSysTransform \"far\"" + ball);
+    directory.write("system.inc", "CoordSysTransform \"far\"" + sided_ball);
     const std::string whole =
         "Camera \"perspective\" WorldBegin AttributeBegin Translate 9 0 0 CoordinateSystem \"far\" "
         "AttributeEnd Import \"system.inc\" CoordSysTransform \"far\"" +
-        ball;
+        sided_ball;
     const Scene systems = parse_scene(translate_pbrt(read_pbrt(whole, file)), file.string());
     REQUIRE(systems.surfaces.size() == 2);
     CHECK(near(std::get<BallSurface>(systems.surfaces[0].shape).center, {0, 0, 0}));
@@ -213,15 +214,16 @@ TEST_CASE("blocks and imported files leave pbrt's state as they find it", "[cpu]
 TEST_CASE("pbrt's names of media, spectra and spaces", "[cpu][pbrt]") {
     const auto preset = [](const std::string& name) {
         return world_of("MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"string preset\" \"" + name +
-                        "\" MediumInterface \"m\" \"\" Material \"interface\"" + ball)
+                        "\" MediumInterface \"m\" \"\" Material \"interface\"" + sided_ball)
             .volumes.at(0)
             .sigma_a;
     };
     CHECK(near(preset("Coke"), {.10014, .16503, .2468}));
     CHECK_THROWS_WITH(preset("Cokes"), Contains("did you mean Coke?"));
-    CHECK(world_of("Material \"dielectric\" \"spectrum eta\" \"glass-F11\"" + ball).surfaces.at(0).material.ior ==
+    CHECK(world_of("Material \"dielectric\" \"spectrum eta\" \"glass-F11\"" + sided_ball).surfaces.at(0).material.ior ==
           Approx(1.7847));
-    CHECK(world_of("Material \"conductor\" \"spectrum eta\" \"metal-TiO2-eta\" \"spectrum k\" \"metal-TiO2-k\"" + ball)
+    CHECK(world_of("Material \"conductor\" \"spectrum eta\" \"metal-TiO2-eta\" \"spectrum k\" \"metal-TiO2-k\"" +
+                   sided_ball)
               .warnings.empty());
     CHECK(world_of("ColorSpace \"sRGB\" LightSource \"point\"").warnings.empty());
     // Colours of an Attribute are of the space at its place.
@@ -233,7 +235,7 @@ TEST_CASE("pbrt's names of media, spectra and spaces", "[cpu][pbrt]") {
     for (const char* light : {"LightSource \"point\"", "LightSource \"point\" \"rgb I\" [ 1 1 1 ]"})
         CHECK(near(only_light<PointLight>(world_of(std::string("ColorSpace \"aces2065-1\" ") + light)).intensity,
                    {1.0470, .9946, .9155}, 1e-3));
-    CHECK(near(world_of("ColorSpace \"aces2065-1\" Material \"diffuse\" \"rgb reflectance\" [ .5 .5 .5 ]" + ball)
+    CHECK(near(world_of("ColorSpace \"aces2065-1\" Material \"diffuse\" \"rgb reflectance\" [ .5 .5 .5 ]" + sided_ball)
                    .surfaces.at(0)
                    .material.color,
                glm::dvec3(.5), 1e-4));

@@ -17,7 +17,7 @@ namespace {
 
 const std::filesystem::path root = VKVOL_SOURCE_DIR;
 
-std::vector<std::filesystem::path> scene_files() {
+std::vector<std::filesystem::path> all_scene_files() {
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "scenes"))
         if (entry.path().extension() == ".xml")
@@ -47,8 +47,8 @@ std::set<std::string> recipes() {
 TEST_CASE("every scene is complete without keys, and names fields that make_field makes", "[cpu][xml]") {
     const std::set<std::string> known = recipes();
     REQUIRE(known.count("cumulus") == 1);
-    REQUIRE(scene_files().size() > 60);
-    for (const std::filesystem::path& file : scene_files()) {
+    REQUIRE(all_scene_files().size() > 60);
+    for (const std::filesystem::path& file : all_scene_files()) {
         INFO(file.string());
         // Whether its integrator suits depends on what is in the grid; hard_scenes_test.cpp has it.
         if (file.stem() == "13-empty-grid" && !std::filesystem::exists(root / "density_fields/empty.nvdb"))
@@ -66,7 +66,7 @@ TEST_CASE("every scene is complete without keys, and names fields that make_fiel
 
 // Those of hard/ have tests of their own. Grids that take long to make, or much memory, are for tools/all_scenes.sh.
 TEST_CASE("scenes render by their name alone", "[gpu][image]") {
-    for (const std::filesystem::path& file : in_turn(scene_files(), 0, 12)) {
+    for (const std::filesystem::path& file : in_turn(all_scene_files(), 0, 12)) {
         if (file.parent_path().filename() == "hard" || file.filename() == "large_grid.xml")
             continue;
         Scene scene = load_scene(file);

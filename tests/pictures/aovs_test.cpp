@@ -111,10 +111,6 @@ Scene beam(const Volume& volume, double distance, std::uint32_t spp) {
     return scene;
 }
 
-Volume slab(double tau, double albedo) {
-    return medium(Box{{0.0, 0.0, -0.5}, {2e4, 2e4, 1.0}}, tau, albedo);
-}
-
 std::vector<Rgb> everywhere(const Film& film, const Rgb& value) {
     return std::vector<Rgb>(film.pixel_count(), value);
 }

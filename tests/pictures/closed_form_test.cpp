@@ -9,15 +9,16 @@
 
 #include "shared/constants.h"
 #include "support/images.h"
+#include "support/numbers.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
 #include "tests/reference/reference.h"
 
 using namespace vkvol;
+using test_numbers::infinity;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Rgb sky{0.25, 0.5, 2.0};
 
 // The mean of `value` over each pixel, by the midpoint rule on grid x grid points.
@@ -52,11 +53,6 @@ Scene beam(const Volume& volume, glm::dvec3 position) {
 
 std::vector<double> everywhere(const Scene& scene, double p) {
     return std::vector<double>(std::size_t(scene.picture.width) * scene.picture.height, p);
-}
-
-// A wide box of thickness 1, its top at z = 0.
-Volume slab(double tau, double albedo) {
-    return medium(Box{{0.0, 0.0, -0.5}, {2e4, 2e4, 1.0}}, tau, albedo);
 }
 
 } // namespace

@@ -23,11 +23,9 @@
 
 using namespace vkvol;
 using Catch::Contains;
+using std::numbers::pi;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
-const glm::dvec3 up(0.0, 1.0, 0.0);
 
 // A sensor of `across` by `across` pixels.
 Scene sensor(glm::dvec3 middle, glm::dvec3 facing, glm::dvec2 size, int across, std::uint32_t spp) {
@@ -53,11 +51,6 @@ Scene absorption(glm::dvec3 middle, glm::dvec3 edges, glm::ivec3 cells, std::uin
     return scene;
 }
 
-Scene by(Scene scene, const char* integrator) {
-    scene.settings.integrator = integrator;
-    return scene;
-}
-
 // Against rays from the sensor, which the reference follows; but it knows no surfaces that repeat.
 void check_counts(const Scene& scene, const std::string& name) {
     INFO(name);
@@ -67,23 +60,12 @@ void check_counts(const Scene& scene, const std::string& name) {
                           repeats ? render_here(rays, 2).film : render_reference(rays, 2), name));
 }
 
-void check_means(const Scene& scene, double expected, const std::string& name) {
-    const std::vector<Rgb> means(std::size_t(scene.picture.width * scene.picture.height), Rgb(expected));
-    CHECK_AGREEMENT(agree_with_means(render_here(scene, 3).film, means, name));
-}
-
 // A slab in a domain [-0.5, 0.5]^2, from 0 down.
-Scene slab(double tau, double albedo, double height, bool from_above) {
+Scene read_slab(double tau, double albedo, double height, bool from_above) {
     Scene scene = sensor({0.1, height, -0.2}, from_above ? up : -up, {1.0, 0.7}, 4, 512);
     scene.volumes = {medium(Box{{0.0, -0.5, 0.0}, glm::dvec3(1.0)}, tau, albedo)};
     scene.periodic = Periodic{{-0.5, 0.0, -0.5}, {0.5, 0.0, 0.5}};
     return scene;
-}
-
-Volume smoke() {
-    Volume volume = medium(Sphere{{0.1, -0.1, 0.0}, 1.5}, 3.0, 0.9, 0.4);
-    volume.noise = Noise{0.9, 3, 0.5, 2.0};
-    return volume;
 }
 
 Surface ball_of(MaterialKind kind, double roughness) {
@@ -95,7 +77,7 @@ Surface ball_of(MaterialKind kind, double roughness) {
     return surface;
 }
 
-struct Case {
+struct CountedCase {
     const char* name;
     Scene scene;
 };
@@ -107,9 +89,9 @@ Scene among(const Volume& volume, std::vector<Light> lights) {
     return scene;
 }
 
-std::vector<Case> cases() {
+std::vector<CountedCase> counted_cases() {
     const auto [point, spot, lamp, disk, rectangle, sun, beam] = LightsAbout{};
-    std::vector<Case> all;
+    std::vector<CountedCase> all;
     all.push_back(
         {"a ball of fog, point and spot", among(medium(Sphere{{0.0, 0.0, 0.0}, 1.5}, 1.5, 0.95, -0.4), {point, spot})});
     all.push_back({"smoke, far lights", among(smoke(), {sun, beam, write_sky(sunset_map())})});
@@ -146,24 +128,20 @@ std::vector<Case> cases() {
     return all;
 }
 
-Volume cloud() {
-    return medium(write_grids({cloud_grid()}), 0.8, 0.9, 0.4);
-}
-
 // From above clouds that repeat, or from below.
 Scene about_clouds(bool below, std::vector<Light> lights) {
     Scene scene = sensor({1.0, below ? -6.0 : 6.0, 2.0}, below ? up : -up, {9.0, 10.0}, 2, 4096);
-    scene.volumes = {cloud()};
+    scene.volumes = {thin_cloud()};
     scene.lights = std::move(lights);
     scene.periodic = Periodic{{-5.0, 0.0, -5.0}, {5.0, 0.0, 5.0}};
     return scene;
 }
 
-std::vector<Case> domains() {
+std::vector<CountedCase> domains() {
     const DirectionalLight beam = LightsAbout{}.beam;
     const DirectionalLight from_below{glm::normalize(glm::dvec3(1.0, -1.0, 0.5)), {1.0, 0.5, 0.2}};
     const SunLight sun{glm::normalize(glm::dvec3(-0.3, 0.9, 0.2)), {3.0, 2.8, 2.0}, 10.0};
-    std::vector<Case> all;
+    std::vector<CountedCase> all;
     all.push_back({"above clouds in a beam aslant", about_clouds(false, {beam})});
     all.push_back({"below clouds in beams from both sides", about_clouds(true, {beam, from_below})});
     all.push_back({"below clouds under a sun and a background", about_clouds(true, {sun})});
@@ -187,7 +165,7 @@ std::vector<Case> domains() {
 } // namespace
 
 TEST_CASE("particles counted are the flux that rays from the sensor read", "[gpu][counted]") {
-    for (const Case& c : in_turn(cases(), 0))
+    for (const CountedCase& c : in_turn(counted_cases(), 0))
         check_counts(c.scene, c.name);
 }
 
@@ -202,7 +180,7 @@ TEST_CASE("far light is counted where a filter alone has it", "[gpu][counted]") 
 }
 
 TEST_CASE("particles counted in domains that repeat", "[gpu][counted]") {
-    for (const Case& c : in_turn(domains(), 1))
+    for (const CountedCase& c : in_turn(domains(), 1))
         check_counts(c.scene, c.name);
 }
 
@@ -229,7 +207,7 @@ TEST_CASE("particles of clouds that glow, of which a domain cuts some off", "[gp
 // Each of a sweep's particles passes or does not: through the whole of a domain all do, at all heights.
 TEST_CASE("particles that pass an empty domain are all counted", "[gpu][counted]") {
     for (const double height : {0.3, -0.25, -2.0}) {
-        Scene scene = by(slab(1e-9, 0.0, height, true), "lightTracing");
+        Scene scene = by(read_slab(1e-9, 0.0, height, true), "lightTracing");
         scene.camera.size = {1.0, 1.0};
         scene.lights = {DirectionalLight{{0.6, 0.8, 0.0}, Rgb(2.0)}};
         const Film film = render_here(scene, 1).film;
@@ -244,12 +222,12 @@ TEST_CASE("particles counted above, below and amid slabs", "[gpu][counted]") {
     const double tau = 2.0, albedo = GENERATE(1.0, 0.6), mu0 = GENERATE(1.0, 0.3);
     const reference::SlabSolution beam = reference::slab_in_beam(albedo, tau, mu0, 800);
     for (const bool below : {false, true}) {
-        Scene scene = by(slab(tau, albedo, below ? -1.5 : 0.0, below), "lightTracing"); // at its very top
+        Scene scene = by(read_slab(tau, albedo, below ? -1.5 : 0.0, below), "lightTracing"); // at its very top
         scene.lights = {DirectionalLight{{std::sqrt(1.0 - mu0 * mu0), mu0, 0.0}, Rgb(1.0)}};
         check_means(scene, below ? beam.transmitted : beam.reflected,
                     fmt::format("slab of {}, {}, {}", albedo, mu0, below));
     }
-    Scene absorbing = by(slab(tau, 0.0, -0.5, true), "lightTracing");
+    Scene absorbing = by(read_slab(tau, 0.0, -0.5, true), "lightTracing");
     absorbing.lights = {DirectionalLight{{std::sqrt(1.0 - mu0 * mu0), mu0, 0.0}, Rgb(1.0)}};
     check_means(absorbing, mu0 * std::exp(-0.5 * tau / mu0), "what is left amid");
 }
@@ -260,7 +238,7 @@ TEST_CASE("a sensor in the plane of the ground counts what comes to the ground",
     const reference::SlabSolution beam = reference::slab_in_beam(0.9, tau, 1.0, 400);
     const reference::SlabSolution even = reference::slab_in_half_sky(0.9, tau, 400);
     for (const double height : {-1.5, 0.0, 7.0}) { // of the whole
-        Scene scene = by(slab(tau, 0.9, -1.2, true), "lightTracing");
+        Scene scene = by(read_slab(tau, 0.9, -1.2, true), "lightTracing");
         scene.surfaces.emplace_back().shape = PlaneSurface{{0.0, height - 1.2, 0.0}, up};
         scene.surfaces.back().material.color = Rgb(ground);
         scene.camera.position.y += height;
@@ -482,7 +460,7 @@ TEST_CASE("boxes in which absorption is read, in scene files", "[cpu][counted]")
 }
 
 TEST_CASE("particles counted have the same bits however they are worked on", "[gpu][counted]") {
-    for (Scene scene : {cases()[2].scene, domains()[5].scene}) {
+    for (Scene scene : {counted_cases()[2].scene, domains()[5].scene}) {
         scene.settings.spp = 40;
         scene = by(scene, "lightTracing");
         const Film whole = render_here(scene, 1).film;

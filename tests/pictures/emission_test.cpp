@@ -78,7 +78,7 @@ Scene fire(TemperatureEmission emission, Storage storage = Storage::float32) {
     return scene;
 }
 
-TemperatureEmission glow(TemperatureEmission::Model model) {
+TemperatureEmission glow_by(TemperatureEmission::Model model) {
     TemperatureEmission emission;
     emission.model = model;
     emission.color = {1.0, 0.8, 0.5};
@@ -94,11 +94,11 @@ TemperatureEmission glow(TemperatureEmission::Model model) {
 
 TEST_CASE("fire equals the reference", "[gpu][image][emission]") {
     for (const auto model : {TemperatureEmission::Model::color, TemperatureEmission::Model::blackbody}) {
-        const Scene scene = fire(glow(model));
+        const Scene scene = fire(glow_by(model));
         CHECK_AGREEMENT(
             agree(render_here(scene, 1).film, render_reference(scene, 2), fmt::format("fire {}", int(model))));
     }
-    const Scene quantised = fire(glow(TemperatureEmission::Model::blackbody), Storage::fp8);
+    const Scene quantised = fire(glow_by(TemperatureEmission::Model::blackbody), Storage::fp8);
     CHECK_AGREEMENT(agree(render_here(quantised, 1).film, render_reference(quantised, 2), "fire, Fp8 temperatures"));
 }
 

@@ -20,10 +20,9 @@
 
 using namespace vkvol;
 using Catch::Contains;
+using std::numbers::pi;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 // A sensor of `across` by `across` pixels.
 Scene rectangle(glm::dvec3 middle, glm::dvec3 facing, glm::dvec2 size, int across, std::uint32_t spp) {
@@ -48,30 +47,13 @@ Scene at_points(const std::vector<glm::dvec3>& points, std::uint32_t spp) {
     return scene;
 }
 
-std::vector<Rgb> everywhere(const Scene& scene, const Rgb& value) {
-    return std::vector<Rgb>(std::size_t(scene.picture.width) * std::size_t(scene.picture.height), value);
-}
-
-// A wide slab of thickness 1 below z = 0, as of tests/pictures/closed_form_test.cpp: what it lacks of an infinite one
-// is the light within 1e-4 of grazing.
-Volume slab(double tau, double albedo) {
-    return medium(Box{{0.0, 0.0, -0.5}, {2e4, 2e4, 1.0}}, tau, albedo);
-}
-const glm::dvec3 down(0.0, 0.0, -1.0), up(0.0, 0.0, 1.0);
+const glm::dvec3 down(0.0, 0.0, -1.0), zenith(0.0, 0.0, 1.0);
 
 // A map that shines 1 from z > 0 alone, but for the texels between the halves.
 SkyLight half_sky() {
     // Columns are longitudes: 0 in the middle is -z, and +z are the outer quarters.
     return write_sky(
         make_map(1024, 512, [](int column, int) { return Rgb(column < 256 || column >= 768 ? 1.0 : 0.0); }));
-}
-
-void check_agreement(const Scene& scene, const std::string& name) {
-    CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_reference(scene, 2), name));
-}
-
-void check_means(const Scene& scene, double expected, const std::string& name) {
-    CHECK_AGREEMENT(agree_with_means(render_here(scene, 3).film, everywhere(scene, Rgb(expected)), name));
 }
 
 } // namespace
@@ -117,10 +99,10 @@ TEST_CASE("light without extent is read straight from its source", "[gpu][image]
         const double distance = 100.0; // of a point light, from one below the slab
         const glm::dvec3 place(0.0, 0.0, -3.0);
         const PointLight lamp{place + distance * towards, Rgb(5e4)};
-        reads(rectangle(place, up, {1.0, 1.0}, 2, 8), sun, 2.0 * cosine * through);
+        reads(rectangle(place, zenith, {1.0, 1.0}, 2, 8), sun, 2.0 * cosine * through);
         reads(rectangle(place, down, {1.0, 1.0}, 2, 8), sun, 0.0);
         reads(at_points({place}, 8), sun, 2.0 * through);
-        reads(rectangle(place, up, {1e-4, 1e-4}, 2, 8), lamp, 5.0 * cosine * through);
+        reads(rectangle(place, zenith, {1e-4, 1e-4}, 2, 8), lamp, 5.0 * cosine * through);
         reads(at_points({place}, 8), lamp, 5.0 * through);
     }
 }
@@ -128,7 +110,7 @@ TEST_CASE("light without extent is read straight from its source", "[gpu][image]
 // By power over squared distance the spot is asked 180 times as often as the other, or one sample in 180 misses it: of
 // 2^16, standard errors of 3e-4. The other, by the cosine of its place, adds at most 0.0015.
 TEST_CASE("a spot that shines on a sensor, and past all media, is read", "[gpu][image][flux]") {
-    Scene scene = rectangle(glm::dvec3(0.0), up, {1e-3, 1e-3}, 2, 1 << 16);
+    Scene scene = rectangle(glm::dvec3(0.0), zenith, {1e-3, 1e-3}, 2, 1 << 16);
     scene.volumes = {medium(Sphere{{0.0, 30.0, 5.0}, 0.5}, 1.0, 0.5)};
     scene.lights = {SpotLight{{0.0, 0.0, 2.0}, down, Rgb(8.0), 20.0, 0.5}, PointLight{{0.0, 30.0, 4.0}, Rgb(10.0)}};
     scene.settings.integrator = "ratioTracking";
@@ -154,7 +136,7 @@ TEST_CASE("light with an extent is read however it is found", "[gpu][image][flux
         scene.settings.choices.mis = mis;
         check_means(scene, expected, fmt::format("{}, mis {}, {}", name, mis, absorbs));
     };
-    const Scene facing = rectangle({0.0, 0.0, 0.0}, up, {1e-5, 1e-5}, 4, 1 << 14),
+    const Scene facing = rectangle({0.0, 0.0, 0.0}, zenith, {1e-5, 1e-5}, 4, 1 << 14),
                 points = at_points(std::vector<glm::dvec3>(8, glm::dvec3(0.0)), 1 << 15);
     const SunLight sun{towards, Rgb(3.0), 40.0, 0.6};
     reads(facing, sun, 3.0 * 0.8 * T, "sun through a rectangle");
@@ -166,7 +148,7 @@ TEST_CASE("light with an extent is read however it is found", "[gpu][image][flux
     const SphereLight ball{5.0 * towards, 2.0, Rgb(2.0)};
     reads(facing, ball, pi * 2.0 * 0.16 * 0.8 * T, "ball through a rectangle");
     reads(points, ball, 2.0 * 2.0 * pi * (1.0 - std::sqrt(1.0 - 0.16)) * T, "ball at points");
-    const DiskLight disk{3.0 * up, down, 1.5, Rgb(2.0)};
+    const DiskLight disk{3.0 * zenith, down, 1.5, Rgb(2.0)};
     reads(facing, disk, pi * 2.0 * 0.2 * T, "disk through a rectangle"); // R^2 / (R^2 + d^2) = 1 / 5
     reads(points, disk, 2.0 * 2.0 * pi * (1.0 - std::sqrt(0.8)) * T, "disk at points");
 }
@@ -184,10 +166,10 @@ TEST_CASE("irradiance above and below a conservative slab", "[gpu][image][hard][
     CHECK(diffuse.transmitted / pi == Approx(known).margin(tau < 2.0 ? 1e-3 : 1e-4));
     for (const bool above : {true, false}) {
         Scene scene = above ? rectangle({0.0, 0.0, 1.0}, down, {1.0, 1.0}, 8, 1024)
-                            : rectangle({0.0, 0.0, -2.0}, up, {1.0, 1.0}, 8, 1024);
+                            : rectangle({0.0, 0.0, -2.0}, zenith, {1.0, 1.0}, 8, 1024);
         scene.volumes = {slab(tau, 1.0)};
         scene.settings.integrator = "ratioTracking";
-        scene.lights = {DirectionalLight{up, Rgb(1.0)}};
+        scene.lights = {DirectionalLight{zenith, Rgb(1.0)}};
         check_means(scene, above ? beam.reflected : beam.transmitted, fmt::format("slab {}, beam, {}", tau, above));
         scene.lights = {half_sky()};
         check_means(scene, above ? diffuse.reflected : diffuse.transmitted,
@@ -205,11 +187,11 @@ TEST_CASE("a slab over a ground has the flux of the adding formula", "[gpu][imag
     const double leaving = beam.reflected + ground * on_ground * even.transmitted / pi;
     for (const bool above : {true, false}) {
         Scene scene = above ? rectangle({0.0, 0.0, 1.0}, down, {1.0, 1.0}, 8, 1024)
-                            : rectangle({0.0, 0.0, -1.2}, up, {1.0, 1.0}, 8, 1024);
+                            : rectangle({0.0, 0.0, -1.2}, zenith, {1.0, 1.0}, 8, 1024);
         scene.volumes = {slab(tau, albedo)};
-        scene.surfaces.emplace_back().shape = PlaneSurface{{0.0, 0.0, -1.5}, up};
+        scene.surfaces.emplace_back().shape = PlaneSurface{{0.0, 0.0, -1.5}, zenith};
         scene.surfaces.back().material.color = Rgb(ground);
-        scene.lights = {DirectionalLight{up, Rgb(1.0)}};
+        scene.lights = {DirectionalLight{zenith, Rgb(1.0)}};
         check_means(scene, above ? leaving : on_ground, fmt::format("slab {} of {}, {}", tau, albedo, above));
     }
 }
@@ -218,7 +200,7 @@ TEST_CASE("irradiance above a semi-infinite medium is Chandrasekhar's", "[gpu][i
     const double albedo = GENERATE(0.5, 0.9, 0.99);
     Scene scene = rectangle({0.0, 0.0, 1.0}, down, {1.0, 1.0}, 8, 512);
     scene.volumes = {slab(200.0, albedo)};
-    scene.lights = {DirectionalLight{up, Rgb(1.0)}};
+    scene.lights = {DirectionalLight{zenith, Rgb(1.0)}};
     check_means(scene, reference::plane_albedo(albedo), fmt::format("semi-infinite, albedo {}", albedo));
 }
 
@@ -239,7 +221,7 @@ TEST_CASE("irradiance of light scattered once by a slab", "[gpu][image][hard][fl
         scene.settings.integrator = integrator;
         scene.settings.max_depth = 1;
         check_means(scene, integral(reference::slab_single_reflection), std::string("reflected once, ") + integrator);
-        scene = rectangle({0.0, 0.0, -2.0}, up, {1.0, 1.0}, 8, 512);
+        scene = rectangle({0.0, 0.0, -2.0}, zenith, {1.0, 1.0}, 8, 512);
         scene.volumes = {slab(tau, albedo)};
         scene.lights = {DirectionalLight{{0.6, 0.0, mu0}, Rgb(1.0)}};
         scene.settings.integrator = integrator;
@@ -262,7 +244,7 @@ TEST_CASE("fluence within a slab in a beam", "[gpu][image][hard][flux]") {
     Scene scene = at_points(points, 1 << 16);
     scene.picture = {2, 2, 0.0, 0.0, 2.0, 2.0}; // in two rows
     scene.volumes = {slab(tau, albedo)};
-    scene.lights = {DirectionalLight{up, Rgb(1.0)}};
+    scene.lights = {DirectionalLight{zenith, Rgb(1.0)}};
     CHECK_AGREEMENT(agree_with_means(render_here(scene, 5).film, means, "fluence within a slab"));
 }
 
@@ -334,8 +316,8 @@ TEST_CASE("flux equals the reference's", "[gpu][image][flux]") {
         scene.lights = many ? all : far;
         scene.settings.integrator = integrator;
         scene.settings.filter = Filter::trilinear;
-        check_agreement(scene, fmt::format("{}, {}, {} lights", projection_name(scene.camera.projection), integrator,
-                                           scene.lights.size()));
+        check_against_reference(scene, fmt::format("{}, {}, {} lights", projection_name(scene.camera.projection),
+                                                   integrator, scene.lights.size()));
     }
 }
 
@@ -343,7 +325,7 @@ TEST_CASE("flux among several media equals the reference's", "[gpu][image][flux]
     Scene scene = at_points({{0.0, 0.0, 0.0}, {2.0, -1.0, 1.0}}, 1 << 14);
     scene.volumes = {medium(write_grid(cloud_grid()), 1.0, 0.7, 0.4), medium(Sphere{{1.0, 0.0, 0.0}, 2.0}, 0.5, 0.9)};
     scene.lights = {sunlight(), SphereLight{{4.5, 5.5, 2.0}, 1.2, {14.0, 10.0, 6.0}}};
-    check_agreement(scene, "points in several media");
+    check_against_reference(scene, "points in several media");
 }
 
 TEST_CASE("sensors of flux in scene files", "[cpu][xml][flux]") {

@@ -18,7 +18,7 @@ using namespace vkvol;
 
 namespace {
 
-std::vector<std::filesystem::path> scene_files() {
+std::vector<std::filesystem::path> hard_scene_files() {
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(VKVOL_SOURCE_DIR "/scenes/hard"))
         if (entry.path().extension() == ".xml")
@@ -58,7 +58,7 @@ void check_mean(const std::string& name, const Film& film, const Expected& expec
 } // namespace
 
 TEST_CASE("hard scenes have the means that they derive", "[gpu][hard][hard_scenes]") {
-    const auto files = scene_files();
+    const auto files = hard_scene_files();
     REQUIRE(files.size() >= 58);
     for (const std::filesystem::path& file : files) {
         INFO(file.filename().string());

@@ -10,11 +10,11 @@ using namespace vkvol;
 
 namespace {
 
-constexpr Rgb sky{0.3, 0.5, 0.9};
+constexpr Rgb blue_sky{0.3, 0.5, 0.9};
 
 Scene picture_of(const Volume& volume, double width, std::uint32_t samples) {
     Scene scene = scene_of(volume, width, 24, 25.0, glm::dvec3(0.0), {10.0, 25.0, -5.0});
-    scene.background = sky;
+    scene.background = blue_sky;
     scene.lights = {sunlight({3.0, 2.5, 1.5})};
     scene.settings.spp = samples;
     scene.settings.filter = Filter::trilinear;
@@ -23,11 +23,6 @@ Scene picture_of(const Volume& volume, double width, std::uint32_t samples) {
 
 Scene ball(double g) {
     return picture_of(medium(Sphere{{0.1, -0.1, 0.0}, 1.0}, 4.0, 0.95, g), 2.6, 256);
-}
-
-const GridFile& cloud_file() {
-    static const GridFile file = write_grid(cloud_grid());
-    return file;
 }
 
 // Thin: optical depth about 1 across the middle. Thick: about 10.

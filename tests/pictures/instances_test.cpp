@@ -79,10 +79,6 @@ Scene cloud_in_haze(double haze = 0.03) {
     return scene;
 }
 
-Scene parse_volumes(const std::string& text) {
-    return parse("<volumes>" + text + "</volumes>");
-}
-
 } // namespace
 
 TEST_CASE("instances of a grid equal the reference's copies", "[gpu][image][several]") {

@@ -57,7 +57,7 @@ void check_transmittance(const Scene& scene, double depth, const std::string& na
     CHECK_AGREEMENT(agree_with_escapes(render_here(scene, 1).film, p, Rgb(1.0), Rgb(0.0), name));
 }
 
-Scene lit(const Volume& volume, glm::dvec3 from = glm::dvec3(0.0, 1.0, 12.0)) {
+Scene lit_from_above(const Volume& volume, glm::dvec3 from = glm::dvec3(0.0, 1.0, 12.0)) {
     Scene scene = scene_of(volume, 8.0, 16);
     scene.camera.position = from;
     scene.camera.fov = 50.0;
@@ -67,11 +67,7 @@ Scene lit(const Volume& volume, glm::dvec3 from = glm::dvec3(0.0, 1.0, 12.0)) {
     return scene;
 }
 
-void check_against_reference(const Scene& scene, const std::string& name) {
-    CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_reference(scene, 2), name));
-}
-
-Volume fog(double sigma_t, double albedo) {
+Volume endless_fog(double sigma_t, double albedo) {
     return medium(Everywhere{}, sigma_t, albedo, 0.5);
 }
 
@@ -147,9 +143,9 @@ TEST_CASE("rays through layers of a table have the sum of its slabs", "[gpu][ima
 }
 
 TEST_CASE("nothing is seen through fog without end but its own glow", "[gpu][layers]") {
-    Volume volume = fog(0.3, 0.0);
+    Volume volume = endless_fog(0.3, 0.0);
     volume.Le = {2.0, 1.0, 0.5};
-    Scene scene = lit(volume);
+    Scene scene = lit_from_above(volume);
     scene.lights.clear();
     scene.background = Rgb(100.0);
     scene.settings.spp = 4;
@@ -171,7 +167,7 @@ TEST_CASE("nothing is seen through fog without end but its own glow", "[gpu][lay
 }
 
 TEST_CASE("fog without end equals a box of it that is larger than any path", "[gpu][image][layers]") {
-    Scene scene = lit(fog(0.25, 0.8));
+    Scene scene = lit_from_above(endless_fog(0.25, 0.8));
     scene.lights = {PointLight{{1.0, 2.0, 3.0}, Rgb(30.0)}, SphereLight{{-2.0, 0.0, 4.0}, 0.5, Rgb(4.0)}};
     Scene box = scene;
     box.volumes.front().shape = Box{{0.0, 0.0, 0.0}, glm::dvec3(2000.0)}; // exp(-250) is seen through it
@@ -188,41 +184,41 @@ TEST_CASE("fog without end equals a box of it that is larger than any path", "[g
 }
 
 TEST_CASE("media that are everywhere equal the reference", "[gpu][image][layers]") {
-    Scene air = lit(atmosphere(0.8, 0.9));
+    Scene air = lit_from_above(atmosphere(0.8, 0.9));
     check_against_reference(air, "atmosphere, in closed forms");
     air.settings.integrator = "ratioTracking";
     air.settings.choices.free_flight = FREE_FLIGHT_DELTA;
     air.settings.choices.transmittance = TRANSMITTANCE_RATIO;
     check_against_reference(air, "atmosphere");
-    check_against_reference(lit(table(0.8, 0.9)), "table");
+    check_against_reference(lit_from_above(table(0.8, 0.9)), "table");
     Volume colors = table(1.0, 1.0);
     colors.map.is_transfer = true;
     colors.map.points[1].albedo = {0.9, 0.5, 0.2};
     colors.map.points[2].albedo = {0.2, 0.6, 0.9};
     colors.map.points[2].emission = {0.3, 0.1, 0.0};
-    check_against_reference(lit(colors), "colours by height");
+    check_against_reference(lit_from_above(colors), "colours by height");
     colors.shape = Box{{0.0, 1.2, 0.0}, {5.0, 3.0, 4.0}}; // begins above the lowest
-    check_against_reference(lit(colors), "colours by height in a box");
+    check_against_reference(lit_from_above(colors), "colours by height in a box");
     Volume boxed = table(1.2, 0.9);
     boxed.shape = Box{{0.0, 0.5, 0.0}, {5.0, 4.0, 4.0}};
     boxed.transform = glm::rotate(glm::dmat4(1.0), 0.6, glm::normalize(glm::dvec3(1.0, 0.3, -0.5)));
-    check_against_reference(lit(boxed), "a box that leans");
-    Scene several = lit(atmosphere(0.4, 0.95));
-    several.volumes.push_back(fog(0.03, 0.7));
+    check_against_reference(lit_from_above(boxed), "a box that leans");
+    Scene several = lit_from_above(atmosphere(0.4, 0.95));
+    several.volumes.push_back(endless_fog(0.03, 0.7));
     several.volumes.push_back(medium(write_grids({cloud_grid()}), 1.0, 0.9, 0.2));
     several.volumes.push_back(boxed);
     check_against_reference(several, "several");
-    Scene grounded = lit(atmosphere(0.8, 0.9));
+    Scene grounded = lit_from_above(atmosphere(0.8, 0.9));
     grounded.surfaces.emplace_back().shape = PlaneSurface{{0.0, 0.3, 0.0}, {0.0, 1.0, 0.0}};
     check_against_reference(grounded, "an atmosphere over a ground");
-    Scene alone = lit(fog(0.2, 0.9));
+    Scene alone = lit_from_above(endless_fog(0.2, 0.9));
     alone.lights = {PointLight{{1.0, 2.0, 3.0}, Rgb(30.0)}};
     check_against_reference(alone, "a lamp in fog");
 }
 
 TEST_CASE("parts of a medium that is everywhere are the whole", "[gpu][image][layers]") {
-    for (const Volume& whole : {atmosphere(0.8, 0.9), table(0.8, 0.9), fog(0.2, 0.7)}) {
-        const Scene alone = lit(whole);
+    for (const Volume& whole : {atmosphere(0.8, 0.9), table(0.8, 0.9), endless_fog(0.2, 0.7)}) {
+        const Scene alone = lit_from_above(whole);
         Scene parts = alone;
         parts.volumes.push_back(whole);
         parts.volumes[0].density_scale = 0.35;
@@ -232,10 +228,10 @@ TEST_CASE("parts of a medium that is everywhere are the whole", "[gpu][image][la
 }
 
 TEST_CASE("cells of what is everywhere bound it, beyond their grid too", "[cpu][layers]") {
-    Scene scene = lit(atmosphere(0.4, 0.95, {1, -3.0, 17.0, 1.0, 0.0}));
+    Scene scene = lit_from_above(atmosphere(0.4, 0.95, {1, -3.0, 17.0, 1.0, 0.0}));
     scene.volumes.push_back(table(0.5, 0.5));
     scene.volumes.back().transform = glm::rotate(glm::dmat4(1.0), glm::radians(90.0), glm::dvec3(0.0, 0.0, 1.0));
-    scene.volumes.push_back(fog(0.03, 0.7));
+    scene.volumes.push_back(endless_fog(0.03, 0.7));
     scene.volumes.push_back(medium(Sphere{{2.0, 1.0, 0.0}, 1.5}, 0.6, 0.5));
     const Assets assets = load_assets(scene, choose_method(scene));
     const Superposition& whole = *assets.superposition;
@@ -270,7 +266,7 @@ TEST_CASE("cells of what is everywhere bound it, beyond their grid too", "[cpu][
 
 // These go on for ever: walks that left the medium would meet null collisions without end.
 TEST_CASE("what ends bounds no outermost cell of what does not", "[cpu][layers]") {
-    Scene scene = lit(atmosphere(0.4, 0.95, {1, -3.0, 17.0, 1.0, 0.0}));
+    Scene scene = lit_from_above(atmosphere(0.4, 0.95, {1, -3.0, 17.0, 1.0, 0.0}));
     scene.volumes.push_back(medium(Sphere{{2.0, 1.0, 0.0}, GENERATE(0.02, 0.5, 3.0)}, 0.6, 0.5));
     scene.volumes.push_back(medium(Sphere{{40.0, 22.0, 0.0}, 4.0}, 0.6, 0.5)); // above all layers
     GridRecipe grid{{0, 0, 0}, {51, 51, 51}, [](glm::ivec3) { return 1.0f; }}; // not of whole majorant cells
@@ -301,7 +297,7 @@ TEST_CASE("what ends bounds no outermost cell of what does not", "[cpu][layers]"
 
 TEST_CASE("thin layers want no smaller cells than they are worth", "[cpu][layers]") {
     const auto edge_of = [](double sigma_t) {
-        Scene scene = lit(table(sigma_t, 0.7)); // 4 high, in slabs of less than a tenth
+        Scene scene = lit_from_above(table(sigma_t, 0.7)); // 4 high, in slabs of less than a tenth
         scene.volumes.push_back(medium(Sphere{{0.0, 20.0, 0.0}, 15.0}, 0.6, 0.5));
         return load_assets(scene, choose_method(scene)).superposition->edge;
     };
@@ -333,7 +329,7 @@ TEST_CASE("bounds across layers are the extrema there", "[cpu][layers]") {
 }
 
 TEST_CASE("what has no end in the way of an integrator is said", "[cpu][method][layers]") {
-    Scene scene = lit(atmosphere(0.8, 0.9));
+    Scene scene = lit_from_above(atmosphere(0.8, 0.9));
     CHECK(choose_method(scene).nee == NEE_COLLISIONS); // no lattice covers it
     scene.settings.integrator = "rayMarching";
     const Method marched = choose_method(scene);
@@ -345,14 +341,14 @@ TEST_CASE("what has no end in the way of an integrator is said", "[cpu][method][
     CHECK(choose_method(scene).free_flight == FREE_FLIGHT_ANALYTIC);
     scene.volumes = {table(0.8, 0.9)};
     CHECK_THROWS_WITH(choose_method(scene), Contains("layers have none"));
-    scene = lit(fog(1.0, 1.0));
+    scene = lit_from_above(endless_fog(1.0, 1.0));
     CHECK_THROWS_WITH(load_assets(scene, choose_method(scene)), Contains("keeps its paths for ever"));
     scene.settings.max_depth = 10;
     CHECK_NOTHROW(load_assets(scene, choose_method(scene)));
-    scene = lit(fog(1e-20, 0.5));
+    scene = lit_from_above(endless_fog(1e-20, 0.5));
     CHECK_THROWS_WITH(load_assets(scene, choose_method(scene)), Contains("too thin to be <everywhere>"));
-    scene = lit(table(1.0, 0.5));
-    scene.volumes.push_back(fog(1.0, 0.5));
+    scene = lit_from_above(table(1.0, 0.5));
+    scene.volumes.push_back(endless_fog(1.0, 0.5));
     scene.volumes.front().transform = glm::rotate(glm::dmat4(1.0), 0.3, glm::dvec3(0.0, 0.0, 1.0));
     CHECK_THROWS_WITH(load_assets(scene, choose_method(scene)), Contains("leave the tilt out"));
 }

@@ -18,11 +18,6 @@ using namespace vkvol;
 
 namespace {
 
-const GridFile& cloud_file() {
-    static const GridFile file = write_grid(cloud_grid());
-    return file;
-}
-
 const SkyLight& sunset() {
     static const SkyLight sky = write_sky(sunset_map());
     return sky;

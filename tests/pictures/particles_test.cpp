@@ -23,11 +23,6 @@ using Catch::Contains;
 
 namespace {
 
-Scene by(Scene scene, const char* integrator) {
-    scene.settings.integrator = integrator;
-    return scene;
-}
-
 // Small, so that each pixel has its share of particles in every sample.
 Scene seen(const Volume& volume, double width, std::vector<Light> lights) {
     Scene scene = scene_of(volume, width, 8, 12.0, glm::dvec3(0.0), {10.0, 25.0, -5.0});
@@ -35,12 +30,6 @@ Scene seen(const Volume& volume, double width, std::vector<Light> lights) {
     scene.background = {0.1, 0.15, 0.2};
     scene.settings.spp = 4096;
     return scene;
-}
-
-Volume smoke() {
-    Volume volume = medium(Sphere{{0.1, -0.1, 0.0}, 1.5}, 3.0, 0.9, 0.4);
-    volume.noise = Noise{0.9, 3, 0.5, 2.0};
-    return volume;
 }
 
 Volume colourful(Volume volume) {
@@ -87,20 +76,20 @@ Scene still(std::vector<Surface> surfaces, std::vector<Light> lights) {
     return scene;
 }
 
-struct Case {
+struct ParticleCase {
     const char* name;
     Scene scene;
 };
 
 // Every kind of light, medium, surface and camera that particles know, and nothing that only paths from the camera
 // find.
-std::vector<Case> cases() {
+std::vector<ParticleCase> particles_cases() {
     const auto [point, spot, ball, disk, rectangle, sun, beam] = LightsAbout{};
     RadianceMap map{8, 4, {}, 0};
     for (int i = 0; i < 32; ++i)
         map.texels.emplace_back(0.1 + 0.3 * (i % 5), 0.4, i == 11 ? 9.0 : 0.2);
 
-    std::vector<Case> all;
+    std::vector<ParticleCase> all;
     all.push_back({"a ball of fog, point and spot",
                    seen(medium(Sphere{{0.0, 0.0, 0.0}, 1.5}, 1.5, 0.95, -0.4), 4.0, {point, spot})});
     all.push_back({"smoke, far lights", seen(smoke(), 4.0, {sun, beam, write_sky(map)})});
@@ -163,7 +152,7 @@ std::vector<Case> cases() {
 }
 
 // By one or the other, or by both.
-void check(const Case& c, int turn) {
+void check(const ParticleCase& c, int turn) {
     INFO(c.name);
     const Film reference = render_reference(c.scene, 2);
     for (const char* integrator : {"lightTracing", "bidirectional"})
@@ -176,7 +165,7 @@ void check(const Case& c, int turn) {
 
 TEST_CASE("particles, paths and both show the same", "[gpu][particles]") {
     int turn = 0;
-    for (const Case& c : in_turn(cases(), 0, 5))
+    for (const ParticleCase& c : in_turn(particles_cases(), 0, 5))
         check(c, turn++);
 }
 
@@ -275,7 +264,7 @@ TEST_CASE("particles at a panorama's pole count as much as paths there", "[gpu][
 TEST_CASE("particles are seen by every camera through every filter", "[gpu][particles]") {
     const PointLight point{{1.2, 1.9, 1.5}, {12.0, 9.0, 6.0}};
     const Scene usual = still({with_material(left, MaterialKind::diffuse)}, {point});
-    std::vector<Case> all;
+    std::vector<ParticleCase> all;
     Scene scene = usual;
     scene.camera.lens.radius = 0.6;
     scene.camera.lens.focus = 11.0;
@@ -315,7 +304,7 @@ TEST_CASE("particles are seen by every camera through every filter", "[gpu][part
     scene.camera.fov = 95.0; // degrees, whose rays are far from parallel
     scene.camera.position *= 0.25;
     all.push_back({"Blackman-Harris, wide", scene});
-    for (const Case& c : in_turn(all, 2)) {
+    for (const ParticleCase& c : in_turn(all, 2)) {
         INFO(c.name);
         CHECK_AGREEMENT(agree(render_here(by(c.scene, "lightTracing"), 5).film, render_reference(c.scene, 6), c.name));
     }

@@ -25,8 +25,6 @@ using Catch::Contains;
 
 namespace {
 
-const glm::dvec3 up(0.0, 1.0, 0.0);
-
 // From above, aslant, so that rays pass several domains of ten across.
 Scene above(const Volume& volume, double half = 5.0) {
     Scene scene = scene_of(volume, 30.0, 16, 40.0, glm::dvec3(0.0), {-25.0, 30.0, 0.0});
@@ -38,10 +36,6 @@ Scene above(const Volume& volume, double half = 5.0) {
     return scene;
 }
 
-Volume cloud() {
-    return medium(write_grids({cloud_grid()}), 0.8, 0.9, 0.4);
-}
-
 Scene flux_through(double height, bool from_above, glm::dvec2 size, int across, std::uint32_t spp) {
     Scene scene;
     scene.camera.projection = Projection::irradiance;
@@ -51,15 +45,6 @@ Scene flux_through(double height, bool from_above, glm::dvec2 size, int across, 
     scene.picture = {across, across, 0.0, 0.0, double(across), double(across)};
     scene.settings.spp = spp;
     return scene;
-}
-
-void check_means(const Scene& scene, double expected, const std::string& name) {
-    const std::vector<Rgb> means(std::size_t(scene.picture.width * scene.picture.height), Rgb(expected));
-    CHECK_AGREEMENT(agree_with_means(render_here(scene, 3).film, means, name));
-}
-
-void check_against_reference(const Scene& scene, const std::string& name) {
-    CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_reference(scene, 2), name));
 }
 
 // Along x and z, as many times as `copies` says; what was there is there again in each.
@@ -145,7 +130,7 @@ TEST_CASE("how often a ray is moved across costs it an ulp each time", "[gpu][im
 
 TEST_CASE("domains that repeat equal the reference's, unfolded", "[gpu][image][periodic]") {
     std::vector<std::pair<std::string, Scene>> all;
-    Scene scene = above(cloud());
+    Scene scene = above(thin_cloud());
     all.emplace_back("a cloud", scene);
     scene.settings.filter = Filter::nearest;
     scene.periodic = Periodic{{-4.0, 0.0, -4.2}, {4.5, 0.0, 4.0}}; // cuts some of it off
@@ -165,13 +150,13 @@ TEST_CASE("domains that repeat equal the reference's, unfolded", "[gpu][image][p
     Scene colors = above(leaning);
     colors.volumes.front().sigma_s = {0.9, 0.5, 0.3};
     all.emplace_back("of colours", colors);
-    Scene several = above(cloud());
+    Scene several = above(thin_cloud());
     several.volumes.push_back(medium(Sphere{{-1.0, 1.5, 2.0}, 2.0}, 0.8, 0.8));
     all.emplace_back("several", several);
     Volume thinning = medium(Box{{0.0, 0.0, 0.0}, {10.0, 6.0, 10.0}}, 0.8, 0.9, 0.3);
     thinning.layers = Layers{1, -3.0, 3.0, 1.5, -3.0};
     all.emplace_back("an exponential, in closed forms", above(thinning));
-    Scene in_air = above(cloud());
+    Scene in_air = above(thin_cloud());
     in_air.volumes.push_back(medium(Everywhere{}, 0.05, 0.9, 0.3));
     in_air.volumes.back().layers = Layers{1, -6.0, 30.0, 8.0, -6.0};
     all.emplace_back("clouds in air", in_air);
@@ -180,7 +165,7 @@ TEST_CASE("domains that repeat equal the reference's, unfolded", "[gpu][image][p
 }
 
 TEST_CASE("all unbiased estimators agree where a domain repeats", "[gpu][image][periodic][hard]") {
-    Scene scene = above(cloud());
+    Scene scene = above(thin_cloud());
     scene.volumes.front().Le = Rgb(0.2);
     const Film reference = render_reference(scene, 2);
     const std::vector<Combination> all = unbiased_combinations(scene);
@@ -213,7 +198,7 @@ TEST_CASE("a domain that holds the same twice is the same", "[gpu][image][period
 
 // Where the domain begins is for its author to say.
 TEST_CASE("a domain may be moved by its own size, and its camera by any number of them", "[gpu][image][periodic]") {
-    const Scene scene = above(cloud());
+    const Scene scene = above(thin_cloud());
     const Film film = render_here(scene, 1).film;
     Scene far = scene;
     far.camera.position += glm::dvec3(40.0, 0.0, -70.0);
@@ -226,7 +211,7 @@ TEST_CASE("a domain may be moved by its own size, and its camera by any number o
 }
 
 TEST_CASE("both schedules go through a domain that repeats alike", "[gpu][image][periodic][determinism]") {
-    Scene scene = above(cloud());
+    Scene scene = above(thin_cloud());
     scene.settings.spp = 16;
     Scene solid = scene;
     solid.surfaces.emplace_back().shape = BallSurface{{-1.5, -1.0, 2.0}, 1.5};
@@ -343,7 +328,7 @@ TEST_CASE("domains that repeat in scene files", "[cpu][xml][periodic]") {
 TEST_CASE("radiances of a domain that repeats are reciprocal", "[gpu][image][periodic]") {
     const glm::dvec3 steep(0.6, 0.8, 0.0), flat(-std::sqrt(0.75), 0.5, 0.0);
     const auto reflected = [&](glm::dvec3 sun, glm::dvec3 view) {
-        Scene scene = above(cloud());
+        Scene scene = above(thin_cloud());
         scene.background = Rgb(0.0);
         scene.lights = {DirectionalLight{sun, Rgb(1.0)}};
         scene.camera.projection = Projection::orthographic;
@@ -369,7 +354,7 @@ TEST_CASE("radiances of a domain that repeats are reciprocal", "[gpu][image][per
 }
 
 TEST_CASE("what a domain that repeats cannot have is said", "[cpu][method][periodic]") {
-    Scene scene = above(cloud());
+    Scene scene = above(thin_cloud());
     CHECK(choose_method(scene).nee == NEE_COLLISIONS);
     scene.settings.integrator.clear();
     CHECK(choose_method(scene).nee == NEE_COLLISIONS); // no lattice goes across

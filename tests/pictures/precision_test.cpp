@@ -8,6 +8,7 @@
 
 #include "kernels/test_items.h"
 #include "support/images.h"
+#include "support/numbers.h"
 #include "support/scenes.h"
 #include "support/test_scene.h"
 #include "walk.spv.h"
@@ -15,10 +16,10 @@
 using namespace vkvol;
 using shared::RayInput;
 using shared::WalkStep;
+using test_numbers::u;
 
 namespace {
 
-constexpr double u = 0x1p-24; // unit roundoff
 constexpr int most_steps = 96;
 
 // Rays from within the grid, so that the walk's origin is the ray's own, to all sides and along axes. `e`: the optical

@@ -10,18 +10,16 @@
 #include "support/scenes.h"
 
 using namespace vkvol;
+using std::numbers::pi;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
-const glm::dvec3 up(0.0, 1.0, 0.0);
 
 glm::dvec3 toward(double mu) {
     return {std::sqrt(1.0 - mu * mu), mu, 0.0};
 }
 
 // A box that fills its domain, its top at height 0.
-Scene slab(double tau, double albedo, double g = 0.0) {
+Scene slab_scene(double tau, double albedo, double g = 0.0) {
     Scene scene;
     scene.volumes = {medium(Box{{0.0, -0.5 * tau, 0.0}, {4.0, tau, 4.0}}, 1.0, albedo, g)};
     scene.periodic = Periodic{{-2.0, 0.0, -2.0}, {2.0, 0.0, 2.0}};
@@ -54,7 +52,7 @@ void check_flux(Scene scene, double height, bool down, double expected, const st
 // across itself being pi.
 TEST_CASE("van de Hulst's slab that scatters evenly", "[gpu][image][published]") {
     for (const auto& [mu0, value] : {std::pair{1.0, .28616}, {.7, .34188}, {.3, .45353}}) {
-        Scene scene = slab(2.0, 0.8);
+        Scene scene = slab_scene(2.0, 0.8);
         scene.lights = {DirectionalLight{toward(mu0), Rgb(pi)}};
         scene.camera.projection = Projection::orthographic;
         scene.camera.view_height = 1e-2;
@@ -66,21 +64,21 @@ TEST_CASE("van de Hulst's slab that scatters evenly", "[gpu][image][published]")
 }
 
 TEST_CASE("printed fluxes of slabs", "[gpu][image][published]") {
-    Scene forward = slab(2.0, 0.9, 0.75); // van de Hulst, as quoted by Wang, Jacques and Zheng, "MCML" (1995)
+    Scene forward = slab_scene(2.0, 0.9, 0.75); // van de Hulst, as quoted by Wang, Jacques and Zheng, "MCML" (1995)
     forward.lights = {DirectionalLight{up, Rgb(1.0)}};
     check_flux(forward, 1e-3, false, .09739, "forward, up");
     check_flux(forward, -2.001, true, .66096, "forward, down");
     for (const auto& [albedo, value] : {std::pair{.2, .0799451}, {1.0, .422922}}) { // Stamnes et al. (1988), test 1
-        Scene thin = slab(1.0 / 32.0, albedo);
+        Scene thin = slab_scene(1.0 / 32.0, albedo);
         thin.lights = {DirectionalLight{toward(.1), Rgb(pi / .1)}};
         check_flux(thin, 1e-3, false, value, fmt::format("DISORT 1, {}", albedo));
     }
-    Scene rayleigh = slab(.2, .5); // Sweigart (1970), scalar
+    Scene rayleigh = slab_scene(.2, .5); // Sweigart (1970), scalar
     rayleigh.volumes.front().phase = PhaseFunction::rayleigh;
     rayleigh.lights = {DirectionalLight{toward(.080442), Rgb(pi)}};
     check_flux(rayleigh, 1e-3, false, .0535063, "Rayleigh, up");
     check_flux(rayleigh, -.201, true, .0441791 + pi * .080442 * std::exp(-.2 / .080442), "Rayleigh, down");
-    Scene layers = slab(.25, .5); // Stamnes et al. (1988): below it another, under an even sky of flux 1
+    Scene layers = slab_scene(.25, .5); // Stamnes et al. (1988): below it another, under an even sky of flux 1
     layers.volumes.push_back(medium(Box{{0.0, -.375, 0.0}, {4.0, .25, 4.0}}, 1.0, .3));
     layers.background = Rgb(1.0 / pi);
     layers.surfaces.emplace_back().shape = PlaneSurface{{0.0, -.51, 0.0}, up};

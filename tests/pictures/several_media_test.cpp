@@ -57,7 +57,7 @@ Volume noisy_ball() {
     return volume;
 }
 
-Volume cloud() {
+Volume dense_cloud() {
     return medium(write_grids({cloud_grid()}), 2.0, 0.9, 0.2);
 }
 
@@ -71,7 +71,7 @@ Scene mixture() {
     box.phase = PhaseFunction::rayleigh;
     box.Le = {0.3, 0.1, 0.02};
     box.transform = turned(0.6, {1.0, 2.0, -1.0});
-    Volume grid = cloud();
+    Volume grid = dense_cloud();
     grid.g = -0.4;
     grid.transform = glm::translate(glm::dmat4(1.0), glm::dvec3(0.5, 0.7, -0.4)) * turned(-0.9, {0.0, 1.0, 0.3}) *
                      glm::scale(glm::dmat4(1.0), glm::dvec3(0.5, -0.35, 0.4));
@@ -81,14 +81,6 @@ Scene mixture() {
     scene.volumes.front().sigma_s = {0.9, 1.8, 2.4};
     scene.volumes.front().sigma_a = Rgb(3.0) - scene.volumes.front().sigma_s;
     return scene;
-}
-
-Scene parse_volumes(const std::string& text) {
-    return parse("<volumes>" + text + "</volumes>");
-}
-
-void check_against_reference(const Scene& scene, const std::string& name) {
-    CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_reference(scene, 2), name));
 }
 
 } // namespace
@@ -111,7 +103,7 @@ TEST_CASE("halves of a medium on top of each other are the whole, in every way t
     };
     check("ball", lit_scene(medium(Sphere{{0.0, 0.0, 0.0}, 1.5}, 1.0, 0.9, 0.5)));
     check("noise", lit_scene(noisy_ball()));
-    check("cloud", lit_scene(cloud(), 11.0));
+    check("cloud", lit_scene(dense_cloud(), 11.0));
 }
 
 TEST_CASE("a medium cut along an oblique plane is the whole", "[gpu][image][several]") {
@@ -135,7 +127,7 @@ TEST_CASE("volumes that are moved equal the reference", "[gpu][image][several]")
     Volume box = medium(Box{{0.3, 0.0, 0.0}, {2.0, 3.0, 1.0}}, 1.0, 0.9, 0.5);
     box.transform = map;
     check_against_reference(lit_scene(box), "box");
-    Volume grid = cloud();
+    Volume grid = dense_cloud();
     grid.transform = map;
     grid.transform[1][0] += 0.3; // sheared as well
     check_against_reference(lit_scene(grid, 9.0), "cloud");
@@ -231,7 +223,7 @@ TEST_CASE("what is nothing beside a medium changes nothing", "[gpu][image][sever
     const RenderResult box = render_here(beside, 1);
     CHECK(box.counts.step_caps == 0);
     CHECK_AGREEMENT(agree(box.film, render_here(boxed, 2).film, "beside a box"));
-    Scene grids = lit_scene(cloud());
+    Scene grids = lit_scene(dense_cloud());
     Scene before = grids;
     GridRecipe dense{{-3, -4, -5}, {6, 7, 8}, [](glm::ivec3) { return 3.0f; }};
     before.volumes.insert(before.volumes.begin(), medium(write_grid(dense), 2.0, 0.5));

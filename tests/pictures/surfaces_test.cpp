@@ -16,10 +16,9 @@
 
 using namespace vkvol;
 using Catch::Contains;
+using std::numbers::pi;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 Surface ball(const Material& material, glm::dvec3 center = glm::dvec3(0.0), double radius = 1.0) {
     Surface surface;
@@ -94,7 +93,7 @@ void check_by_both_schedules(const Scene& scene, const std::string& name) {
     CHECK(same_bits(film, render_here(scene, 1, staged).film));
 }
 
-Volume fog(double sigma_t, double albedo) {
+Volume box_of_fog(double sigma_t, double albedo) {
     return medium(Box{{0.0, 0.0, 0.0}, {3.0, 3.0, 3.0}}, sigma_t, albedo, 0.4);
 }
 
@@ -172,7 +171,7 @@ TEST_CASE("whatever scatters all light vanishes in an even sky, in fog too", "[g
             scene.surfaces = {ball(material, {0.5, 0.3, 0.2}, 0.4), ball(material)};
             scene.surfaces.back().shape = round_mesh(5, 0.25);
             if (in_fog)
-                scene.volumes = {fog(1.5, 1.0)};
+                scene.volumes = {box_of_fog(1.5, 1.0)};
             // Weights are 1 but for rounding, of which a path has some at each of some dozens of vertices.
             check_everywhere(scene, scene.background, 2e-5);
         }
@@ -272,7 +271,7 @@ TEST_CASE("looks and flights share a map of the sky on surfaces as in matter", "
     Scene scene = empty_scene();
     scene.lights = {write_sky(make_map(8, 4, [](int, int) { return Rgb(1.0); }))};
     scene.surfaces = {ball(white(MaterialKind::diffuse)), ball(white(MaterialKind::dielectric), {1.1, 0.8, 0.9}, 0.5)};
-    scene.volumes = {fog(0.8, 1.0)};
+    scene.volumes = {box_of_fog(0.8, 1.0)};
     scene.settings.spp = 256;
     const Film film = render_here(scene, 1).film;
     CHECK_AGREEMENT(agree_with_means(film, std::vector<Rgb>(film.mean.size(), Rgb(1.0)), "sky on surfaces"));
@@ -604,11 +603,11 @@ TEST_CASE("looks from along flights find the same light beside surfaces", "[gpu]
     scene.lights.push_back(SpotLight{{-0.6, 1.8, 1.2}, glm::normalize(glm::dvec3(0.2, -1.0, -0.4)), Rgb(6.0), 30.0});
     scene.settings.choices.distance = DISTANCE_MIXED;
     Scene several = scene;
-    several.volumes.push_back(fog(0.3, 0.8));
+    several.volumes.push_back(box_of_fog(0.3, 0.8));
     Scene steps = several;
     steps.settings.choices.nee = NEE_TENTATIVE;
     // Thin, and without sun and sky: else what lamps bring to surfaces would hardly be seen.
-    scene.volumes = {fog(0.25, 0.9)};
+    scene.volumes = {box_of_fog(0.25, 0.9)};
     scene.background = Rgb(0.0);
     std::erase_if(scene.lights, [](const Light& light) { return std::holds_alternative<DirectionalLight>(light); });
     const std::vector<std::pair<std::string, Scene>> scenes = {{"fog, from along flights", scene},

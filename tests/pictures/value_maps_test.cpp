@@ -38,16 +38,12 @@ Volume mapped_cloud(const ValueMap& map, double sigma_t = 1.0, double albedo = 0
     return volume;
 }
 
-Scene lit(const Volume& volume, double width = 11.0) {
+Scene lit_by_sun(const Volume& volume, double width = 11.0) {
     Scene scene = scene_of(volume, width, 16, 25.0, glm::dvec3(0.0), {10.0, 25.0, -5.0});
     scene.background = {0.1, 0.2, 0.4};
     scene.lights = {sunlight({1.0, 0.9, 0.8})};
     scene.settings.spp = 128;
     return scene;
-}
-
-void check_against_reference(const Scene& scene, const std::string& name) {
-    CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_reference(scene, 2), name));
 }
 
 ValueMap ramp_of(const std::string& attributes) {
@@ -57,9 +53,9 @@ ValueMap ramp_of(const std::string& attributes) {
 } // namespace
 
 TEST_CASE("mapped values equal the reference", "[gpu][image][value_map]") {
-    check_against_reference(lit(mapped_cloud(bumpy_map(), 1.5)), "map");
-    check_against_reference(lit(mapped_cloud(tissues())), "transfer function");
-    Scene scene = lit(mapped_cloud(tissues()));
+    check_against_reference(lit_by_sun(mapped_cloud(bumpy_map(), 1.5)), "map");
+    check_against_reference(lit_by_sun(mapped_cloud(tissues())), "transfer function");
+    Scene scene = lit_by_sun(mapped_cloud(tissues()));
     scene.volumes.front().Le = {0.02, 0.03, 0.05};
     scene.settings.integrator = "ratioTracking";
     scene.settings.choices.nee = NEE_TENTATIVE;
@@ -78,7 +74,7 @@ TEST_CASE("mapped values equal the reference", "[gpu][image][value_map]") {
 TEST_CASE("a map of each voxel equals a grid that holds what it makes of them", "[gpu][image][value_map]") {
     GridRecipe baked = cloud_grid();
     baked.value = [](glm::ivec3 i) { return float(reference::mapped(bumpy_map(), cloud_noise(i)).density); };
-    Scene map = lit(mapped_cloud(bumpy_map(), 1.5));
+    Scene map = lit_by_sun(mapped_cloud(bumpy_map(), 1.5));
     map.settings.filter = Filter::nearest;
     Scene grid = map;
     grid.volumes.front() = medium(write_grids({baked}), 1.5, 0.9, 0.2);
@@ -97,11 +93,11 @@ TEST_CASE("a map that only multiplies equals a factor of the density", "[gpu][im
     twice.rise = 2.0;
     ValueMap by_points;
     by_points.points = {{0.0, 0.0}, {0.3, 0.6}, {1.5, 3.0}};
-    Scene plain = lit(mapped_cloud({}, 1.5));
+    Scene plain = lit_by_sun(mapped_cloud({}, 1.5));
     plain.volumes.front().density_scale = 2.0;
     const Film expected = render_here(plain, 2).film;
     for (const ValueMap& map : {twice, by_points})
-        CHECK_AGREEMENT(agree(render_here(lit(mapped_cloud(map, 1.5)), 1).film, expected, "factor"));
+        CHECK_AGREEMENT(agree(render_here(lit_by_sun(mapped_cloud(map, 1.5)), 1).film, expected, "factor"));
 }
 
 TEST_CASE("a transfer function of two values equals two boxes of what it says", "[gpu][image][value_map]") {
@@ -117,7 +113,7 @@ TEST_CASE("a transfer function of two values equals two boxes of what it says", 
     map.is_transfer = true;
     Volume mapped = medium(write_grids({halves}), 1.0, 1.0, 0.3);
     mapped.map = map;
-    Scene scene = lit(mapped, 6.0);
+    Scene scene = lit_by_sun(mapped, 6.0);
     scene.settings.filter = Filter::nearest;
     scene.settings.integrator = "ratioTracking";
     const auto box = [](double x, const MapPoint& point) {
@@ -133,7 +129,7 @@ TEST_CASE("a transfer function of two values equals two boxes of what it says", 
 }
 
 TEST_CASE("mapped media among several equal the reference, and their halves the whole", "[gpu][image][value_map]") {
-    Scene scene = lit(mapped_cloud(tissues()));
+    Scene scene = lit_by_sun(mapped_cloud(tissues()));
     Volume other = mapped_cloud(bumpy_map(), 0.8);
     other.g = -0.4;
     other.transform = glm::translate(glm::dmat4(1.0), glm::dvec3(0.8, -0.5, 0.4)) *
@@ -141,7 +137,7 @@ TEST_CASE("mapped media among several equal the reference, and their halves the 
     scene.volumes.push_back(other);
     scene.volumes.push_back(medium(Sphere{{0.0, 1.0, 0.0}, 2.0}, 0.2, 0.5));
     check_against_reference(scene, "several");
-    const Scene whole = lit(mapped_cloud(tissues()));
+    const Scene whole = lit_by_sun(mapped_cloud(tissues()));
     Scene halves = whole;
     halves.volumes.push_back(halves.volumes.front());
     halves.volumes[0].density_scale = 0.3;
@@ -150,7 +146,7 @@ TEST_CASE("mapped media among several equal the reference, and their halves the 
 }
 
 TEST_CASE("what a map breaks gives way, in one line", "[cpu][method][value_map]") {
-    Scene scene = lit(mapped_cloud(bumpy_map()));
+    Scene scene = lit_by_sun(mapped_cloud(bumpy_map()));
     scene.settings.integrator = "regularTracking";
     Method method = choose_method(scene);
     CHECK(method.free_flight == FREE_FLIGHT_DELTA);
@@ -252,7 +248,7 @@ TEST_CASE("maps in scene files", "[cpu][xml][value_map]") {
 TEST_CASE("a map that leaves nothing is warned of, and its picture is the background", "[gpu][value_map]") {
     ValueMap map;
     map.points = {{2.0, 0.0}, {3.0, 1.0}};
-    Scene scene = lit(mapped_cloud(map));
+    Scene scene = lit_by_sun(mapped_cloud(map));
     scene.settings.spp = 1;
     const RenderResult result = render_here(scene, 1);
     for (const glm::vec3& pixel : result.film.mean)

@@ -8,13 +8,13 @@
 
 #include "phase.h"
 
+using std::numbers::pi;
+
 namespace reference {
 
 using vkvol::Rgb;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 double radians(double degrees) {
     return degrees * pi / 180.0;

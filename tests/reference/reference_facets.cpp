@@ -5,13 +5,14 @@
 
 #include "reference_facets.h"
 
+using std::numbers::pi;
+
 namespace reference {
 
 using vkvol::Rgb;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr int most_facets = 1000; // longer walks are lost
 
 // Facets' heights are distributed exponentially, below 0 without end: a share exp(h) of them is below h. Nothing that

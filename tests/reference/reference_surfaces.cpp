@@ -6,13 +6,14 @@
 
 #include "reference_facets.h"
 
+using std::numbers::pi;
+
 namespace reference {
 
 using vkvol::Rgb;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr double least = 1e-9; // from where a ray begins, in units of the scene's coordinates
 
 void keep_nearer(std::optional<SurfaceHit>& found, double t, const glm::dvec3& normal, const vkvol::Surface& surface) {

@@ -15,15 +15,6 @@ using namespace vkvol;
 
 namespace {
 
-Scene cloud(std::uint32_t samples) {
-    static const GridFile file = write_grid(cloud_grid());
-    Scene scene = scene_of(medium(file, 2.0, 0.9, 0.5), 13.0, 32);
-    scene.background = {0.3, 0.5, 0.9};
-    scene.lights = {sunlight()};
-    scene.settings.spp = samples;
-    return scene;
-}
-
 std::filesystem::path temporary(const char* name) {
     return std::filesystem::temp_directory_path() / name;
 }
@@ -50,7 +41,7 @@ TEST_CASE("a render resumed from any of its checkpoints has the same bits", "[gp
     const std::size_t band_rows = GENERATE(0u, 10u); // the film in one buffer, or in several
     const Schedule schedule = GENERATE(Schedule::fused, Schedule::staged);
     const Schedule resumed_by = GENERATE(Schedule::fused, Schedule::staged);
-    Scene scene = cloud(9);
+    Scene scene = sunlit_cloud(32, 9);
     if (band_rows > 0)
         scene.volumes.push_back(medium(Sphere{{0.0, 0.0, 0.0}, 3.0}, 0.5, 0.5));
     RenderJob job;
@@ -87,7 +78,7 @@ TEST_CASE("a render resumed from any of its checkpoints has the same bits", "[gp
 }
 
 TEST_CASE("an interrupted render keeps a checkpoint of all that is in the picture", "[gpu][checkpoint]") {
-    const Scene scene = cloud(9);
+    const Scene scene = sunlit_cloud(32, 9);
     RenderJob job;
     job.plan.schedule = GENERATE(Schedule::fused, Schedule::staged);
     job.plan.slots = 64;
@@ -109,7 +100,7 @@ TEST_CASE("an interrupted render keeps a checkpoint of all that is in the pictur
     // More samples may be asked for than at first, but not fewer than there are.
     RenderJob longer;
     longer.plan.schedule = job.plan.schedule;
-    CHECK(same_bits(render_part(cloud(12), rest).film, render_part(cloud(12), longer).film));
+    CHECK(same_bits(render_part(sunlit_cloud(32, 12), rest).film, render_part(sunlit_cloud(32, 12), longer).film));
     last->done = 10;
     CHECK_THROWS_WITH(render_part(scene, rest), Catch::Contains("--spp"));
 }
@@ -119,11 +110,11 @@ TEST_CASE("a checkpoint is continued by its own render alone", "[gpu][checkpoint
     RenderJob job;
     job.checkpoint_seconds = 0.0;
     job.checkpoint = [&](const Checkpoint& checkpoint) { last = checkpoint; };
-    render_part(cloud(4), job);
+    render_part(sunlit_cloud(32, 4), job);
     REQUIRE(last);
     RenderJob rest;
     rest.resume = &*last;
-    Scene other = cloud(4);
+    Scene other = sunlit_cloud(32, 4);
     SECTION("of the scene") {
         other.volumes.front().g = 0.4;
     }

@@ -18,7 +18,7 @@ using namespace vkvol;
 namespace {
 
 // Sun, sky and emission; part of the picture misses the cloud. The sample count is no power of two.
-Scene cloud(std::uint32_t samples = 11) {
+Scene glowing_cloud(std::uint32_t samples = 11) {
     static const GridFile file = write_grid(cloud_grid());
     Scene scene = scene_of(medium(file, 2.0, 0.9, 0.5), 13.0, 40, 25.0, glm::dvec3(1.0, 0.0, 0.0), {10.0, 25.0, -5.0});
     scene.background = {0.3, 0.5, 0.9};
@@ -79,7 +79,7 @@ void check_samples_are_true(const Scene& scene, std::uint32_t seed, const Film& 
 
 TEST_CASE("the sizes of the machine change no bit", "[gpu][determinism]") {
     for (const char* integrator : {"deltaTracking", "ratioTracking"}) {
-        Scene scene = cloud();
+        Scene scene = glowing_cloud();
         scene.settings.integrator = integrator;
         const Film usual = render_here(scene, 30).film;
         CHECK(same_bits(render_here(scene, 30).film, usual)); // again
@@ -97,7 +97,7 @@ TEST_CASE("the sizes of the machine change no bit", "[gpu][determinism]") {
 
 // Devices need not take more than 128 MiB as one buffer, and Mesa's software driver does not.
 TEST_CASE("there are no more paths than have room in one buffer", "[gpu][determinism]") {
-    const Scene scene = cloud(2);
+    const Scene scene = glowing_cloud(2);
     RenderJob job = with_tuning(most_slots, 64, 16, 1), usual;
     job.plan.schedule = usual.plan.schedule = GENERATE(Schedule::fused, Schedule::staged);
     const RenderResult most = render_here(scene, 30, job);
@@ -109,7 +109,7 @@ TEST_CASE("there are no more paths than have room in one buffer", "[gpu][determi
 TEST_CASE("how paths get to memory changes no bit", "[gpu][determinism]") {
     if (!test_device().is_cpu())
         return;
-    Scene scene = cloud();
+    Scene scene = glowing_cloud();
     const std::vector<std::string> integrators{"deltaTracking", "ratioNEE", "rayMarching"};
     scene.settings.integrator = GENERATE_REF(from_range(in_turn(integrators, 1)));
     const Film usual = render_here(scene, 30).film;
@@ -147,7 +147,7 @@ TEST_CASE("no search in a phase function is cut short, however long a lane works
 }
 
 TEST_CASE("samples wanted in several goes are those of one", "[gpu][determinism]") {
-    const Scene scene = cloud(11);
+    const Scene scene = glowing_cloud(11);
     const Film whole = render_here(scene, 40).film;
     RenderJob job;
     job.plan.schedule = GENERATE(Schedule::fused, Schedule::staged);
@@ -165,7 +165,7 @@ TEST_CASE("samples wanted in several goes are those of one", "[gpu][determinism]
 }
 
 TEST_CASE("a session that begins again has the bits of a new one", "[gpu][determinism]") {
-    Scene scene = cloud(11);
+    Scene scene = glowing_cloud(11);
     scene.settings.integrator = GENERATE("cachedRatioTracking", "lightTracing");
     scene.layers = scene.settings.integrator == "lightTracing" ? 0u : layer_direct | layer_depth;
     RenderJob job;
@@ -202,7 +202,7 @@ TEST_CASE("a session that begins again has the bits of a new one", "[gpu][determ
 
 // A search through many pieces takes several turns, and lanes are laid aside amid it.
 TEST_CASE("a flight rests while a shadow ray from amid it asks for surfaces", "[gpu][determinism][surfaces]") {
-    Scene scene = cloud(4);
+    Scene scene = glowing_cloud(4);
     TriangleSurface confetti; // which rays pass near, and seldom meet
     for (int i = 0; i < 6000; ++i) {
         const glm::dvec3 share =
@@ -228,7 +228,7 @@ TEST_CASE("a flight rests while a shadow ray from amid it asks for surfaces", "[
 }
 
 TEST_CASE("trying both schedules leaves no trace in the picture", "[gpu][determinism]") {
-    const Scene scene = cloud(11);
+    const Scene scene = glowing_cloud(11);
     const RenderResult usual = render_here(scene, 39);
     RenderJob job;
     job.plan.tries = true;
@@ -276,7 +276,7 @@ TEST_CASE("noise of many octaves has them all, however long a lane works", "[gpu
 }
 
 TEST_CASE("tiles are parts of the whole picture, bit for bit", "[gpu][determinism]") {
-    const Scene scene = cloud();
+    const Scene scene = glowing_cloud();
     const Film whole = render_here(scene, 33).film;
     for (const Crop& crop : {Crop{0, 13, 0, 40}, Crop{13, 40, 0, 17}, Crop{13, 40, 17, 40}, Crop{39, 40, 39, 40}}) {
         CAPTURE(crop.x0, crop.x1, crop.y0, crop.y1);
@@ -289,7 +289,7 @@ TEST_CASE("tiles are parts of the whole picture, bit for bit", "[gpu][determinis
 }
 
 TEST_CASE("a film in several storage buffers has the same bits", "[gpu][determinism]") {
-    const Scene scene = cloud();
+    const Scene scene = glowing_cloud();
     const Film whole = render_here(scene, 34).film;
     for (const std::uint64_t rows : {7, 17, 39}) {
         CAPTURE(rows);
@@ -302,10 +302,10 @@ TEST_CASE("a film in several storage buffers has the same bits", "[gpu][determin
 // Both sums are exact to some 2^-48; mean and variance are rounded to single precision once before and once after
 // merging: 2 units in the last place, 2^-22 relative, and for the variance that of the mean's square besides.
 TEST_CASE("two ranges of samples merged are one run", "[gpu][determinism]") {
-    const Film whole = render_here(cloud(16), 35).film;
+    const Film whole = render_here(glowing_cloud(16), 35).film;
     std::vector<MergeInput> parts;
     for (const std::uint32_t begin : {0u, 5u}) {
-        Scene scene = cloud(begin == 0 ? 5 : 11);
+        Scene scene = glowing_cloud(begin == 0 ? 5 : 11);
         RenderJob job;
         job.sample_offset = begin;
         MergeInput part;
@@ -334,10 +334,10 @@ TEST_CASE("two ranges of samples merged are one run", "[gpu][determinism]") {
 // s^2 / n for two samples is (a - b)^2 / 4. The film's sums of squares are exact to 2^-45 of themselves, and the result
 // is rounded to single precision.
 TEST_CASE("the variance is that of the mean", "[gpu][determinism]") {
-    const Film both = render_here(cloud(2), 36).film;
+    const Film both = render_here(glowing_cloud(2), 36).film;
     RenderJob second;
     second.sample_offset = 1;
-    const Film a = render_here(cloud(1), 36).film, b = render_here(cloud(1), 36, second).film;
+    const Film a = render_here(glowing_cloud(1), 36).film, b = render_here(glowing_cloud(1), 36, second).film;
     std::size_t wrong = 0, varying = 0;
     for (std::size_t i = 0; i < both.pixel_count(); ++i)
         for (int channel = 0; channel < 3; ++channel) {
@@ -353,7 +353,7 @@ TEST_CASE("the variance is that of the mean", "[gpu][determinism]") {
 }
 
 TEST_CASE("an interrupted render keeps true sample counts", "[gpu][determinism]") {
-    const Scene scene = cloud(64);
+    const Scene scene = glowing_cloud(64);
     for (const int patience : {0, 3, 20, 60}) {
         CAPTURE(patience);
         RenderJob job = with_tuning(256, 64, 16, 1);
@@ -374,7 +374,7 @@ TEST_CASE("an interrupted render keeps true sample counts", "[gpu][determinism]"
 }
 
 TEST_CASE("a render stopped by its time limit keeps true sample counts", "[gpu][determinism]") {
-    const Scene scene = cloud(1u << 20);
+    const Scene scene = glowing_cloud(1u << 20);
     RenderJob job;
     job.time_limit = 0.3;
     job.plan.schedule = GENERATE(Schedule::fused, Schedule::staged);
@@ -385,8 +385,10 @@ TEST_CASE("a render stopped by its time limit keeps true sample counts", "[gpu][
 }
 
 TEST_CASE("a render ends at the first power of two of samples whose noise is low enough", "[gpu][determinism]") {
-    const auto noise_of = [](std::uint32_t spp) { return relative_noise(render_here(cloud(spp), 39).film).value(); };
-    const Scene scene = cloud(1u << 10);
+    const auto noise_of = [](std::uint32_t spp) {
+        return relative_noise(render_here(glowing_cloud(spp), 39).film).value();
+    };
+    const Scene scene = glowing_cloud(1u << 10);
     RenderJob job;
     job.plan.schedule = GENERATE(Schedule::fused, Schedule::staged);
     const double between = 0.5 * (noise_of(32) + noise_of(64));
@@ -394,13 +396,13 @@ TEST_CASE("a render ends at the first power of two of samples whose noise is low
     const RenderResult result = render_here(scene, 39, job);
     CHECK((result.reached_goal && !result.interrupted));
     CHECK(result.samples == 64);
-    CHECK(result.film.mean == render_here(cloud(64), 39).film.mean);
+    CHECK(result.film.mean == render_here(glowing_cloud(64), 39).film.mean);
     // Nothing is looked at before there are 16 samples.
     job.noise_goal = 0.9;
     CHECK(render_here(scene, 39, job).samples == 16);
     // With fewer samples than that takes.
     job.noise_goal = between;
-    const RenderResult few = render_here(cloud(48), 39, job);
+    const RenderResult few = render_here(glowing_cloud(48), 39, job);
     CHECK((few.samples == 48 && !few.reached_goal));
 }
 

@@ -16,15 +16,6 @@ using Catch::Contains;
 
 namespace {
 
-Scene cloud(std::uint32_t samples = 11) {
-    static const GridFile file = write_grid(cloud_grid());
-    Scene scene = scene_of(medium(file, 2.0, 0.9, 0.5), 13.0, 40);
-    scene.background = {0.3, 0.5, 0.9};
-    scene.lights = {sunlight()};
-    scene.settings.spp = samples;
-    return scene;
-}
-
 // The tests' device once more. Each test has its own, since none may outlive main.
 struct Another {
     const Device device{{std::to_string(test_device().info().index), false, false}};
@@ -57,7 +48,7 @@ double part_of_first(const RenderResult& result) {
 TEST_CASE("devices share a picture, and its bits are those of one", "[gpu][devices]") {
     const Schedule schedule = GENERATE(Schedule::fused, Schedule::staged);
     const int kind = GENERATE(0, 1, 2);
-    Scene scene = cloud();
+    Scene scene = sunlit_cloud(40, 11);
     const Another second, third;
     RenderJob job = shared_job(scene, schedule, second);
     if (kind == 0)
@@ -80,9 +71,9 @@ TEST_CASE("devices share a picture, and its bits are those of one", "[gpu][devic
 }
 
 TEST_CASE("what moves is shared at every moment", "[gpu][devices]") {
-    Scene scene = cloud(9);
+    Scene scene = sunlit_cloud(40, 9);
     scene.motion_blur = std::make_shared<MotionBlur>(MotionBlur{0.0, 1.0, [](double time) {
-                                                                    Scene then = cloud(9);
+                                                                    Scene then = sunlit_cloud(40, 9);
                                                                     then.volumes.front().sigma_s *= 1.0 + time;
                                                                     return then;
                                                                 }});
@@ -93,7 +84,7 @@ TEST_CASE("what moves is shared at every moment", "[gpu][devices]") {
 }
 
 TEST_CASE("a shared render is looked at, stopped and gone on with", "[gpu][devices][checkpoint]") {
-    const Scene scene = cloud(9);
+    const Scene scene = sunlit_cloud(40, 9);
     const Another second;
     RenderJob job = shared_job(scene, GENERATE(Schedule::fused, Schedule::staged), second);
     job.plan.slots = 64;
@@ -126,7 +117,7 @@ TEST_CASE("a shared render is looked at, stopped and gone on with", "[gpu][devic
 }
 
 TEST_CASE("samples of several devices are wanted in several goes", "[gpu][devices]") {
-    const Scene scene = cloud(11);
+    const Scene scene = sunlit_cloud(40, 11);
     const Another second;
     const RenderJob job = shared_job(scene, Schedule::fused, second);
     Session session(test_device(), scene, job);
@@ -136,7 +127,7 @@ TEST_CASE("samples of several devices are wanted in several goes", "[gpu][device
 }
 
 TEST_CASE("particles, which reach any pixel, are one device's", "[gpu][devices]") {
-    Scene scene = cloud();
+    Scene scene = sunlit_cloud(40, 11);
     scene.settings.integrator = "lightTracing";
     const Another second;
     CHECK_THROWS_WITH(render(test_device(), scene, shared_job(scene, Schedule::fused, second)),

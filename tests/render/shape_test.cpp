@@ -8,16 +8,16 @@
 #include "intersect.spv.h"
 #include "kernels/test_items.h"
 #include "support/kernel_runner.h"
+#include "support/numbers.h"
 #include "tests/reference/closed_forms.h"
 
 using namespace vkvol;
 using shared::ShapeInput;
 using shared::ShapeOutput;
+using test_numbers::infinity;
+using test_numbers::u;
 
 namespace {
-
-constexpr double u = 0x1p-24; // unit roundoff
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::vector<ShapeOutput> intersect(const std::vector<ShapeInput>& inputs) {
     return KernelRunner(intersect_spv).run<ShapeOutput>(inputs);

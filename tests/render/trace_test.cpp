@@ -13,16 +13,8 @@ using namespace vkvol;
 
 namespace {
 
-Scene cloud() {
-    static const GridFile file = write_grid(cloud_grid());
-    Scene scene = scene_of(medium(file, 2.0, 0.9, 0.5), 13.0, 24);
-    scene.background = {0.3, 0.5, 0.9};
-    scene.lights = {sunlight()};
-    return scene;
-}
-
 Scene looking_away() {
-    Scene scene = cloud();
+    Scene scene = sunlit_cloud(24, 1);
     scene.camera.yaw += 180.0;
     return scene;
 }
@@ -48,7 +40,7 @@ TEST_CASE("a followed path gathers the radiance of its sample, bit by bit", "[gp
     const Schedule schedule = GENERATE(Schedule::fused, Schedule::staged);
     if (chromatic != (schedule == Schedule::staged) && !thorough())
         return;
-    Scene scene = cloud();
+    Scene scene = sunlit_cloud(24, 1);
     scene.settings.integrator = integrator;
     if (chromatic)
         scene.volumes.front().sigma_s *= Rgb(1.0, 0.7, 0.2);
@@ -70,7 +62,7 @@ TEST_CASE("a followed path gathers the radiance of its sample, bit by bit", "[gp
 }
 
 TEST_CASE("a followed path is printed", "[gpu][trace]") {
-    const RenderResult hit = one_sample(cloud(), 12, 11, 4, true);
+    const RenderResult hit = one_sample(sunlit_cloud(24, 1), 12, 11, 4, true);
     const std::string table = trace_table(hit.trace, hit.trace_origin, hit.film.mean.front());
     for (const char* word : {"camera", "position (world)", "end"})
         CHECK_THAT(table, Catch::Contains(word));
@@ -81,7 +73,7 @@ TEST_CASE("a followed path is printed", "[gpu][trace]") {
 }
 
 TEST_CASE("each kind of vertex of a followed path has a name", "[gpu][trace]") {
-    Scene scene = cloud();
+    Scene scene = sunlit_cloud(24, 1);
     scene.surfaces.emplace_back().shape = BallSurface{{0.0, 0.0, 0.0}, 1.5};
     scene.settings.integrator = "bidirectional";
     std::string tables;

@@ -16,7 +16,7 @@ using Catch::StartsWith;
 
 namespace {
 
-Scene parse(const std::string& elements, const Defines& defines = {}, const SceneOverrides& overrides = {}) {
+Scene parse_elements(const std::string& elements, const Defines& defines = {}, const SceneOverrides& overrides = {}) {
     return parse_scene("<options>\n" + elements + "</options>", "s.xml", defines, overrides);
 }
 
@@ -29,14 +29,14 @@ std::string message_of(const std::function<void()>& use) {
     return "no error";
 }
 
-std::string error_of(const std::string& elements, const Defines& defines = {}) {
-    return message_of([&] { parse(elements, defines); });
+std::string refusal_of(const std::string& elements, const Defines& defines = {}) {
+    return message_of([&] { parse_elements(elements, defines); });
 }
 
 // The error of opening the scene's files, or of making what the kernels are given.
 std::string render_error_of(const std::string& elements) {
     return message_of([&] {
-        const Scene scene = with_preset(parse(elements));
+        const Scene scene = with_preset(parse_elements(elements));
         const Method method = choose_method(scene);
         make_frame(scene, load_assets(scene, method).media, method, {0, 1, 0, 1}, 1);
     });
@@ -76,11 +76,11 @@ TEST_CASE("numbers that single precision cannot hold are refused where they stan
     };
     for (const auto& [elements, message] : cases) {
         INFO(elements);
-        CHECK_THAT(error_of(elements), StartsWith(message));
+        CHECK_THAT(refusal_of(elements), StartsWith(message));
     }
     // What is nearer to 0 than that is 0.
-    CHECK(parse("<sphere/><sigma_a>1e-40</sigma_a>").volumes.at(0).sigma_a == Rgb(0.0));
-    CHECK(parse("<camera x=\"-1e-310\"/>").camera.position.x == 0.0);
+    CHECK(parse_elements("<sphere/><sigma_a>1e-40</sigma_a>").volumes.at(0).sigma_a == Rgb(0.0));
+    CHECK(parse_elements("<camera x=\"-1e-310\"/>").camera.position.x == 0.0);
 }
 
 TEST_CASE("media that a ray would never get through are refused, with the scene's line", "[cpu][xml]") {
@@ -112,18 +112,20 @@ TEST_CASE("errors of a scene's files name the line that names the file", "[cpu][
                StartsWith("s.xml:3:1: missing.nvdb: no such file"));
     CHECK_THAT(render_error_of("<models><model>missing.obj</model></models>"), StartsWith("s.xml:2:1: missing.obj: "));
     // One from the command line has no line.
-    CHECK(parse("<sphere/>", {}, {"other.nvdb", {}}).volumes.at(0).place.empty());
+    CHECK(parse_elements("<sphere/>", {}, {"other.nvdb", {}}).volumes.at(0).place.empty());
 }
 
 TEST_CASE("messages are one line of sane length, whatever the file holds", "[cpu][xml]") {
     const std::string name(5000, 'x');
     for (const std::string& message :
-         {error_of("<" + name + "/>"), error_of("<light " + name + "=\"1\"/>"), error_of("<filter>a\nb\x01</filter>"),
-          error_of("<march unit=\"" + name + "\"/>"), error_of("<integrator>" + name + "</integrator>"), message_of([] {
-              parse("", {}, {{}, "ratioTracking:flight=\n"});
+         {refusal_of("<" + name + "/>"), refusal_of("<light " + name + "=\"1\"/>"),
+          refusal_of("<filter>a\nb\x01</filter>"), refusal_of("<march unit=\"" + name + "\"/>"),
+          refusal_of("<integrator>" + name + "</integrator>"), message_of([] {
+              parse_elements("", {}, {{}, "ratioTracking:flight=\n"});
           }),
-          error_of("<densityField>a\x01.nvdb</densityField>"), error_of("<densityField>" + name + "</densityField>"),
-          error_of("<light r=\"$" + name + "\"/>"), error_of("<box/>", {{"key", "a\nb" + name}})}) {
+          refusal_of("<densityField>a\x01.nvdb</densityField>"),
+          refusal_of("<densityField>" + name + "</densityField>"), refusal_of("<light r=\"$" + name + "\"/>"),
+          refusal_of("<box/>", {{"key", "a\nb" + name}})}) {
         CHECK(message != "no error");
         CHECK(message.size() < 2100);
         CHECK(std::none_of(message.begin(), message.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }));
@@ -135,7 +137,7 @@ TEST_CASE("keys by the thousand neither take for ever nor fill the memory", "[cp
     std::string models;
     for (int i = 0; i < 50000; ++i)
         models += "<model>$k</model>\n";
-    CHECK(std::get<MeshFiles>(parse("<models>" + models + "</models>", {{"k", "a.obj"}}).volumes.at(0).shape)
+    CHECK(std::get<MeshFiles>(parse_elements("<models>" + models + "</models>", {{"k", "a.obj"}}).volumes.at(0).shape)
               .paths.size() == 50000);
-    CHECK_THAT(error_of("<models>" + models + "</models>", {{"k", std::string(1000, 'a')}}), Contains("16 MiB"));
+    CHECK_THAT(refusal_of("<models>" + models + "</models>", {{"k", std::string(1000, 'a')}}), Contains("16 MiB"));
 }

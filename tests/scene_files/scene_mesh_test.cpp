@@ -17,7 +17,7 @@ std::string mesh(const std::string& inside, const std::string& attributes = {}) 
     return "<surfaces><mesh" + attributes + ">" + inside + "</mesh></surfaces>";
 }
 
-TriangleSurface read(const std::string& body) {
+TriangleSurface read_triangles(const std::string& body) {
     return std::get<TriangleSurface>(with_surface_files(parse(body)).surfaces.at(0).shape);
 }
 
@@ -26,14 +26,14 @@ TriangleSurface read(const std::string& body) {
 TEST_CASE("meshes in scene files have their vertices, normals and places", "[cpu][xml][surfaces]") {
     const std::string triangle = "<vertices>0 0 0  1 0 0  0 1 0</vertices><triangles>0 1 2</triangles>"
                                  "<normals>0 0 2  0 0 1  1 0 1</normals><places>0 0  1 0  0 1</places>";
-    const TriangleSurface plain = read(mesh(triangle));
+    const TriangleSurface plain = read_triangles(mesh(triangle));
     CHECK(plain.vertices == std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
     CHECK(plain.triangles == std::vector<glm::uvec3>{{0, 1, 2}});
     CHECK(plain.normals[0][0] == glm::vec3(0, 0, 1)); // made unit
     CHECK(glm::distance(plain.normals[0][2], glm::vec3(std::sqrt(0.5), 0.0, std::sqrt(0.5))) < 1e-6f);
     CHECK(plain.places == std::vector<glm::mat3x2>{{{0, 0}, {1, 0}, {0, 1}}});
     // Mirrored and stretched: the front stays in front, and normals stay across.
-    const TriangleSurface mirrored = read(mesh(triangle + "<transform><scale x=\"-2\"/></transform>"));
+    const TriangleSurface mirrored = read_triangles(mesh(triangle + "<transform><scale x=\"-2\"/></transform>"));
     CHECK(mirrored.vertices[1] == glm::dvec3(-2, 0, 0));
     CHECK(mirrored.triangles == std::vector<glm::uvec3>{{0, 2, 1}});
     CHECK(mirrored.places[0][1] == glm::vec2(0, 1));
@@ -42,9 +42,9 @@ TEST_CASE("meshes in scene files have their vertices, normals and places", "[cpu
 
 TEST_CASE("meshes of glass in scene files have to be closed", "[cpu][xml][surfaces]") {
     const std::string glass = " material=\"dielectric\"";
-    CHECK(read(mesh(tetrahedron, glass)).triangles.size() == 4);
-    CHECK_THROWS_AS(read(mesh(corners + "<triangles>0 2 1  0 1 3  0 3 2</triangles>", glass)), InputError);
-    CHECK(read(mesh(corners + "<triangles>0 2 1  0 1 3  0 3 2</triangles>")).triangles.size() == 3);
+    CHECK(read_triangles(mesh(tetrahedron, glass)).triangles.size() == 4);
+    CHECK_THROWS_AS(read_triangles(mesh(corners + "<triangles>0 2 1  0 1 3  0 3 2</triangles>", glass)), InputError);
+    CHECK(read_triangles(mesh(corners + "<triangles>0 2 1  0 1 3  0 3 2</triangles>")).triangles.size() == 3);
 }
 
 TEST_CASE("wrong meshes in scene files are refused with their place", "[cpu][xml][surfaces]") {

@@ -25,7 +25,7 @@ Scene slab(const std::string& rest) {
         "s.xml");
 }
 
-std::string complaint(const std::string& rest) {
+std::string unit_complaint(const std::string& rest) {
     try {
         slab(rest);
     } catch (const InputError& error) {
@@ -87,18 +87,19 @@ TEST_CASE("fluxes over mu0 F0, radiances pi times", "[gpu][xml]") {
 
 TEST_CASE("units that readings cannot have are refused", "[cpu][xml]") {
     const std::string units = "<units>reflectance</units>";
-    CHECK_THAT(complaint("<units>brightness</units>"), Contains("s.xml:1:") && Contains("unknown units 'brightness'"));
-    CHECK_THAT(complaint(units), Contains("one light far away"));
-    CHECK_THAT(complaint(units + light + "<backgroundColor r=\"1\"/>"), Contains("nothing else that shines"));
-    CHECK_THAT(complaint(units + light + "<medium r=\"1\"/>"), Contains("nothing else that shines"));
-    CHECK_THAT(complaint(units + light +
-                         "<layers><layer height=\"-1\" sigma_t=\"1\"/><layer height=\"0\" sigma_t=\"1\" "
-                         "emission=\"1 1 1\"/></layers>"),
+    CHECK_THAT(unit_complaint("<units>brightness</units>"),
+               Contains("s.xml:1:") && Contains("unknown units 'brightness'"));
+    CHECK_THAT(unit_complaint(units), Contains("one light far away"));
+    CHECK_THAT(unit_complaint(units + light + "<backgroundColor r=\"1\"/>"), Contains("nothing else that shines"));
+    CHECK_THAT(unit_complaint(units + light + "<medium r=\"1\"/>"), Contains("nothing else that shines"));
+    CHECK_THAT(unit_complaint(units + light +
+                              "<layers><layer height=\"-1\" sigma_t=\"1\"/><layer height=\"0\" sigma_t=\"1\" "
+                              "emission=\"1 1 1\"/></layers>"),
                Contains("nothing else that shines"));
-    CHECK_THAT(complaint(units + light + "<lights><sun y=\"1\"/></lights>"), Contains("one light far away"));
-    CHECK_THAT(complaint(units + "<light x=\"1\" y=\"0\" z=\"0\" r=\"1\"/>"), Contains("the light is level"));
-    CHECK_THAT(complaint(units + "<lights><sun zenith=\"85\" angle=\"20\"/></lights>"), Contains("partly below"));
-    CHECK(complaint(units + "<lights><sun zenith=\"75\" angle=\"20\"/></lights>") == "no error");
+    CHECK_THAT(unit_complaint(units + light + "<lights><sun y=\"1\"/></lights>"), Contains("one light far away"));
+    CHECK_THAT(unit_complaint(units + "<light x=\"1\" y=\"0\" z=\"0\" r=\"1\"/>"), Contains("the light is level"));
+    CHECK_THAT(unit_complaint(units + "<lights><sun zenith=\"85\" angle=\"20\"/></lights>"), Contains("partly below"));
+    CHECK(unit_complaint(units + "<lights><sun zenith=\"75\" angle=\"20\"/></lights>") == "no error");
     const auto points = [&](const std::string& rest) {
         try {
             parse_scene("<options><sphere/><fluence>0 0 0</fluence>" + rest + "</options>", "s.xml");

@@ -28,11 +28,6 @@ Scene picture_of(const Volume& volume, double width, std::uint32_t spp) {
     return scene;
 }
 
-GridFile cloud_file() {
-    static const GridFile file = write_grid(cloud_grid());
-    return file;
-}
-
 // Voxels of density 30 amid a thin haze, far apart: majorants are loose everywhere.
 GridFile spike_file() {
     GridRecipe grid{{-10, -9, -8}, {9, 8, 7}, nullptr, Storage::float32};

@@ -172,6 +172,10 @@ Agreement agree(const Film& film, const Film& other, const std::string& name) {
     return judge.judge(name, film, &other);
 }
 
+void check_against_reference(const Scene& scene, const std::string& name) {
+    CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_reference(scene, 2), name));
+}
+
 Agreement agree_with_means(const Film& film, const std::vector<Rgb>& means, const std::string& name) {
     REQUIRE(film.pixel_count() == means.size());
     Judge judge(film);
@@ -184,6 +188,11 @@ Agreement agree_with_means(const Film& film, const std::vector<Rgb>& means, cons
     }
     judge.know_variance_of_sum({&film});
     return judge.judge(name, film, &expected);
+}
+
+void check_means(const Scene& scene, double expected, const std::string& name) {
+    const std::vector<Rgb> means(std::size_t(scene.picture.width * scene.picture.height), Rgb(expected));
+    CHECK_AGREEMENT(agree_with_means(render_here(scene, 3).film, means, name));
 }
 
 Agreement agree_with_escapes(const Film& film, const std::vector<double>& p, const Rgb& if_escaped,

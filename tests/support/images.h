@@ -37,8 +37,14 @@ struct Agreement {
 // files named after `name`.
 Agreement agree(const Film& film, const Film& other, const std::string& name);
 
+// That a render here and one by the reference agree.
+void check_against_reference(const Scene& scene, const std::string& name);
+
 // An estimate against exact values per pixel; the samples of a pixel must be many enough for the normal limit.
 Agreement agree_with_means(const Film& film, const std::vector<Rgb>& means, const std::string& name);
+
+// That a render here has the same mean everywhere.
+void check_means(const Scene& scene, double expected, const std::string& name);
 
 // Samples that are `if_escaped` with probability p[pixel], else `otherwise`. The number of escapes is binomial, and
 // P(|k/n - p| as large) <= 2 exp(-n KL(k/n || p)) for any n (Chernoff); the mean over the picture is judged as normal.

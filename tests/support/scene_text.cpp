@@ -10,6 +10,10 @@ Scene parse(const std::string& body, const Defines& defines, const SceneOverride
     return parse_scene("<options>" + body + "</options>", "s.xml", defines, overrides);
 }
 
+Scene parse_volumes(const std::string& text) {
+    return parse("<volumes>" + text + "</volumes>");
+}
+
 std::string error_of(const std::string& body, const Defines& defines) {
     return error_of_text("<options>\n" + body + "\n</options>", defines);
 }

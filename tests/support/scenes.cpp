@@ -124,6 +124,30 @@ Volume medium(decltype(Volume::shape) shape, double sigma_t, double albedo, doub
     return volume;
 }
 
+Volume slab(double tau, double albedo) {
+    return medium(Box{{0.0, 0.0, -0.5}, {2e4, 2e4, 1.0}}, tau, albedo);
+}
+
+const GridFile& cloud_file() {
+    static const GridFile file = write_grid(cloud_grid());
+    return file;
+}
+
+Volume smoke() {
+    Volume volume = medium(Sphere{{0.1, -0.1, 0.0}, 1.5}, 3.0, 0.9, 0.4);
+    volume.noise = Noise{0.9, 3, 0.5, 2.0};
+    return volume;
+}
+
+Scene by(Scene scene, const char* integrator) {
+    scene.settings.integrator = integrator;
+    return scene;
+}
+
+Volume thin_cloud() {
+    return medium(cloud_file(), 0.8, 0.9, 0.4);
+}
+
 Scene scene_of(const Volume& volume, double width, int pixels, double distance, glm::dvec3 target,
                glm::dvec3 pitch_yaw_roll) {
     Scene scene;
@@ -176,6 +200,14 @@ std::vector<NamedPhase> all_phases() {
 
 DirectionalLight sunlight(Rgb irradiance) {
     return {glm::normalize(glm::dvec3(1.0, 1.5, 1.0)), irradiance};
+}
+
+Scene sunlit_cloud(int pixels, std::uint32_t spp) {
+    Scene scene = scene_of(medium(cloud_file(), 2.0, 0.9, 0.5), 13.0, pixels);
+    scene.background = {0.3, 0.5, 0.9};
+    scene.lights = {sunlight()};
+    scene.settings.spp = spp;
+    return scene;
 }
 
 } // namespace vkvol

@@ -39,9 +39,21 @@ float cloud_noise(glm::ivec3 voxel);
 
 // 32 x 28 x 30 voxels of cloud_noise, index origin negative, voxels 0.3 world units long, about the world's origin.
 GridRecipe cloud_grid(Storage storage = Storage::float32);
+const GridFile& cloud_file(); // the same in every test
 
 // sigma_t and albedo instead of the two coefficients; per world unit.
 Volume medium(decltype(Volume::shape) shape, double sigma_t, double albedo, double g = 0.0);
+
+// A ball with noise in it.
+Volume smoke();
+
+// Of cloud_grid().
+Volume thin_cloud();
+
+// From z = -1 to 0 and so wide that what it lacks of an endless one is the light within 1e-4 of grazing.
+Volume slab(double tau, double albedo);
+
+Scene by(Scene scene, const char* integrator);
 
 // A square picture of the volume: the camera looks at `target` from `distance`, turned by the angles, and sees a field
 // `width` across at the target.
@@ -59,7 +71,12 @@ struct LightsAbout {
     DirectionalLight beam{glm::normalize(glm::dvec3(-2.0, 1.0, -0.5)), {0.5, 1.0, 2.0}};
 };
 
+inline const glm::dvec3 up(0.0, 1.0, 0.0);
+
 // From the upper right, behind the camera.
 DirectionalLight sunlight(Rgb irradiance = Rgb(3.0));
+
+// The cloud of cloud_grid() in that light and an even sky. Square.
+Scene sunlit_cloud(int pixels, std::uint32_t spp);
 
 } // namespace vkvol
