@@ -66,7 +66,7 @@ TEST_CASE("every scene is complete without keys, and names fields that make_fiel
 
 // Those of hard/ have tests of their own. Grids that take long to make, or much memory, are for tools/all_scenes.sh.
 TEST_CASE("scenes render by their name alone", "[gpu][image]") {
-    for (const std::filesystem::path& file : in_turn(all_scene_files(), 0, 12)) {
+    for (const std::filesystem::path& file : in_turn(all_scene_files(), 0, 20)) {
         if (file.parent_path().filename() == "hard" || file.filename() == "large_grid.xml")
             continue;
         Scene scene = load_scene(file);
