@@ -3,7 +3,6 @@
 // escape as the exact transmittance says. Significance 1e-3 for each test case (Sidak), fixed seeds.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "flight.spv.h"

@@ -73,7 +73,7 @@ void mutate_once(std::string& bytes, Random& random, const std::string& other) {
     }
 }
 
-struct Part {
+struct TokenRange {
     std::size_t begin, end;
 };
 
@@ -81,8 +81,8 @@ bool in_token(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '-' || c == '+' || c == '_' || c == '$';
 }
 
-std::vector<Part> tokens_of(const std::string& text) {
-    std::vector<Part> tokens;
+std::vector<TokenRange> tokens_of(const std::string& text) {
+    std::vector<TokenRange> tokens;
     for (std::size_t i = 0; i < text.size();) {
         const std::size_t begin = i;
         while (i < text.size() && in_token(text[i]))
@@ -125,10 +125,10 @@ void mutate_bytes(std::string& bytes, Random& random, const std::string& other) 
 }
 
 void replace_token(std::string& text, Random& random, std::span<const char* const> values) {
-    const std::vector<Part> tokens = tokens_of(text);
+    const std::vector<TokenRange> tokens = tokens_of(text);
     if (tokens.empty())
         return;
-    const Part token = random.pick(tokens);
+    const TokenRange token = random.pick(tokens);
     text.replace(token.begin, token.end - token.begin, random.pick(values));
 }
 

@@ -43,7 +43,7 @@ TEST_CASE("pbrt's normals say which medium is within", "[cpu][pbrt]") {
     CHECK(absorbs("MediumInterface \"a\" \"\"" + sided_ball) == All{1});
     CHECK(absorbs("ReverseOrientation MediumInterface \"\" \"a\"" + sided_ball) == All{1});
     CHECK(absorbs("ReverseOrientation Scale -1 1 1 MediumInterface \"a\" \"\"" + sided_ball) ==
-          All{1}); // a mirror turns a sided_ball about,
+          All{1}); // a mirror turns a ball about,
     CHECK(absorbs("Scale -1 1 1 MediumInterface \"\" \"a\"" + sided_ball) == All{1});
     CHECK(absorbs("Scale -1 1 1 MediumInterface \"a\" \"\"" + box) == All{1}); // and no triangles
     CHECK(absorbs("MediumInterface \"a\" \"\"" + box) == All{1});

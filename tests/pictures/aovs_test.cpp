@@ -118,16 +118,11 @@ std::vector<Rgb> everywhere(const Film& film, const Rgb& value) {
 } // namespace
 
 TEST_CASE("layers leave the picture its bits, and sum up to it", "[gpu][image][aovs]") {
-    const std::vector<std::string> integrators = {"cachedRatioTracking",
-                                                  "ratioTracking",
-                                                  "weightedTracking",
-                                                  "deltaTracking",
-                                                  "ratioNEE",
-                                                  "regularTracking",
-                                                  "rayMarching",
-                                                  "ratioTracking:emission=steps",
-                                                  "ratioTracking:mis=phase"};
-    const std::string integrator = GENERATE_REF(from_range(in_turn(integrators, 1, 5)));
+    const std::vector<std::string> integrators = {
+        "ratioNEE",         "cachedRatioTracking", "ratioTracking",
+        "weightedTracking", "deltaTracking",       "ratioTracking:emission=steps",
+        "regularTracking",  "rayMarching",         "ratioTracking:mis=phase"};
+    const std::string integrator = GENERATE_REF(from_range(in_turn(integrators, 0, 5)));
     for (const bool several : {false, true}) {
         if (several && integrator != "ratioTracking" && integrator != "ratioNEE" && integrator != "rayMarching")
             continue; // how light gets its label among several media goes by where flights meet it, of which these are

@@ -32,7 +32,7 @@ Scene sensor(glm::dvec3 middle, glm::dvec3 facing, glm::dvec2 size, int across, 
     Scene scene;
     scene.camera.projection = Projection::irradiance;
     scene.camera.position = middle;
-    look_along(scene.camera, facing, is_parallel(facing, up) ? glm::dvec3(0.0, 0.0, 1.0) : up);
+    look_along(scene.camera, facing, is_parallel(facing, up_y) ? glm::dvec3(0.0, 0.0, 1.0) : up_y);
     scene.camera.size = size;
     scene.picture = {across, across, 0.0, 0.0, double(across), double(across)};
     scene.settings.spp = spp;
@@ -61,8 +61,8 @@ void check_counts(const Scene& scene, const std::string& name) {
 }
 
 // A slab in a domain [-0.5, 0.5]^2, from 0 down.
-Scene read_slab(double tau, double albedo, double height, bool from_above) {
-    Scene scene = sensor({0.1, height, -0.2}, from_above ? up : -up, {1.0, 0.7}, 4, 512);
+Scene repeated_slab(double tau, double albedo, double height, bool from_above) {
+    Scene scene = sensor({0.1, height, -0.2}, from_above ? up_y : -up_y, {1.0, 0.7}, 4, 512);
     scene.volumes = {medium(Box{{0.0, -0.5, 0.0}, glm::dvec3(1.0)}, tau, albedo)};
     scene.periodic = Periodic{{-0.5, 0.0, -0.5}, {0.5, 0.0, 0.5}};
     return scene;
@@ -130,7 +130,7 @@ std::vector<CountedCase> counted_cases() {
 
 // From above clouds that repeat, or from below.
 Scene about_clouds(bool below, std::vector<Light> lights) {
-    Scene scene = sensor({1.0, below ? -6.0 : 6.0, 2.0}, below ? up : -up, {9.0, 10.0}, 2, 4096);
+    Scene scene = sensor({1.0, below ? -6.0 : 6.0, 2.0}, below ? up_y : -up_y, {9.0, 10.0}, 2, 4096);
     scene.volumes = {thin_cloud()};
     scene.lights = std::move(lights);
     scene.periodic = Periodic{{-5.0, 0.0, -5.0}, {5.0, 0.0, 5.0}};
@@ -151,10 +151,10 @@ std::vector<CountedCase> domains() {
     Scene turned = about_clouds(false, {beam});
     turned.camera.size = {5.0, 3.0};
     turned.camera.position = {4.0, 1.0, -4.5}; // beyond the domain's edges
-    look_along(turned.camera, -up, {0.6, 0.0, 0.8});
+    look_along(turned.camera, -up_y, {0.6, 0.0, 0.8});
     all.push_back({"a sensor turned, across seams", turned});
     Scene grounded = about_clouds(true, {beam});
-    grounded.surfaces.emplace_back().shape = PlaneSurface{{0.0, -7.0, 0.0}, up};
+    grounded.surfaces.emplace_back().shape = PlaneSurface{{0.0, -7.0, 0.0}, up_y};
     grounded.surfaces.back().material.color = {0.5, 0.3, 0.2};
     grounded.surfaces.push_back(ball_of(MaterialKind::diffuse, 0.0));
     grounded.surfaces.back().shape = BallSurface{{-3.0, 0.0, 2.0}, 1.5};
@@ -171,9 +171,9 @@ TEST_CASE("particles counted are the flux that rays from the sensor read", "[gpu
 
 // A third of the irradiance of 1 from above comes from beyond the sensor and all else that there is.
 TEST_CASE("far light is counted where a filter alone has it", "[gpu][counted]") {
-    Scene scene = sensor({0.0, 0.0, 0.0}, up, {1.0, 1.0}, 1, 1 << 18);
+    Scene scene = sensor({0.0, 0.0, 0.0}, up_y, {1.0, 1.0}, 1, 1 << 18);
     scene.volumes = {medium(Sphere{{0.0, 0.0, 0.0}, 0.1}, 1e-6, 1.0)};
-    scene.lights = {DirectionalLight{up, Rgb(1.0)}};
+    scene.lights = {DirectionalLight{up_y, Rgb(1.0)}};
     scene.settings.pixel_filter = PixelFilter::gaussian;
     scene.settings.pixel_filter_radius = 1.5;
     check_means(by(scene, "lightTracing"), 1.0, "a gaussian under far light");
@@ -207,7 +207,7 @@ TEST_CASE("particles of clouds that glow, of which a domain cuts some off", "[gp
 // Each of a sweep's particles passes or does not: through the whole of a domain all do, at all heights.
 TEST_CASE("particles that pass an empty domain are all counted", "[gpu][counted]") {
     for (const double height : {0.3, -0.25, -2.0}) {
-        Scene scene = by(read_slab(1e-9, 0.0, height, true), "lightTracing");
+        Scene scene = by(repeated_slab(1e-9, 0.0, height, true), "lightTracing");
         scene.camera.size = {1.0, 1.0};
         scene.lights = {DirectionalLight{{0.6, 0.8, 0.0}, Rgb(2.0)}};
         const Film film = render_here(scene, 1).film;
@@ -222,12 +222,12 @@ TEST_CASE("particles counted above, below and amid slabs", "[gpu][counted]") {
     const double tau = 2.0, albedo = GENERATE(1.0, 0.6), mu0 = GENERATE(1.0, 0.3);
     const reference::SlabSolution beam = reference::slab_in_beam(albedo, tau, mu0, 800);
     for (const bool below : {false, true}) {
-        Scene scene = by(read_slab(tau, albedo, below ? -1.5 : 0.0, below), "lightTracing"); // at its very top
+        Scene scene = by(repeated_slab(tau, albedo, below ? -1.5 : 0.0, below), "lightTracing"); // at its very top
         scene.lights = {DirectionalLight{{std::sqrt(1.0 - mu0 * mu0), mu0, 0.0}, Rgb(1.0)}};
         check_means(scene, below ? beam.transmitted : beam.reflected,
                     fmt::format("slab of {}, {}, {}", albedo, mu0, below));
     }
-    Scene absorbing = by(read_slab(tau, 0.0, -0.5, true), "lightTracing");
+    Scene absorbing = by(repeated_slab(tau, 0.0, -0.5, true), "lightTracing");
     absorbing.lights = {DirectionalLight{{std::sqrt(1.0 - mu0 * mu0), mu0, 0.0}, Rgb(1.0)}};
     check_means(absorbing, mu0 * std::exp(-0.5 * tau / mu0), "what is left amid");
 }
@@ -238,12 +238,12 @@ TEST_CASE("a sensor in the plane of the ground counts what comes to the ground",
     const reference::SlabSolution beam = reference::slab_in_beam(0.9, tau, 1.0, 400);
     const reference::SlabSolution even = reference::slab_in_half_sky(0.9, tau, 400);
     for (const double height : {-1.5, 0.0, 7.0}) { // of the whole
-        Scene scene = by(read_slab(tau, 0.9, -1.2, true), "lightTracing");
-        scene.surfaces.emplace_back().shape = PlaneSurface{{0.0, height - 1.2, 0.0}, up};
+        Scene scene = by(repeated_slab(tau, 0.9, -1.2, true), "lightTracing");
+        scene.surfaces.emplace_back().shape = PlaneSurface{{0.0, height - 1.2, 0.0}, up_y};
         scene.surfaces.back().material.color = Rgb(ground);
         scene.camera.position.y += height;
         std::get<Box>(scene.volumes.front().shape).center.y += height;
-        scene.lights = {DirectionalLight{up, Rgb(1.0)}};
+        scene.lights = {DirectionalLight{up_y, Rgb(1.0)}};
         check_means(scene, beam.transmitted / (1.0 - ground * even.reflected / pi),
                     fmt::format("ground at {}", height));
     }
@@ -251,7 +251,7 @@ TEST_CASE("a sensor in the plane of the ground counts what comes to the ground",
 
 // What no looks find: through a ball of glass, into its caustic.
 TEST_CASE("particles are counted behind glass", "[gpu][counted]") {
-    Scene scene = sensor({0.0, -2.0, 0.0}, up, {6.0, 6.0}, 1, 1 << 12);
+    Scene scene = sensor({0.0, -2.0, 0.0}, up_y, {6.0, 6.0}, 1, 1 << 12);
     scene.surfaces = {ball_of(MaterialKind::dielectric, 0.0)};
     scene.surfaces.front().shape = BallSurface{{0.0, 0.0, 0.0}, 0.7};
     scene.surfaces.front().material.color = Rgb(1.0);
@@ -259,7 +259,7 @@ TEST_CASE("particles are counted behind glass", "[gpu][counted]") {
     scene.background = Rgb(1.0);
     check_means(by(scene, "lightTracing"), pi, "glass in an even sky");
     scene.background = Rgb(0.0);
-    scene.lights = {DirectionalLight{up, Rgb(1.0)}};
+    scene.lights = {DirectionalLight{up_y, Rgb(1.0)}};
     CHECK(choose_method(with_preset(by(scene, "lightTracing"))).biased.empty());
     CHECK_THAT(choose_method(with_preset(by(scene, "ratioTracking"))).biased, Contains("integrator lightTracing does"));
 }
@@ -331,7 +331,7 @@ TEST_CASE("what comes into a domain leaves it, or stays", "[gpu][counted]") {
     scene.camera.position = {0.0, 6.0, 0.0};
     scene.settings.spp = 16384;
     Scene below = scene;
-    look_along(below.camera, up, {0.0, 0.0, 1.0});
+    look_along(below.camera, up_y, {0.0, 0.0, 1.0});
     below.camera.position.y = -6.0;
     Scene amid = absorption({0.0, 0.0, 0.0}, {10.0, 12.0, 10.0}, {2, 2, 1}, 16384);
     amid.volumes = scene.volumes;
@@ -390,7 +390,7 @@ TEST_CASE("the error of absorbed power is known where little is absorbed", "[gpu
         Scene scene = absorption({0.0, 0.0, 0.0}, glm::dvec3(unit), {1, 5, 1}, 2048);
         scene.volumes = {medium(Box{{0.0, 0.0, 0.0}, glm::dvec3(unit)}, 2.0 / unit, 1.0 - 1e-5)};
         scene.periodic = Periodic{{-0.5 * unit, 0.0, -0.5 * unit}, {0.5 * unit, 0.0, 0.5 * unit}};
-        scene.lights = {DirectionalLight{up, Rgb(1.0)}};
+        scene.lights = {DirectionalLight{up_y, Rgb(1.0)}};
         const Film film = render_here(scene, 1).film;
         const ImageMean mean = image_mean(film);
         REQUIRE(mean.standard_error);
@@ -410,7 +410,7 @@ TEST_CASE("what is absorbed is known to all digits", "[gpu][counted]") {
         Scene scene = absorption({0.0, 0.0, 0.0}, glm::dvec3(1.0), {1, 1, 1}, 2048);
         scene.volumes = {medium(Box{{0.0, 0.0, 0.0}, glm::dvec3(1.0)}, 2.0, 1.0 - share)};
         scene.periodic = Periodic{{-0.5, 0.0, -0.5}, {0.5, 0.0, 0.5}};
-        scene.lights = {DirectionalLight{up, Rgb(1.0)}};
+        scene.lights = {DirectionalLight{up_y, Rgb(1.0)}};
         return image_mean(render_here(scene, 1).film).value.x / share;
     };
     const double usual = absorbed(1e-4);
@@ -491,7 +491,7 @@ TEST_CASE("which particles no sensor counts", "[counted]") {
     CHECK(choose_method(with_preset(by(scene, "lightTracing"))).nee == NEE_NONE);
     CHECK(scene_hash(by(scene, "lightTracing")) == scene_hash(by(scene, "ratioTracking")));
     Scene other = scene;
-    other.lights = {DirectionalLight{up, Rgb(1.0)}};
+    other.lights = {DirectionalLight{up_y, Rgb(1.0)}};
     CHECK(scene_hash(by(other, "lightTracing")) != scene_hash(by(scene, "lightTracing")));
     SECTION("at points") {
         scene.camera.projection = Projection::fluence;
@@ -510,7 +510,7 @@ TEST_CASE("which particles no sensor counts", "[counted]") {
         CHECK_THAT(refusal(scene), Contains("wider than a domain"));
         scene.camera.size = {8.0, 8.0};
         CHECK(refusal(scene).empty());
-        look_along(scene.camera, -up, {1.0, 0.0, 1.0});
+        look_along(scene.camera, -up_y, {1.0, 0.0, 1.0});
         CHECK_THAT(refusal(scene), Contains("wider than a domain"));
     }
     SECTION("where a domain repeats along one axis") {

@@ -83,7 +83,7 @@ struct ParticleCase {
 
 // Every kind of light, medium, surface and camera that particles know, and nothing that only paths from the camera
 // find.
-std::vector<ParticleCase> particles_cases() {
+std::vector<ParticleCase> particle_cases() {
     const auto [point, spot, ball, disk, rectangle, sun, beam] = LightsAbout{};
     RadianceMap map{8, 4, {}, 0};
     for (int i = 0; i < 32; ++i)
@@ -165,7 +165,7 @@ void check(const ParticleCase& c, int turn) {
 
 TEST_CASE("particles, paths and both show the same", "[gpu][particles]") {
     int turn = 0;
-    for (const ParticleCase& c : in_turn(particles_cases(), 0, 5))
+    for (const ParticleCase& c : in_turn(particle_cases(), 0, 5))
         check(c, turn++);
 }
 

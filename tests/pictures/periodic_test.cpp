@@ -40,7 +40,7 @@ Scene flux_through(double height, bool from_above, glm::dvec2 size, int across, 
     Scene scene;
     scene.camera.projection = Projection::irradiance;
     scene.camera.position = {0.0, height, 0.0};
-    look_along(scene.camera, from_above ? up : -up, {0.0, 0.0, 1.0});
+    look_along(scene.camera, from_above ? up_y : -up_y, {0.0, 0.0, 1.0});
     scene.camera.size = size;
     scene.picture = {across, across, 0.0, 0.0, double(across), double(across)};
     scene.settings.spp = spp;
@@ -185,7 +185,7 @@ TEST_CASE("a domain that holds the same twice is the same", "[gpu][image][period
     Scene solid = balls;
     solid.surfaces.emplace_back().shape = BallSurface{{-1.5, -1.0, 2.0}, 1.5};
     solid.surfaces.back().material.color = {0.8, 0.4, 0.2};
-    solid.surfaces.emplace_back().shape = PlaneSurface{{0.0, -3.0, 0.0}, up};
+    solid.surfaces.emplace_back().shape = PlaneSurface{{0.0, -3.0, 0.0}, up_y};
     solid.surfaces.back().material.color = Rgb(0.5);
     CHECK_AGREEMENT(agree(render_here(repeated(solid, {2, 2}), 1).film, render_here(solid, 2).film, "and solid ones"));
     for (const MaterialKind kind : {MaterialKind::mirror, MaterialKind::dielectric}) {
@@ -215,12 +215,14 @@ TEST_CASE("both schedules go through a domain that repeats alike", "[gpu][image]
     scene.settings.spp = 16;
     Scene solid = scene;
     solid.surfaces.emplace_back().shape = BallSurface{{-1.5, -1.0, 2.0}, 1.5};
-    solid.surfaces.emplace_back().shape = PlaneSurface{{0.0, -5.0, 0.0}, up};
+    solid.surfaces.emplace_back().shape = PlaneSurface{{0.0, -5.0, 0.0}, up_y};
     Scene tentative = solid;
     tentative.settings.integrator = "ratioNEE";
-    Scene layered = tentative;
+    Scene layered = scene;
     layered.layers = layer_depth | layer_position | layer_indirect;
-    for (const Scene& each : thorough() ? std::vector{scene, solid, tentative, layered} : std::vector{layered}) {
+    Scene all = tentative;
+    all.layers = layered.layers;
+    for (const Scene& each : thorough() ? std::vector{scene, solid, tentative, layered} : std::vector{all}) {
         RenderJob fused, staged;
         fused.plan.schedule = Schedule::fused;
         staged.plan.schedule = Schedule::staged;
@@ -333,7 +335,7 @@ TEST_CASE("radiances of a domain that repeats are reciprocal", "[gpu][image][per
         scene.camera.projection = Projection::orthographic;
         scene.camera.view_height = 10.0 * view.y; // all of a domain, once
         scene.camera.position = 30.0 * view;
-        look_along(scene.camera, -view, up);
+        look_along(scene.camera, -view, up_y);
         const int high = int(std::lround(20.0 * view.y));
         scene.picture = {20, high, 0.0, 0.0, 20.0, double(high)};
         scene.settings.spp = 1024;

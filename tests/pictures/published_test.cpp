@@ -31,7 +31,7 @@ Scene slab_scene(double tau, double albedo, double g = 0.0) {
 void read_flux(Scene& scene, double height, bool down, glm::dvec2 size, int columns, int rows) {
     scene.camera.projection = Projection::irradiance;
     scene.camera.position = {0.0, height, 0.0};
-    look_along(scene.camera, down ? up : -up, {0.0, 0.0, down ? 1.0 : -1.0}); // columns along +x
+    look_along(scene.camera, down ? up_y : -up_y, {0.0, 0.0, down ? 1.0 : -1.0}); // columns along +x
     scene.camera.size = size;
     scene.picture = {columns, rows, 0.0, 0.0, double(columns), double(rows)};
 }
@@ -56,8 +56,8 @@ TEST_CASE("van de Hulst's slab that scatters evenly", "[gpu][image][published]")
         scene.lights = {DirectionalLight{toward(mu0), Rgb(pi)}};
         scene.camera.projection = Projection::orthographic;
         scene.camera.view_height = 1e-2;
-        scene.camera.position = glm::dvec3(0.0, 0.0, std::sqrt(0.75)) + 0.5 * up;
-        look_along(scene.camera, -scene.camera.position, up);
+        scene.camera.position = glm::dvec3(0.0, 0.0, std::sqrt(0.75)) + 0.5 * up_y;
+        look_along(scene.camera, -scene.camera.position, up_y);
         scene.picture = {8, 8, 0.0, 0.0, 8.0, 8.0};
         check(scene, value * mu0, fmt::format("van de Hulst, mu0 {}", mu0));
     }
@@ -65,7 +65,7 @@ TEST_CASE("van de Hulst's slab that scatters evenly", "[gpu][image][published]")
 
 TEST_CASE("printed fluxes of slabs", "[gpu][image][published]") {
     Scene forward = slab_scene(2.0, 0.9, 0.75); // van de Hulst, as quoted by Wang, Jacques and Zheng, "MCML" (1995)
-    forward.lights = {DirectionalLight{up, Rgb(1.0)}};
+    forward.lights = {DirectionalLight{up_y, Rgb(1.0)}};
     check_flux(forward, 1e-3, false, .09739, "forward, up");
     check_flux(forward, -2.001, true, .66096, "forward, down");
     for (const auto& [albedo, value] : {std::pair{.2, .0799451}, {1.0, .422922}}) { // Stamnes et al. (1988), test 1
@@ -81,7 +81,7 @@ TEST_CASE("printed fluxes of slabs", "[gpu][image][published]") {
     Scene layers = slab_scene(.25, .5); // Stamnes et al. (1988): below it another, under an even sky of flux 1
     layers.volumes.push_back(medium(Box{{0.0, -.375, 0.0}, {4.0, .25, 4.0}}, 1.0, .3));
     layers.background = Rgb(1.0 / pi);
-    layers.surfaces.emplace_back().shape = PlaneSurface{{0.0, -.51, 0.0}, up};
+    layers.surfaces.emplace_back().shape = PlaneSurface{{0.0, -.51, 0.0}, up_y};
     layers.surfaces.back().material.color = Rgb(0.0);
     check_flux(layers, 1e-3, false, .0929633, "layers, up");
     check_flux(layers, -.501, true, .513132, "layers, down");
@@ -103,7 +103,7 @@ TEST_CASE("the step cloud's columns", "[gpu][image][published][hard]") {
     scene.volumes = {medium(Box{{-.125, .125, 0.0}, {.25, .25, 1.0}}, 2.0 / .25, 1.0, .85),
                      medium(Box{{.125, .125, 0.0}, {.25, .25, 1.0}}, 18.0 / .25, 1.0, .85)};
     scene.periodic = Periodic{{-.25, 0.0, -.5}, {.25, 0.0, .5}};
-    scene.lights = {DirectionalLight{up, Rgb(1.0)}};
+    scene.lights = {DirectionalLight{up_y, Rgb(1.0)}};
     scene.settings.spp = 4096;
     for (const bool down : {false, true}) {
         read_flux(scene, down ? 0.0 : .25, down, {.5, 1.0}, 32, rows);

@@ -43,7 +43,7 @@ void check_against_reference(const Scene& scene, const std::string& name);
 // An estimate against exact values per pixel; the samples of a pixel must be many enough for the normal limit.
 Agreement agree_with_means(const Film& film, const std::vector<Rgb>& means, const std::string& name);
 
-// That a render here has the same mean everywhere.
+// That a render here has the mean `expected` in every pixel and channel.
 void check_means(const Scene& scene, double expected, const std::string& name);
 
 // Samples that are `if_escaped` with probability p[pixel], else `otherwise`. The number of escapes is binomial, and

@@ -53,6 +53,7 @@ Volume thin_cloud();
 // From z = -1 to 0 and so wide that what it lacks of an endless one is the light within 1e-4 of grazing.
 Volume slab(double tau, double albedo);
 
+// The scene, rendered so.
 Scene by(Scene scene, const char* integrator);
 
 // A square picture of the volume: the camera looks at `target` from `distance`, turned by the angles, and sees a field
@@ -71,7 +72,7 @@ struct LightsAbout {
     DirectionalLight beam{glm::normalize(glm::dvec3(-2.0, 1.0, -0.5)), {0.5, 1.0, 2.0}};
 };
 
-inline const glm::dvec3 up(0.0, 1.0, 0.0);
+inline const glm::dvec3 up_y(0.0, 1.0, 0.0);
 
 // From the upper right, behind the camera.
 DirectionalLight sunlight(Rgb irradiance = Rgb(3.0));
