@@ -39,6 +39,9 @@ mutations() {
     cat <<'END'
 coloured fog before surfaces without weight ~ shaders/stages/surface.glsl ~ lane.beta *= depth_weight(v, lane.beta, lane.walk.depth, false); ~ ; ~ [surfaces]
 null collisions lit beyond the depth limit ~ shaders/stages/collide.glsl ~ NEE == NEE_TENTATIVE && lane.path.depth < frame.max_depth ~ NEE == NEE_TENTATIVE && lane.path.depth <= frame.max_depth ~ [image]
+lamps of rough glass that light themselves ~ shaders/stages/collide.glsl ~ if (s.is_surface && row.body != NO_SURFACE && row.body == primitive_at(surface_at(lane.path)).surface) ~ if (false) ~ [surfaces]
+splats without room for peaks of phase functions ~ host/assets/phase_params.cpp ~ return 3.0 * peak; // Draine's ~ return 0.0 * peak; // Draine's ~ [particles]
+far balls weighed by the cosines of rounding ~ shaders/lights/families.glsl ~ vec2(0.5 / PI, 1.0 / light.area) ~ vec2(cosine / PI, 1.0 / light.area) ~ [particles]
 ground lit by the sun alone ~ host/assets/daylight.cpp ~ irradiance += angle * direction.y * radiance; ~ ; ~ [xml]
 sky's chromaticity by x alone ~ host/assets/daylight.cpp ~ zenith_[2] * ratio(y_) ~ zenith_[2] * ratio(x_) ~ [xml]
 sunlight through no air ~ host/assets/daylight.cpp ~ 0.008735 * std::pow ~ 0.0 * std::pow ~ [xml]
@@ -140,7 +143,7 @@ files told apart by name and size alone ~ host/methods/scene_hash.cpp ~ digest_o
 samples lost where a moment cannot be made ready ~ host/render/session.cpp ~ if (job_.checkpoint) // what was rendered ~ if (job_.checkpoint && device_scene_) // what was rendered ~ [motion]
 depth of single samples merged as if exact ~ host/cli/merge.cpp ~ * apart * apart ~ * 0.0 * apart ~ [merge]
 sums over pixels without a variance ~ host/cli/compare.cpp ~ if (is_correlated || a.samples[i] != 1 || b.samples[i] != 1) ~ if (true) ~ [compare]
-splats without room for what is seen ~ host/device_scene/emitter_table.cpp ~ counts ? 0.0 : brightest_of(scene, lights, surfaces, glow, sky, reach, bounded) ~ counts ? brightest_of(scene, lights, surfaces, glow, sky, reach, bounded) : 0.0 ~ [particles]
+splats without room for what is seen ~ host/device_scene/emitter_table.cpp ~ counts ? 0.0 : brightest_of( ~ counts ? 1e-30 : 0.0 * brightest_of( ~ [particles]
 maps that glow without particles ~ host/device_scene/emitter_table.cpp ~ channel_mean(emission.constant) + channel_mean(most_map_emission(scene.volumes[i])) ~ channel_mean(emission.constant) ~ [particles]
 places on textures not in the hash ~ host/methods/scene_hash.cpp ~ writer.add("place", glm::dvec3(places[corner], 0.0)); ~ (void)places; ~ [xml][surfaces]
 frames that are exposed otherwise passed over ~ host/report/requested_scene.cpp ~ if (const auto& exposure = scene.camera.exposure) ~ if (const auto& exposure = scene.camera.exposure; false) ~ [command]

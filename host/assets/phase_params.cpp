@@ -84,6 +84,18 @@ std::uint32_t phase_iterations(const Volume& volume, std::span<const shared::Pha
     return 0;
 }
 
+double phase_peak(const Volume& volume, std::span<const shared::PhaseNode> nodes) {
+    double peak = 0.0;
+    for (const shared::PhaseNode& node : nodes)
+        peak = std::max(peak, double(node.value));
+    if (!nodes.empty())
+        return peak;
+    const shared::PhaseParams params = phase_params(volume, {});
+    for (const double g : {std::abs(double(params.g)), std::abs(double(params.g2))})
+        peak = std::max(peak, (1.0 + g) / (4.0 * std::numbers::pi * (1.0 - g) * (1.0 - g)));
+    return 3.0 * peak; // Draine's is less than that of Henyey and Greenstein's with the same g
+}
+
 double mean_cosine(const Volume& volume, std::span<const shared::PhaseNode> nodes) {
     const PhaseDetails& details = volume.phase_details;
     switch (volume.phase) {

@@ -16,6 +16,9 @@ shared::PhaseParams phase_params(const Volume& volume, std::span<const shared::P
 // these.
 std::uint32_t phase_iterations(const Volume& volume, std::span<const shared::PhaseNode> nodes);
 
+// At least the function's largest value [1 / sr], and not three times that.
+double phase_peak(const Volume& volume, std::span<const shared::PhaseNode> nodes);
+
 // Mean of the cosine between the directions of travel before and after.
 double mean_cosine(const Volume& volume, std::span<const shared::PhaseNode> nodes);
 

@@ -143,7 +143,7 @@ void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
         ->group("Output");
     app.add_flag("-q,--quiet", render.quiet, "Print errors only")->group("Output");
     app.add_flag("--strict", render.strict,
-                 "End with code 5 if a cap was hit or a sample was not finite; refuse a pbrt scene of which "
+                 "End with code 5 if anything was cut short, dropped or cleaned; refuse a pbrt scene of which "
                  "something cannot be rendered")
         ->group("Output");
     app.add_flag("--version", texts.version, "Print the version")->group("Output");

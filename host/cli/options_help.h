@@ -34,8 +34,8 @@ Examples:
   vkvol cloud.xml --pixel 12,34 --sample 7 --trace       where that path went
 
 Exit codes: 0 done; 1 the render failed; 2 bad command line, scene or asset; 3 no usable device;
-4 compare found a difference; 5 caps hit or non-finite samples under --strict; 130 interrupted
-(what was rendered so far is written).)";
+4 compare found a difference; 5 something was cut short, dropped or
+cleaned, under --strict; 130 interrupted (what was rendered so far is written).)";
 
 inline constexpr const char* demo_description =
     "Renders the cloud that comes with the program, to see that all is well: cumulus.exr and cumulus.png here.";
@@ -78,7 +78,8 @@ inline constexpr const char* convert_description =
 
 inline constexpr const char* convert_footer =
     R"(vkvol SCENE.pbrt renders one without writing it. Names of files are written as the new scene finds
-them; grids, meshes and images stay where they are.)";
+them; grids, meshes and images stay where they are, and grids that stand in the scene, and clouds,
+are written beside the new one.)";
 
 inline constexpr const char* init_description =
     "Writes a scene file to start from: smoke above the ground, with a word on each element; or what suits a density "

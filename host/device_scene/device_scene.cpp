@@ -114,9 +114,10 @@ double DeviceScene::reach_of_all(const Scene& scene, const Assets& assets) const
 
 void DeviceScene::make_emitters(const Scene& scene, const Method& method, const Assets& assets) {
     const std::span<const shared::MediumParams> rows = media_.empty() ? std::span(frame_.media, 1) : media();
-    const EmitterTable table = make_emitter_table(
-        scene, method, lights_, surfaces_, glow_of(scene, assets.media, rows), assets.sky ? &*assets.sky : nullptr,
-        frame_.period, reach_of_all(scene, assets), origin_, double(frame_.crop_width) * frame_.crop_height);
+    const EmitterTable table =
+        make_emitter_table(scene, assets.media, method, lights_, surfaces_, glow_of(scene, assets.media, rows),
+                           assets.sky ? &*assets.sky : nullptr, frame_.period, reach_of_all(scene, assets), origin_,
+                           double(frame_.crop_width) * frame_.crop_height);
     frame_.particles = table.params;
     text_ += method.paths == PATHS_LIGHT ? ", by particles" : ", and by particles";
     buffers_.upload_emitters(device_, commands_, table);

@@ -9,6 +9,7 @@
 
 #include "alias_table.h"
 #include "camera_rays.h"
+#include "phase_params.h"
 #include "scene_facts.h"
 #include "sensor_params.h"
 
@@ -233,18 +234,21 @@ double usual_length(const LightTable& lights, const SurfaceTable& surfaces, glm:
     return farthest > 0.0 ? farthest : 1.0;
 }
 
-// The brightest value that a pixel may get: of sources seen themselves, or mirrored; and of points, which light what is
-// near them without bound, as from a thirty-thousandth of `reach`, so that what is lit from all of it has 24 bits.
-// `bounded`: whether something bounds the scene, about the origin.
-double brightest_of(const Scene& scene, const LightTable& lights, const SurfaceTable& surfaces, const Glow& glow,
-                    const SkyMap* sky, double reach, bool bounded) {
-    double brightest = std::max(channel_mean(scene.background), glow.most);
+// The brightest value that a pixel may get: of sources seen themselves, or mirrored; what media scatter of a light
+// without extent; and of points, which light what is near them without bound, as from a thirty-thousandth of `reach`,
+// so that what is lit from all of it has 24 bits. `bounded`: whether something bounds the scene, about the origin.
+double brightest_of(const Scene& scene, Media loaded, const LightTable& lights, const SurfaceTable& surfaces,
+                    const Glow& glow, const SkyMap* sky, double reach, bool bounded) {
+    double peak = 1.0, brightest = std::max(channel_mean(scene.background), glow.most);
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+        peak = std::max(peak, phase_peak(scene.volumes[i], loaded[i].phase_nodes));
     for (const shared::LightRow& light : lights.rows) {
-        double factor = 1.0;
+        double factor =
+            light.kind == LIGHT_DIRECTIONAL || light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT ? peak : 1.0;
         if ((light.kind & LIGHT_PLACED) && !(light.kind & LIGHT_SHAPED)) {
             const double beyond = bounded ? double(glm::length(light.position)) - reach : 0.0;
             const double nearest = std::max(beyond, std::ldexp(reach, -15));
-            factor = 1.0 / (nearest * nearest);
+            factor /= nearest * nearest;
         }
         brightest = std::max(brightest, factor * channel_mean(light.radiance));
     }
@@ -297,7 +301,7 @@ void keep_apart(std::vector<shared::LightRow>& lights, const SurfaceTable& surfa
     }
 }
 
-EmitterTable make_emitter_table(const Scene& scene, const Method& method, const LightTable& lights,
+EmitterTable make_emitter_table(const Scene& scene, Media loaded, const Method& method, const LightTable& lights,
                                 const SurfaceTable& surfaces, const Glow& glow, const SkyMap* sky,
                                 const shared::PeriodParams& period, double radius, glm::dvec3 origin, double pixels) {
     EmitterTable table;
@@ -332,7 +336,7 @@ EmitterTable make_emitter_table(const Scene& scene, const Method& method, const 
     // But a particle brings its part of all that its light sends out, and numbers have to hold that.
     shown = std::max(shown, emitters.power() * 0x1p-20);
     // A sensor counts particles, and sees nothing itself.
-    double brightest = counts ? 0.0 : brightest_of(scene, lights, surfaces, glow, sky, reach, bounded);
+    double brightest = counts ? 0.0 : brightest_of(scene, loaded, lights, surfaces, glow, sky, reach, bounded);
     if (!counts && method.paths == PATHS_LIGHT)
         brightest = std::max(brightest, brightest_in_view(scene, lights, surfaces, eye, emitters.power(), pixels));
     table.params.unit =

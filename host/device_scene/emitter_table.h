@@ -33,7 +33,7 @@ void keep_apart(std::vector<shared::LightRow>& lights, const SurfaceTable& surfa
 // with less than a tenth of an even chance. `radius`: of a ball about the origin that holds all there is, and a sensor
 // that counts particles; not finite where nothing does. `sky`: its map, if any. `origin` of render space; `pixels`
 // of the window.
-EmitterTable make_emitter_table(const Scene& scene, const Method& method, const LightTable& lights,
+EmitterTable make_emitter_table(const Scene& scene, Media loaded, const Method& method, const LightTable& lights,
                                 const SurfaceTable& surfaces, const Glow& glow, const SkyMap* sky,
                                 const shared::PeriodParams& period, double radius, glm::dvec3 origin, double pixels);
 

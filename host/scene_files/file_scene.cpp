@@ -156,6 +156,8 @@ std::string assumed_line(const std::filesystem::path& file, const FileView& view
                     ? fmt::format(", \"{}\" glows up to {:g} K ({:.4g} per unit + {:g})", view.temperature,
                                   m.kelvin->hottest, m.kelvin->scale, m.kelvin->offset)
                     : fmt::format(", \"{}\" glows as kelvin", view.temperature);
+    else if (!view.temperature.empty())
+        text += fmt::format(", \"{}\" is too cool to glow", view.temperature);
     return one_line(text + (up == Up::z ? ", sun and sky, z up" : ", sun and sky, y up (else --up z)"));
 }
 
@@ -188,8 +190,6 @@ FileView view_file(const std::filesystem::path& file, const Picture& picture, Up
     for (int axis = 0; axis < 3; ++axis)
         view.orbit.target[axis] = rounded(camera.position[axis] + distance * forward[axis], decimals);
     view.medium = suit_medium(density, temperature ? &*temperature : nullptr, camera, picture);
-    if (!view.medium.kelvin)
-        view.temperature.clear();
     return view;
 }
 

@@ -18,7 +18,7 @@ Picture file_picture();
 
 // What is chosen for a file; all of it follows from the file, the picture's shape and what is up.
 struct FileView {
-    std::string grid, temperature; // names of grids; temperature: empty without one that glows
+    std::string grid, temperature; // names of grids; temperature: empty without one
     Orbit orbit;
     double fov = 0.0; // degrees
     SuitableMedium medium;

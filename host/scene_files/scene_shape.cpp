@@ -58,7 +58,7 @@ bool SceneReader::is_behind_shape(const char* name) const {
 }
 
 XmlElement SceneReader::shape_element(pugi::xml_node scope, const std::string& integrator) const {
-    const Integrator* row = find_integrator(integrator);
+    const Integrator* row = find_integrator(integrator.empty() ? "deltaTracking" : integrator); // the original's default
     const bool of_thesis = row && row->origin != Integrator::Origin::own;
     XmlElement found(document_, {});
     for (const char* name : {"densityField", "sphere", "box", "everywhere", "models"}) {
@@ -79,7 +79,7 @@ XmlElement SceneReader::shape_element(pugi::xml_node scope, const std::string& i
                 const bool takes_models = row->origin == Integrator::Origin::thesis_models;
                 const XmlElement& left_out = takes_models ? found : element;
                 left_out.warn(fmt::format("<{}> is left out: {} renders {}, as in the original renderer",
-                                          left_out.name(), integrator, takes_models ? "models" : "density fields"));
+                                          left_out.name(), row->name, takes_models ? "models" : "density fields"));
                 if (takes_models)
                     found = element;
                 continue;

@@ -23,12 +23,13 @@ float sensor_share(vec3 position, vec3 ray, float distance) {
 }
 
 // x: of a vertex that scatters into all directions, times the square of its distance, or, if negative, as it is; y: of one that does not, as
-// mirrors. `cosine`: at a lamp. `pdf`: of a direction from afar; 0 if no other could be.
+// mirrors. `cosine`: at a lamp that is flat; of a ball far away it would be rounding alone, and any
+// function will do. `pdf`: of a direction from afar; 0 if no other could be.
 vec2 light_shares(LightRow light, float cosine, float pdf) {
     float radius = frame.particles.radius;
     vec2 shares = vec2(0.0);
     if ((light.kind & LIGHT_SHAPED) != 0u)
-        shares = vec2(cosine / PI, 4.0 / (light.area * (light.kind == LIGHT_SPHERE ? 4.0 : 1.0)));
+        shares = light.kind == LIGHT_SPHERE ? vec2(0.5 / PI, 1.0 / light.area) : vec2(cosine / PI, 4.0 / light.area);
     else if ((light.kind & LIGHT_PLACED) != 0u)
         shares = vec2(INV_4PI, CERTAIN);
     else if (radius > 0.0)
@@ -41,16 +42,9 @@ vec2 shares_at(vec2 shares, float distance) {
     return vec2(shares.x < 0.0 ? -shares.x : shares.x / max(distance * distance, 1.0e-30), shares.y);
 }
 
-float lamp_cosine(LightRow light, vec3 from, vec3 direction, float distance) {
-    vec3 normal = light.direction;
-    if (light.kind == LIGHT_SPHERE)
-        normal = normalize(from + distance * direction - light.position);
-    return max(-dot(normal, direction), 0.0);
-}
-
 // Shares of a light that a path finds along `direction`.
 vec2 shares_of_found(LightRow light, vec3 from, vec3 direction, float distance, float pdf) {
-    float cosine = (light.kind & LIGHT_SHAPED) != 0u ? lamp_cosine(light, from, direction, distance) : 1.0;
+    float cosine = max(-dot(light.direction, direction), 0.0);
     return shares_at(light_shares(light, cosine, pdf), distance);
 }
 

@@ -27,6 +27,11 @@ void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spec
     label |= group_label(row.group);
     vec3 light = drawn.light * scatter_value(s, lane.path.direction, drawn.direction) *
                  (drawn.pdf > 0.0 ? weight_of_look(drawn.pdf, pdf) : 1.0);
+#ifdef SURFACES
+    // No lamp lights itself, through glass that it is of either.
+    if (s.is_surface && row.body != NO_SURFACE && row.body == primitive_at(surface_at(lane.path)).surface)
+        light = vec3(0.0);
+#endif
     if (WEIGHS)
         light *= weight_of_found(lane, shares_of_found(row, position, drawn.direction, drawn.distance, 0.0), true);
     if (LOOKS_ALONG && !is_surface(s))

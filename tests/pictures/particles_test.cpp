@@ -447,6 +447,33 @@ TEST_CASE("what is seen of a lamp is all there, however little of it", "[gpu][pa
     CHECK_AGREEMENT(agree_with_means(result.film, std::vector<Rgb>(400, Rgb(1.0)), "lamp"));
 }
 
+// All of a picture that looks along a beam is the peak of the phase function.
+TEST_CASE("peaks of phase functions fit into splats", "[gpu][particles]") {
+    Scene scene = seen(medium(Sphere{{0.0, 0.0, 0.0}, 1.0}, 0.5, 1.0, 0.99999), 1.0, {});
+    scene.background = Rgb(0.0);
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.view_height = 1.0;
+    scene.lights = {DirectionalLight{-camera_rotation(scene.camera)[2], Rgb(1.0)}};
+    scene.settings.spp = 256;
+    const Film paths = render_here(by(scene, "ratioTracking"), 1).film;
+    CHECK(mean_of(paths) > 1e7);
+    for (const char* integrator : {"lightTracing", "bidirectional"}) {
+        const RenderResult particles = render_here(by(scene, integrator), 2);
+        CHECK(particles.counts.non_finite == 0);
+        CHECK_AGREEMENT(agree(particles.film, paths, integrator));
+    }
+}
+
+// So far away that rounding knows nothing of the side from which it is seen.
+TEST_CASE("a distant lamp is shared out by particles and paths", "[gpu][particles]") {
+    Scene scene = seen(medium(Sphere{{0.0, 0.0, 0.0}, 1.5}, 1.5, 0.9), 4.0,
+                       {SphereLight{{600.0, 700.0, 400.0}, 1e-4, Rgb(1e13)}});
+    scene.background = Rgb(0.0);
+    scene.settings.spp = 1024;
+    CHECK_AGREEMENT(
+        agree(render_here(by(scene, "bidirectional"), 1).film, render_here(by(scene, "ratioTracking"), 2).film, "far"));
+}
+
 TEST_CASE("splats are as fine in units of any length", "[gpu][particles]") {
     const auto mean = [](double length) {
         const Scene scene = parse_scene(

@@ -624,8 +624,8 @@ TEST_CASE("looks from along flights find the same light beside surfaces", "[gpu]
 }
 
 TEST_CASE("surfaces that shine are lamps with bodies", "[gpu][image][surfaces]") {
-    // All shapes, from both sides, before and behind each other, as mirrors and glass show them; against the reference,
-    // which meets them by chance.
+    // All shapes, from both sides, before and behind each other, as mirrors and glass show them, one itself of rough
+    // glass; against the reference, which meets them by chance.
     Scene scene = still_life();
     scene.lights = {sunlight({0.3, 0.25, 0.2})};
     scene.surfaces.pop_back();
@@ -637,6 +637,7 @@ TEST_CASE("surfaces that shine are lamps with bodies", "[gpu][image][surfaces]")
         surface.shines_both_ways = both;
     };
     add(BallSurface{{0.1, -0.55, 1.2}, 0.35}, {1.0, 0.6, 0.3}, false);
+    scene.surfaces.back().material = frosted(MaterialKind::dielectric, 0.4);
     add(BallSurface{{1.9, 1.0, 0.5}, 0.3}, {0.5, 0.9, 0.4}, true);
     add(DiskSurface{{-1.7, 0.9, -0.4}, glm::normalize(glm::dvec3(-1.0, 0.6, -0.5)), 0.5}, {1.5, 1.0, 0.5}, true);
     add(RectangleSurface{{0.0, 1.3, -1.0}, {0.6, 0.0, 0.0}, {0.0, 0.3, 0.2}}, {0.4, 0.5, 1.2}, false);

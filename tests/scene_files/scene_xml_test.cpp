@@ -142,12 +142,11 @@ TEST_CASE("between models and a density field the original's integrators decide"
         CHECK(std::holds_alternative<MeshFiles>(both(name).volumes.at(0).shape));
         CHECK(warns(both(name), "<densityField> is left out"));
     }
-    for (const char* name : {"nanoVDBSimple", "nanoVDBEmission", "deltaTracking", "ratioTracking"}) {
+    for (const char* name : {"", "nanoVDBSimple", "nanoVDBEmission", "deltaTracking", "ratioTracking"}) {
         CHECK(std::holds_alternative<GridFile>(both(name).volumes.at(0).shape));
         CHECK(warns(both(name), "<models> is left out"));
     }
-    for (const char* name : {"rayMarching", ""})
-        CHECK_THROWS_WITH(both(name), Catch::Contains("a <models> beside the <densityField>"));
+    CHECK_THROWS_WITH(both("rayMarching"), Catch::Contains("a <models> beside the <densityField>"));
     CHECK_THAT(error_of("<sphere/><models><model>a.obj</model></models>"), Catch::Contains("one shape"));
 }
 

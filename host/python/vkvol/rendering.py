@@ -35,7 +35,7 @@ class Session:
     alpha: leave out what is behind the media, for compositing.
     frame: move the camera so that the media fill the picture.
     grid: a density file in place of the scene's.
-    device: "auto", a number or a part of a name of devices(), or "cpu".
+    device: "auto", a number, UUID or part of a name of devices(), "0,1" for several, or "cpu".
     schedule: "auto", "fused" or "staged".
     validate: under the Vulkan validation layer, whose objections are errors.
     strict: what of a pbrt scene cannot be rendered is an error; so is a picture for which something was cut short.
