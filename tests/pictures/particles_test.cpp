@@ -6,6 +6,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "camera_view.h"
 #include "method.h"
 #include "preset.h"
 #include "scene_hash.h"
