@@ -43,29 +43,6 @@ struct Member {
     double cell;    // world units, as it has them by itself
 };
 
-// Cell length of a volume that is everywhere and has layers: as thick as the slabs that bound them, or thicker, as long
-// as that adds no more than a null collision for two cells.
-double layered_cell(const Volume& volume, double slab, double sigma_t) {
-    const Layers& layers = *volume.layers;
-    const double most = sigma_t * layer_range(volume, layers.bottom, layers.top).most;
-    return std::min(layers.top - layers.bottom, std::max(slab, 0.5 / most));
-}
-
-std::vector<Member> members_of(const Scene& scene, Media media) {
-    std::vector<Member> members;
-    for (std::size_t i = 0; i < media.size(); ++i) {
-        const Volume& volume = scene.volumes[i];
-        const DensityField* field = media[i].field ? &*media[i].field : nullptr;
-        if (!has_matter(volume, media[i]))
-            continue;
-        const double sigma_t = largest(world_sigma_t(volume, field));
-        const double cell = usual_cell(volume, media[i]);
-        members.push_back({static_cast<std::uint32_t>(i), volume, media[i], medium_to_world(volume, media[i]), sigma_t,
-                           is_everywhere(volume) && volume.layers ? layered_cell(volume, cell, sigma_t) : cell});
-    }
-    return members;
-}
-
 // Where in the world a volume that is everywhere and has layers has its height: an axis, and the factor and the offset
 // that make a height of it. Upright in cells that go on for ever, or these would have no end of it.
 struct Upright {
@@ -92,6 +69,30 @@ Upright upright(const Volume& volume) {
     found.factor = most;
     found.offset = to_unmoved[3][volume.layers->axis];
     return found;
+}
+
+// Cell length of a volume that is everywhere and has layers: as thick as the slabs that bound them, or thicker, as long
+// as that adds no more than a null collision for two cells.
+double layered_cell(const Volume& volume, double slab, double sigma_t) {
+    const Layers& layers = *volume.layers;
+    const double of_height = 1.0 / std::abs(upright(volume).factor); // in the world
+    const double most = sigma_t * layer_range(volume, layers.bottom, layers.top).most;
+    return std::min((layers.top - layers.bottom) * of_height, std::max(slab * of_height, 0.5 / most));
+}
+
+std::vector<Member> members_of(const Scene& scene, Media media) {
+    std::vector<Member> members;
+    for (std::size_t i = 0; i < media.size(); ++i) {
+        const Volume& volume = scene.volumes[i];
+        const DensityField* field = media[i].field ? &*media[i].field : nullptr;
+        if (!has_matter(volume, media[i]))
+            continue;
+        const double sigma_t = largest(world_sigma_t(volume, field));
+        const double cell = usual_cell(volume, media[i]);
+        members.push_back({static_cast<std::uint32_t>(i), volume, media[i], medium_to_world(volume, media[i]), sigma_t,
+                           is_everywhere(volume) && volume.layers ? layered_cell(volume, cell, sigma_t) : cell});
+    }
+    return members;
 }
 
 AxisBox box_around(const std::vector<Member>& members) {
@@ -256,6 +257,8 @@ private:
     }
 
     void raise(std::size_t entry, float bound) {
+        if (!(bound > 0.0f)) // of densities that single precision has none of, times sigma_t
+            return;
         if (bounds_[entry] == 0.0f)
             touched_.push_back(static_cast<std::uint32_t>(entry));
         bounds_[entry] = std::max(bounds_[entry], bound);
@@ -378,7 +381,8 @@ void fill(const std::vector<Member>& members, PieceStore& pieces, Superposition&
     std::vector<float> bounds(whole.entries(), 0.0f);
     for (const Member& member : members)
         touch(member, whole.edge, [&](std::uint32_t entry, float bound) {
-            bounds[entry] += bound;
+            // Upwards, by more than the device's sum of as many terms may be rounded.
+            bounds[entry] = std::nextafter(bounds[entry] + bound, std::numeric_limits<float>::infinity());
             found.push_back({entry, member.number});
         });
     list_overlaps(found, whole);

@@ -90,7 +90,7 @@ const Estimator& most_efficient(const BenchRequest& request, const std::vector<E
                                 Workshop& workshop, const ReferenceWish& wish) {
     constexpr std::uint32_t samples = 8;
     const Estimator* best = &candidates.front();
-    double least = 0.0;
+    std::optional<double> least;
     for (const Estimator& candidate : candidates) {
         if (candidates.size() == 1 || interrupted())
             break;
@@ -98,7 +98,7 @@ const Estimator& most_efficient(const BenchRequest& request, const std::vector<E
             const RenderResult result =
                 render_whole(request, candidate, workshop, samples, ~wish.seed, 0.1 * wish.seconds);
             const double cost = relative_variance(result.film, result.film) * result.render_seconds;
-            if (result.samples == samples && (least == 0.0 || cost < least)) {
+            if (result.samples == samples && (!least || cost < *least)) {
                 least = cost;
                 best = &candidate;
             }

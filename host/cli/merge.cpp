@@ -52,6 +52,9 @@ void check_pair(const MergeInput& a, const MergeInput& b) {
 }
 
 void check_input(const MergeInput& input) {
+    if (input.film.layer("noisy"))
+        throw InputError(
+            fmt::format("{}: is denoised, and knows no variance; merge noisy images, and denoise the sum", input.name));
     const std::vector<std::uint32_t>& samples = input.film.samples;
     if (std::all_of(samples.begin(), samples.end(), [](std::uint32_t n) { return n == 0; }))
         throw InputError(fmt::format("{}: does not say how many samples its pixels have; merge needs images written by "
@@ -145,14 +148,18 @@ FilmLayer merge_collisions(const std::vector<MergeInput>& inputs, std::size_t wh
     FilmLayer merged{first.name, {}, {}};
     for (std::size_t i = 0; i < pixels; ++i)
         merged.mean.emplace_back(weights[i] > 0.0 ? sums[i] / weights[i] : glm::dvec3(0.0));
-    // How far the parts lie apart is scatter of their samples as well; of single samples all there is.
+    // How far the parts lie apart is scatter of their samples as well; of single samples all there is. It counts by the
+    // sum of the squares of samples' weights, which coverage's variance knows.
     for (const MergeInput& input : inputs) {
         const FilmLayer& layer = input.film.layers[which];
         const FilmLayer* coverage = input.film.layer("coverage");
         for (std::size_t i = 0; coverage && i < input.film.pixel_count(); ++i) {
             const std::size_t at = place_in(window, input.film, i);
             const glm::dvec3 apart = glm::dvec3(layer.mean[i]) - glm::dvec3(merged.mean[at]);
-            squares[at] += double(coverage->mean[i].x) * input.film.samples[i] * apart * apart;
+            const double n = input.film.samples[i], w = coverage->mean[i].x;
+            const double scatter =
+                coverage->variance.empty() ? w * (1.0 - w) : double(coverage->variance[i].x) * (n - 1.0);
+            squares[at] += n * (scatter + w * w) * apart * apart;
         }
     }
     for (std::size_t i = 0; i < pixels; ++i) {

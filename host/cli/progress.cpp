@@ -53,29 +53,33 @@ std::uint32_t Progress::samples_to_goal() const {
     return static_cast<std::uint32_t>(std::clamp(needed, 1.0, double(total_)));
 }
 
-void Progress::update(std::uint32_t samples, std::optional<double> noise) {
+void Progress::update(double samples, std::optional<double> noise) {
     if (mode_ == Mode::none)
         return;
     const Clock::time_point now = Clock::now();
+    if (!begun_at_) {
+        begun_at_ = samples;
+        start_ = now;
+    }
     const double seconds = std::chrono::duration<double>(now - start_).count();
     if (noise) {
         noise_ = noise;
         noise_samples_ = samples;
     }
     const std::uint32_t total = samples_to_goal();
-    const double of_samples = total > 0 ? double(samples) / total : 0.0;
+    const double of_samples = total > 0 ? samples / total : 0.0;
     const double of_time = time_limit_ && *time_limit_ > 0.0 ? seconds / *time_limit_ : 0.0;
     const double fraction = std::min(std::max(of_samples, of_time), 1.0);
     double remaining = std::numeric_limits<double>::infinity();
-    if (samples > begun_at_)
-        remaining = seconds * (double(total) - std::min(samples, total)) / (samples - begun_at_);
+    if (samples > *begun_at_ && (noise_ || !noise_goal_))
+        remaining = seconds * (total - std::min(samples, double(total))) / (samples - *begun_at_);
     if (time_limit_)
         remaining = std::min(remaining, std::max(*time_limit_ - seconds, 0.0));
     const bool foresees = std::isfinite(remaining);
 
     if (mode_ == Mode::json) {
         tell(out_, R"({{"progress": {:.4f}, "samples": {}, "total": {}, "seconds": {:.3f}, "remaining": {:.1f}, )",
-             fraction, samples, total, seconds, foresees ? remaining : 0.0);
+             fraction, std::floor(samples), total, seconds, foresees ? remaining : 0.0);
         tell(out_, "\"noise\": {}}}\n", noise_ ? fmt::format("{:.6g}", *noise_) : "null");
         std::fflush(out_);
         return;
@@ -83,7 +87,7 @@ void Progress::update(std::uint32_t samples, std::optional<double> noise) {
     const bool is_known = of_time <= of_samples && (!noise_goal_ || noise_);
     const std::string of_total = is_known ? fmt::format("/{}", total) : "";
     const std::string status =
-        fmt::format("{}{} samples, {} left{}", samples, of_total, foresees ? duration_text(remaining) : "?",
+        fmt::format("{}{} samples, {} left{}", std::floor(samples), of_total, foresees ? duration_text(remaining) : "?",
                     noise_ ? fmt::format(", noise {:.2g} %", 100.0 * *noise_) : "");
     if (mode_ == Mode::lines) {
         if (const int tenth = static_cast<int>(fraction * 10.0); tenth > last_tenth_) {

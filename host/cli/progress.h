@@ -24,10 +24,9 @@ public:
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    // Samples per pixel that there were before, and took none of the time.
-    void begin_at(std::uint32_t samples) { begun_at_ = samples; }
-    // `noise`: the picture's at present, see film.h; the last that was known is shown until the next is.
-    void update(std::uint32_t samples, std::optional<double> noise = std::nullopt);
+    // Samples per pixel, in part perhaps. Time begins with the first: what there is by then took none of it. `noise`:
+    // the picture's at present, see film.h; the last that was known is shown until the next is.
+    void update(double samples, std::optional<double> noise = std::nullopt);
 
     // Removes the bar, so that other lines can be printed. Called twice it does nothing.
     void finish();
@@ -44,11 +43,11 @@ private:
     std::optional<double> time_limit_;
     std::optional<double> noise_goal_;
     std::FILE* out_;
-    std::uint32_t begun_at_ = 0;
+    std::optional<double> begun_at_;
     Clock::time_point start_;
     Clock::time_point last_draw_;
     std::optional<double> noise_;
-    std::uint32_t noise_samples_ = 0; // of which it is the noise
+    double noise_samples_ = 0.0; // of which it is the noise
     int last_tenth_ = -1;
     bool drawn_ = false;
 };

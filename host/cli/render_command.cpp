@@ -96,13 +96,11 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
     job.interrupted = interrupted;
     Progress progress(options.progress, options.quiet || options.trace || options.dry_run, scene.settings.spp,
                       options.time_limit, options.noise_goal);
-    if (from)
-        progress.begin_at(from->done);
     std::future<void> codec;
     job.progress = [&](double samples, std::optional<double> noise) {
         if (codec.valid())
             codec.get(); // before more is rendered than can be kept
-        progress.update(static_cast<std::uint32_t>(samples), noise);
+        progress.update(samples, noise);
     };
     const std::vector<const Device*> devices = workshop.devices(options.device);
     const Device& device = *devices.front();

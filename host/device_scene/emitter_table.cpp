@@ -234,14 +234,29 @@ double usual_length(const LightTable& lights, const SurfaceTable& surfaces, glm:
     return farthest > 0.0 ? farthest : 1.0;
 }
 
-// The brightest value that a pixel may get: of sources seen themselves, or mirrored; what media scatter of a light
-// without extent; and of points, which light what is near them without bound, as from a thirty-thousandth of `reach`,
-// so that what is lit from all of it has 24 bits. `bounded`: whether something bounds the scene, about the origin.
+// The most, roughly, that facets turn light into a direction [1 / sr]: metal's, or glass', which refracts into fewer
+// the nearer its index is to 1.
+double facet_peak(const shared::SurfaceRow& surface) {
+    const double by_facets = 1.0 / (4.0 * pi * double(surface.roughness) * surface.roughness);
+    if (surface.material == MATERIAL_ROUGH_CONDUCTOR)
+        return by_facets;
+    if (surface.material != MATERIAL_ROUGH_DIELECTRIC)
+        return 0.0;
+    const double index = std::max(double(surface.eta.x), 1.0 / surface.eta.x);
+    return by_facets * std::max(1.0, 4.0 * index * index / ((index - 1.0) * (index - 1.0)));
+}
+
+// The brightest value that a pixel may get: of sources seen themselves, or mirrored; what media and facets scatter of a
+// light // without extent; and of points, which light what is near them without bound, as from a thirty-thousandth of
+// `reach`, so that what is lit from all of it has 24 bits. `bounded`: whether something bounds the scene, about the
+// origin.
 double brightest_of(const Scene& scene, Media loaded, const LightTable& lights, const SurfaceTable& surfaces,
                     const Glow& glow, const SkyMap* sky, double reach, bool bounded) {
     double peak = 1.0, brightest = std::max(channel_mean(scene.background), glow.most);
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         peak = std::max(peak, phase_peak(scene.volumes[i], loaded[i].phase_nodes));
+    for (const shared::SurfaceRow& surface : surfaces.rows)
+        peak = std::max(peak, facet_peak(surface));
     for (const shared::LightRow& light : lights.rows) {
         double factor =
             light.kind == LIGHT_DIRECTIONAL || light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT ? peak : 1.0;

@@ -356,7 +356,8 @@ private:
     void clean_quantised(std::byte* leaf, glm::ivec3 origin) {
         const float minimum = read_float(leaf + leaf_minimum);
         const float quantum = read_float(leaf + leaf_quantum);
-        const float highest = 65535.0f * quantum + minimum;
+        const auto codes = static_cast<float>((1u << (1u << log2_bits(field_.type, leaf))) - 1u);
+        const float highest = codes * quantum + minimum;
         if (!std::isfinite(minimum) || !std::isfinite(quantum) || !std::isfinite(highest)) {
             std::memset(leaf + leaf_minimum, 0, 8);
             for (int n = 0; n < 512; ++n)

@@ -196,7 +196,7 @@ void Session::report_noise() {
     if (!job_.progress || watch_.seconds() < next_noise_)
         return;
     next_noise_ = watch_.seconds() + noise_seconds;
-    develop_film();
+    develop_pixels();
     job_.progress(done_, relative_noise(result_.film));
 }
 
@@ -235,7 +235,7 @@ std::uint32_t Session::first_check() const {
 bool Session::is_good_enough() {
     if (!job_.noise_goal || batch_ > 0 || done_ < first_check() || !std::has_single_bit(done_))
         return false;
-    develop_film();
+    develop_pixels();
     const std::optional<double> noise = relative_noise(result_.film);
     if (job_.progress)
         job_.progress(done_, noise);
@@ -366,6 +366,13 @@ void Session::gather() {
 }
 
 void Session::develop_film() {
+    develop_pixels();
+    result_.film.layers = develop_layers(film_scene_.plan, read_layers(commands_, bands_, width(), film_scene_.layers),
+                                         result_.film.samples, film_scene_.origin);
+}
+
+// Without layers, which noise is not judged by.
+void Session::develop_pixels() {
     bring_home();
     Film& film = result_.film;
     film.is_premultiplied = scene_.holds_out;
@@ -379,8 +386,6 @@ void Session::develop_film() {
     if (method_.paths != PATHS_CAMERA && !moving_ && done_ > 0)
         if (const auto of_sample = variance_of_sums(read_sums(commands_, bands_, width())))
             film.sum_variance = *of_sample / double(done_);
-    film.layers = develop_layers(film_scene_.plan, read_layers(commands_, bands_, width(), film_scene_.layers),
-                                 film.samples, film_scene_.origin);
 }
 
 RenderResult render(const Device& device, const Scene& scene, const RenderJob& job) {

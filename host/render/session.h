@@ -176,6 +176,7 @@ private:
     double progress_of(const Band& band) const;
     void gather();
     void develop_film();
+    void develop_pixels();
 
     // Several devices: session_devices.cpp.
     void make_followers(const Scene& scene);

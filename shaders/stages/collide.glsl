@@ -28,8 +28,9 @@ void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spec
     vec3 light = drawn.light * scatter_value(s, lane.path.direction, drawn.direction) *
                  (drawn.pdf > 0.0 ? weight_of_look(drawn.pdf, pdf) : 1.0);
 #ifdef SURFACES
-    // No lamp lights itself, through glass that it is of either.
-    if (s.is_surface && row.body != NO_SURFACE && row.body == primitive_at(surface_at(lane.path)).surface)
+    // Nothing comes through a face from what lies in it, as lamps that are of rough glass themselves.
+    float beyond = s.is_surface ? -dot(s.bsdf.face, drawn.direction) : 0.0;
+    if (beyond > 0.0 && drawn.distance * beyond <= 2.0 * s.apart)
         light = vec3(0.0);
 #endif
     if (WEIGHS)

@@ -11,14 +11,14 @@ float fresnel_dielectric(float cosine, float eta) {
     return square > 0.0 ? 0.5 * (parallel * parallel + across * across) : 1.0;
 }
 
-// eta + i k: a conductor's index over that before it. In real numbers (Lagarde, "Memo on Fresnel Equations", 2013).
+// eta + i k: a conductor's index over that before it. In real numbers (Lagarde, "Memo on Fresnel Equations", 2013). 0 where it is 1 and the cosine 0.
 vec3 fresnel_conductor(float cosine, vec3 eta, vec3 k) {
     float c = cosine * cosine, s = 1.0 - c;
     vec3 eta2 = eta * eta, k2 = k * k;
     vec3 t0 = eta2 - k2 - s;
     vec3 both = sqrt(t0 * t0 + 4.0 * eta2 * k2); // a^2 + b^2
     vec3 a = sqrt(max(0.5 * (both + t0), vec3(0.0)));
-    vec3 across = (both + c - 2.0 * a * cosine) / (both + c + 2.0 * a * cosine);
+    vec3 across = (both + c - 2.0 * a * cosine) / max(both + c + 2.0 * a * cosine, vec3(1.0e-30));
     vec3 parallel = across * (c * both + s * s - 2.0 * a * cosine * s) / (c * both + s * s + 2.0 * a * cosine * s);
     return 0.5 * (across + parallel);
 }

@@ -192,6 +192,7 @@ TEST_CASE("what is no closed surface is refused, with the remedy", "[mesh]") {
     CHECK_THAT(directory.error(cube + "f 1 2\n"), Contains("fewer than three"));
     for (const std::string number : {"nan", "inf", "1e400", "-1e12", "abc", ""})
         CHECK_THAT(directory.error("# one\nv 0 1 " + number + "\n" + cube), Contains(":2:") && Contains("finite"));
+    CHECK_THAT(directory.error("vt 0 1e39\n" + cube), Contains("vt 0 inf before face 1") && Contains("finite"));
     CHECK_THAT(directory.error(""), Contains("no faces"));
     CHECK_THAT(directory.error(cube_vertices), Contains("no faces"));
     CHECK_THAT(directory.error(std::string("\x7f"

@@ -317,6 +317,7 @@ TEST_CASE("variances of sums are merged, and compared by", "[cpu][merge][compare
 }
 
 TEST_CASE("depths of single samples know their scatter once merged", "[cpu][merge]") {
+    const float weight = GENERATE(1.0f, 0.25f); // alike, of all: how much of each sample collides changes nothing
     std::vector<MergeInput> parts;
     double mean = 0.0, squares = 0.0;
     for (int k = 0; k < 16; ++k) {
@@ -324,7 +325,8 @@ TEST_CASE("depths of single samples know their scatter once merged", "[cpu][merg
         const float depth = 3.0f + 0.25f * float(k % 5);
         film.layers.push_back({"depth", std::vector<glm::vec3>(film.pixel_count(), glm::vec3(depth)),
                                std::vector<glm::vec3>(film.pixel_count(), glm::vec3(0.0f))});
-        film.layers.push_back({"coverage", std::vector<glm::vec3>(film.pixel_count(), glm::vec3(1.0f)), {}});
+        film.layers.push_back({"coverage", std::vector<glm::vec3>(film.pixel_count(), glm::vec3(weight)),
+                               std::vector<glm::vec3>(film.pixel_count(), glm::vec3(0.0f))});
         parts.push_back(input(std::to_string(k), film, k, 1));
         mean += depth / 16.0;
         squares += depth * depth / 16.0;

@@ -465,6 +465,16 @@ TEST_CASE("peaks of phase functions fit into splats", "[gpu][particles]") {
     }
 }
 
+TEST_CASE("highlights of facets fit into splats", "[gpu][particles]") {
+    const Scene scene = parse_scene(R"(<options><surfaces><box width="2" height=".2" depth="2" material="dielectric"
+        ior="1.1" roughness=".001"/></surfaces><lights><directional y="1" r="1" g="1" b="1"/></lights>
+        <camera y="-5" pitch="90" projection="orthographic" viewHeight="1"/><width>8</width><height>8</height>
+        <rayPerPixelCount>256</rayPerPixelCount></options>)",
+                                    "pane.xml");
+    CHECK(mean_of(render_here(by(scene, "ratioTracking"), 1).film) > 1e6);
+    CHECK(render_here(by(scene, "bidirectional"), 2).counts.non_finite == 0);
+}
+
 // So far away that rounding knows nothing of the side from which it is seen.
 TEST_CASE("a distant lamp is shared out by particles and paths", "[gpu][particles]") {
     Scene scene = seen(medium(Sphere{{0.0, 0.0, 0.0}, 1.5}, 1.5, 0.9), 4.0,

@@ -210,6 +210,17 @@ TEST_CASE("a domain may be moved by its own size, and its camera by any number o
     CHECK_AGREEMENT(agree(film, render_here(halved, 3).film, "cut elsewhere"));
 }
 
+TEST_CASE("what is flat repeats as well", "[gpu][image][periodic][surfaces]") {
+    // Aslant, two domains wide and four deep, a quarter of each of which shines.
+    const Scene scene = parse_scene(R"(<options><periodic x="-1 1" z="-1 1"/>
+        <surfaces><rectangle lookAt="0 1 0"><emission r="1" g="1" b="1"/></rectangle></surfaces>
+        <camera y="5" pitch="-30" projection="orthographic" viewHeight="4"/><width>8</width><height>8</height>
+        <rayPerPixelCount>256</rayPerPixelCount></options>)",
+                                    "flat.xml");
+    const double error = std::sqrt(0.25 * 0.75 / (64.0 * 256.0));
+    CHECK(std::abs(mean_of(render_here(scene, 1).film) - 0.25) < 4.0 * error); // one in 16,000
+}
+
 TEST_CASE("both schedules go through a domain that repeats alike", "[gpu][image][periodic][determinism]") {
     Scene scene = above(thin_cloud());
     scene.settings.spp = 16;

@@ -658,6 +658,15 @@ TEST_CASE("surfaces that shine are lamps with bodies", "[gpu][image][surfaces]")
     }
 }
 
+TEST_CASE("lamps in a face of rough glass do not shine through it", "[gpu][image][surfaces]") {
+    Scene scene = empty_scene();
+    scene.surfaces = {ball(frosted(MaterialKind::dielectric, 0.4), {0.0, 0.0, 0.0}, 1.0)};
+    scene.lights = {SphereLight{{0.0, 0.0, 0.0}, 1.0, Rgb(1.0)}};
+    scene.settings.spp = 1024;
+    CHECK_AGREEMENT(agree(render_here(by(scene, "ratioTracking"), 1).film,
+                          render_here(by(scene, "lightTracing"), 2).film, "lamp in a face"));
+}
+
 TEST_CASE("surfaces among media are the same for every estimator", "[gpu][image][surfaces]") {
     Scene scene = still_life();
     scene.settings.spp = 96;
