@@ -369,7 +369,7 @@ way to where a look from along a flight begins not attenuated ~ shaders/stages/s
 density of a direction forgotten in a queue ~ shaders/shared/path_state.h ~ ROW(float, phase_pdf, sees_sky) ~ ROW(float, phase_pdf, false) ~ [lights]
 a look laid aside like a vertex ~ shaders/stages/laid_aside.glsl ~ return looks || sets_out_again(todo) ? LOOK_ROWS : VERTEX_ROWS; ~ return VERTEX_ROWS; ~ [agreement]
 the last words of a path not copied ~ shaders/stages/laid_aside.glsl ~ PATH_WORD(slot, i + 3u) = copied[i + 3u]; ~ PATH_WORD(slot, i + 3u) = copied[i]; ~ [layout]
-words of all media's cells as long as one's ~ shaders/stages/laid_aside.glsl ~ uint words_of(ivec3 x) { return 3u; } ~ uint words_of(ivec3 x) { return 0u; } ~ [layout]
+words of all media's cells as long as one's ~ shaders/stages/laid_aside.glsl ~ uint words_of(ivec3 x) { return 3u; } ~ uint words_of(ivec3 x) { return 0u; } ~ [determinism]
 spot without its rim ~ shaders/lights/point.glsl ~ t * t * (3.0 - 2.0 * t) ~ t ~ [lights]
 albedos end with the grid's box ~ shaders/field/albedo.glsl ~ index = clamp(index, vec3(a.grid.voxel_min), vec3(a.grid.voxel_max)); ~ ; ~ [color_grids]
 albedos above 1 ~ shaders/field/albedo.glsl ~ min(lookup_color(a.grid, KIND(ALBEDO_TYPE, v, albedo_type), index), vec3(1.0)) ~ lookup_color(a.grid, KIND(ALBEDO_TYPE, v, albedo_type), index) ~ [color_grids]
