@@ -39,9 +39,9 @@ mutations() {
     cat <<'END'
 coloured fog before surfaces without weight ~ shaders/stages/surface.glsl ~ lane.beta *= depth_weight(v, lane.beta, lane.walk.depth, false); ~ ; ~ [surfaces]
 null collisions lit beyond the depth limit ~ shaders/stages/collide.glsl ~ NEE == NEE_TENTATIVE && lane.path.depth < frame.max_depth ~ NEE == NEE_TENTATIVE && lane.path.depth <= frame.max_depth ~ [image]
-lamps of rough glass that light themselves ~ shaders/stages/collide.glsl ~ if (beyond > 0.0 && drawn.distance * beyond <= 2.0 * s.apart) ~ if (false) ~ [surfaces]
-splats without room for peaks of phase functions ~ host/assets/phase_params.cpp ~ return 3.0 * peak; // Draine's ~ return 0.0 * peak; // Draine's ~ [particles]
-flat domains without an extent ~ host/device_scene/period.cpp ~ const double margin = ~ const double margin = 0.0 * ~ [periodic]
+lamps of rough glass that light themselves ~ shaders/stages/collide.glsl ~ if (beyond > 0.0 && drawn.distance ~ if (beyond > 2.0 && drawn.distance ~ [surfaces]
+splats without room for peaks of phase functions ~ host/device_scene/emitter_table.cpp ~ peak = std::max(peak, phase_peak( ~ peak = std::max(peak, 0.0 * phase_peak( ~ [particles]
+flat domains without an extent ~ host/device_scene/period.cpp ~ static_cast<float>(low - margin) ^ static_cast<float>(high + margin) ~ static_cast<float>(low) ^ static_cast<float>(high) ~ [periodic]
 room of splats for facets ~ host/device_scene/emitter_table.cpp ~ peak = std::max(peak, facet_peak(surface)); ~ (void)surface; ~ [particles]
 scatter between parts by its coverage ~ host/cli/merge.cpp ~ n * (scatter + w * w) * apart ~ n * w * apart ~ [merge]
 far balls weighed by the cosines of rounding ~ shaders/lights/families.glsl ~ vec2(0.5 / PI, 1.0 / light.area) ~ vec2(cosine / PI, 1.0 / light.area) ~ [particles]

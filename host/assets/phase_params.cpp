@@ -85,15 +85,29 @@ std::uint32_t phase_iterations(const Volume& volume, std::span<const shared::Pha
 }
 
 double phase_peak(const Volume& volume, std::span<const shared::PhaseNode> nodes) {
-    double peak = 0.0;
-    for (const shared::PhaseNode& node : nodes)
-        peak = std::max(peak, double(node.value));
-    if (!nodes.empty())
+    const auto henyey_greenstein_peak = [](double g) {
+        return (1.0 + std::abs(g)) / (4.0 * std::numbers::pi * (1.0 - std::abs(g)) * (1.0 - std::abs(g)));
+    };
+    const shared::PhaseParams params = phase_params(volume, nodes);
+    switch (volume.phase) {
+    case PhaseFunction::rayleigh:
+        return 1.5 / (4.0 * std::numbers::pi);
+    case PhaseFunction::double_henyey_greenstein:
+        return std::max(henyey_greenstein_peak(params.g), henyey_greenstein_peak(params.g2));
+    case PhaseFunction::draine: // at most three times that of Henyey and Greenstein's with the same g
+        return 3.0 * henyey_greenstein_peak(params.g);
+    case PhaseFunction::droplets:
+        return std::max(henyey_greenstein_peak(params.g), 3.0 * henyey_greenstein_peak(params.g2));
+    case PhaseFunction::table: {
+        float peak = 0.0f;
+        for (const shared::PhaseNode& node : nodes)
+            peak = std::max(peak, node.value);
         return peak;
-    const shared::PhaseParams params = phase_params(volume, {});
-    for (const double g : {std::abs(double(params.g)), std::abs(double(params.g2))})
-        peak = std::max(peak, (1.0 + g) / (4.0 * std::numbers::pi * (1.0 - g) * (1.0 - g)));
-    return 3.0 * peak; // Draine's is less than that of Henyey and Greenstein's with the same g
+    }
+    case PhaseFunction::henyey_greenstein:
+        break;
+    }
+    return henyey_greenstein_peak(params.g);
 }
 
 double mean_cosine(const Volume& volume, std::span<const shared::PhaseNode> nodes) {

@@ -16,7 +16,7 @@ shared::PhaseParams phase_params(const Volume& volume, std::span<const shared::P
 // these.
 std::uint32_t phase_iterations(const Volume& volume, std::span<const shared::PhaseNode> nodes);
 
-// At least the function's largest value [1 / sr], and not three times that.
+// At least the function's largest value [1 / sr]; of mixtures, and Draine's, it may be a few times that.
 double phase_peak(const Volume& volume, std::span<const shared::PhaseNode> nodes);
 
 // Mean of the cosine between the directions of travel before and after.

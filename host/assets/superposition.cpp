@@ -257,7 +257,7 @@ private:
     }
 
     void raise(std::size_t entry, float bound) {
-        if (!(bound > 0.0f)) // of densities that single precision has none of, times sigma_t
+        if (!(bound > 0.0f)) // a product that underflows
             return;
         if (bounds_[entry] == 0.0f)
             touched_.push_back(static_cast<std::uint32_t>(entry));
@@ -381,7 +381,7 @@ void fill(const std::vector<Member>& members, PieceStore& pieces, Superposition&
     std::vector<float> bounds(whole.entries(), 0.0f);
     for (const Member& member : members)
         touch(member, whole.edge, [&](std::uint32_t entry, float bound) {
-            // Upwards, by more than the device's sum of as many terms may be rounded.
+            // Upwards, by more than the device's sum of the same terms in the same order may be rounded.
             bounds[entry] = std::nextafter(bounds[entry] + bound, std::numeric_limits<float>::infinity());
             found.push_back({entry, member.number});
         });

@@ -193,13 +193,13 @@ void judge(const Film& a, const CompareOptions& options, Comparison& result) {
     };
     if (result.non_finite > 0)
         return verdict(true, fmt::format("{} values are not finite", result.non_finite));
+    if (result.unsampled == pixels)
+        return verdict(true, "no pixel has samples in both images");
     if (options.max_relmse)
         return verdict(result.relmse > *options.max_relmse,
                        fmt::format("relMSE {:.6g} against a limit of {:.6g}", result.relmse, *options.max_relmse));
     if (result.identical_pixels == pixels)
         return verdict(false, "identical");
-    if (result.unsampled == pixels)
-        return verdict(true, "no pixel has samples in both images");
     if (!result.has_variance)
         return verdict(true, "neither image knows its variance, and they are not identical; --max-relmse sets a limit");
     if (result.has_mean_z && worst_mean > mean_bound)

@@ -24,7 +24,7 @@ public:
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    // Samples per pixel, in part perhaps. Time begins with the first: what there is by then took none of it. `noise`:
+    // Samples per pixel, which may be fractional. Time counts from the first call. `noise`:
     // the picture's at present, see film.h; the last that was known is shown until the next is.
     void update(double samples, std::optional<double> noise = std::nullopt);
 

@@ -247,7 +247,7 @@ double facet_peak(const shared::SurfaceRow& surface) {
 }
 
 // The brightest value that a pixel may get: of sources seen themselves, or mirrored; what media and facets scatter of a
-// light // without extent; and of points, which light what is near them without bound, as from a thirty-thousandth of
+// light without extent; and of points, which light what is near them without bound, as from a thirty-thousandth of
 // `reach`, so that what is lit from all of it has 24 bits. `bounded`: whether something bounds the scene, about the
 // origin.
 double brightest_of(const Scene& scene, Media loaded, const LightTable& lights, const SurfaceTable& surfaces,

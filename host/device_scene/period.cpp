@@ -75,11 +75,13 @@ shared::PeriodParams make_period(const Scene& scene, Media media, glm::dvec3 ori
     for (int axis = 0; axis < 3; ++axis) {
         const bool repeats = params.size[axis] > 0.0f;
         constexpr float infinite = std::numeric_limits<float>::max();
-        // More than nothing where all that there is is flat.
-        const double margin = 1e-5 * std::max({range.high[axis] - range.low[axis], scene.periodic->size()[0],
-                                               scene.periodic->size()[1], scene.periodic->size()[2]});
-        params.range_low[axis] = repeats ? -infinite : static_cast<float>(range.low[axis] - origin[axis] - margin);
-        params.range_high[axis] = repeats ? infinite : static_cast<float>(range.high[axis] - origin[axis] + margin);
+        // More than nothing, and than rounding, where all that there is is flat.
+        const glm::dvec3 size = scene.periodic->size();
+        const double low = range.low[axis] - origin[axis], high = range.high[axis] - origin[axis];
+        const double margin =
+            1e-5 * std::max({high - low, size.x, size.y, size.z}) + 0x1p-20 * std::max(std::abs(low), std::abs(high));
+        params.range_low[axis] = repeats ? -infinite : static_cast<float>(low - margin);
+        params.range_high[axis] = repeats ? infinite : static_cast<float>(high + margin);
     }
     return params;
 }

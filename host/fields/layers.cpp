@@ -16,7 +16,7 @@ DensityRange cell_range(const Volume& volume, int i) {
     const LayerBox box = layer_box(volume);
     const int axis = volume.layers->axis;
     const double edge = box.size[axis] / cells, low = box.low[axis] + i * edge;
-    const double margin = 1e-4 * edge; // several times what single precision is off by on a ray
+    const double margin = 1e-3 * edge; // rays know where they are in single precision
     return layer_range(volume, std::max(low - margin, box.low[axis]),
                        std::min(low + edge + margin, box.low[axis] + box.size[axis]));
 }

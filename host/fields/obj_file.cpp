@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 #include <tiny_obj_loader.h>
+#include <utility>
 
 #include "error.h"
 #include "one_line.h"
@@ -114,7 +115,7 @@ struct Progress {
     std::vector<glm::vec2> places;                             // on a texture
     std::vector<glm::ivec3> of_triangles, places_of_triangles; // which of these their corners have, from 0; -1: none
     std::size_t faces = 0;
-    std::optional<std::string> unusable_place; // the first
+    bool has_odd_places = false;
     std::vector<std::optional<Rgb>> materials;
     std::optional<Rgb> diffuse; // of the faces that follow
 };
@@ -141,11 +142,6 @@ void add_face(Progress& progress, const tinyobj::index_t* corners, int count) {
         vertices.push_back(resolve(progress, corners[i].vertex_index));
         places_of_corners.push_back(progress.obj->vertices[vertices.back()]);
     }
-    if (progress.unusable_place)
-        throw InputError(
-            fmt::format("{}: {} before face {}: its numbers are to be finite, and 1e30 at most; export the "
-                        "mesh again",
-                        progress.path->string(), *progress.unusable_place, progress.faces));
     const auto from_zero = [](int index, std::size_t count) {
         return index < 0 ? static_cast<int>(count) + index : index - 1;
     };
@@ -183,9 +179,12 @@ tinyobj::callback_t make_callbacks() {
     };
     callbacks.texcoord_cb = [](void* user, tinyobj::real_t x, tinyobj::real_t y, tinyobj::real_t) {
         auto& progress = *static_cast<Progress*>(user);
-        progress.places.emplace_back(x, y);
-        if (!(std::max(std::abs(x), std::abs(y)) <= 1e30f) && !progress.unusable_place)
-            progress.unusable_place = fmt::format("vt {} {}", x, y);
+        const bool is_usable = std::abs(x) <= 1e30f && std::abs(y) <= 1e30f; // neither NaN
+        progress.places.emplace_back(is_usable ? glm::vec2(x, y) : glm::vec2(0.0f));
+        if (!is_usable && !std::exchange(progress.has_odd_places, true))
+            progress.obj->warnings.push_back(
+                fmt::format("{}: vt {} {} counts as 0 0: its numbers are to be finite, and 1e30 at most",
+                            progress.path->string(), x, y));
     };
     callbacks.index_cb = [](void* user, tinyobj::index_t* corners, int count) {
         add_face(*static_cast<Progress*>(user), corners, count);

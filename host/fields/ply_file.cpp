@@ -217,7 +217,7 @@ private:
         for (int axis = 0; axis < 3; ++axis)
             if (!(std::abs(vertex[axis]) <= largest_length))
                 fail(fmt::format("its coordinates are to be finite, and {:g} at most", largest_length));
-        if (!(std::max(std::abs(place.x), std::abs(place.y)) <= 1e30f))
+        if (!(std::abs(place.x) <= 1e30f && std::abs(place.y) <= 1e30f))
             fail("its place on a texture is to be finite, and 1e30 at most");
         mesh_.vertices.push_back(vertex);
         if (has_normal) // as all others

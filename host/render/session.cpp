@@ -61,6 +61,8 @@ void Session::render(std::uint32_t samples) {
     checkpoint_at_ = 0.0;
     stopped_ = result_.interrupted = result_.time_is_over = false;
     stopped_at_.reset();
+    if (job_.progress)
+        job_.progress(done_, std::nullopt);
     while (done_ < wanted_ && !is_good_enough() && !stopping()) {
         try {
             enter_moments();

@@ -70,8 +70,7 @@ Answer unfinished(const Evidence& e) {
     if (e.odd != Odd::unfinished)
         return {};
     if (e.result->interrupted)
-        return "the render was interrupted early; with --checkpoint 60s, --resume goes on from wherever the next one "
-               "ends";
+        return "the render was interrupted early; with --checkpoint 60s, --resume continues it after that";
     if (e.result->counts.non_finite > 0)
         return fmt::format(
             "{} samples were not finite, or too bright to add up, and were dropped; lower the lights, or "

@@ -7,6 +7,26 @@
 
 namespace vkvol {
 
+namespace {
+
+constexpr const char* shape_names[] = {"densityField", "sphere", "box", "everywhere", "models"};
+
+bool asks_for_shape(const XmlElement& element, pugi::xml_node node) {
+    if (element.name() == "densityField")
+        return !element.text().empty() || !element.attribute("baseDir").empty();
+    return element.name() != "models" || node.child("model");
+}
+
+bool has_shape(XmlDocument& document, pugi::xml_node scope) {
+    return std::any_of(std::begin(shape_names), std::end(shape_names), [&](const char* name) {
+        const pugi::xml_node node = find_one(document, scope, {name});
+        const XmlElement element(document, node);
+        return element.exists() && asks_for_shape(element, node);
+    });
+}
+
+} // namespace
+
 // A grid from the command line takes the place of whatever is here, and has none in the file.
 std::optional<Shape> SceneReader::shape(const std::string& integrator, std::string& place) const {
     const XmlElement element = shape_element(integrator);
@@ -52,34 +72,35 @@ std::size_t SceneReader::scope_of(const char* name) const {
 
 bool SceneReader::is_behind_shape(const char* name) const {
     std::size_t shape = 0;
-    while (shape < scopes_.size() && !shape_element(scopes_[shape], "").exists())
+    while (shape < scopes_.size() && !has_shape(document_, scopes_[shape]))
         ++shape;
     return shape < scope_of(name);
 }
 
 XmlElement SceneReader::shape_element(pugi::xml_node scope, const std::string& integrator) const {
-    const Integrator* row = find_integrator(integrator.empty() ? "deltaTracking" : integrator); // the original's default
+    // Without a name the original takes deltaTracking.
+    const Integrator* row = find_integrator(integrator.empty() ? "deltaTracking" : integrator);
     const bool of_thesis = row && row->origin != Integrator::Origin::own;
     XmlElement found(document_, {});
-    for (const char* name : {"densityField", "sphere", "box", "everywhere", "models"}) {
+    for (const char* name : shape_names) {
         const pugi::xml_node node = find_one(document_, scope, {name});
         const XmlElement element(document_, node);
         if (!element.exists())
             continue;
-        if (element.name() == "densityField") {
+        if (element.name() == "densityField")
             element.allow({"baseDir", "grid", "velocity", "framesPerSecond"}, true);
-            if (element.text().empty() && element.attribute("baseDir").empty())
-                continue;
-        }
-        if (element.name() == "models") {
+        if (element.name() == "models")
             element.allow({}, false, {"model"});
-            if (!node.child("model"))
-                continue;
+        if (!asks_for_shape(element, node))
+            continue;
+        if (element.name() == "models") {
             if (of_thesis && found.exists() && found.name() == "densityField") {
                 const bool takes_models = row->origin == Integrator::Origin::thesis_models;
                 const XmlElement& left_out = takes_models ? found : element;
                 left_out.warn(fmt::format("<{}> is left out: {} renders {}, as in the original renderer",
-                                          left_out.name(), row->name, takes_models ? "models" : "density fields"));
+                                          left_out.name(),
+                                          integrator.empty() ? "a scene without an integrator's name" : row->name,
+                                          takes_models ? "models" : "density fields"));
                 if (takes_models)
                     found = element;
                 continue;

@@ -22,9 +22,9 @@ float sensor_share(vec3 position, vec3 ray, float distance) {
     return float(frame.crop_width * frame.crop_height) / seen_weight(position, ray, distance);
 }
 
-// x: of a vertex that scatters into all directions, times the square of its distance, or, if negative, as it is; y: of one that does not, as
-// mirrors. `cosine`: at a lamp that is flat; of a ball far away it would be rounding alone, and any
-// function will do. `pdf`: of a direction from afar; 0 if no other could be.
+// x: of a vertex that scatters into all directions, times the square of its distance, or, if negative, as it is; y: of one that
+// does not, as mirrors. `cosine`: at a lamp that is flat; of a ball far away it would be rounding alone, and any
+// function that both families take will do. `pdf`: of a direction from afar; 0 if no other could be.
 vec2 light_shares(LightRow light, float cosine, float pdf) {
     float radius = frame.particles.radius;
     vec2 shares = vec2(0.0);

@@ -11,7 +11,8 @@ float fresnel_dielectric(float cosine, float eta) {
     return square > 0.0 ? 0.5 * (parallel * parallel + across * across) : 1.0;
 }
 
-// eta + i k: a conductor's index over that before it. In real numbers (Lagarde, "Memo on Fresnel Equations", 2013). 0 where it is 1 and the cosine 0.
+// eta + i k: a conductor's index over that before it. In real numbers (Lagarde, "Memo on Fresnel Equations", 2013). Of
+// index 1 at cosine 0: 0.
 vec3 fresnel_conductor(float cosine, vec3 eta, vec3 k) {
     float c = cosine * cosine, s = 1.0 - c;
     vec3 eta2 = eta * eta, k2 = k * k;

@@ -316,6 +316,26 @@ TEST_CASE("variances of sums are merged, and compared by", "[cpu][merge][compare
     CHECK_FALSE(merge_films({input("a", some, 0, 4), input("b", unknown, 4, 4)}).film.sum_variance);
 }
 
+TEST_CASE("films without noise are the same but for rounding, and films of nothing in common are not", "[cpu][merge]") {
+    Film film = film_of(draw(3u, 64));
+    for (glm::vec3& variance : film.variance)
+        variance = glm::vec3(0.0f);
+    Film other = film;
+    other.mean.front() *= 1.0f + 2e-7f;
+    CHECK_FALSE(compare_films(film, other, options_at()).different);
+    other.mean.front() *= 1.01f;
+    CHECK(compare_films(film, other, options_at()).different);
+    std::fill(film.samples.begin() + 1, film.samples.end(), 0u);
+    other.samples.front() = 0;
+    CHECK(compare_films(film, other, options_at()).different);
+}
+
+TEST_CASE("denoised films are not merged", "[cpu][merge]") {
+    Film film = film_of(draw(3u, 4));
+    film.layers.push_back({"noisy", film.mean, film.variance});
+    CHECK_THROWS_WITH(merge_films({input("a", film, 0, 4)}), Catch::Contains("denoised"));
+}
+
 TEST_CASE("depths of single samples know their scatter once merged", "[cpu][merge]") {
     const float weight = GENERATE(1.0f, 0.25f); // alike, of all: how much of each sample collides changes nothing
     std::vector<MergeInput> parts;
