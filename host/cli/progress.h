@@ -24,8 +24,8 @@ public:
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    // Samples per pixel, which may be fractional. Time counts from the first call. `noise`:
-    // the picture's at present, see film.h; the last that was known is shown until the next is.
+    // Samples per pixel, which may be fractional. Time counts from the first call. `noise`: the picture's at present,
+    // see film.h; the last that was known is shown until the next is.
     void update(double samples, std::optional<double> noise = std::nullopt);
 
     // Removes the bar, so that other lines can be printed. Called twice it does nothing.

@@ -22,7 +22,7 @@ std::string read_file(const std::filesystem::path& file) {
     for (const char* picture : {"\x76\x2f\x31\x01", "\x89PNG"})
         if (text.starts_with(picture))
             throw InputError(
-                fmt::format("{}: is a picture (vkvol develop, compare and merge read those that are .exr); expected a scene "
+                fmt::format("{}: is a picture (vkvol develop, compare and merge read .exr files); expected a scene "
                             "file (.xml)",
                             file.string()));
     if (text.size() > limit)
