@@ -57,9 +57,13 @@ void check_files(const RenderOptions& options, const RenderScene& loaded, const 
     checkpoint.check();
 }
 
-// Samples that are done are not lost to those that cannot be.
-RenderResult render_what_can_be(const Device& device, const Scene& scene, const RenderJob& job) {
+// Samples that are done are not lost to those that cannot be. While it makes ready, the session may have begun to load
+// `codec`, without which none could be kept.
+RenderResult render_what_can_be(const Device& device, const Scene& scene, const RenderJob& job,
+                                std::future<void>& codec) {
     Session session(device, scene, job);
+    if (codec.valid())
+        codec.get();
     std::exception_ptr failure;
     try {
         if (!job.dry_run)
@@ -97,20 +101,16 @@ RenderResult render_with_progress(const RenderOptions& options, const Scene& sce
     Progress progress(options.progress, options.quiet || options.trace || options.dry_run, scene.settings.spp,
                       options.time_limit, options.noise_goal);
     std::future<void> codec;
-    job.progress = [&](double samples, std::optional<double> noise) {
-        if (codec.valid())
-            codec.get(); // before more is rendered than can be kept
-        progress.update(samples, noise);
-    };
+    if (!options.outputs.empty() && !options.dry_run)
+        job.compiling = [&codec] { codec = picture_codec_ahead(); };
+    job.progress = [&](double samples, std::optional<double> noise) { progress.update(samples, noise); };
     const std::vector<const Device*> devices = workshop.devices(options.device);
     const Device& device = *devices.front();
     job.others.assign(devices.begin() + 1, devices.end());
-    if (!options.outputs.empty() && !options.dry_run)
-        codec = picture_codec_ahead(); // after the driver, which is a library, too; kernels are compiled on one core
     if (!live.empty())
         job.preview = [&](const RenderResult& result) { live.show(device, result, &progress); };
     try {
-        return render_what_can_be(device, scene, job);
+        return render_what_can_be(device, scene, job, codec);
     } catch (const RenderError& error) {
         throw RenderError(error.what() + file.advice());
     }

@@ -35,6 +35,8 @@ struct RenderJob {
     bool disk_cache = true;            // keep compiled pipelines between runs
     Plan plan;                         // what of it is chosen wins
     std::function<bool()> interrupted; // asked between submits; true ends the render early
+    // Once threads compile the kernels. Whoever loads libraries does so from then on: threads cannot begin meanwhile.
+    std::function<void()> compiling;
     // After each submit: samples per pixel finished, as a real number; and, now and then, the picture's relative
     // standard error.
     std::function<void(double, std::optional<double>)> progress;

@@ -223,7 +223,11 @@ void Session::compile() {
     device_scene_->make_light_cache();
     if (job_.trace && !trace_)
         trace_.emplace(device_, commands_);
-    wavefront_ = make_wavefront(result_.plan, cache, [&] { device_scene_->compile_light_cache(cache.handle()); });
+    wavefront_ = make_wavefront(result_.plan, cache, [&] {
+        if (job_.compiling)
+            job_.compiling();
+        device_scene_->compile_light_cache(cache.handle());
+    });
     device_scene_->fill_light_cache();
     // Software drivers are faster with one pass (schedules.txt in tools/results): no trial is worth its time.
     const bool is_known = device_.is_cpu() && !job_.plan.tries;
