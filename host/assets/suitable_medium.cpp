@@ -13,7 +13,7 @@ namespace vkvol {
 namespace {
 
 constexpr int rays_across = 64, rays_down = 48;
-constexpr double most_steps = 512; // across the grid
+constexpr double most_pieces = 512; // across the grid
 
 // The density along the rays of a picture, at the middle of equal steps of about a voxel.
 class Rays {
@@ -21,7 +21,7 @@ public:
     Rays(const DensityField& field, const Camera& camera, const Picture& picture)
         : field_(field), to_index_(glm::inverse(field.index_to_world)),
           eye_(to_index_ * glm::dvec4(camera.position, 1)), low_(glm::dvec3(field.voxel_min) - 0.5),
-          high_(glm::dvec3(field.voxel_max) + 0.5), step_(std::max(1.0, glm::length(high_ - low_) / most_steps)),
+          high_(glm::dvec3(field.voxel_max) + 0.5), step_(std::max(1.0, glm::length(high_ - low_) / most_pieces)),
           rotation_(camera_rotation(camera)), window_(view_window(camera, picture)) {}
 
     // visit(density, length of the step in world units, its middle in the grid's index space), from the eye on; then
@@ -53,7 +53,7 @@ private:
         if (!(begin < end && std::isfinite(end)))
             return;
         // No more than the grid has across, whatever rounding says.
-        const double steps = std::clamp(std::ceil((end - begin) * glm::length(speed) / step_), 1.0, 2.0 * most_steps);
+        const double steps = std::clamp(std::ceil((end - begin) * glm::length(speed) / step_), 1.0, 2.0 * most_pieces);
         const double length = (end - begin) / steps;
         for (double i = 0.5; i < steps; ++i) {
             const glm::dvec3 at = glm::clamp(eye_ + (begin + i * length) * speed, low_, high_);

@@ -121,13 +121,19 @@ void finish(TriangleSurface& mesh, const Surface& surface) {
 std::shared_ptr<const Texture> load_texture(const std::filesystem::path& file, std::vector<std::string>& warnings) {
     RadianceMap map = read_radiance_map(file);
     warnings.insert(warnings.end(), map.warnings.begin(), map.warnings.end());
+    std::size_t brightest = 0, bright = 0;
+    const auto most_of = [&](std::size_t i) { return std::max({map.texels[i].x, map.texels[i].y, map.texels[i].z}); };
     for (std::size_t i = 0; i < map.texels.size(); ++i) {
-        const glm::vec3 color = map.texels[i];
-        if (const float most = std::max({color.x, color.y, color.z}); most > 1.0f)
-            throw InputError(fmt::format("{}: scatters {:g} of the light in one colour at column {}, row {}, more than "
-                                         "it gets; scale the texture to 1 at most",
-                                         file.string(), most, i % std::size_t(map.width), i / std::size_t(map.width)));
+        bright += most_of(i) > 1.0f ? 1 : 0;
+        brightest = most_of(i) > most_of(brightest) ? i : brightest;
     }
+    if (bright > 0)
+        warnings.push_back(fmt::format("{}: {} of its texels would scatter more light than they get, up to {:g} in one "
+                                       "colour at column {}, row {}; they count as 1; scale the texture to 1 at most",
+                                       file.string(), bright, most_of(brightest), brightest % std::size_t(map.width),
+                                       brightest / std::size_t(map.width)));
+    for (glm::vec3& texel : map.texels)
+        texel = glm::min(texel, 1.0f);
     return std::make_shared<const Texture>(Texture{map.width, map.height, std::move(map.texels)});
 }
 

@@ -1,5 +1,8 @@
 #include "live_pictures.h"
 
+#include <fmt/format.h>
+
+#include "error.h"
 #include "messages.h"
 #include "report.h"
 #include "tev_picture.h"
@@ -9,9 +12,16 @@ namespace vkvol {
 LivePictures::LivePictures(const RenderOptions& options, const Scene& scene) : options_(options), scene_(scene) {
     if (options.dry_run || options.trace)
         return;
-    if (!options.tev.empty())
-        pictures_.push_back(std::make_unique<TevPicture>(
-            options.tev, (options.outputs.empty() ? options.scene : options.outputs.front()).filename().string()));
+    if (!options.tev.empty()) {
+        const std::filesystem::path& file = options.outputs.empty() ? options.scene : options.outputs.front();
+        try {
+            pictures_.push_back(std::make_unique<TevPicture>(options.tev, file.filename().string()));
+        } catch (const InputError& error) {
+            if (!options.has_begun)
+                throw;
+            missing_ = fmt::format("{}; further frames are not shown", error.what());
+        }
+    }
     if (options.preview)
         pictures_.push_back(std::make_unique<TerminalPicture>(options.graphics));
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "live_picture.h"
@@ -13,8 +14,10 @@ namespace vkvol {
 
 class LivePictures {
 public:
-    // Throws InputError where one takes no pictures.
+    // Throws InputError where one takes no pictures, unless earlier frames were shown: then `missing` says so.
     LivePictures(const RenderOptions& options, const Scene& scene);
+
+    const std::string& missing() const { return missing_; }
 
     bool empty() const { return pictures_.empty(); }
     // `progress` leaves its line to them.
@@ -23,6 +26,7 @@ public:
 private:
     const RenderOptions& options_;
     const Scene& scene_;
+    std::string missing_;
     std::vector<std::unique_ptr<LivePicture>> pictures_;
 };
 

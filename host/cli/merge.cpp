@@ -127,29 +127,30 @@ void take_means(const std::vector<Moments>& moments, std::vector<glm::vec3>& mea
     }
 }
 
-// Merges means over collisions: weighted by how many there were; the variance is that of such a mean.
+// Merges means over collisions: weighted by how many there were. The variance is that of a quotient of sums over all
+// samples, n / (n - 1) sum (w (d - mean))^2 / (sum w)^2: each part has told the sum about its own mean; how far the
+// parts lie apart counts by the sum of the squares of weights, which coverage's variance knows.
 FilmLayer merge_collisions(const std::vector<MergeInput>& inputs, std::size_t which, const Crop& window) {
     const std::size_t pixels = std::size_t(window.x1 - window.x0) * std::size_t(window.y1 - window.y0);
-    std::vector<double> weights(pixels, 0.0);
+    std::vector<double> weights(pixels, 0.0), samples(pixels, 0.0);
     std::vector<glm::dvec3> sums(pixels, glm::dvec3(0.0)), squares(pixels, glm::dvec3(0.0));
     const FilmLayer& first = inputs.front().film.layers[which];
     for (const MergeInput& input : inputs) {
         const FilmLayer& layer = input.film.layers[which];
         const FilmLayer* coverage = input.film.layer("coverage");
         for (std::size_t i = 0; i < input.film.pixel_count(); ++i) {
-            const double weight = coverage ? double(coverage->mean[i].x) * input.film.samples[i] : 0.0;
+            const double n = input.film.samples[i], weight = coverage ? coverage->mean[i].x * n : 0.0;
             const std::size_t at = place_in(window, input.film, i);
             weights[at] += weight;
+            samples[at] += n;
             sums[at] += weight * glm::dvec3(layer.mean[i]);
-            if (!layer.variance.empty())
-                squares[at] += weight * weight * glm::dvec3(layer.variance[i]);
+            if (!layer.variance.empty() && n > 0.0)
+                squares[at] += (n - 1.0) / n * weight * weight * glm::dvec3(layer.variance[i]);
         }
     }
     FilmLayer merged{first.name, {}, {}};
     for (std::size_t i = 0; i < pixels; ++i)
         merged.mean.emplace_back(weights[i] > 0.0 ? sums[i] / weights[i] : glm::dvec3(0.0));
-    // How far the parts lie apart is scatter of their samples as well; of single samples all there is. It counts by the
-    // sum of the squares of samples' weights, which coverage's variance knows.
     for (const MergeInput& input : inputs) {
         const FilmLayer& layer = input.film.layers[which];
         const FilmLayer* coverage = input.film.layer("coverage");
@@ -163,9 +164,10 @@ FilmLayer merge_collisions(const std::vector<MergeInput>& inputs, std::size_t wh
         }
     }
     for (std::size_t i = 0; i < pixels; ++i) {
-        const double weight = weights[i];
+        const double weight = weights[i], n = samples[i];
         if (!first.variance.empty())
-            merged.variance.emplace_back(weight > 0.0 ? squares[i] / (weight * weight) : glm::dvec3(0.0));
+            merged.variance.emplace_back(weight > 0.0 && n > 1.0 ? n / (n - 1.0) * squares[i] / (weight * weight)
+                                                                 : glm::dvec3(0.0));
     }
     return merged;
 }

@@ -39,6 +39,7 @@ struct RenderOptions : RenderRequest {
     bool resume = false;              // from the checkpoint, if there is one
     std::vector<int> frames;          // of a sequence, by -f; empty: one picture
     bool is_frame = false;            // one of a sequence
+    bool has_begun = false;           // which has rendered others before: viewers that were there may be gone
     bool grid_has_frame = false;      // the grid's name goes by the frame
     bool dry_run = false;             // check everything, render and write nothing
     bool trace = false;               // print the path's vertices; crop and sample range hold just one

@@ -9,6 +9,7 @@
 #include "dry_run.h"
 #include "error.h"
 #include "explain.h"
+#include "file_ending.h"
 #include "file_uses.h"
 #include "image_io.h"
 #include "interrupt.h"
@@ -55,6 +56,22 @@ void check_files(const RenderOptions& options, const RenderScene& loaded, const 
     if (options.report)
         check_directory_writable(*options.report, "--report");
     checkpoint.check();
+}
+
+// None: all layers that are asked for are kept, or shown.
+std::string lost_layers(const RenderOptions& options, const Scene& scene) {
+    const auto writes = [&](const char* ending) {
+        return std::any_of(options.outputs.begin(), options.outputs.end(),
+                           [&](const std::filesystem::path& output) { return file_ending(output) == ending; });
+    };
+    if (writes(".exr") || !options.tev.empty() || options.trace)
+        return "";
+    const bool has_alpha = scene.holds_out && writes(".png");
+    std::string names;
+    for (std::size_t i = 0; i < layer_names().size(); ++i)
+        if (const unsigned layer = 1u << i; (scene.layers & layer) && !(layer == layer_alpha && has_alpha))
+            names += (names.empty() ? "" : ", ") + layer_names()[i];
+    return names.empty() ? "" : fmt::format("layers are kept in .exr alone, and are lost: {}; add -o FILE.exr", names);
 }
 
 // Samples that are done are not lost to those that cannot be. While it makes ready, the session may have begun to load
@@ -165,7 +182,7 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
     outputs.write(device, result, shown);
     // A picture's time may be given once more, and it goes on; a frame is done with it.
     const bool is_done = result.samples == scene.settings.spp || result.reached_goal;
-    if (is_done || (options.is_frame && !result.interrupted))
+    if (is_done || (options.is_frame && !result.interrupted && !result.failure))
         checkpoint.remove();
     if (!foreseen)
         tell_why(options, workshop, shown.explanation);
@@ -203,9 +220,13 @@ int render_picture(const RenderOptions& options, Workshop& workshop) {
     const bool gave_camera = loaded.xml.empty() && !loaded.assumed.empty();
     if (!options.quiet && gave_camera && !workshop.new_warnings({loaded.assumed}).empty()) // once in a sequence
         tell(stderr, "vkvol: note: {}\n", loaded.assumed);
+    if (const std::string lost = lost_layers(options, scene); !lost.empty() && !options.quiet)
+        print_warnings(workshop.new_warnings({lost}));
     CheckpointFile checkpoint(options);
     check_files(options, loaded, checkpoint);
     LivePictures live(options, scene);
+    if (!live.missing().empty())
+        print_warnings(workshop.new_warnings({live.missing()}));
     keep_made_scene(options, loaded);
     RenderOutputs outputs(options, scene);
     try {

@@ -54,12 +54,14 @@ RenderScene load_render_scene(const RenderOptions& options, FieldCache& fields, 
     else if (options.up)
         throw InputError("--up: is for grid files rendered without a scene; a scene's <camera> has lookAt and up");
     else
-        result.scene = load_scene(options.scene, options.defines,
-                                  {options.grid,
-                                   options.integrator,
-                                   options.strict,
-                                   {},
-                                   options.grid_has_frame ? std::set<std::string>{"F"} : std::set<std::string>{}});
+        result.scene =
+            load_scene(options.scene, options.defines,
+                       {options.grid,
+                        options.integrator,
+                        options.strict,
+                        {},
+                        options.grid_has_frame || (options.trace && options.grid) ? std::set<std::string>{"F"}
+                                                                                  : std::set<std::string>{}});
     const std::string given = apply_request(options, !result.xml.empty() || !frames, result.scene, fields);
     if (!given.empty())
         result.assumed = given;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "checkpoint_file.h"
@@ -28,13 +30,19 @@ std::optional<int> code_of(const std::filesystem::path& exr, const RenderOptions
     } catch (const InputError&) { // whatever it is, it is no such picture
         return std::nullopt;
     }
-    const bool is_this = text_of(metadata, "vkvol/sceneHash") == scene_hash(scene) &&
-                         text_of(metadata, "vkvol/integrator") == choose_method(with_preset(scene)).integrator &&
-                         text_of(metadata, "vkvol/asked") == asked_text(options, scene) &&
-                         text_of(metadata, "vkvol/interrupted") == "0";
+    const bool is_this =
+        text_of(metadata, "vkvol/sceneHash") == scene_hash(scene) &&
+        text_of(metadata, "vkvol/integrator") == choose_method(with_preset(with_steady_integrator(scene))).integrator &&
+        text_of(metadata, "vkvol/asked") == asked_text(options, scene) && text_of(metadata, "vkvol/interrupted") == "0";
     if (!is_this || (shows(options) && !has_recorded(options.tone, metadata)))
         return std::nullopt;
     return options.strict && text_of(metadata, "vkvol/capsHit") != "0" ? exit_caps_hit : exit_done;
+}
+
+bool tells_of_success(const std::filesystem::path& report) {
+    std::ifstream file(report);
+    const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
+    return json.is_object() && json.contains("error") && json["error"].is_null();
 }
 
 } // namespace
@@ -55,6 +63,8 @@ std::optional<int> rendered_before(const RenderOptions& options, const Scene& sc
             first = std::max(first, std::filesystem::last_write_time(output, error));
     for (const std::filesystem::path& output : outputs) {
         if (!std::filesystem::is_regular_file(output, error) || !uses.is_newer_than_inputs(output))
+            return std::nullopt;
+        if (options.report && output == *options.report && !tells_of_success(output))
             return std::nullopt;
         if (file_ending(output) != ".exr") {
             if (std::filesystem::last_write_time(output, error) < first)

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "atomic_file.h"
 #include "error.h"
@@ -91,13 +92,15 @@ std::vector<GridFile> next_grids(const RenderOptions& options, std::size_t index
     return is_there || !fits_in_memory(grids[index + 1]) ? std::vector<GridFile>{} : grids[index + 1];
 }
 
-// What was rendered before is not rendered again.
-int render_frame(const RenderOptions& options, int frame, Workshop& workshop) {
+// What was rendered before is not rendered again. `has_begun`: any frame was.
+int render_frame(RenderOptions options, int frame, Workshop& workshop, bool& has_begun) {
     std::optional<int> code;
-    if (options.resume && !options.dry_run)
+    if (options.resume)
         code = rendered_before(options, load_render_scene(options, workshop.fields()).scene);
-    if (!code)
+    if (!code) {
+        options.has_begun = std::exchange(has_begun, true);
         return render_picture(options, workshop);
+    }
     if (!options.quiet)
         tell(stdout, "frame {}: {} is there\n", frame, options.outputs.front().string());
     return *code;
@@ -109,11 +112,14 @@ void print_end(const RenderOptions& options, const std::vector<int>& done, int c
         const std::vector<int> rest(options.frames.begin() + std::ptrdiff_t(done.size()), options.frames.end());
         tell(stderr, "vkvol: interrupted at frame {}: {} of {} frames are done; -f {} goes on{}\n", rest.front(),
              done.size(), total, frames_text(rest), options.checkpoint ? ", with --resume" : "");
+    } else if (code == exit_render_failed) {
+        tell(stderr, "vkvol: frame {} has no picture: {} of {} frames are done\n", options.frames[done.size()],
+             done.size(), total);
     } else if (options.quiet) {
         return;
     } else if (options.dry_run) {
         tell(stdout, "{} frames checked: nothing is rendered, nothing written\n", total);
-    } else if (code != exit_render_failed) {
+    } else {
         tell(stdout, "{} frames ({}) in {:.1f} s\n", total, frames_text(options.frames), seconds);
     }
 }
@@ -127,19 +133,23 @@ int run_sequence(const RenderOptions& options) {
     std::vector<int> done;
     FrameFiles files;
     std::vector<std::vector<GridFile>> grids; // of each frame
-    for (const int frame : options.frames)
+    for (const int frame : options.frames) {
+        if (interrupted())
+            break;
         of_frame(frame, done, [&] {
             const RenderOptions one = frame_options(options, frame);
             files.add(frame, one);
             grids.push_back(check_picture(one, workshop));
         });
+    }
     int code = exit_done;
+    bool has_begun = false;
     for (std::size_t i = 0; i < options.frames.size() && code != exit_interrupted && code != exit_render_failed; ++i) {
         const int frame = options.frames[i];
         announce(options, i);
         workshop.set_next(next_grids(options, i, grids));
         const int result = interrupted() ? int(exit_interrupted) : of_frame(frame, done, [&] {
-            return render_frame(frame_options(options, frame), frame, workshop);
+            return render_frame(frame_options(options, frame), frame, workshop, has_begun);
         });
         code = result == exit_done ? code : result; // caps of any frame
         if (result == exit_done || result == exit_caps_hit)

@@ -45,7 +45,6 @@ public:
             bool rendered = false;
             try {
                 rendered = render_wish();
-                board_.say(file_trouble_);
             } catch (const InputError& error) {
                 board_.say(error.what());
             } catch (const VulkanError& error) {
@@ -100,6 +99,7 @@ private:
             describe(read.xml);
             publish(session_->result(), is_done_);
         }
+        board_.say(file_trouble_); // of this wish there is none
         return go_on(wish);
     }
 

@@ -161,9 +161,6 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
     params.first_knot = layout.first_knot(loaded);
     params.emission = make_emission(volume, loaded, layout, method, origin);
     params.kinds = kinds_of(volume, loaded, method);
-    if (scene.layers & layer_media)
-        params.layer =
-            place_among(medium_names(scene), medium_name(scene, std::size_t(&volume - scene.volumes.data())));
     return params;
 }
 
@@ -279,8 +276,13 @@ std::vector<shared::MediumParams> make_media(const Scene& scene, Media media, co
     const UploadLayout layout(media);
     std::vector<shared::MediumParams> rows;
     rows.reserve(media.size());
-    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+    const std::vector<std::string> names =
+        scene.layers & layer_media ? medium_names(scene) : std::vector<std::string>{};
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
         rows.push_back(make_medium(scene, scene.volumes[i], media[i], layout, method, origin));
+        if (!names.empty())
+            rows.back().layer = place_among(names, medium_name(scene, i));
+    }
     return rows;
 }
 

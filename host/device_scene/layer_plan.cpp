@@ -56,8 +56,7 @@ public:
             const double n = samples_[i];
             const Sums s = at(i, slot);
             const double w = s.value.y, m = w > 0.0 ? s.value.x / w : 0.0;
-            const double mixed = 0.5 * (s.square.z - s.square.x - s.square.y); // of w d and w
-            const double spread = s.square.x - 2.0 * m * mixed + m * m * s.square.y;
+            const double spread = s.square.x - 2.0 * m * s.value.z + m * m * s.square.y; // z: of w d times w
             const double variance = n > 1 && w > 0.0 ? n / (n - 1.0) * spread / (w * w) : 0.0;
             return Value{glm::vec3(static_cast<float>(m)), glm::vec3(static_cast<float>(std::max(variance, 0.0)))};
         });
@@ -137,9 +136,10 @@ LayerPlan plan_layers(const Scene& scene) {
     place(layer_transmittance | layer_alpha, LAYERS_THROUGH, params.through, 2);
     place(layer_normal, LAYERS_NORMAL, params.normal, 1);
     if (params.count > most_layers)
-        throw InputError(fmt::format("the picture would have {} layers, of which {} are of groups of lights and {} of "
-                                     "media, but {} is the most; give several one name, or leave a layer out",
-                                     params.count, plan.groups.size(), plan.media.size(), most_layers));
+        throw InputError(
+            fmt::format("the picture's layers would take {} places, {} of them for groups of lights and {} "
+                        "for media, but {} is the most; give several one name, or leave a layer out",
+                        params.count, plan.groups.size(), plan.media.size(), most_layers));
     return plan;
 }
 

@@ -36,12 +36,15 @@ DensityField FieldCache::take(const GridFile& file, GridValues values) {
     return fields_.insert_or_assign(key, Stamped<DensityField>{stamp, load(file, stamp, values)}).first->second.value;
 }
 
-// As it was foreseen, if that is the same.
+// As it was foreseen, if that is the same. What went wrong then, for want of memory, say, is tried again.
 DensityField FieldCache::load(const GridFile& file, const Stamp& stamp, GridValues values) {
     auto coming = coming_.extract(key_of(file));
     if (!coming.empty() && coming.mapped().stamp == stamp)
-        if (DensityField field = coming.mapped().value.get(); is_of(field, values))
-            return field;
+        try {
+            if (DensityField field = coming.mapped().value.get(); is_of(field, values))
+                return field;
+        } catch (const std::exception&) {
+        }
     return load_density_field(file, values);
 }
 

@@ -43,6 +43,14 @@ struct Element {
 const std::vector<std::string> names_of_places[] = {{"u", "s", "texture_u", "texture_s"},
                                                     {"v", "t", "texture_v", "texture_t"}};
 
+std::optional<int> axis_of_place(const std::string& property) {
+    for (int axis = 0; axis < 2; ++axis)
+        for (const std::string& name : names_of_places[axis])
+            if (property == name)
+                return axis;
+    return std::nullopt;
+}
+
 enum class Format { ascii, little_endian, big_endian };
 
 class PlyReader {
@@ -74,6 +82,15 @@ public:
         if (mesh_.triangles.empty())
             throw InputError(fmt::format("{}: has no faces; export the mesh with them", path_.string()));
         return std::move(mesh_);
+    }
+
+    bool has_places() {
+        read_header();
+        const auto is_place = [](const Property& property) { return !property.count && axis_of_place(property.name); };
+        return std::any_of(elements_.begin(), elements_.end(), [&](const Element& element) {
+            return element.name == "vertex" &&
+                   std::any_of(element.properties.begin(), element.properties.end(), is_place);
+        });
     }
 
 private:
@@ -205,12 +222,10 @@ private:
                 normal[property.name[1] - 'x'] = static_cast<float>(value);
                 has_normal = true;
             }
-            for (int axis = 0; axis < 2; ++axis)
-                if (std::find(names_of_places[axis].begin(), names_of_places[axis].end(), property.name) !=
-                    names_of_places[axis].end()) {
-                    place[axis] = static_cast<float>(value);
-                    has_place = true;
-                }
+            if (const std::optional<int> axis = axis_of_place(property.name)) {
+                place[*axis] = static_cast<float>(value);
+                has_place = true;
+            }
         }
         if (element.name != "vertex")
             return;
@@ -278,6 +293,10 @@ private:
 
 Polygons read_ply(const std::filesystem::path& path) {
     return PlyReader(path).read();
+}
+
+bool has_ply_places(const std::filesystem::path& path) {
+    return PlyReader(path).has_places();
 }
 
 } // namespace vkvol

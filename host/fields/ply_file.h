@@ -9,4 +9,7 @@ namespace vkvol {
 // InputError as read_polygons.
 Polygons read_ply(const std::filesystem::path& path);
 
+// Whether its vertices have places on a texture. InputError as above, as far as the header tells.
+bool has_ply_places(const std::filesystem::path& path);
+
 } // namespace vkvol

@@ -6,6 +6,7 @@
 
 #include "error.h"
 #include "file_ending.h"
+#include "gzip.h"
 #include "input_file.h"
 #include "obj_file.h"
 #include "ply_file.h"
@@ -18,11 +19,12 @@ std::string read_mesh_text(const std::filesystem::path& path) {
     std::string text{std::istreambuf_iterator<char>(stream), {}};
     if (stream.bad())
         throw InputError(fmt::format("{}: cannot be read; check the disk, or copy the file again", path.string()));
-    return text;
+    constexpr std::size_t most = std::size_t{1} << 34u; // bytes, unpacked
+    return unpacked(std::move(text), path, most);
 }
 
 Polygons read_polygons(const std::filesystem::path& path) {
-    return file_ending(path) == ".ply" ? read_ply(path) : read_obj(path);
+    return file_ending(path) == ".ply" || is_packed(path, ".ply") ? read_ply(path) : read_obj(path);
 }
 
 } // namespace vkvol

@@ -20,11 +20,11 @@ struct Polygons {
     std::vector<std::string> warnings; // material libraries that cannot be read
 };
 
-// From a .ply file, or whatever it is called a Wavefront .obj. InputError for a file that cannot be read, has no faces,
-// a number that is none, or a vertex that does not exist.
+// From a .ply or .ply.gz file, or whatever it is called a Wavefront .obj. InputError for a file that cannot be read,
+// has no faces, a number that is none, or a vertex that does not exist.
 Polygons read_polygons(const std::filesystem::path& path);
 
-// The whole file; InputError if that cannot be.
+// The whole file, unpacked if gzip has packed it; InputError if that cannot be.
 std::string read_mesh_text(const std::filesystem::path& path);
 
 } // namespace vkvol

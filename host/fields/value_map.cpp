@@ -76,6 +76,8 @@ std::vector<shared::MapKnot> make_knots(const ValueMap& map) {
             static_cast<float>(i + 1 < points.size() ? slope(from.density, to.density, values) : map.rise);
         knot.albedo = from.albedo;
         knot.albedo_slope = slope(from.albedo, to.albedo, values);
+        knot.absorbed = 1.0 - from.albedo;
+        knot.absorbed_slope = slope(1.0 - from.albedo, 1.0 - to.albedo, values);
         knot.emission = from.emission;
         knot.emission_slope = slope(from.emission, to.emission, values);
         knots.push_back(knot);

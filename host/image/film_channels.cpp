@@ -5,8 +5,8 @@
 
 namespace vkvol {
 
-std::string channel_name(const std::string& prefix, const FilmLayer& layer, char letter) {
-    return prefix + (layer.name == "alpha" ? "" : layer.name + ".") + letter;
+std::string channel_name(const std::string& prefix, const FilmLayer& layer, char letter, bool is_premultiplied) {
+    return prefix + (layer.name == "alpha" && is_premultiplied ? "" : layer.name + ".") + letter;
 }
 
 std::vector<std::string> channel_names(const Film& film) {
@@ -15,7 +15,7 @@ std::vector<std::string> channel_names(const Film& film) {
         for (const char* const prefix : {"", "variance."})
             if (*prefix == 0 || !layer.variance.empty())
                 for (const char* letter = layer.channels(); *letter != 0; ++letter)
-                    names.push_back(channel_name(prefix, layer, *letter));
+                    names.push_back(channel_name(prefix, layer, *letter, film.is_premultiplied));
     return names;
 }
 

@@ -9,8 +9,9 @@
 
 namespace vkvol {
 
-// Alpha is the picture's own, "A"; of other layers "direct.R", and with a prefix "variance.direct.R".
-std::string channel_name(const std::string& prefix, const FilmLayer& layer, char letter);
+// "direct.R", and with a prefix "variance.direct.R". Alpha by which the picture is multiplied is its own, "A": readers
+// take that for so.
+std::string channel_name(const std::string& prefix, const FilmLayer& layer, char letter, bool is_premultiplied);
 
 // What every film has: R, G, B, variance.R, variance.G, variance.B, and then this.
 inline constexpr std::size_t samples_channel = 6;

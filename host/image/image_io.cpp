@@ -92,7 +92,7 @@ void write_pixels(AtomicFile& file, PictureFormat format, const PictureHeader& h
 // What we or the pixels themselves say already; the rest of a file's attributes is its metadata.
 bool is_structural(const std::string& key) {
     static const char* const known[] = {"oiio:",        "openexr:", "compression", "worldToCamera", "PixelAspectRatio",
-                                        "screenWindow", "nuke/",    "DateTime",    "capDate"};
+                                        "screenWindow", "nuke/",    "DateTime",    "capDate",       "chromaticities"};
     return std::any_of(std::begin(known), std::end(known),
                        [&key](const char* prefix) { return key.compare(0, std::strlen(prefix), prefix) == 0; });
 }
@@ -136,13 +136,14 @@ int channel_of(const PictureHeader& header, const char* name) {
 
 // By the names in the image's metadata: other channels are no concern of ours.
 void read_layers(const PictureHeader& header, const std::vector<float>& pixels, Film& film) {
+    const bool is_own_alpha = channel_of(header, "A") >= 0;
     std::istringstream names{text_of(header.attributes, layers_key)};
     for (std::string name; names >> name;) {
         FilmLayer layer{name, {}, {}};
         for (const char* const prefix : {"", "variance."}) {
             std::vector<int> channels;
             for (const char* letter = layer.channels(); *letter != 0; ++letter)
-                channels.push_back(channel_of(header, channel_name(prefix, layer, *letter).c_str()));
+                channels.push_back(channel_of(header, channel_name(prefix, layer, *letter, is_own_alpha).c_str()));
             if (*std::min_element(channels.begin(), channels.end()) < 0)
                 continue;
             std::vector<glm::vec3>& values = *prefix == 0 ? layer.mean : layer.variance;

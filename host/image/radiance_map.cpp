@@ -122,7 +122,8 @@ void check_orientation(const PictureHeader& header, const std::filesystem::path&
 RadianceMap read_radiance_map(const std::filesystem::path& file) {
     check_input_file(file, "");
     const std::string ending = file_ending(file);
-    const std::vector<std::string> known = {".exr", ".hdr", ".png", ".jpg", ".jpeg", ".tif", ".tiff"};
+    const std::vector<std::string> known = {".exr",  ".hdr", ".png", ".jpg", ".jpeg", ".tif",
+                                            ".tiff", ".tga", ".bmp", ".gif", ".psd",  ".pfm"};
     if (std::find(known.begin(), known.end(), ending) == known.end())
         throw InputError(
             fmt::format("{}: unknown kind of map '{}'; expected .exr, .hdr or .png", file.string(), ending));

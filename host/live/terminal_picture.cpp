@@ -59,13 +59,14 @@ Bytes resized(const Bytes& rgb, int width, int height, int to_width, int to_heig
 std::string as_blocks(const Bytes& rgb, const CellSize& cells) {
     std::string text;
     for (int row = 0; row < cells.rows; ++row) {
+        text += "\033[K"; // not after the row: a cursor that waits in the last column would take that with it
         for (int column = 0; column < cells.columns; ++column) {
             const std::uint8_t* const above = &rgb[3 * (std::size_t(2 * row) * cells.columns + column)];
             const std::uint8_t* const below = above + 3 * std::size_t(cells.columns);
             fmt::format_to(std::back_inserter(text), "\033[38;2;{};{};{};48;2;{};{};{}m\u2580", above[0], above[1],
                            above[2], below[0], below[1], below[2]);
         }
-        text += "\033[0m\033[K\n";
+        text += "\033[0m\n";
     }
     return text;
 }
@@ -147,6 +148,10 @@ std::string as_sixels(const Bytes& rgb, int width, int height) {
 TerminalGraphics terminal_graphics() {
     const std::string term = environment("TERM"), program = environment("TERM_PROGRAM");
     const auto names = [](const std::string& text, const char* name) { return text.find(name) != std::string::npos; };
+    // Multiplexers hand on the environment that they were started in, and no graphics.
+    if (!environment("TMUX").empty() || !environment("STY").empty() || term.starts_with("tmux") ||
+        term.starts_with("screen"))
+        return TerminalGraphics::blocks;
     if (!environment("KITTY_WINDOW_ID").empty() || names(term, "kitty") || names(term, "ghostty") ||
         program == "WezTerm")
         return TerminalGraphics::kitty;
@@ -172,8 +177,10 @@ std::string drawn(TerminalGraphics graphics, const Bytes& rgb, int width, int he
     if (graphics == TerminalGraphics::blocks)
         return as_blocks(resized(rgb, width, height, cells.columns, 2 * cells.rows), cells);
     // No more pixels than the cells have; where their size is not known, of 10 by 20.
-    const int across = std::min(width, cells.columns * std::max(terminal.width / terminal.columns, 10));
-    const int most = cells.rows * std::max(terminal.height / terminal.rows, 20);
+    const bool is_known = terminal.width > 0 && terminal.height > 0;
+    const int across =
+        std::min(width, cells.columns * (is_known ? std::max(terminal.width / terminal.columns, 1) : 10));
+    const int most = cells.rows * (is_known ? std::max(terminal.height / terminal.rows, 1) : 20);
     const int down = std::clamp(static_cast<int>(std::int64_t{across} * height / width), 1, most);
     const Bytes smaller = resized(rgb, width, height, across, down);
     const std::string pixels =

@@ -105,6 +105,13 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 } // namespace
 
+bool is_own_address(const std::string& host, int port) {
+    for (const char* const name : {"127.0.0.1", "localhost"})
+        if (host == fmt::format("{}:{}", name, port) || (port == 80 && host == name))
+            return true;
+    return false;
+}
+
 struct ViewServer::Serving {
     explicit Serving(ViewBoard& with) : board(with) {}
 
@@ -124,6 +131,7 @@ struct ViewServer::Serving {
     std::list<Made> made;
 
     bool knows(const Request& request) const;
+    bool has_key(const Request& request) const;
     bool refuses(const Request& request, Response& response) const;
     void route();
     static void answer(Response& response, const std::function<void()>& content);
@@ -133,9 +141,11 @@ struct ViewServer::Serving {
 
 // Pages of other sites can send a browser here, by any name that leads to this machine, but do not know the key.
 bool ViewServer::Serving::knows(const Request& request) const {
-    const std::string host = request.get_header_value("Host");
-    const bool is_local = host == fmt::format("127.0.0.1:{}", port) || host == fmt::format("localhost:{}", port);
-    return is_local && is_equal(request.get_param_value("key"), key);
+    return is_own_address(request.get_header_value("Host"), port) && has_key(request);
+}
+
+bool ViewServer::Serving::has_key(const Request& request) const {
+    return is_equal(request.get_param_value("key"), key);
 }
 
 // Before any body is read: of strangers none is, and a body without a length could be of any. What is not there is not
@@ -146,7 +156,13 @@ bool ViewServer::Serving::refuses(const Request& request, Response& response) co
     response.set_header("X-Content-Type-Options", "nosniff");
     if (!knows(request)) {
         response.status = 403;
-        response.set_content("The address is not complete: vkvol view has printed one with a key.\n", "text/plain");
+        response.set_content(
+            has_key(request)
+                ? fmt::format("This is another address than the one printed: open 127.0.0.1:{0}; from another machine "
+                              "forward its port {0}, by this number.\n",
+                              port)
+                : "The address is not complete: vkvol view has printed one with a key.\n",
+            "text/plain");
         return true;
     }
     if (!request.has_header("Transfer-Encoding"))

@@ -10,6 +10,9 @@
 
 namespace vkvol {
 
+// Whether a request's header Host names the loopback address and this port. Browsers leave out the port 80.
+bool is_own_address(const std::string& host, int port);
+
 class ViewServer {
 public:
     // `port`: 0 for any that is free. Throws InputError if it is taken. `integrators`: for the page to choose from.

@@ -1,6 +1,7 @@
 #include "preset.h"
 
 #include <fmt/format.h>
+#include <set>
 
 #include "scene_facts.h"
 #include "shared/constants.h"
@@ -11,6 +12,18 @@ namespace vkvol {
 int scattering_of(const RenderSettings& settings, const Integrator& integrator) {
     const int scattering = settings.choices.scattering.value_or(integrator.scattering);
     return scattering == SCATTERING_SINGLE && settings.max_depth == 0u ? SCATTERING_NONE : scattering;
+}
+
+Scene with_steady_integrator(Scene scene) {
+    if (!scene.motion_blur || !scene.settings.integrator.empty())
+        return scene;
+    std::set<std::string> names{choose_integrator(scene).name};
+    for (const double time : telling_times(*scene.motion_blur))
+        names.insert(choose_integrator(scene_of_time(scene, time)).name);
+    if (names.size() == 2 && !names.contains("lightTracing"))
+        names.erase("deltaTracking"); // of what is dark, which others render as well
+    scene.settings.integrator = names.size() == 1 ? *names.begin() : "ratioTracking";
+    return scene;
 }
 
 Scene with_preset(Scene scene) {

@@ -9,6 +9,9 @@ namespace vkvol {
 // adjust_material_colour nothing is done here, since a mesh's colour is known only once it is loaded.
 Scene with_preset(Scene scene);
 
+// Where something moves and no integrator is named: with the one that renders all moments, also those without light.
+Scene with_steady_integrator(Scene scene);
+
 // SCATTERING_...: single scattering is one event, of which maxDepth allows none.
 int scattering_of(const RenderSettings& settings, const Integrator& integrator);
 

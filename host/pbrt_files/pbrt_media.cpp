@@ -98,11 +98,17 @@ void PbrtTranslator::write_medium(const std::string& name, const PbrtThing& medi
     write_coefficients(medium);
     if (const std::optional<glm::dvec3> glow = colors_.light(medium, "Le")) {
         XmlAttributes attributes;
-        add_rgb(attributes, *glow * (medium.parameters->number("Lescale", 1.0) * exposure_));
+        add_rgb(attributes, *glow * (glow_scale(medium) * exposure_));
         xml_.element("medium", attributes);
     }
     note_unused(medium, {"type"});
     xml_.close();
+}
+
+// "LeScale" to scenes from before pbrt's 22nd of June, 2022.
+double PbrtTranslator::glow_scale(const PbrtThing& medium) {
+    const PbrtParameters& p = *medium.parameters;
+    return p.number(p.has("Lescale") ? "Lescale" : "LeScale", 1.0);
 }
 
 void PbrtTranslator::write_grid_medium(const std::string& name, const PbrtThing& medium) {
@@ -115,7 +121,7 @@ void PbrtTranslator::write_grid_medium(const std::string& name, const PbrtThing&
     write_matrix(world_ * medium.transform);
     write_coefficients(medium);
     const std::string temperature = p.text("temperaturename", "temperature");
-    const double glow = p.number("Lescale", 1.0);
+    const double glow = glow_scale(medium);
     if (glow > 0.0 && has_grid(scene_.folder / file, temperature))
         write_black_body(temperature, glow, medium);
     note_unused(medium, {"type"});

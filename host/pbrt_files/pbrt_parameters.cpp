@@ -95,12 +95,13 @@ void PbrtParameters::add_defaults(const std::vector<PbrtParameter>& defaults) {
 }
 
 const PbrtParameter* PbrtParameters::find(const std::string& name) const {
+    const PbrtParameter* found = nullptr;
     for (std::size_t i = 0; i < parameters_.size(); ++i)
         if (parameters_[i].name == name) {
-            used_[i] = true;
-            return &parameters_[i];
+            used_[i] = true; // also what is overridden
+            found = found ? found : &parameters_[i];
         }
-    return nullptr;
+    return found;
 }
 
 const PbrtParameter* PbrtParameters::of_one(const std::string& name, const char* expected) const {

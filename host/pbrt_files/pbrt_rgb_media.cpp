@@ -108,7 +108,7 @@ void PbrtTranslator::write_rgb_medium(const std::string& name, const PbrtThing& 
     const std::string file = free_name(name);
     const auto grids = std::make_shared<MemoryGrids>();
     // pbrt divides the spectra of lights by what the observer makes of 1, but not those of these.
-    const double scale = p.number("scale", 1.0), brightness = p.number("Lescale", 1.0) * exposure_ * observer_integral;
+    const double scale = p.number("scale", 1.0), brightness = glow_scale(medium) * exposure_ * observer_integral;
     for (const Part& part : parts) {
         if (has_soft_edge(dims, part.values))
             note(medium.place, soft_edge_note);

@@ -4,10 +4,14 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
+#include <sstream>
 
+#include "error.h"
 #include "nearest_name.h"
 #include "pbrt_quadrics.h"
 #include "pbrt_translator.h"
+#include "ply_file.h"
+#include "radiance_map.h"
 
 namespace vkvol {
 
@@ -16,6 +20,7 @@ namespace {
 using std::numbers::pi;
 constexpr double least_alpha = 1e-3; // of facets; what is smoother is a mirror to pbrt, too
 constexpr int most_nested = 16;      // textures of textures
+const glm::dvec3 luminance_of_rgb(0.2126, 0.7152, 0.0722);
 
 double size_of(const glm::dmat4& map) {
     return std::cbrt(std::abs(glm::determinant(glm::dmat3(map))));
@@ -28,6 +33,30 @@ bool has_texture(const XmlAttributes& material) {
 
 bool is_left_out(const std::string& material) {
     return material.empty() || material == "none" || material == "interface";
+}
+
+double number_of(const std::string& text) { // whatever a locale takes for a decimal point
+    double number = 0.0;
+    std::from_chars(text.data(), text.data() + text.size(), number);
+    return number;
+}
+
+// What pbrt makes of a place on it: s * place + d.
+glm::dvec2 scale_of(const PbrtThing& texture) {
+    return {texture.parameters->number("uscale", 1.0), texture.parameters->number("vscale", 1.0)};
+}
+glm::dvec2 shift_of(const PbrtThing& texture) {
+    return {texture.parameters->number("udelta", 0.0), texture.parameters->number("vdelta", 0.0)};
+}
+bool is_plain(const PbrtThing& texture) {
+    const glm::dvec2 scale = scale_of(texture);
+    return scale.x >= 0.0 && scale.y >= 0.0 && shift_of(texture) == glm::dvec2(0.0);
+}
+
+void set(XmlAttributes& attributes, const std::string& name, const std::string& value) {
+    for (auto& [each, old] : attributes)
+        if (each == name)
+            old = value;
 }
 
 } // namespace
@@ -107,20 +136,26 @@ void PbrtTranslator::add_image(XmlAttributes& attributes, const PbrtThing& textu
                          encoding));
     add_rgb(attributes, glm::clamp(share, 0.0, 1.0));
     attributes.emplace_back("texture", file_name(texture));
-    const double across = p.number("uscale", 1.0), upwards = p.number("vscale", 1.0);
-    if (across < 0.0 || upwards < 0.0)
-        note(texture.place, "a negative \"uscale\" or \"vscale\" mirrors no image here");
     if (const std::string mapping = p.text("mapping", "uv"); mapping != "uv")
         note(texture.place, fmt::format("mapping \"{}\" is left out; its places are the shape's", mapping));
-    attributes.emplace_back("repeat", fmt::format("{} {}", std::abs(across), std::abs(upwards)));
+    add_repeat(attributes, texture, 1.0);
     note_unused(texture, {"filter", "maxanisotropy"});
 }
 
-// A square of it is 1 / uscale wide, and the one on the lower left "tex1"; beyond 0, where negative scales lead,
-// "tex2".
+// Where signs and shifts matter, meshes that stand in the scene have them in their places: with_places_of_texture().
+void PbrtTranslator::add_repeat(XmlAttributes& attributes, const PbrtThing& texture, double repeat) {
+    const PbrtParameters& p = *texture.parameters;
+    texture_ = texture;
+    texture_repeat_ = repeat;
+    attributes.emplace_back("repeat", fmt::format("{} {}", std::abs(p.number("uscale", 1.0)) * repeat,
+                                                  std::abs(p.number("vscale", 1.0)) * repeat));
+    p.find("udelta");
+    p.find("vdelta");
+}
+
+// A square of it is 1 / uscale wide, and the one on the lower left "tex1".
 void PbrtTranslator::add_checkerboard(XmlAttributes& attributes, const PbrtThing& texture, const glm::dvec3& factor,
                                       int depth) {
-    const PbrtParameters& p = *texture.parameters;
     const std::optional<glm::dvec3> first = even_part(texture, "tex1", 1.0, depth),
                                     second = even_part(texture, "tex2", 0.0, depth);
     if (!first || !second)
@@ -128,25 +163,103 @@ void PbrtTranslator::add_checkerboard(XmlAttributes& attributes, const PbrtThing
     glm::dvec3 own(0.6), other(0.4);
     if (first && second)
         own = *first, other = *second;
-    const double across = p.number("uscale", 1.0), upwards = p.number("vscale", 1.0);
-    if ((across < 0.0) != (upwards < 0.0))
-        std::swap(own, other);
     add_rgb(attributes, share_of_light(texture, factor * own));
     attributes.emplace_back("checker", xml_numbers(share_of_light(texture, factor * other)));
-    attributes.emplace_back("repeat", fmt::format("{} {}", std::abs(across) / 2.0, std::abs(upwards) / 2.0));
+    add_repeat(attributes, texture, 0.5);
     note_unused(texture);
 }
 
+PbrtTriangles PbrtTranslator::with_places_of_texture(const PbrtThing& shape, PbrtTriangles mesh,
+                                                     XmlAttributes& material) const {
+    if (!texture_)
+        return mesh;
+    if (mesh.places.empty())
+        mesh = with_usual_places(mesh, shape.type == "bilinearmesh");
+    if (is_plain(*texture_))
+        return mesh;
+    for (glm::dvec2& place : mesh.places)
+        place = scale_of(*texture_) * place + shift_of(*texture_);
+    set(material, "repeat", fmt::format("{0} {0}", texture_repeat_));
+    return mesh;
+}
+
+// Of what has its places by its shape, or in a file.
+void PbrtTranslator::note_places(XmlAttributes& material) {
+    if (!texture_ || is_plain(*texture_))
+        return;
+    const glm::dvec2 scale = scale_of(*texture_);
+    const bool is_image = texture_->type == "imagemap";
+    if (is_image && (scale.x < 0.0 || scale.y < 0.0))
+        note(texture_->place, "a negative \"uscale\" or \"vscale\" mirrors no image of such a shape here");
+    if (shift_of(*texture_) != glm::dvec2(0.0))
+        note(texture_->place, "\"udelta\" and \"vdelta\" are left out of such a shape");
+    if (is_image || scale.x * scale.y >= 0.0)
+        return;
+    std::string own[3], other; // squares of a board whose sides go on behind 0 the other way
+    for (const auto& [name, value] : material)
+        for (int c = 0; c < 3; ++c)
+            if (name == std::string(1, "rgb"[c]))
+                own[c] = value;
+            else if (name == "checker")
+                other = value;
+    std::istringstream others(other);
+    for (int c = 0; c < 3; ++c) {
+        std::string value;
+        others >> value;
+        set(material, std::string(1, "rgb"[c]), value);
+    }
+    set(material, "checker", fmt::format("{} {} {}", own[0], own[1], own[2]));
+}
+
+glm::dvec3 PbrtTranslator::mean_of_image(const PbrtThing& thing) const {
+    try {
+        const RadianceMap map = read_radiance_map(scene_.folder / thing.parameters->text("filename"));
+        glm::dvec3 sum(0.0);
+        for (const glm::vec3& texel : map.texels)
+            sum += glm::dvec3(texel);
+        return sum / double(map.texels.size());
+    } catch (const InputError& error) { // which names the file
+        fail_at(thing.place, error.what());
+    }
+}
+
+// A mesh in a file that has no places is of its texture's mean colour.
+void PbrtTranslator::even_out(const PbrtShape& shape, XmlAttributes& material) {
+    if (!texture_)
+        return;
+    try {
+        if (has_ply_places(scene_.folder / shape.thing.parameters->text("filename")))
+            return;
+    } catch (const InputError&) { // whoever loads it says so
+        return;
+    }
+    note(shape.thing.place, "has no places on its texture (u and v), and is of that one's mean colour");
+    glm::dvec3 color(0.0), other(0.0);
+    for (const auto& [name, value] : material) {
+        for (int c = 0; c < 3; ++c)
+            if (name == std::string(1, "rgb"[c]))
+                color[c] = number_of(value);
+        if (std::istringstream rest(name == "checker" ? value : ""); name == "checker")
+            rest >> other.x >> other.y >> other.z;
+    }
+    color = texture_->type == "imagemap" ? color * glm::min(mean_of_image(*texture_), 1.0) : 0.5 * (color + other);
+    std::erase_if(material, [](const auto& each) {
+        return each.first == "texture" || each.first == "checker" || each.first == "repeat";
+    });
+    for (int c = 0; c < 3; ++c)
+        set(material, std::string(1, "rgb"[c]), xml_number(color[c]));
+}
+
 // pbrt's GGX is along two axes, and its roughness the root of alpha unless told otherwise.
-void PbrtTranslator::add_roughness(XmlAttributes& attributes, const PbrtThing& thing) {
+void PbrtTranslator::add_roughness(XmlAttributes& attributes, const PbrtThing& thing, const std::string& part) {
     const PbrtParameters& p = *thing.parameters;
     for (const char* name : {"roughness", "uroughness", "vroughness"})
-        if (!p.texture(name).empty()) {
-            note(p.find(name)->place, "a texture of roughness is left out; the surface is smooth");
+        if (!p.texture(part + name).empty()) {
+            note(p.find(part + name)->place, "a texture of roughness is left out; the surface is smooth");
             return;
         }
-    const double both = p.number("roughness", 0.0);
-    double u = p.number("uroughness", both), v = p.number("vroughness", both);
+    const double both = p.number(part + "roughness", 0.0);
+    double u = p.number(part + "uroughness", both), v = p.number(part + "vroughness", both);
     if (p.truth("remaproughness", true)) {
         u = std::sqrt(std::max(u, 0.0));
         v = std::sqrt(std::max(v, 0.0));
@@ -196,9 +309,13 @@ void PbrtTranslator::add_conductor(XmlAttributes& attributes, const PbrtThing& t
     }
     attributes.emplace_back("eta", xml_numbers(eta));
     attributes.emplace_back("k", xml_numbers(k));
-    add_roughness(attributes, thing);
-    if (is_coated)
+    add_roughness(attributes, thing, is_coated ? "conductor." : "");
+    if (is_coated) {
         note(thing.place, "has no coat here; it is a conductor");
+        for (const char* name : {"interface.eta", "interface.roughness", "interface.uroughness", "interface.vroughness",
+                                 "thickness", "albedo", "g"})
+            p.find(name);
+    }
 }
 
 XmlAttributes PbrtTranslator::material(const PbrtThing& thing) {
@@ -252,6 +369,7 @@ const PbrtThing& PbrtTranslator::material_thing(const PbrtShape& shape) const {
 
 std::optional<XmlAttributes> PbrtTranslator::material_of(const PbrtShape& shape) {
     const PbrtThing& thing = material_thing(shape);
+    texture_.reset();
     if (is_left_out(thing.type))
         return std::nullopt;
     return material(thing);
@@ -263,9 +381,14 @@ void PbrtTranslator::write_emission(const PbrtShape& shape, std::optional<double
         return;
     const PbrtThing& light = *shape.light;
     const PbrtParameters& p = *light.parameters;
-    if (!p.text("filename").empty())
-        note(light.place, "an image that shines does so evenly here");
     glm::dvec3 radiance = light_color(light, "L");
+    if (!p.text("filename").empty()) {
+        note(light.place, "an image that shines does so evenly here, as its mean");
+        radiance *= mean_of_image(light);
+        if (const double luminance = glm::dot(radiance, luminance_of_rgb) / (p.number("scale", 1.0) * exposure_);
+            p.number("power", -1.0) > 0.0 && luminance > 0.0)
+            radiance /= luminance; // "power" is of that
+    }
     const bool is_two_sided = p.truth("twosided", false);
     if (const double power = p.number("power", -1.0); power > 0.0 && area)
         radiance *= power / ((is_two_sided ? 2.0 : 1.0) * *area * pi);
@@ -364,12 +487,6 @@ void PbrtTranslator::write_triangles(const PbrtShape& shape, const PbrtTriangles
 
 namespace {
 
-double number_of(const std::string& text) { // whatever a locale takes for a decimal point
-    double number = 0.0;
-    std::from_chars(text.data(), text.data() + text.size(), number);
-    return number;
-}
-
 // Glass whose normals point inwards has its inside around it, as pbrt sees it: a bubble.
 void turn_inside_out(XmlAttributes& glass) {
     for (auto& [name, value] : glass)
@@ -384,6 +501,33 @@ bool is_glass(const XmlAttributes& material) {
 
 } // namespace
 
+// By an "alpha" of 0: nothing ever meets it.
+bool PbrtTranslator::is_unseen(const PbrtShape& shape) {
+    const PbrtParameters& p = *shape.thing.parameters;
+    const double alpha = p.texture("alpha").empty() ? p.number("alpha", 1.0) : 0.5;
+    if (alpha >= 1.0 || (alpha <= 0.0 && !shape.light))
+        return alpha <= 0.0;
+    note(shape.thing.place, alpha <= 0.0
+                                ? "\"alpha\" is left out; the light that pbrt does not show is seen, and opaque"
+                                : "\"alpha\" is left out; it is opaque");
+    return false;
+}
+
+void PbrtTranslator::note_odd_lists(const PbrtThing& mesh) {
+    const PbrtParameters& p = *mesh.parameters;
+    const std::size_t points = p.points("P").size();
+    const auto look = [&](const char* name, std::size_t count) {
+        if (count != 0 && count != points)
+            note(p.find(name)->place,
+                 fmt::format("\"{}\": {} of them for {} points are left out", name, count, points));
+    };
+    look("N", p.points("N").size());
+    look("uv", p.pairs("uv").size());
+    const std::size_t corners = mesh.type == "bilinearmesh" ? 4 : 3, indices = p.numbers("indices").size();
+    if (indices > corners && indices % corners != 0)
+        note(p.find("indices")->place, fmt::format("the last {} of \"indices\" are left out", indices % corners));
+}
+
 void PbrtTranslator::write_surface(const PbrtShape& shape) {
     std::optional<XmlAttributes> material = material_of(shape);
     if (!material) {
@@ -396,8 +540,8 @@ void PbrtTranslator::write_surface(const PbrtShape& shape) {
         return;
     }
     const PbrtThing& thing = shape.thing;
-    if (thing.parameters->has("alpha"))
-        note(thing.place, "\"alpha\" is left out; it is opaque");
+    if (is_unseen(shape))
+        return;
     PbrtShape turned = shape; // as its triangles would be
     if (thing.type == "sphere" || thing.type == "cylinder" || thing.type == "disk")
         turned.is_reversed = faces_inwards(shape);
@@ -406,12 +550,16 @@ void PbrtTranslator::write_surface(const PbrtShape& shape) {
     const bool shines_inwards = thing.type == "sphere" && turned.is_reversed && shape.light;
     const bool is_polar = thing.type == "disk" && has_texture(*material); // there
     const bool is_quadric = thing.type == "sphere" || thing.type == "disk" || thing.type == "cylinder";
+    const bool is_mesh = thing.type == "trianglemesh" || thing.type == "bilinearmesh";
+    if (!is_mesh)
+        note_places(*material);
     if (thing.type == "plymesh") {
+        even_out(shape, *material);
         write_file_mesh(shape, *material);
-    } else if (thing.type == "trianglemesh" || thing.type == "bilinearmesh") {
-        const PbrtTriangles mesh = read_triangles(thing);
-        const bool needs_places = has_texture(*material) && mesh.places.empty();
-        write_triangles(shape, needs_places ? with_usual_places(mesh, thing.type == "bilinearmesh") : mesh, *material);
+    } else if (is_mesh) {
+        note_odd_lists(thing);
+        const PbrtTriangles mesh = with_places_of_texture(thing, read_triangles(thing), *material);
+        write_triangles(shape, mesh, *material);
     } else if (is_quadric && (shines_inwards || is_polar || !is_whole_ball_or_disk(thing, thing.transform))) {
         const PbrtTriangles mesh = quadric_triangles(thing);
         note(thing.place, fmt::format("this {} is {} triangles here", thing.type, mesh.triangles.size()));

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "gzip.h"
 #include "input_file.h"
 #include "one_line.h"
 
@@ -27,7 +28,7 @@ bool ends_word(char c) {
 }
 
 std::string text_of(const std::filesystem::path& file) {
-    std::string text = read_input_text(file, longest_file, "name a pbrt scene");
+    std::string text = unpacked(read_input_text(file, longest_file, "name a pbrt scene"), file, longest_file);
     if (text.size() > longest_file)
         throw InputError(one_line(file.string() + ": is larger than 1 GiB; put its meshes into .ply files"));
     return text;
@@ -52,8 +53,6 @@ PbrtTokens::PbrtTokens(std::string text, std::string name) {
 }
 
 void PbrtTokens::open(std::string text, const std::string& name, const std::filesystem::path& file) {
-    if (text.starts_with("\x1f\x8b"))
-        throw InputError(one_line(name + ": is compressed; unpack it with gunzip"));
     if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
         throw InputError(one_line(name + ": is UTF-16; save it as UTF-8"));
     Source source;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "gzip.h"
 #include "one_line.h"
 
 namespace vkvol {
@@ -140,7 +141,7 @@ void PbrtTranslator::note(const PbrtPlace& place, const std::string& message) {
 // Empty if it names none.
 std::string PbrtTranslator::file_name(const PbrtThing& thing, const char* parameter) const {
     const std::string name = thing.parameters->text(parameter);
-    if (name.ends_with(".gz"))
+    if (name.ends_with(".gz") && !is_packed(name, ".ply"))
         fail_at(thing.place, fmt::format("{} is compressed; unpack it with gunzip, and name what that leaves", name));
     return name.empty() || !options_.name_of_file ? name : options_.name_of_file(name);
 }
@@ -206,7 +207,8 @@ void PbrtTranslator::write_camera() {
     const PbrtThing& camera = thing_or(scene_.camera, usual_camera);
     const PbrtThing& film = thing_or(scene_.film, usual_film);
     const Pixels pixels = pixels_of(film);
-    const Screen screen = screen_of(camera, double(pixels.width), double(pixels.height));
+    const bool is_spherical = camera.type == "spherical"; // for which pbrt has windows read, and uses none
+    const Screen screen = screen_of(is_spherical ? usual_camera : camera, double(pixels.width), double(pixels.height));
     const double width = screen.right - screen.left, height = screen.top - screen.bottom;
     if (std::abs(width / height / (double(pixels.width) / double(pixels.height)) - 1.0) > 1e-3)
         note(camera.place, "pixels are not square to this camera; they are here, by its window's height");
@@ -215,7 +217,6 @@ void PbrtTranslator::write_camera() {
     double scale = 1.0;
     if (!turns_alone(glm::dmat3(to_world), scale))
         note(camera.place, "its transform stretches what it sees; it is turned and moved alone");
-    const bool is_spherical = camera.type == "spherical";
     const glm::dvec3 eye = point(world_ * to_world, glm::dvec3(0.0));
     const glm::dmat3 axes(world_ * to_world);
     const glm::dvec3 forward = glm::normalize(is_spherical ? -axes[0] : axes[2]);
@@ -224,7 +225,7 @@ void PbrtTranslator::write_camera() {
     attributes.emplace_back("lookAt", xml_numbers(eye + forward * std::max(1.0, glm::length(eye))));
     attributes.emplace_back("up", xml_numbers(glm::normalize(axes[1])));
     add_projection(camera, height, scale, attributes);
-    note_unused(camera);
+    note_unused(camera, {is_spherical ? "screenwindow" : "", is_spherical ? "frameaspectratio" : ""});
     xml_.element("camera", attributes, "", camera.place.text());
 
     write_window(pixels, screen, film.place, xml_);
@@ -260,11 +261,14 @@ void PbrtTranslator::write_filter() {
         xml_.element("pixelFilter", {{"radius", "1.5"}}, "gaussian", filter.place.text());
         return;
     }
-    const double x = p.number("xradius", kind->radius), y = p.number("yradius", kind->radius);
+    double x = p.number("xradius", kind->radius);
+    const double y = p.number("yradius", kind->radius), sigma = p.number("sigma", 0.5);
     if (x != y)
         note(filter.place, fmt::format("\"yradius\" is left out; the filter is {:g} pixels wide along either axis", x));
-    if (filter.type == "gaussian" && std::abs(p.number("sigma", 0.5) - x / 3.0) > 1e-6 * x)
+    if (filter.type == "gaussian" && 3.0 * sigma > (1.0 + 1e-6) * x)
         note(filter.place, "\"sigma\" is left out; it is a third of the radius");
+    else if (filter.type == "gaussian") // beyond which there is a hundredth of it
+        x = 3.0 * sigma;
     note_unused(filter);
     xml_.element("pixelFilter", {{"radius", xml_number(x)}}, kind->here, filter.place.text());
 }

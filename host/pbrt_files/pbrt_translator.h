@@ -48,6 +48,7 @@ private:
     void write_rgb_medium(const std::string& name, const PbrtThing& medium);
     MemoryGrids::Grid glow_of(const PbrtThing& medium, glm::ivec3 dims);
     void write_black_body(const std::string& grid, double glow, const PbrtThing& medium);
+    static double glow_scale(const PbrtThing& medium);
     static glm::dvec2 kelvins(const PbrtThing& medium);
     void write_coefficients(const PbrtThing& medium);
     void write_coefficients(const glm::dvec3& sigma_a, const glm::dvec3& sigma_s, double g); // per length
@@ -84,8 +85,15 @@ private:
     void add_conductor(XmlAttributes& attributes, const PbrtThing& thing);
     double index_of(const PbrtThing& thing, double least);
     void add_color(XmlAttributes& attributes, const PbrtThing& thing, const char* name, const glm::dvec3& fallback);
-    void add_roughness(XmlAttributes& attributes, const PbrtThing& thing);
+    void add_roughness(XmlAttributes& attributes, const PbrtThing& thing, const std::string& part = "");
     void add_texture(XmlAttributes& attributes, const PbrtThing& texture, const glm::dvec3& factor, int depth);
+    void add_repeat(XmlAttributes& attributes, const PbrtThing& texture, double repeat);
+    glm::dvec3 mean_of_image(const PbrtThing& thing) const;
+    PbrtTriangles with_places_of_texture(const PbrtThing& shape, PbrtTriangles mesh, XmlAttributes& material) const;
+    void note_places(XmlAttributes& material);
+    void even_out(const PbrtShape& shape, XmlAttributes& material);
+    bool is_unseen(const PbrtShape& shape);
+    void note_odd_lists(const PbrtThing& mesh);
     void add_image(XmlAttributes& attributes, const PbrtThing& texture, const glm::dvec3& factor);
     void add_checkerboard(XmlAttributes& attributes, const PbrtThing& texture, const glm::dvec3& factor, int depth);
     const PbrtThing& texture_of(const PbrtThing& thing, const char* name) const;
@@ -110,6 +118,9 @@ private:
     int media_count_ = 0;                 // of volumes, at most
     glm::dmat4 world_{1.0};               // from pbrt's world to this renderer's
     bool sky_is_mirrored_ = false;
+    // Of the material that was written last: its texture, and which part of pbrt's places it repeats in one.
+    std::optional<PbrtThing> texture_;
+    double texture_repeat_ = 1.0;
     double exposure_ = 1.0; // by which pbrt's film multiplies radiance
 };
 

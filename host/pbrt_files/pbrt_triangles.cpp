@@ -10,12 +10,6 @@ namespace {
 
 constexpr double tolerance = 1e-5; // of edges: points of scene files have six digits or so
 
-void check_count(const PbrtThing& shape, const char* name, std::size_t count, std::size_t points) {
-    if (count != 0 && count != points)
-        fail_at(shape.parameters->find(name)->place,
-                fmt::format("\"{}\": {} of them for {} points; expected one for each", name, count, points));
-}
-
 void add_indices(const PbrtThing& shape, PbrtTriangles& mesh) {
     const PbrtParameters& p = *shape.parameters;
     std::vector<std::size_t> i = p.indices("indices", mesh.points.size());
@@ -23,6 +17,8 @@ void add_indices(const PbrtThing& shape, PbrtTriangles& mesh) {
     if (i.empty() && mesh.points.size() == corners)
         for (std::size_t k = 0; k < corners; ++k)
             i.push_back(k);
+    if (i.size() > corners)
+        i.resize(i.size() - i.size() % corners);
     if (i.empty() || i.size() % corners != 0)
         fail_at(shape.place,
                 fmt::format("{} has {} indices; expected {} for each piece", shape.type, i.size(), corners));
@@ -68,8 +64,10 @@ PbrtTriangles read_triangles(const PbrtThing& shape) {
         fail_at(shape.place, fmt::format("{} lacks its points, \"point3 P\"", shape.type));
     mesh.normals = p.points("N");
     mesh.places = p.pairs("uv");
-    check_count(shape, "N", mesh.normals.size(), mesh.points.size());
-    check_count(shape, "uv", mesh.places.size(), mesh.points.size());
+    if (mesh.normals.size() != mesh.points.size()) // as pbrt does
+        mesh.normals.clear();
+    if (mesh.places.size() != mesh.points.size())
+        mesh.places.clear();
     add_indices(shape, mesh);
     return mesh;
 }

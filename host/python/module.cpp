@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
+#include <unistd.h>
 
 #include "device_json.h"
 #include "error.h"
@@ -71,7 +72,11 @@ ToneRequest tone_of(const std::optional<std::string>& curve, const py::object& e
         tone.automatic_exposure = true;
         return tone;
     }
-    tone.exposure = exposure.cast<double>();
+    try {
+        tone.exposure = exposure.cast<double>();
+    } catch (const py::cast_error&) {
+        throw InputError("exposure: expected a number of stops, or \"auto\"");
+    }
     if (!(std::abs(*tone.exposure) <= 100.0))
         throw InputError("exposure: expected -100 to 100 stops");
     return tone;
@@ -150,25 +155,37 @@ RenderRequest request_of(const py::dict& options) {
 thread_local std::unique_ptr<py::error_already_set> raised;
 
 bool ask() {
+    if (is_ending())
+        return true;
     const py::gil_scoped_acquire acquire;
     if (!raised && PyErr_CheckSignals() != 0)
         raised = std::make_unique<py::error_already_set>();
     return raised != nullptr;
 }
 
+// A daemon thread that asks for Python's lock at the interpreter's end is to be unwound, which would let go of Python's
+// objects without that lock, and pass through destructors that must not throw: it rests until the process is gone.
+[[noreturn]] void rest() {
+    for (;;)
+        ::pause();
+}
+
 // Without Python's lock.
 template <class Work> void run(const Work& work) {
     std::exception_ptr failure;
-    {
-        const py::gil_scoped_release release;
+    PyThreadState* const state = PyEval_SaveThread();
+    try {
         const InterruptQuestion question(&ask);
-        try {
-            work();
-        } catch (abi::__forced_unwind&) { // a daemon thread, at the interpreter's end
-            throw;
-        } catch (...) {
-            failure = std::current_exception();
-        }
+        work();
+    } catch (abi::__forced_unwind&) {
+        rest();
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    try {
+        PyEval_RestoreThread(state);
+    } catch (abi::__forced_unwind&) {
+        rest();
     }
     if (const auto error = std::move(raised)) // which is why
         throw py::error_already_set(*error);
@@ -186,6 +203,8 @@ public:
     Told& operator=(const Told&) = delete;
 
     static void tell(double samples, std::optional<double> noise) {
+        if (is_ending())
+            return;
         const py::gil_scoped_acquire acquire;
         if (raised || !now_ || now_->is_none())
             return;
@@ -319,5 +338,6 @@ PYBIND11_MODULE(_vkvol, module) {
     module.def("devices_json", [] { return devices_json(list_devices()); });
     module.def("integrator_names", &integrator_names);
     module.def("layer_names", &layer_names);
-    py::module_::import("atexit").attr("register")(py::cpp_function(&python::close_device_shops));
+    py::module_::import("atexit").attr("register")(
+        py::cpp_function(&python::close_device_shops, py::call_guard<py::gil_scoped_release>()));
 }

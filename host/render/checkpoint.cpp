@@ -26,7 +26,7 @@ namespace {
 using Json = nlohmann::json;
 
 // magic, bytes of the header, header (JSON), film, sums, layers, pixels, digest of all before.
-constexpr char magic[] = {'v', 'k', 'v', 'o', 'l', 'c', 'h', '5'};
+constexpr char magic[] = {'v', 'k', 'v', 'o', 'l', 'c', 'h', '6'};
 
 Json header_of(const Checkpoint& c) {
     Json non_finite = Json::array();

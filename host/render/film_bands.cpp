@@ -35,7 +35,7 @@ void check_memory(const Crop& crop, std::uint32_t layers, int films) {
 } // namespace
 
 std::vector<Band> make_bands(const Device& device, Commands& commands, const Crop& crop, std::uint64_t most_bytes,
-                             const shared::AovParams& layers, int films) {
+                             std::uint32_t most_rows, const shared::AovParams& layers, int films) {
     check_memory(crop, layers.count, films);
     const std::uint64_t width = static_cast<std::uint64_t>(crop.x1 - crop.x0);
     const std::uint64_t row_bytes = width * sizeof(shared::FilmPixel);
@@ -49,6 +49,8 @@ std::vector<Band> make_bands(const Device& device, Commands& commands, const Cro
     std::uint64_t most = std::max<std::uint64_t>((most_bytes - sizeof(shared::FilmPixel)) / row_bytes, 1);
     if (layers.count > 0)
         most = std::min(most, (most_bytes - records) / layer_row);
+    if (most_rows > 0)
+        most = std::min<std::uint64_t>(most, most_rows);
     const auto height = static_cast<std::uint32_t>(crop.y1 - crop.y0);
     std::vector<Band> bands;
     for (std::uint32_t row = 0; row < height;) {

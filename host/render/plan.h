@@ -32,6 +32,7 @@ struct Plan {
     std::uint32_t splats = 0;           // particles: samples of a batch for whose splats there is room
     double submit_seconds = 0.08;       // aimed at; no submit should hold a device much longer
     std::uint64_t most_film_bytes = 0;  // in one buffer; a larger film lies in several
+    std::uint32_t band_rows = 0;        // of the film in one buffer; 0: as many as it holds
     std::uint64_t most_grid_bytes = 0;  // likewise, of all grids together
     std::uint64_t most_texel_bytes = 0; // what has more is read as storage
     int majorant_cell = 0;              // voxels along an edge of a majorant cell; 0 as well where there are none

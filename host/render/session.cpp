@@ -63,16 +63,7 @@ void Session::render(std::uint32_t samples) {
     stopped_at_.reset();
     if (job_.progress)
         job_.progress(done_, std::nullopt);
-    while (done_ < wanted_ && !is_good_enough() && !stopping()) {
-        try {
-            enter_moments();
-        } catch (const std::exception&) {
-            if (job_.checkpoint) // what was rendered outlives a moment that cannot be made ready
-                save_checkpoint();
-            end_rendering();
-            result_.interrupted = true;
-            throw;
-        }
+    while (goes_on()) {
         if (batch_ == 0)
             batch_ = std::min({next_, wanted_ - done_, until_next_check(), until_next_moment()});
         const double begun = watch_.seconds();
@@ -90,13 +81,29 @@ void Session::render(std::uint32_t samples) {
             done_ += std::exchange(batch_, 0);
             band_ = 0;
         }
-        report_noise();
     }
     if (job_.checkpoint && done_ < wanted_ && !result_.reached_goal && !gave_up_)
         save_checkpoint();
     end_rendering();
     if (done_ >= wanted_ || result_.reached_goal) // what ended it came too late
         result_.interrupted = false;
+}
+
+// Between two batches: whether there is another, whose moment is then entered.
+bool Session::goes_on() {
+    try {
+        report_noise();
+        if (done_ >= wanted_ || is_good_enough() || stopping())
+            return false;
+        enter_moments();
+        return true;
+    } catch (const std::exception&) { // what was rendered outlives a moment that cannot be made ready, say
+        end_rendering();
+        result_.interrupted = true;
+        if (job_.checkpoint)
+            save_checkpoint();
+        throw;
+    }
 }
 
 void Session::end_rendering() {
@@ -351,12 +358,15 @@ void Session::gather() {
     if (counters.queue_overflows > 0)
         throw RenderError(fmt::format("{} queue items were dropped: this is a defect of vkvol; please report the scene",
                                       counters.queue_overflows));
-    const auto passes = wavefront_->passes();
-    result_.passes.resize(passes.size());
-    for (std::size_t pass = 0; pass < passes.size(); ++pass) {
-        result_.passes[pass].name = passes[pass].name;
-        result_.passes[pass].seconds += passes[pass].seconds;
-        result_.passes[pass].queued += passes[pass].queued;
+    for (const PassFigures& pass : wavefront_->passes()) { // some are not there at all moments of what moves
+        const auto is_same = [&](const PassFigures& known) { return known.name == pass.name; };
+        const auto known = std::find_if(result_.passes.begin(), result_.passes.end(), is_same);
+        if (known == result_.passes.end()) {
+            result_.passes.push_back(pass);
+            continue;
+        }
+        known->seconds += pass.seconds;
+        known->queued += pass.queued;
     }
     result_.rounds += wavefront_->rounds();
     for (std::uint32_t i = 0; i < std::min<std::uint32_t>(counters.non_finite_records, NON_FINITE_RECORDS); ++i) {

@@ -14,6 +14,7 @@
 #include "device_scene.h"
 #include "film.h"
 #include "film_bands.h"
+#include "input_files.h"
 #include "medium_outline.h"
 #include "pipeline_cache.h"
 #include "scene.h"
@@ -141,7 +142,8 @@ private:
     std::uint32_t width() const { return static_cast<std::uint32_t>(job_.crop.x1 - job_.crop.x0); }
     void load();
     void take_warnings(const Assets& assets);
-    Scene scene_at(const Moment& moment) const;
+    Scene scene_at(const Moment& moment);
+    void check_moments() const;
     void check_ready() const;
     void find_wish(const Assets& assets, const Specialization& specialization);
     Plan plan_by(Schedule schedule) const;
@@ -165,6 +167,7 @@ private:
     std::uint32_t first_check() const; // of the noise; samples per pixel, a power of two
     std::uint32_t until_next_check() const;
     std::uint64_t next_sample() const { return std::uint64_t{job_.sample_offset} + done_; }
+    bool goes_on();
     void end_rendering();
     void enter_moment();
     std::uint32_t until_next_moment() const;
@@ -202,8 +205,9 @@ private:
 
     const Device& device_;
     const RenderJob& job_;
-    const std::optional<Scene> moving_; // as authored, where something moves
+    const std::optional<Scene> moving_; // as authored, with one integrator, where something moves
     std::optional<Moment> moment_;      // then: of the samples under way
+    SeenFiles seen_files_;              // of all moments
     Scene scene_;                       // of that moment, as its integrator sees it
     Method method_;
     Plan wish_; // of the job, completed by what suits the scene

@@ -61,16 +61,14 @@ void Session::make_followers(const Scene& scene) {
         job.workshop = job_.workshop;
         job.dry_run = job_.dry_run;
         job.plan = job_.plan;
-        job.plan.most_film_bytes =
-            std::min<std::uint64_t>(result_.plan.most_film_bytes, device->limits().maxStorageBufferRange);
+        job.plan.band_rows = bands_.front().rows; // whatever room each device's records of paths leave
         job.plan.waiting = std::max(job.plan.waiting, job_.resume ? job_.resume->batch : 0);
         job.plan.schedule = wish_.schedule;
         follower->session.reset(new Session(*device, scene, job, false));
         if (rows_of_bands(follower->session->bands_) != rows_of_bands(bands_))
-            throw InputError(
-                fmt::format("--device: \"{}\" holds less of the film than \"{}\"; name it first, or render "
-                            "--crop windows",
-                            device->info().name, device_.info().name));
+            throw InputError(fmt::format("--device: \"{}\" holds less of the film than \"{}\"; name it first, or ask "
+                                         "for fewer layers",
+                                         device->info().name, device_.info().name));
         follower->session->result_.counts = {};
         result_.others.push_back({device->info(), 0.0});
         followers_.push_back(std::move(follower));

@@ -53,13 +53,15 @@ MediaFigures figures_of(const Assets& assets) {
 
 Session::Session(const Device& device, const Scene& scene, const RenderJob& job) : Session(device, scene, job, true) {
     result_.scene_hash = scene_hash(scene);
+    check_moments();
     make_followers(scene);
     compile_all();
     watch_.lap();
 }
 
 Session::Session(const Device& device, const Scene& scene, const RenderJob& job, bool leads)
-    : device_(device), job_(job), moving_(scene.motion_blur ? std::optional(scene) : std::nullopt),
+    : device_(device), job_(job),
+      moving_(scene.motion_blur ? std::optional(with_steady_integrator(scene)) : std::nullopt),
       moment_(moving_ ? std::optional(moment_of_sample(job.sample_offset)) : std::nullopt),
       scene_(with_surface_files(with_preset(moving_ ? scene_at(*moment_) : scene))), method_(choose_method(scene_)),
       commands_(device), leads_(leads) {
@@ -67,8 +69,26 @@ Session::Session(const Device& device, const Scene& scene, const RenderJob& job,
     load();
 }
 
-Scene Session::scene_at(const Moment& moment) const {
-    return scene_of_time(*moving_, time_of(*moving_->motion_blur, moment, job_.seed));
+Scene Session::scene_at(const Moment& moment) {
+    Scene scene = scene_of_time(*moving_, time_of(*moving_->motion_blur, moment, job_.seed));
+    seen_files_.see(scene);
+    return scene;
+}
+
+namespace {
+[[noreturn]] void fail_moments() {
+    throw InputError(
+        "<motionBlur>: at some moments the scene needs another kind of paths, or has other layers, than at "
+        "others; let lights be dim rather than 0, name the paths, or leave the layers out");
+}
+} // namespace
+
+// Before anything is rendered, as far as few moments tell.
+void Session::check_moments() const {
+    if (moving_)
+        for (const double time : telling_times(*moving_->motion_blur))
+            if (choose_method(with_preset(scene_of_time(*moving_, time))).paths != method_.paths)
+                fail_moments();
 }
 
 // Enters the moment of the sample that comes next: all before it are finished. The device keeps what it has compiled.
@@ -79,8 +99,7 @@ void Session::enter_moment() {
     Scene scene = with_surface_files(with_preset(scene_at(moment)));
     Method method = choose_method(scene);
     if (method.paths != method_.paths || plan_layers(scene).params.count != device_scene_->layers().params.count)
-        throw InputError("<motionBlur>: at some moments the scene needs another kind of paths, or has other layers, "
-                         "than at others; name the paths, or leave the layers out");
+        fail_moments();
     moment_ = moment;
     scene_ = std::move(scene);
     method_ = std::move(method);
@@ -136,7 +155,8 @@ void Session::load() {
     film_scene_ = {device_scene_->layers(), device_scene_->frame().layers, device_scene_->origin()};
     if (is_first)
         begin_identity(assets);
-    result_.glows = device_scene_->emits() && std::none_of(assets.media.begin(), assets.media.end(), has_colour);
+    const bool glows = device_scene_->emits() && std::none_of(assets.media.begin(), assets.media.end(), has_colour);
+    result_.glows = result_.glows || glows; // at any moment
     if (is_first)
         result_.integrator = method_.integrator;
     if (result_.biased.empty())
@@ -324,7 +344,8 @@ void Session::make_film() {
     const auto films =
         std::count_if(job_.others.begin(), job_.others.end(), [](const Device* d) { return d->is_cpu(); }) +
         (device_.is_cpu() ? 1 : 0);
-    bands_ = make_bands(device_, commands_, job_.crop, result_.plan.most_film_bytes, layers, int(films));
+    bands_ = make_bands(device_, commands_, job_.crop, result_.plan.most_film_bytes, job_.plan.band_rows, layers,
+                        int(films));
     records_ = layers.records;
     film_layers_ = layers;
 }

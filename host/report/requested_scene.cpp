@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <optional>
 
 #include "aovs.h"
 #include "error.h"
@@ -14,14 +15,21 @@ namespace vkvol {
 
 namespace {
 
-// While it takes its picture: at other times its file would have it where it was authored.
-void hold_camera(Scene& scene) {
+// While it takes its picture: at other times its file would have it where it was authored. One of the scene's own,
+// `authored`, moves on from where it is now.
+void keep_camera(Scene& scene, const std::optional<Camera>& authored) {
     if (!scene.motion_blur)
         return;
     MotionBlur blur = *scene.motion_blur;
-    blur.scene_at = [scene_at = blur.scene_at, camera = scene.camera](double time) {
+    blur.scene_at = [scene_at = blur.scene_at, camera = scene.camera, authored](double time) {
         Scene then = scene_at(time);
-        then.camera = camera;
+        if (!authored) {
+            then.camera = camera;
+            return then;
+        }
+        then.camera.position += camera.position - authored->position;
+        then.camera.lens.focus += camera.lens.focus - authored->lens.focus;
+        then.camera.view_height *= camera.view_height / authored->view_height;
         return then;
     };
     scene.motion_blur = std::make_shared<const MotionBlur>(std::move(blur));
@@ -46,10 +54,13 @@ std::string apply_request(const RenderRequest& request, bool has_view, Scene& sc
             given = give_camera(scene, fields);
     } catch (const InputError&) { // of a file, say: whoever loads it says so, once no output can be in danger
     }
+    const Camera authored = scene.camera;
     if (request.frame && !has_view)
         frame_medium(scene, fields);
-    if (!given.empty() || (request.frame && !has_view))
-        hold_camera(scene);
+    if (!given.empty())
+        keep_camera(scene, std::nullopt);
+    else if (request.frame && !has_view)
+        keep_camera(scene, authored);
     return given;
 }
 

@@ -1,26 +1,36 @@
 #include "scene.h"
 
 #include <cctype>
+#include <unordered_set>
 
 namespace vkvol {
 
 namespace {
 
-void add_once(std::vector<std::string>& names, const std::string& name) {
-    if (std::find(names.begin(), names.end(), name) == names.end())
-        names.push_back(name);
-}
+// In the order in which they come first. There may be as many as volumes or lights.
+class Names {
+public:
+    void add(const std::string& name) {
+        if (known_.insert(name).second)
+            names_.push_back(name);
+    }
+    std::vector<std::string> take() { return std::move(names_); }
+
+private:
+    std::unordered_set<std::string> known_;
+    std::vector<std::string> names_;
+};
 
 } // namespace
 
 std::vector<std::string> light_groups(const Scene& scene) {
-    std::vector<std::string> groups;
+    Names groups;
     for (const Light& light : scene.lights)
         if (!group_of(light).empty())
-            add_once(groups, group_of(light));
+            groups.add(group_of(light));
     if (!scene.background_group.empty())
-        add_once(groups, scene.background_group);
-    return groups;
+        groups.add(scene.background_group);
+    return groups.take();
 }
 
 std::string trouble_with_layers(const Scene& scene) {
@@ -50,10 +60,10 @@ std::string medium_name(const Scene& scene, std::size_t volume) {
 }
 
 std::vector<std::string> medium_names(const Scene& scene) {
-    std::vector<std::string> names;
+    Names names;
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-        add_once(names, medium_name(scene, i));
-    return names;
+        names.add(medium_name(scene, i));
+    return names.take();
 }
 
 } // namespace vkvol

@@ -5,7 +5,7 @@
 
 #include "atomic_file.h"
 #include "error.h"
-#include "obj_file.h"
+#include "input_files.h"
 #include "one_line.h"
 
 namespace vkvol {
@@ -59,29 +59,8 @@ bool FileUses::is_newer_than_inputs(const path& file) const {
 }
 
 void FileUses::reads_files_of(const Scene& scene) {
-    if (!scene.camera.points_file.empty())
-        reads("the scene's list of points", scene.camera.points_file);
-    for (const Volume& volume : scene.volumes) {
-        if (volume.phase == PhaseFunction::table)
-            reads("the scene's phase function", volume.phase_details.file);
-        if (const auto* grid = std::get_if<GridFile>(&volume.shape); grid && !grid->memory)
-            reads("the scene's density field", grid->path);
-        if (const auto* mesh = std::get_if<MeshFiles>(&volume.shape))
-            for (const path& model : mesh->paths) {
-                reads("a model of the scene", model);
-                for (const path& library : material_libraries(model))
-                    reads("the materials of a model", library);
-            }
-    }
-    for (const Surface& surface : scene.surfaces) {
-        if (const auto* mesh = std::get_if<MeshSurface>(&surface.shape))
-            reads("a mesh of the scene", mesh->file);
-        if (!surface.material.texture.empty())
-            reads("a texture of the scene", surface.material.texture);
-    }
-    for (const Light& light : scene.lights)
-        if (const auto* sky = std::get_if<SkyLight>(&light); sky && !sky->daylight)
-            reads("the scene's map of the sky", sky->file);
+    for (const InputFile& input : input_files(scene))
+        reads(input.what, input.file);
 }
 
 void FileUses::writes(const std::string& what, const path& file, const std::string& option) {

@@ -6,6 +6,7 @@
 
 #include "error.h"
 #include "file_ending.h"
+#include "gzip.h"
 #include "input_file.h"
 #include "scene_reader.h"
 
@@ -73,7 +74,7 @@ Scene parse_scene(const PbrtTranslation& translation, const std::filesystem::pat
 }
 
 bool is_pbrt_file(const std::filesystem::path& file) {
-    return file_ending(file) == ".pbrt";
+    return file_ending(file) == ".pbrt" || is_packed(file, ".pbrt");
 }
 
 Scene load_scene(const std::filesystem::path& file, const Defines& defines, const SceneOverrides& overrides) {

@@ -53,7 +53,7 @@ uint step_ahead(MediumParams v, bool seeing, inout Walk walk, inout Rng rng, ino
         t[k] = w.t;
         Rng drawn = ahead;
         uvec4 words = next_words(drawn);
-        u[k] = to_uniform(words).y;
+        u[k] = to_event(words);
         tap[k] = to_tap(words);
         if (step[k] == EVENT_COLLIDED) {
             w.tau = to_exponential(words.x, words);

@@ -20,25 +20,36 @@ float mapped_value(MediumParams v, vec3 position) {
     return value;
 }
 
+// The grid's colour at a point of render space.
+vec3 albedo_of_grid(MediumParams v, vec3 position) {
+    vec4 p = vec4(position, 1.0);
+    AlbedoParams a = v.albedo_grid;
+    vec3 index = vec3(dot(a.to_index[0], p), dot(a.to_index[1], p), dot(a.to_index[2], p));
+    index = clamp(index, vec3(a.grid.voxel_min), vec3(a.grid.voxel_max));
+    return min(lookup_color(a.grid, KIND(ALBEDO_TYPE, v, albedo_type), index), vec3(1.0));
+}
+
 // `position`: of render space.
 vec3 albedo_at(MediumParams v, vec3 position) {
     vec3 albedo = v.albedo;
-    if (KIND(ALBEDO, v, albedo) == ALBEDO_GRID) {
-        vec4 p = vec4(position, 1.0);
-        AlbedoParams a = v.albedo_grid;
-        vec3 index = vec3(dot(a.to_index[0], p), dot(a.to_index[1], p), dot(a.to_index[2], p));
-        index = clamp(index, vec3(a.grid.voxel_min), vec3(a.grid.voxel_max));
-        albedo *= min(lookup_color(a.grid, KIND(ALBEDO_TYPE, v, albedo_type), index), vec3(1.0));
-    }
+    if (KIND(ALBEDO, v, albedo) == ALBEDO_GRID)
+        albedo *= albedo_of_grid(v, position);
     if (KIND(MAP, v, map) >= MAP_ALBEDO)
         albedo *= mapped_albedo(v, mapped_value(v, position));
     return albedo;
 }
 
-// What of a collision there is no scattering.
+// What of a collision there is no scattering: 1 - albedo, with all digits where that is small.
 vec3 absorbed_at(MediumParams v, vec3 position) {
-    bool varies = KIND(ALBEDO, v, albedo) == ALBEDO_GRID || KIND(MAP, v, map) >= MAP_ALBEDO;
-    return varies ? 1.0 - albedo_at(v, position) : v.absorbed;
+    vec3 albedo = v.albedo, absorbed = v.absorbed;
+    if (KIND(ALBEDO, v, albedo) == ALBEDO_GRID) {
+        vec3 color = albedo_of_grid(v, position);
+        absorbed += albedo * (1.0 - color);
+        albedo *= color;
+    }
+    if (KIND(MAP, v, map) >= MAP_ALBEDO)
+        absorbed += albedo * mapped_absorbed(v, mapped_value(v, position));
+    return absorbed;
 }
 
 #endif

@@ -39,6 +39,11 @@ vec3 mapped_albedo(MediumParams v, float value) {
     return clamp(knot.albedo + (value - knot.value) * knot.albedo_slope, vec3(0.0), vec3(1.0));
 }
 
+vec3 mapped_absorbed(MediumParams v, float value) {
+    MapKnot knot = map_knots[map_knot(v.first_knot, value)];
+    return clamp(knot.absorbed + (value - knot.value) * knot.absorbed_slope, vec3(0.0), vec3(1.0));
+}
+
 vec3 mapped_emission(MediumParams v, float value) {
     MapKnot knot = map_knots[map_knot(v.first_knot, value)];
     return max(knot.emission + (value - knot.value) * knot.emission_slope, vec3(0.0));

@@ -60,7 +60,7 @@ void note_collision(uint record, vec3 weight, vec3 position, vec3 direction, flo
     if ((LAYERS & LAYERS_COLLISION) != 0) {
         SensorParams s = frame.sensors[0];
         float d = distance + (s.start > 0.0 ? s.start / dot(direction, s.forward) : 0.0); // from the eye
-        note_in(record, frame.layers.collision, vec3(w * d, w, w * d + w));
+        note_in(record, frame.layers.collision, vec3(w * d, w, 0.0));
         note_in(record, frame.layers.collision + 1u, w * position);
     }
     if ((LAYERS & LAYERS_ALBEDO) != 0)
@@ -86,13 +86,26 @@ void note_transmittance(uint record, vec3 T) {
     }
 }
 
+// To the third of the sums the product of the first two of x, as exact as their squares: a variance of depths far greater, or far
+// less, than their weights is a small difference of all three.
+void add_product(inout vec3 sum, inout vec3 sum_low, vec3 x) {
+    vec2 head = uintBitsToFloat(floatBitsToUint(x.xy) & 0xfffff000u);
+    vec2 tail = x.xy - head;
+    add_compensated(sum, sum_low, vec3(0.0, 0.0, head.x * head.y));
+    add_compensated(sum, sum_low, vec3(0.0, 0.0, head.x * tail.y + tail.x * head.y));
+    sum_low.z += tail.x * tail.y;
+}
+
 // A path's record to the sums of its pixel: as those of the film, of the values and of their squares.
 void add_layers(uint record, uint pixel) {
     uint first = (frame.layers.records + 4u * pixel) * frame.layers.count;
     for (uint k = 0u; k < frame.layers.count; ++k) {
         uint at = first + 4u * k;
         vec3 sum = layers[at], sum_low = layers[at + 1u], square = layers[at + 2u], square_low = layers[at + 3u];
-        add_sample(sum, sum_low, square, square_low, layers[record * frame.layers.count + k]);
+        vec3 x = layers[record * frame.layers.count + k];
+        add_sample(sum, sum_low, square, square_low, x);
+        if ((LAYERS & LAYERS_COLLISION) != 0 && k == frame.layers.collision)
+            add_product(sum, sum_low, x);
         layers[at] = sum;
         layers[at + 1u] = sum_low;
         layers[at + 2u] = square;

@@ -4,6 +4,8 @@
 //   key   = (x | y << 16, sample, draw, seed)         x, y: pixel of the picture (not of the crop), 16 bits each
 //   words = pcg4d(key)                                 Jarzynski & Olano, "Hash Functions for GPU Rendering", 2020
 //   u_i   = (words_i >> 8) * 2^-24                     in [0, 1)
+//   event = (words_y >> 8) * 2^-24 + (words_z & 255) * 2^-32, and below 1: what happens once in 10^6 times does so as often as
+//           it should
 //   tap   = ((words_z >> 8), (words_w >> 8), low bytes of m_y, m_z, m_x as one 24-bit number) * 2^-24, m = words ^ words >> 16:
 //           low bytes alone know nothing of the key's upper ones, so that of rows 256 apart they are the same
 //   e_i   = -log(1 - U), U = (words_i + r * 2^-24) * 2^-32, r: low bytes of words_w, words_y, words_x as one number.
@@ -11,7 +13,7 @@
 //
 // Order of draws along a path; each draw yields four words. `select` is tap.z: it chooses a colour channel.
 //   camera                 x, y: position in the pixel; e_z: first free flight; select
-//   tentative collision    e_x: next distance; y: event or roulette; tap: stochastic filtering
+//   tentative collision    e_x: next distance; event: which, or roulette; tap: stochastic filtering
 //   step of a march        x: position in the step; y: roulette of a march through the medium
 //   emission along a step  x: position in the step; after the step's own draw; none in an empty cell
 //   shadow ray             e_x: first distance; y, z, select: telescoping's level, offset and residue; none is drawn
@@ -68,6 +70,10 @@ uvec4 next_words(inout Rng rng) {
 // [0, 1), a multiple of 2^-24
 vec4 to_uniform(uvec4 words) {
     return vec4(words >> 8u) * 5.9604644775390625e-8;
+}
+
+float to_event(uvec4 words) {
+    return min((float(words.y >> 8u) + float(words.z & 255u) * 0.00390625) * 5.9604644775390625e-8, 0.99999994);
 }
 
 // Three numbers in [0, 1) that are independent of the x and y of to_uniform(words).

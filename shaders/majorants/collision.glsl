@@ -38,9 +38,8 @@ uint next_collision(MediumParams v, bool seeing, inout Walk w, inout Rng rng, in
         return event;
     }
     uvec4 words = next_words(rng);
-    vec4 u = to_uniform(words);
     w.tau = to_exponential(words.x, words);
-    c.u = u.y;
+    c.u = to_event(words);
     c.sigma_t = c.sigma_maj;
     // Below the control density a collision is real, whatever the density.
     bool certain = CONTROLLED_FLIGHT && !seeing && c.u * c.sigma_maj < c.sigma_c;

@@ -133,6 +133,8 @@ struct MapKnot {
     float density_slope;
     vec3 albedo; // multiplies the medium's
     vec3 albedo_slope;
+    vec3 absorbed; // 1 - albedo, also where that is far below the last digit of 1
+    vec3 absorbed_slope;
     vec3 emission; // radiance per absorption event
     vec3 emission_slope;
 };

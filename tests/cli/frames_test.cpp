@@ -271,6 +271,28 @@ TEST_CASE("a sequence that is gone on with passes over the frames that are there
     CHECK_THAT(scene.vkvol("ball.xml -f 1..2 -o p.#.png --resume").text, !Contains("is there"));
 }
 
+TEST_CASE("a report that tells of a failure is no frame's", "[gpu][command]") {
+    const Turntable scene("${= 0.5*$F}");
+    REQUIRE(scene.vkvol("ball.xml -f 1..2 -o a.#.exr -q").code == exit_done);
+    CHECK_THAT(scene.vkvol("ball.xml -f 1..3 -o a.#.exr --resume --dry-run").text,
+               Contains("frame 1: a.1.exr is there") && Contains("would write a.3.exr") &&
+                   !Contains("would write a.1"));
+    const std::string reported = "ball.xml -f 1..1 -o a.#.exr --report r.#.json --resume";
+    CHECK(run(fmt::format("cd '{}' && '{}' {} --device none", scene.file("").string(), VKVOL_BINARY, reported)).code ==
+          exit_no_device);
+    CHECK(std::filesystem::exists(scene.file("r.1.json")));
+    CHECK_THAT(scene.vkvol(reported).text, !Contains("is there"));
+    CHECK_THAT(scene.vkvol(reported).text, Contains("is there"));
+}
+
+TEST_CASE("a frame without a picture ends its sequence by name", "[gpu][command]") {
+    const Turntable scene("${= 0.5*$F}");
+    const Run nothing = scene.vkvol("ball.xml -f 7..9 -o a.#.exr --time 0.00000001");
+    INFO(nothing.text);
+    CHECK(nothing.code == exit_render_failed);
+    CHECK_THAT(nothing.text, Contains("frame 7 has no picture: 0 of 3 frames are done"));
+}
+
 TEST_CASE("a sequence that is killed again and again has the bits of one that is not", "[gpu][command]") {
     const Folder folder("");
     folder.write("turn.xml",

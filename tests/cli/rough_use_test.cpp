@@ -133,6 +133,10 @@ TEST_CASE("a layer of alpha changes no PNG", "[gpu][command]") {
     REQUIRE(folder.vkvol("ball.xml -q --aov alpha -o b.png -o b.exr").code == exit_done);
     CHECK(folder.text("b.png") == folder.text("a.png"));
     REQUIRE(folder.vkvol("ball.xml -q --alpha -o c.png -o c.exr").code == exit_done);
+    // Layers that no file holds are told.
+    CHECK_THAT(folder.vkvol("ball.xml --aov alpha,depth -o d.png").text, Contains("are lost: depth, alpha"));
+    CHECK_THAT(folder.vkvol("ball.xml --alpha -o d.png").text, !Contains("are lost"));
+    CHECK_THAT(folder.vkvol("ball.xml --aov depth -o d.png -o d.exr").text, !Contains("are lost"));
     CHECK(folder.text("c.png") != folder.text("a.png"));
     REQUIRE(folder.vkvol("develop c.exr -o d.png").code == exit_done);
     CHECK(folder.text("d.png") == folder.text("c.png"));

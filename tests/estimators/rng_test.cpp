@@ -72,6 +72,7 @@ TEST_CASE("random numbers equal the reference bit by bit", "[gpu][rng]") {
         for (int c = 0; c < 4; ++c) // floats hold multiples of 2^-24 exactly
             REQUIRE(double(o.u[c]) == draw.uniform(c));
         REQUIRE((glm::dvec3(o.tap) == draw.tap()));
+        REQUIRE(std::abs(o.event - draw.event()) <= 0x1p-25); // rounded
         REQUIRE(o.draw == k.z + 1u);
         // Vulkan lets log err by 3 ulp outside [0.5, 2] and by 2^-21 within it; the complement is a float, rounded.
         REQUIRE(std::abs(o.exponential - draw.exponential(0)) <= 0x1p-21 + 4 * 0x1p-23 * o.exponential);
@@ -99,6 +100,23 @@ TEST_CASE("media as thin as 1e-12 are hit as often as they should be", "[gpu][rn
     }
     CHECK(exponential(0) == 0.0f);
     CHECK(exponential((std::uint64_t{1} << 48) - 1) == Approx(56.0 * std::log(2.0)));
+}
+
+// Of tentative collisions a part r is real, which is a count of words as well.
+TEST_CASE("collisions that are real once in 10^7 times are so as often as they should be", "[gpu][rng][hard]") {
+    const auto event = [](std::uint32_t word) { // 24 bits of y, the low byte of z
+        return draw_on_device({glm::uvec4(0u, word & ~255u, word & 255u, 0u)}).front().event_of_key;
+    };
+    for (const float r : {1e-7f, 1e-6f, 1e-5f, 1e-3f, 0.3f}) {
+        std::uint32_t below = 0; // event(below) < r
+        for (int bit = 31; bit >= 0; --bit)
+            if (const std::uint32_t candidate = below | 1u << bit; event(candidate) < r)
+                below = candidate;
+        CAPTURE(r);
+        CHECK(std::abs((below + 1.0) * 0x1p-32 - double(r)) <= 0x1p-32 + 0x1p-24 * r);
+    }
+    CHECK(event(0) == 0.0f);
+    CHECK(event(~0u) < 1.0f);
 }
 
 TEST_CASE("random numbers are uniform in [0, 1)", "[gpu][rng]") {

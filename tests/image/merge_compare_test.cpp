@@ -353,7 +353,40 @@ TEST_CASE("depths of single samples know their scatter once merged", "[cpu][merg
     }
     const Film merged = merge_films(parts).film;
     CHECK(merged.layer("depth")->mean[5].x == Approx(mean));
-    CHECK(merged.layer("depth")->variance[5].x == Approx((squares - mean * mean) / 16.0).epsilon(1e-4));
+    CHECK(merged.layer("depth")->variance[5].x == Approx((squares - mean * mean) / 15.0).epsilon(1e-4));
+}
+
+// Of samples that all collide alike the error of a mean depth is that of any mean, in one go or in parts.
+TEST_CASE("depths of parts have the error of the whole", "[cpu][merge]") {
+    const auto [parts, samples] = GENERATE(std::pair(2, 1), std::pair(32, 2), std::pair(4, 16));
+    const int all = parts * samples;
+    const float weight = 0.5f;
+    std::mt19937 random(7);
+    std::normal_distribution<float> depth(4.0f, 1.0f);
+    double sum = 0.0, squares = 0.0;
+    std::vector<MergeInput> inputs;
+    for (int k = 0; k < parts; ++k) {
+        double part = 0.0, part_squares = 0.0;
+        for (int i = 0; i < samples; ++i) {
+            const double d = depth(random);
+            part += d / samples;
+            part_squares += d * d / samples;
+        }
+        sum += part * samples;
+        squares += part_squares * samples;
+        const double variance = samples > 1 ? (part_squares - part * part) / (samples - 1) : 0.0;
+        Film film = film_of(draw(unsigned(k), samples));
+        const auto everywhere = [&](double value) {
+            return std::vector<glm::vec3>(film.pixel_count(), glm::vec3(float(value)));
+        };
+        film.layers.push_back({"depth", everywhere(part), everywhere(variance)});
+        film.layers.push_back({"coverage", everywhere(weight), everywhere(0.0)});
+        inputs.push_back(input(std::to_string(k), film, k * samples, samples));
+    }
+    const double mean = sum / all;
+    const Film merged = merge_films(inputs).film;
+    CHECK(merged.layer("depth")->mean[5].x == Approx(mean));
+    CHECK(merged.layer("depth")->variance[5].x == Approx((squares / all - mean * mean) / (all - 1)).epsilon(1e-4));
 }
 
 TEST_CASE("depths are merged by how many collisions they are of", "[cpu][merge]") {

@@ -2,6 +2,8 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <unistd.h>
 
@@ -191,6 +193,10 @@ TEST_CASE("merge and compare say what they met, and exit as ever", "[cpu][merge]
     CHECK_THAT(identical.text, Contains("same: identical") && !Contains("note"));
     write(part("c.exr", 7));
     CHECK(vkvol("merge a.exr c.exr -o all.exr").code == exit_done);
+    std::ifstream all(folder / "all.exr", std::ios::binary); // a type that readers know, and look for
+    const std::string bytes(std::istreambuf_iterator<char>(all), {});
+    const std::string name("chromaticities\0", 15);
+    CHECK(bytes.find(name + name) != std::string::npos);
     CHECK_THAT(vkvol("merge c.exr all.exr -o twice.exr").text, Contains("seed 7, 0-3")); // read back from the file
     CHECK_FALSE(std::filesystem::exists(folder / "twice.exr"));
     std::filesystem::remove_all(folder);

@@ -52,6 +52,21 @@ TEST_CASE("maps have the colours of channels by their names", "[cpu][image_io]")
     CHECK_THROWS_WITH(texel({"U", "V"}), Contains("no channels R, G and B"));
 }
 
+TEST_CASE("maps of whole numbers are sRGB, whatever their format", "[cpu][image_io]") {
+    const TestDirectory directory;
+    std::string tga(18, '\0'); // Truevision's: 2 x 2 pixels of 24 bits, from the top; blue, green, red
+    tga[2] = 2, tga[12] = tga[14] = 2, tga[16] = 24, tga[17] = 0x20;
+    const unsigned char pixels[] = {0, 188, 255, 1, 2, 3, 0, 0, 0, 255, 255, 255};
+    const RadianceMap map = read_radiance_map(directory.write("a.tga", tga + std::string(pixels, pixels + 12)));
+    REQUIRE((map.width == 2 && map.height == 2));
+    CHECK(map.texels[0].x == 1.0f);
+    CHECK(map.texels[0].y == Approx(0.5029).epsilon(1e-3));
+    CHECK(map.texels[0].z == 0.0f);
+    CHECK(map.texels[1].x == Approx(3.0 / 255.0 / 12.92));
+    CHECK(map.texels[2] == glm::vec3(0.0f));
+    CHECK(map.texels[3] == glm::vec3(1.0f));
+}
+
 TEST_CASE("maps of other primaries are told, and turned ones refused", "[cpu][image_io]") {
     const TestDirectory directory;
     const auto with_primaries = [&](const std::vector<float>& primaries) {

@@ -14,6 +14,8 @@ PUT(map_knot.density)
 PUT(map_knot.density_slope)
 PUT(map_knot.albedo)
 PUT(map_knot.albedo_slope)
+PUT(map_knot.absorbed)
+PUT(map_knot.absorbed_slope)
 PUT(map_knot.emission)
 PUT(map_knot.emission_slope)
 

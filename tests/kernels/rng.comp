@@ -17,6 +17,8 @@ void main() {
     o.tap = to_tap(o.words);
     o.exponential = to_exponential(o.words.x, o.words);
     o.of_key = to_exponential(key.x, key);
+    o.event = to_event(o.words);
+    o.event_of_key = to_event(key);
     o.draw = rng.draw;
     outputs[i] = o;
 }

@@ -11,7 +11,9 @@ struct RngOutput {
     vec3 tap;
     float exponential; // from words.x
     float of_key;      // the same, were the key itself the words
-    uint draw;         // the counter afterwards
+    float event;       // of the words
+    float event_of_key;
+    uint draw; // the counter afterwards
 };
 
 struct DensityInput {

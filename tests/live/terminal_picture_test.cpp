@@ -78,6 +78,7 @@ TEST_CASE("half blocks have the picture's colours", "[cpu][live]") {
         }
     CHECK(index == 64);
     CHECK(std::count(text.begin(), text.end(), '\n') == 4);
+    CHECK(text.find("m\u2580\033[0m\n") != std::string::npos); // nothing erases what is in the last column
 }
 
 TEST_CASE("kitty gets the pixels as they are", "[cpu][live]") {
@@ -170,7 +171,20 @@ TEST_CASE("sixels have the picture's colours on average", "[cpu][live]") {
         }
 }
 
+TEST_CASE("sixels are no larger than their cells", "[cpu][live]") {
+    const int width = 1920, height = 1080;
+    const TerminalSize terminal{80, 24, 640, 384};
+    const std::string text = drawn(TerminalGraphics::sixel, ramp(width, height), width, height, terminal);
+    const CellSize cells = fitting_cells(width, height, terminal);
+    std::smatch size;
+    REQUIRE(std::regex_search(text, size, std::regex("\"1;1;(\\d+);(\\d+)")));
+    CHECK(std::stoi(size[1]) <= cells.columns * 8);
+    CHECK(std::stoi(size[2]) <= cells.rows * 16);
+}
+
 TEST_CASE("terminals are known by their environment", "[cpu][live]") {
+    unsetenv("TMUX");
+    unsetenv("STY");
     const auto with = [](const char* term, const char* window, const char* program) {
         setenv("TERM", term, 1);
         window ? setenv("KITTY_WINDOW_ID", window, 1) : unsetenv("KITTY_WINDOW_ID");
@@ -182,4 +196,9 @@ TEST_CASE("terminals are known by their environment", "[cpu][live]") {
     CHECK(with("xterm-256color", "1", nullptr) == TerminalGraphics::kitty);
     CHECK(with("xterm-256color", nullptr, "WezTerm") == TerminalGraphics::kitty);
     CHECK(with("foot", nullptr, nullptr) == TerminalGraphics::sixel);
+    // Of a multiplexer within kitty.
+    CHECK(with("tmux-256color", "1", nullptr) == TerminalGraphics::blocks);
+    setenv("TMUX", "/tmp/tmux-0/default,1,0", 1);
+    CHECK(with("xterm-kitty", "1", nullptr) == TerminalGraphics::blocks);
+    unsetenv("TMUX");
 }

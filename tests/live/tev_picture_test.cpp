@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "error.h"
+#include "support/command_folder.h"
 #include "tev_picture.h"
 
 using namespace vkvol;
@@ -17,10 +18,11 @@ using Catch::Contains;
 
 namespace {
 
-// Takes one connection, and all that comes until it ends or `most` bytes are there, with pauses after 64 KiB each.
+// Takes one connection, and all that comes until it ends or `most` bytes are there, with pauses after 64 KiB each. If
+// it is `gone` afterwards nobody listens any more.
 class Viewer {
 public:
-    explicit Viewer(std::size_t most = SIZE_MAX, std::chrono::milliseconds pause = {})
+    explicit Viewer(std::size_t most = SIZE_MAX, std::chrono::milliseconds pause = {}, bool gone = false)
         : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
         sockaddr_in address{};
         address.sin_family = AF_INET;
@@ -30,8 +32,10 @@ public:
         socklen_t size = sizeof address;
         getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size);
         port_ = ntohs(address.sin_port);
-        thread_ = std::thread([this, most, pause] {
+        thread_ = std::thread([this, most, pause, gone] {
             const int connection = accept(socket_, nullptr, nullptr);
+            if (gone)
+                shutdown(socket_, SHUT_RDWR);
             char bytes[65536];
             for (ssize_t got = 1; got > 0 && bytes_.size() < most;) {
                 got = recv(connection, bytes, sizeof bytes, 0);
@@ -165,6 +169,25 @@ TEST_CASE("a viewer that is not there, or goes away", "[cpu][live]") {
         picture.show(film, {});
     CHECK_THAT(picture.failure(), Contains(viewer.address()));
     picture.show(film, {}); // which it does not mind
+}
+
+TEST_CASE("a sequence goes on where its viewer has gone", "[gpu][live]") {
+    const Folder folder("");
+    folder.write("ball.xml",
+                 "<options><sphere/><sigma_a>1</sigma_a><width>8</width><height>8</height><camera z='${= 5+F}'/>"
+                 "<rayPerPixelCount>2</rayPerPixelCount><backgroundColor r='1'/></options>");
+    const Viewer viewer(SIZE_MAX, {}, true);
+    const Run all = folder.vkvol(fmt::format("ball.xml -f 1..3 -o a.#.exr --tev={}", viewer.address()));
+    INFO(all.text);
+    CHECK(all.code == exit_done);
+    for (const char* frame : {"a.1.exr", "a.2.exr", "a.3.exr"})
+        CHECK(std::filesystem::exists(folder.file(frame)));
+    const std::string told = "further frames are not shown";
+    CHECK_THAT(all.text, Contains(told));
+    CHECK(all.text.find(told) == all.text.rfind(told));
+    // Where there never was one nothing is rendered.
+    CHECK(folder.vkvol(fmt::format("ball.xml -f 4..5 -o a.#.exr --tev={}", viewer.address())).code == exit_bad_input);
+    CHECK_FALSE(std::filesystem::exists(folder.file("a.4.exr")));
 }
 
 // 29 MB, at 1.3 MB a second at most.

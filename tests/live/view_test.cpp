@@ -159,6 +159,12 @@ TEST_CASE("nobody without the key gets an answer", "[cpu][live]") {
         const int good = client.Get((path + joint + "key=" + key).c_str())->status;
         CHECK(good == (std::string(path) == "/nothing" ? 404 : 200));
     }
+    // Through a tunnel of another port.
+    CHECK_THAT(client.Get(("/?key=" + key).c_str(), {{"Host", "127.0.0.1:1"}})->body,
+               Contains(fmt::format("forward its port {}", port)));
+    CHECK(
+        (is_own_address("127.0.0.1:81", 81) && is_own_address("localhost", 80) && is_own_address("127.0.0.1:80", 80)));
+    CHECK_FALSE((is_own_address("localhost", 81) || is_own_address("evil.example", 80) || is_own_address("", 80)));
     CHECK(client.Post("/wish", "{}", "application/json")->status == 403);
     // Bodies have a length, which has a limit.
     const std::string wish = "/wish?key=" + key;
@@ -351,6 +357,26 @@ TEST_CASE("what a viewer asks for in vain does not stay asked for", "[gpu][live]
     const Json turned = done(wish({{"camera", camera}, {"lights", Json::array()}}));
     CHECK(turned["wishesCamera"] == true);
     CHECK(done(wish(Json::object()))["wishesCamera"] == false);
+}
+
+TEST_CASE("what was wrong is no longer told once it is not", "[gpu][live]") {
+    const Folder folder("");
+    folder.write("ball.xml", "<options><motionBlur/><sphere/><sigma_s>1</sigma_s><width>16</width><height>16</height>"
+                             "<camera z=\"${= 5 + F}\" fov=\"40\"/><backgroundColor r=\"1\"/></options>");
+    Watched watched(folder, "ball.xml --spp 100000000 --noise 0.0001% -D F=0");
+    const auto [root, key, port] = watched.address();
+    httplib::Client client(root);
+    const auto wish = [&, &key = key](const char* layer) {
+        const std::string text = Json{{"layer", layer}}.dump();
+        return Json::parse(client.Post(("/wish?key=" + key).c_str(), text, "application/json")->body)["wish"];
+    };
+    wish("position");
+    until(client, key, [](const Json& state) { return state["message"] != ""; });
+    const Json number = wish("depth");
+    until(client, key, [&](const Json& state) {
+        return state["sceneWish"] == number && state["samples"] > 0 && !state.value("done", false) &&
+               state["message"] == "";
+    });
 }
 
 TEST_CASE("a scene is viewed, changed and kept", "[gpu][live]") {

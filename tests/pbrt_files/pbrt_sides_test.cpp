@@ -155,7 +155,7 @@ TEST_CASE("images of pbrt's textures that are taken otherwise are named", "[cpu]
     check("\"float scale\" 3", "taken 3 times, and once here");
     check("\"string wrap\" \"black\"", "the image is repeated");
     check("\"string encoding\" \"linear\"", "encoding \"linear\" is left out");
-    check("\"float uscale\" -1", "mirrors no image here");
+    check("\"float uscale\" -1", "mirrors no image of such a shape here");
     check("\"string mapping\" \"planar\"", "mapping \"planar\" is left out");
     for (const char* usual : {"\"string mapping\" \"uv\"", "\"float uscale\" 2"})
         CHECK(world_of(std::string("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" ") + usual +
@@ -242,6 +242,6 @@ TEST_CASE("pbrt's names of media, spectra and spaces", "[cpu][pbrt]") {
     CHECK(world_of("CoordSysTransform \"none\" LightSource \"point\"").warnings.size() == 1);
     CHECK(scene_of("Sampler \"independent\" Camera \"perspective\" WorldBegin").settings.spp == 4);
     CHECK(scene_of("Sampler \"zsobol\" Camera \"perspective\" WorldBegin").settings.spp == 16);
-    CHECK_THROWS_WITH(world_of("Shape \"plymesh\" \"string filename\" \"a.ply.gz\""),
+    CHECK_THROWS_WITH(world_of("LightSource \"infinite\" \"string filename\" \"a.exr.gz\""),
                       Contains("unpack it with gunzip"));
 }

@@ -9,6 +9,7 @@
 
 #include "checkpoint.h"
 #include "error.h"
+#include "film_channels.h"
 #include "image_io.h"
 #include "layer_plan.h"
 #include "merge.h"
@@ -284,6 +285,33 @@ TEST_CASE("the first collision in a slab is where its density has it", "[gpu][im
     }
 }
 
+// By how much pixels that all see the same differ: that many times chi squared over its degrees of freedom, whose
+// relative standard deviation is sqrt(2 / (n - 1)) for means of many samples.
+TEST_CASE("the error of depths is known in any unit, near and far, of any weights", "[gpu][image][aovs]") {
+    const auto [unit, distance, is_coloured] =
+        GENERATE(std::tuple(1e-6, 3.0, false), std::tuple(1e8, 3.0, false), std::tuple(1.0, 5000.0, true));
+    CAPTURE(unit, distance);
+    Scene scene = beam(slab(1.0, 0.0), distance, 64);
+    scene.volumes.front() = medium(Box{{0.0, 0.0, -0.5 * unit}, {4.0 * unit, 4.0 * unit, unit}}, 4.0 / unit, 0.0);
+    if (is_coloured)
+        scene.volumes.front().sigma_a = {4.0, 2.0, 1.0};
+    scene.camera.position.z = distance * unit;
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.view_height = 1e-3 * unit;
+    scene.layers = layer_depth;
+    const Film film = render_here(scene, 4).film;
+    const FilmLayer& depth = layer_of(film, "depth");
+    const double n = double(film.pixel_count());
+    double sum = 0.0, squares = 0.0, told = 0.0;
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        const double from_front = depth.mean[i].x / unit - distance; // without which little is left of squares
+        sum += from_front / n;
+        squares += from_front * from_front / n;
+        told += depth.variance[i].x / (unit * unit) / n;
+    }
+    CHECK(told == Approx(n / (n - 1.0) * (squares - sum * sum)).epsilon(5.0 * std::sqrt(2.0 / (n - 1.0))));
+}
+
 TEST_CASE("the first collision of what is gone through at once is where its density has it", "[gpu][image][aovs]") {
     const auto mean_below = [](double rate) { return 1.0 / rate - std::exp(-rate) / -std::expm1(-rate); };
     // Channel by channel, weighted by what each loses.
@@ -498,6 +526,15 @@ TEST_CASE("layers in image files", "[cpu][image_io][aovs]") {
     std::filesystem::remove(file);
     CHECK(same_bits(read, film));
     CHECK(std::get<std::string>(metadata.at(layers_key)) == "direct group.key depth position alpha coverage");
+
+    // What RGB is not multiplied by is no channel A.
+    CHECK(channel_name("", film.layers[4], 'A', film.is_premultiplied) == "alpha.A");
+    film.is_premultiplied = true;
+    CHECK(channel_name("variance.", film.layers[4], 'A', film.is_premultiplied) == "variance.A");
+    write_exr(file, film, metadata);
+    CHECK(same_bits(read_exr(file, &metadata), film));
+    std::filesystem::remove(file);
+    film.is_premultiplied = false;
 
     film.layers.resize(1);
     film.layers.front() = {

@@ -416,6 +416,21 @@ TEST_CASE("what is absorbed is known to all digits", "[gpu][counted]") {
     const double usual = absorbed(1e-4);
     for (const double share : {1e-6, 1e-8})
         CHECK(absorbed(share) == Approx(usual).epsilon(2e-3));
+    // Likewise where the albedo varies from place to place.
+    const auto of_layers = [](double share) {
+        const std::string layer = fmt::format(R"(sigma_t="2" albedo="{:.17g}"/>)", 1.0 - share);
+        const Scene scene = parse_scene(
+            R"(<options><periodic x="-.5 .5" z="-.5 .5"/><box width="1" height="1" depth="1"/><layers><layer height="-.5" )" +
+                layer + R"(<layer height=".5" )" + layer +
+                R"(</layers><light y="1" r="1" g="1" b="1"/><absorption width="1" height="1" depth="1"/>
+                <rayPerPixelCount>2048</rayPerPixelCount></options>)",
+            "s.xml");
+        return image_mean(render_here(scene, 1).film).value.x / share;
+    };
+    const double usual_layers = of_layers(1e-4);
+    CHECK(usual_layers == Approx(usual).epsilon(0.05)); // by other paths
+    for (const double share : {1e-6, 1e-8})
+        CHECK(of_layers(share) == Approx(usual_layers).epsilon(2e-3));
 }
 
 TEST_CASE("a sensor that looks up at the sun reads it, however high", "[gpu][counted]") {

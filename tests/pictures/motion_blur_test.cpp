@@ -12,7 +12,11 @@
 #include "drift.h"
 #include "error.h"
 #include "explain.h"
+#include "field_cache.h"
 #include "memory_grids.h"
+#include "method.h"
+#include "preset.h"
+#include "requested_scene.h"
 #include "scene_hash.h"
 #include "support/images.h"
 #include "support/scene_text.h"
@@ -332,6 +336,59 @@ TEST_CASE("a moment whose files are gone leaves a picture and a checkpoint", "[m
     CHECK(result.samples == kept->done);
     CHECK(result.film.samples.front() == kept->done);
     CHECK_THROWS_AS(session.render(4096), RenderError);
+}
+
+TEST_CASE("a moment whose files have changed leaves a picture", "[motion]") {
+    const std::filesystem::path sky = write_sky({4, 2, std::vector<glm::vec3>(8, glm::vec3(1.0f)), 0}).file;
+    const Scene scene = parse_at(fmt::format(R"(<width>8</width><height>8</height><camera x="${{= F}}" z="5"/><sphere/>
+        <lights><sky>{}</sky></lights>)",
+                                             sky.string()),
+                                 0);
+    RenderJob job;
+    job.crop = {0, 8, 0, 8};
+    Session session(test_device(), scene, job);
+    session.render(2);
+    std::filesystem::last_write_time(sky, std::filesystem::last_write_time(sky) + std::chrono::seconds(3));
+    CHECK_THROWS_WITH(session.render(64), Contains("was changed while it was rendered"));
+    CHECK(session.has_whole_film());
+    CHECK(session.result().samples >= 2);
+}
+
+// Seed 0 begins at 0.883, with light, and goes on at 0.383, without.
+TEST_CASE("what is dark at some moments is rendered as what is not", "[motion]") {
+    const std::string dims = "${= max(0, 2*F - 1)}",
+                      body = R"(<width>8</width><height>8</height><camera z="5" fov="40"/>)";
+    Scene lit = parse_at(body + "<sphere/><light y=\"1\" r=\"1\" multiplier=\"" + dims + "\"/>", 0);
+    lit.settings.spp = 1;
+    RenderJob job, later;
+    job.crop = later.crop = {0, 8, 0, 8};
+    later.sample_offset = 1;
+    const RenderResult first = render(test_device(), lit, job), second = render(test_device(), lit, later);
+    CHECK(mean_of(first.film) > 0.0);
+    CHECK(mean_of(second.film) == 0.0);
+    CHECK(first.integrator == second.integrator);
+    CHECK(choose_method(with_preset(with_steady_integrator(lit))).integrator == first.integrator);
+    lit.settings.integrator = "bidirectional"; // which has nothing to send at some
+    CHECK_THROWS_WITH(Session(test_device(), lit, job), Contains("at some moments"));
+    // Neither is a fire that is out at the last moment shown as fog.
+    Scene fire =
+        parse_at(body + R"(<sphere/><sigma_s>0</sigma_s><medium r="1" g="0.5" multiplier=")" + dims + "\"/>", 0);
+    fire.settings.spp = 2;
+    CHECK(render(test_device(), fire, job).glows);
+}
+
+TEST_CASE("a camera that --frame has moved goes on to move", "[motion]") {
+    Scene scene =
+        parse_at(R"(<width>8</width><height>8</height><camera x="${= F}" z="50" yaw="${= 30*F}"/><sphere/>)", 0);
+    RenderRequest request;
+    request.frame = true;
+    FieldCache fields;
+    apply_request(request, false, scene, fields);
+    CHECK(scene.camera.position.z < 10.0);
+    const Camera later = scene_of_time(scene, 0.5).camera;
+    CHECK(later.yaw == 15.0);
+    CHECK(later.position.x == Approx(scene.camera.position.x + 0.5));
+    CHECK(later.position.z == Approx(scene.camera.position.z));
 }
 
 // The reference at times that are drawn one by one.

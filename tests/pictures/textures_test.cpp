@@ -227,8 +227,13 @@ TEST_CASE("places on textures are those of the file", "[cpu][mesh][surfaces]") {
     CHECK_THROWS_WITH(loaded(directory.write("b.obj", corners + "f 1 2 3\n")), Contains("b.obj") && Contains("UVs"));
     map.texels[3].y = 1.5f;
     surface.material.texture = write_sky(map).file;
-    CHECK_THROWS_WITH(loaded(directory.write("a.obj", corners + "vt 0 0\nf 1/1 2/1 3/1\n")),
-                      Contains("column 1, row 1") && Contains("more than it gets"));
+    Scene bright;
+    surface.shape = MeshSurface{directory.write("a.obj", corners + "vt 0 0\nf 1/1 2/1 3/1\n")};
+    bright.surfaces = {surface};
+    bright = with_surface_files(bright);
+    CHECK(bright.surfaces[0].material.image->colors[3] == glm::vec3(map.texels[3].x, 1.0f, map.texels[3].z));
+    REQUIRE(bright.warnings.size() == 1);
+    CHECK_THAT(bright.warnings[0], Contains("column 1, row 1") && Contains("they count as 1"));
     surface.material.texture = directory.path / "none.png";
     CHECK_THROWS_AS(loaded(directory.write("a.obj", corners + "vt 0 0\nf 1/1 2/1 3/1\n")), InputError);
 }

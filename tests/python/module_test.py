@@ -168,7 +168,8 @@ class Scenes(unittest.TestCase):
                                ({"aov": ["depht"]}, "aov: 'depht' is none of"), ({"crop": (0, 9, 0, 1)}, "crop"),
                                ({"crop": (0, 1)}, "crop"), ({"integrator": "ratioTraking"}, "ratioTracking"),
                                ({"schedule": "both"}, "none of auto, fused, staged"), ({"noise": 1}, "noise: 1 is not between"),
-                               ({"time": -1}, "time"), ({"seed": -1}, "seed"), ({"grid": "none.nvdb"}, "none.nvdb")):
+                               ({"time": -1}, "time"), ({"time": "5m"}, "time: '5m' is no number"),
+                               ({"crop": 5}, "crop: 5 is not"), ({"aov": None}, "aov: None is no list"), ({"seed": -1}, "seed"), ({"grid": "none.nvdb"}, "none.nvdb")):
             with self.subTest(options=options):
                 refused(wrong, **options)
         refused("no usable device", vkvol.DeviceError, device="nobody's")
@@ -180,6 +181,9 @@ class Scenes(unittest.TestCase):
             vkvol.Grids(density=np.zeros((3, 3)))
         with self.assertRaisesRegex(vkvol.InputError, "voxel_size"):
             vkvol.Grids(density=np.zeros((3, 3, 3)), voxel_size=0)
+        for wrong in ({"origin": (0, 0)}, {"voxel_size": (1, 2)}, {"voxel_size": "x"}):
+            with self.subTest(grids=wrong), self.assertRaisesRegex(vkvol.InputError, f"{next(iter(wrong))}: .* is not three numbers"):
+                vkvol.Grids(density=np.zeros((3, 3, 3)), **wrong)
         self.assertTrue(issubclass(vkvol.InputError, (ValueError,)) and issubclass(vkvol.InputError, vkvol.Error))
         self.assertTrue(issubclass(vkvol.RenderError, RuntimeError) and issubclass(vkvol.DeviceError, vkvol.Error))
 
@@ -190,6 +194,17 @@ class Scenes(unittest.TestCase):
             vkvol.Session(scene, width=4, height=4, integrator="ratioTracking:mis=power")
         self.assertEqual([w.category for w in caught], [vkvol.SceneWarning])
         self.assertIn("mis is without effect", str(caught[0].message))
+
+    def test_warnings_are_of_the_line_that_asked(self):
+        scene = vkvol.Scene.from_xml("<options><sphere/><camera z='4'/><light x='1' r='1'/></options>")
+        options = {"width": 4, "height": 4, "spp": 1, "integrator": "ratioTracking:mis=power"}
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("default")  # once a line
+            vkvol.render(scene, **options)
+            vkvol.render(scene, **options)
+            vkvol.Session(scene, **options)
+        self.assertEqual([w.filename for w in caught], 3 * [__file__])
+        self.assertEqual(len({w.lineno for w in caught}), 3)
 
 
 class Running(unittest.TestCase):
@@ -331,6 +346,33 @@ class Running(unittest.TestCase):
         done = subprocess.run([sys.executable, "-c", code, *sys.path], capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("8x8, 1 sample>", done.stdout)
+
+    def test_a_daemon_that_renders_ends_in_peace(self):
+        code = ("import sys; sys.path[:] = sys.argv[1:]; import threading, time, vkvol; "
+                "s = vkvol.Session(vkvol.Scene.from_xml('<options><sphere/><camera z=\"4\"/></options>'), width=8, height=8, "
+                "progress=lambda samples, noise: None); "
+                "threading.Thread(target=s.render, args=(2**30,), daemon=True).start(); time.sleep(0.3)")
+        for _ in range(3):
+            done = subprocess.run([sys.executable, "-c", code, *sys.path], capture_output=True, text=True, timeout=120)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_a_forked_process_is_told(self):
+        code = ("import sys; sys.path[:] = sys.argv[1:]; import os, vkvol\n"
+                "scene = vkvol.Scene.from_xml('<options><sphere/><camera z=\"4\"/></options>')\n"
+                "session = vkvol.Session(scene, width=8, height=8)\n"
+                "session.render(1)\n"
+                "if not os.fork():\n"
+                "    for work in (session.render, lambda: vkvol.Session(scene)):\n"
+                "        try:\n"
+                "            work()\n"
+                "        except vkvol.RenderError as error:\n"
+                "            print(error, flush=True)\n"
+                "    os._exit(7)  # as multiprocessing does: drivers wait at exit for threads of the parent's\n"
+                "print(os.waitstatus_to_exitcode(os.wait()[1]), session.render(2))")
+        done = subprocess.run([sys.executable, "-c", code, *sys.path], capture_output=True, text=True, timeout=120)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.stdout.count("was forked from one that has used a device"), 2)
+        self.assertTrue(done.stdout.endswith("7 2\n"))
 
 
 if __name__ == "__main__":

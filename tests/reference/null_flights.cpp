@@ -38,7 +38,7 @@ Flight track(const Medium& medium, const Ray& ray, double exponential, Rgb beta,
             const Rgb sigma_t = medium.sigma_t * density(t);
             if (events.tentative)
                 events.tentative(t, beta * sigma_t / sigma_maj);
-            if (decide(sigma_t, sigma_maj, draw.y(), beta))
+            if (decide(sigma_t, sigma_maj, draw.event(), beta))
                 return {t, beta};
             if (beta == Rgb(0.0))
                 return {{}, beta};

@@ -32,6 +32,7 @@ struct Draw {
     std::array<std::uint32_t, 4> words;
 
     double uniform(int i) const { return (words[i] >> 8) * 0x1p-24; } // [0, 1)
+    double event() const { return uniform(1) + (words[2] & 255u) * 0x1p-32; }
     double x() const { return uniform(0); }
     double y() const { return uniform(1); }
     double z() const { return uniform(2); }

@@ -46,7 +46,7 @@ Rgb track(const Medium& medium, const Ray& ray, double exponential, Rng& rng, co
             fly(T, cell, tau / sigma);
             t += tau / sigma;
             const Draw draw = rng.next();
-            if (!collide(T, cell, density(t), draw.y()))
+            if (!collide(T, cell, density(t), draw.event()))
                 return Rgb(0.0);
             tau = draw.exponential(0);
         }

@@ -106,17 +106,25 @@ def used(albedo, normal):
     return " and ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
 
 
-def denoised_picture(noisy, color, bias):
-    """The file to write: color [row, column, channel] in place of the noisy one, which becomes a layer with its variance.
+def alpha_of(picture):
+    """[row, column], by which the picture is multiplied; or None."""
+    return picture.channels.get("A") if picture.number("vkvol/premultiplied") == 1 else None
+
+
+def denoised_picture(noisy, color, alpha, bias):
+    """The file to write: color [row, column, channel] and alpha, if there is one, in place of the noisy ones, which become a
+    layer with its variance.
 
     Its own variance nobody knows. Were the noisy one's kept, `vkvol compare` would take it for that."""
     channels = dict(noisy.channels)
-    for i, letter in enumerate("RGB"):
+    clean = {letter: color[..., i] for i, letter in enumerate("RGB")} | ({} if alpha is None else {"A": alpha})
+    for letter, values in clean.items():
         channels[f"{LAYER}.{letter}"] = noisy.channels[letter]
-        channels[letter] = color[..., i].astype(noisy.channels[letter].dtype)
+        channels[letter] = values.astype(noisy.channels[letter].dtype)
         if f"variance.{letter}" in noisy.channels:
             channels[f"variance.{LAYER}.{letter}"] = channels.pop(f"variance.{letter}")
-    result = picture_file.Picture(dict(noisy.attributes), channels)
+    attributes = {name: value for name, value in noisy.attributes.items() if name != "vkvol/sumVariance"}
+    result = picture_file.Picture(attributes, channels)
     result.set_text("vkvol/layers", f"{noisy.text('vkvol/layers')} {LAYER}".strip())
     result.set_text("vkvol/biased", "; ".join(filter(None, [noisy.text("vkvol/biased"), bias])))
     return result
@@ -154,10 +162,10 @@ def run(chosen):
         for window in ("dataWindow", "displayWindow"):
             if reference.attributes[window] != noisy.attributes[window]:
                 raise Refusal(f"{chosen.reference}: is not of the size, or the window, of {chosen.noisy}; render the same one")
-    result, version, seconds = open_image_denoise.denoise(color, albedo, normal)
+    result, alpha, version, seconds = open_image_denoise.denoise(color, albedo, normal, alpha_of(noisy))
     by = f"by Open Image Denoise {version} from {used(albedo, normal)}"
     for file in images:
-        picture_file.write(file, denoised_picture(noisy, result, "denoised " + by))
+        picture_file.write(file, denoised_picture(noisy, result, alpha, "denoised " + by))
     for file in drawings:
         draw(chosen.vkvol, images[0], file)
     tell_doubts(noisy, color, albedo, chosen.noisy)

@@ -39,10 +39,11 @@ def run_filter(oidn, device, images, **flags):
     return result
 
 
-def denoise(color, albedo, normal):
-    """Arrays of [row, column, 3]: colour is linear and of any brightness; albedo and normal may be None.
+def denoise(color, albedo, normal, alpha=None):
+    """Arrays of [row, column, 3]: colour is linear and of any brightness; albedo and normal may be None, and so may alpha,
+    [row, column], by which colour is multiplied.
 
-    Returns colour without noise, the library's version, and the seconds that it took.
+    Returns colour and alpha without noise, the library's version, and the seconds that it took.
 
     Albedo and normals of what is met first in a volume are as noisy as the picture, so each is denoised by itself before
     it is of use. The network for clean ones wants both: where there are no normals it gets 0, which is what the layer
@@ -58,5 +59,8 @@ def denoise(color, albedo, normal):
                 image = np.ascontiguousarray(image, np.float32)
                 images[name] = run_filter(oidn, device, {name: image}) if image.any() else image
         result = run_filter(oidn, device, images, hdr=True, cleanAux=albedo is not None)
+        if alpha is not None:  # by the same network, as if it were a grey picture
+            images[oidn.OIDN_IMAGE_COLOR] = np.repeat(np.asarray(alpha, np.float32)[..., None], 3, axis=2)
+            alpha = run_filter(oidn, device, images, cleanAux=albedo is not None).mean(axis=2).clip(0, 1)
         version = ".".join(str(device.get_int("version" + part)) for part in ("Major", "Minor", "Patch"))
-    return result, version, time.perf_counter() - begin
+    return result, alpha, version, time.perf_counter() - begin

@@ -112,6 +112,23 @@ class Denoising(Case):
         self.assertLessEqual(before.attributes.keys(), after.attributes.keys())
 
     @denoises
+    def test_alpha_is_denoised_with_what_it_multiplies(self):
+        noisy, random = noisy_ramp(), np.random.default_rng(3)
+        noisy.attributes["vkvol/premultiplied"] = ("int", struct.pack("<i", 1))
+        noisy.attributes["vkvol/sumVariance"] = ("string", b"1 1 1")
+        clean = np.linspace(0.2, 0.8, WIDTH)[None, :].repeat(HEIGHT, axis=0)
+        noisy.channels["A"] = (random.binomial(SPP, clean) / SPP).astype("<f4")
+        noisy.channels["variance.A"] = np.full((HEIGHT, WIDTH), 0.01, "<f4")
+        picture_file.write(self.noisy, noisy)
+        self.assertEqual(self.run_tool(self.noisy)[0], 0)
+        after = picture_file.read(self.folder / "noisy.denoised.exr")
+        error = lambda channel: ((after.channels[channel] - clean) ** 2).mean()
+        self.assertLess(error("A"), error("noisy.A") / 10)
+        self.assertIn("variance.noisy.A", after.channels)
+        self.assertNotIn("variance.A", after.channels)
+        self.assertNotIn("vkvol/sumVariance", after.attributes)
+
+    @denoises
     def test_label(self):
         for before, start in (("", "denoised by Open Image Denoise "), ("steps", "steps; denoised by Open Image Denoise ")):
             picture_file.write(self.noisy, noisy_ramp(**{"vkvol/biased": before}))

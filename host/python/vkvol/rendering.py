@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+import sys
 import warnings
 from pathlib import Path
-from typing import Any, Callable, Optional, Sequence, Union
+from typing import Any, Callable, Collection, Optional, Sequence, Union
 
 from . import _vkvol
 from .picture import Picture
@@ -43,7 +44,8 @@ class Session:
         raises ends the render. It cannot use sessions of the device that renders: RenderError.
 
     Sessions of one device take turns, in whatever threads they are. Python runs on while one renders, and Ctrl-C ends it;
-    a session goes on after that as if nothing had been. (After os.fork() a session, and its device, are the parent's.)
+    a session goes on after that as if nothing had been. (After os.fork() a session, and its
+    device, are the parent's: in the other process both raise RenderError. Take multiprocessing's "spawn".)
     """
 
     def __init__(self, scene: Union[Scene, StrPath], *, spp: Optional[int] = None, seed: int = 0, sample_offset: int = 0,
@@ -68,7 +70,7 @@ class Session:
         if noise is not None:
             options["noise"] = _between("noise", noise, 0.0, 1.0)
         if crop is not None:
-            if len(crop) != 4:
+            if not isinstance(crop, Collection) or len(crop) != 4:
                 raise _vkvol.InputError(f"crop: {crop!r} is not (x0, x1, y0, y1)")
             options["crop"] = [float(_whole("crop", edge, 0, 65536)) for edge in crop]
         if integrator is not None:
@@ -79,7 +81,7 @@ class Session:
         self._progress = progress
         self._session = _vkvol.Session(source._source, options, strict)
         for warning in self._session.warnings:
-            warnings.warn(warning, SceneWarning, stacklevel=2)
+            warnings.warn(warning, SceneWarning, stacklevel=_frames_here())
 
     def render(self, samples: Optional[int] = None) -> int:
         """Renders until every pixel has as many samples in all, or time or noise end it. None: as many as the scene or
@@ -124,7 +126,17 @@ def integrators() -> list[str]:
     return _vkvol.integrator_names()
 
 
+def _frames_here() -> int:
+    """The caller's frame and those above it that are of this file, and one more: what calls it."""
+    frame, frames = sys._getframe(1), 1
+    while frame.f_back and frame.f_code.co_filename == __file__:
+        frame, frames = frame.f_back, frames + 1
+    return frames
+
+
 def _names(value: Union[str, Sequence[str]]) -> Sequence[str]:
+    if not isinstance(value, (str, Collection)):
+        raise _vkvol.InputError(f"aov: {value!r} is no list of names")
     return value.replace(",", " ").split() if isinstance(value, str) else value
 
 
@@ -141,7 +153,10 @@ def _whole(name: str, value: Any, low: int, high: int) -> int:
 
 
 def _between(name: str, value: Any, low: float, high: float) -> float:
-    number = float(value)
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise _vkvol.InputError(f"{name}: {value!r} is no number") from None
     if not low < number < high:
         raise _vkvol.InputError(f"{name}: {value!r} is not between {low:g} and {high:g}")
     return number

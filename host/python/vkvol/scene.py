@@ -34,11 +34,19 @@ class Grids:
         if not arrays:
             raise _vkvol.InputError("Grids: there is no array; e.g. Grids(density=array)")
         self._grids = _vkvol.Grids([(name, np.asarray(np.ma.filled(array, 0), np.float32)) for name, array in arrays.items()],
-                                   tuple(float(x) for x in np.broadcast_to(voxel_size, 3)), tuple(float(x) for x in origin))
+                                   _three("voxel_size", voxel_size), _three("origin", origin))
 
     def write(self, file: StrPath) -> None:
         """Writes them as an .nvdb file, which renders to the same bits."""
         Path(file).write_bytes(self._grids.nvdb())
+
+
+def _three(name: str, value: npt.ArrayLike) -> tuple[float, float, float]:
+    try:
+        x, y, z = np.broadcast_to(np.asarray(value, float), 3).tolist()
+    except (TypeError, ValueError):
+        raise _vkvol.InputError(f"{name}: {value!r} is not three numbers") from None
+    return x, y, z
 
 
 class Scene:

@@ -1,0 +1,37 @@
+// The files that a scene names.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scene.h"
+
+namespace vkvol {
+
+struct InputFile {
+    std::string what; // "the scene's density field"
+    std::filesystem::path file;
+};
+
+// Density fields, models and their materials, meshes, textures, maps, tables and lists of points.
+std::vector<InputFile> input_files(const Scene& scene);
+
+// Files as they were when they were first seen, for what reads them again and again.
+class SeenFiles {
+public:
+    // Throws InputError if one of the scene's has changed since.
+    void see(const Scene& scene);
+
+private:
+    struct Stamp {
+        std::uintmax_t bytes = 0;
+        std::filesystem::file_time_type written;
+        bool operator==(const Stamp&) const = default;
+    };
+    std::map<std::filesystem::path, Stamp> stamps_;
+};
+
+} // namespace vkvol
