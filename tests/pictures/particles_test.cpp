@@ -323,6 +323,15 @@ TEST_CASE("particles from an even sky leave it even", "[gpu][particles]") {
     scene = by(scene, "lightTracing");
     const Film film = render_here(scene, 1).film;
     CHECK_AGREEMENT(agree_with_means(film, std::vector<Rgb>(film.mean.size(), scene.background), "even sky"));
+    // About the pole of a panorama, beyond which filters reach, and across whose seam.
+    scene.camera = Camera{};
+    scene.camera.position = {0.0, -3.0, 0.0};
+    scene.camera.projection = Projection::equirectangular;
+    scene.picture = {8, 4, 0.0, 0.0, 8.0, 4.0};
+    scene.settings.pixel_filter = PixelFilter::tent;
+    scene.settings.pixel_filter_radius = 1.5;
+    const Film round = render_here(scene, 1).film;
+    CHECK_AGREEMENT(agree_with_means(round, std::vector<Rgb>(round.mean.size(), scene.background), "all around"));
 }
 
 // A particle is in several pixels, or in one of those that count it. Of 48 pictures, the variance of their means over
