@@ -7,7 +7,7 @@
 
 namespace vkvol {
 
-std::vector<InputFile> input_files(const Scene& scene) {
+std::vector<InputFile> input_files(const Scene& scene, bool with_materials) {
     std::vector<InputFile> files;
     if (!scene.camera.points_file.empty())
         files.push_back({"the scene's list of points", scene.camera.points_file});
@@ -19,6 +19,8 @@ std::vector<InputFile> input_files(const Scene& scene) {
         if (const auto* mesh = std::get_if<MeshFiles>(&volume.shape))
             for (const std::filesystem::path& model : mesh->paths) {
                 files.push_back({"a model of the scene", model});
+                if (!with_materials)
+                    continue;
                 for (const std::filesystem::path& library : material_libraries(model))
                     files.push_back({"the materials of a model", library});
             }
@@ -36,7 +38,7 @@ std::vector<InputFile> input_files(const Scene& scene) {
 }
 
 void SeenFiles::see(const Scene& scene) {
-    for (const InputFile& input : input_files(scene)) {
+    for (const InputFile& input : input_files(scene, false)) {
         std::error_code error; // what is not there is for whoever reads it to tell
         const Stamp stamp{std::filesystem::file_size(input.file, error),
                           std::filesystem::last_write_time(input.file, error)};

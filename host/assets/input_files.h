@@ -16,13 +16,14 @@ struct InputFile {
     std::filesystem::path file;
 };
 
-// Density fields, models and their materials, meshes, textures, maps, tables and lists of points.
-std::vector<InputFile> input_files(const Scene& scene);
+// Density fields, models, meshes, textures, maps, tables and lists of points; `with_materials`, for which models have
+// to be read, also those that these name.
+std::vector<InputFile> input_files(const Scene& scene, bool with_materials);
 
 // Files as they were when they were first seen, for what reads them again and again.
 class SeenFiles {
 public:
-    // Throws InputError if one of the scene's has changed since.
+    // Throws InputError if one of the scene's, but for materials of models, has changed since.
     void see(const Scene& scene);
 
 private:

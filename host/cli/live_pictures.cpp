@@ -9,10 +9,11 @@
 
 namespace vkvol {
 
-LivePictures::LivePictures(const RenderOptions& options, const Scene& scene) : options_(options), scene_(scene) {
+LivePictures::LivePictures(const RenderOptions& options, const Scene& scene, bool tev_is_gone)
+    : options_(options), scene_(scene) {
     if (options.dry_run || options.trace)
         return;
-    if (!options.tev.empty()) {
+    if (!options.tev.empty() && !tev_is_gone) {
         const std::filesystem::path& file = options.outputs.empty() ? options.scene : options.outputs.front();
         try {
             pictures_.push_back(std::make_unique<TevPicture>(options.tev, file.filename().string()));

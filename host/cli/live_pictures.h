@@ -14,8 +14,9 @@ namespace vkvol {
 
 class LivePictures {
 public:
-    // Throws InputError where one takes no pictures, unless earlier frames were shown: then `missing` says so.
-    LivePictures(const RenderOptions& options, const Scene& scene);
+    // Throws InputError where one takes no pictures, unless earlier frames were shown: then `missing` says so. Once
+    // `tev_is_gone` it is not asked any more.
+    LivePictures(const RenderOptions& options, const Scene& scene, bool tev_is_gone);
 
     const std::string& missing() const { return missing_; }
 

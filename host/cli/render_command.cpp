@@ -224,9 +224,11 @@ int render_picture(const RenderOptions& options, Workshop& workshop) {
         print_warnings(workshop.new_warnings({lost}));
     CheckpointFile checkpoint(options);
     check_files(options, loaded, checkpoint);
-    LivePictures live(options, scene);
-    if (!live.missing().empty())
-        print_warnings(workshop.new_warnings({live.missing()}));
+    LivePictures live(options, scene, workshop.viewer_is_gone);
+    if (!live.missing().empty()) {
+        workshop.viewer_is_gone = true;
+        print_warnings({live.missing()});
+    }
     keep_made_scene(options, loaded);
     RenderOutputs outputs(options, scene);
     try {

@@ -85,7 +85,7 @@ bool fits_in_memory(const std::vector<GridFile>& grids) {
 // The grids of the frame after this one, if that will be rendered.
 std::vector<GridFile> next_grids(const RenderOptions& options, std::size_t index,
                                  const std::vector<std::vector<GridFile>>& grids) {
-    if (options.dry_run || index + 1 == options.frames.size())
+    if (options.dry_run || index + 1 >= grids.size()) // the last, or the checks were interrupted
         return {};
     const RenderOptions next = frame_options(options, options.frames[index + 1]);
     const bool is_there = options.resume && std::filesystem::exists(next.outputs.front());

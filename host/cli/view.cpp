@@ -100,7 +100,12 @@ private:
             publish(session_->result(), is_done_);
         }
         board_.say(file_trouble_); // of this wish there is none
-        return go_on(wish);
+        try {
+            return go_on(wish);
+        } catch (const InputError&) { // of a later moment
+            session_.reset();
+            throw;
+        }
     }
 
     // With all layers that were asked for so far, so that going back to one renders nothing anew; if the scene as it is

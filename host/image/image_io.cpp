@@ -136,7 +136,7 @@ int channel_of(const PictureHeader& header, const char* name) {
 
 // By the names in the image's metadata: other channels are no concern of ours.
 void read_layers(const PictureHeader& header, const std::vector<float>& pixels, Film& film) {
-    const bool is_own_alpha = channel_of(header, "A") >= 0;
+    const bool is_own_alpha = channel_of(header, "alpha.A") < 0;
     std::istringstream names{text_of(header.attributes, layers_key)};
     for (std::string name; names >> name;) {
         FilmLayer layer{name, {}, {}};

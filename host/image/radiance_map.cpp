@@ -125,8 +125,8 @@ RadianceMap read_radiance_map(const std::filesystem::path& file) {
     const std::vector<std::string> known = {".exr",  ".hdr", ".png", ".jpg", ".jpeg", ".tif",
                                             ".tiff", ".tga", ".bmp", ".gif", ".psd",  ".pfm"};
     if (std::find(known.begin(), known.end(), ending) == known.end())
-        throw InputError(
-            fmt::format("{}: unknown kind of map '{}'; expected .exr, .hdr or .png", file.string(), ending));
+        throw InputError(fmt::format("{}: unknown kind of map '{}'; expected .exr, .hdr, .png, .jpg or .tga, say",
+                                     file.string(), ending));
     const std::unique_ptr<PictureReader> reader = open_image(file);
     const PictureHeader& header = reader->header();
     check_orientation(header, file);

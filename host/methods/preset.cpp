@@ -20,9 +20,10 @@ Scene with_steady_integrator(Scene scene) {
     std::set<std::string> names{choose_integrator(scene).name};
     for (const double time : telling_times(*scene.motion_blur))
         names.insert(choose_integrator(scene_of_time(scene, time)).name);
-    if (names.size() == 2 && !names.contains("lightTracing"))
-        names.erase("deltaTracking"); // of what is dark, which others render as well
-    scene.settings.integrator = names.size() == 1 ? *names.begin() : "ratioTracking";
+    // What is dark at these may be lit at others, and what is lit dark, where particles have nothing to begin with.
+    const bool is_dark_at_times = names.erase("deltaTracking") > 0;
+    const bool has_one = names.size() == 1 && !(is_dark_at_times && names.contains("lightTracing"));
+    scene.settings.integrator = has_one ? *names.begin() : "ratioTracking";
     return scene;
 }
 

@@ -211,28 +211,34 @@ void PbrtTranslator::note_places(XmlAttributes& material) {
     set(material, "checker", fmt::format("{} {} {}", own[0], own[1], own[2]));
 }
 
-glm::dvec3 PbrtTranslator::mean_of_image(const PbrtThing& thing) const {
-    try {
-        const RadianceMap map = read_radiance_map(scene_.folder / thing.parameters->text("filename"));
-        glm::dvec3 sum(0.0);
+// Throws InputError, without a place, if it cannot be read.
+glm::dvec3 PbrtTranslator::mean_of_image(const PbrtThing& thing) {
+    const std::string name = thing.parameters->text("filename");
+    const auto [mean, is_new] = means_.try_emplace(name);
+    if (is_new) {
+        const RadianceMap map = read_radiance_map(scene_.folder / name);
         for (const glm::vec3& texel : map.texels)
-            sum += glm::dvec3(texel);
-        return sum / double(map.texels.size());
-    } catch (const InputError& error) { // which names the file
-        fail_at(thing.place, error.what());
+            mean->second += glm::dvec3(texel) / double(map.texels.size());
     }
+    return mean->second;
+}
+
+// True as well where that cannot be told: whoever loads it says why.
+bool PbrtTranslator::has_places(const PbrtThing& mesh) {
+    const std::string name = mesh.parameters->text("filename");
+    const auto [has, is_new] = have_places_.try_emplace(name, true);
+    try {
+        if (is_new)
+            has->second = has_ply_places(scene_.folder / name);
+    } catch (const InputError&) {
+    }
+    return has->second;
 }
 
 // A mesh in a file that has no places is of its texture's mean colour.
 void PbrtTranslator::even_out(const PbrtShape& shape, XmlAttributes& material) {
-    if (!texture_)
+    if (!texture_ || has_places(shape.thing))
         return;
-    try {
-        if (has_ply_places(scene_.folder / shape.thing.parameters->text("filename")))
-            return;
-    } catch (const InputError&) { // whoever loads it says so
-        return;
-    }
     note(shape.thing.place, "has no places on its texture (u and v), and is of that one's mean colour");
     glm::dvec3 color(0.0), other(0.0);
     for (const auto& [name, value] : material) {
@@ -242,7 +248,11 @@ void PbrtTranslator::even_out(const PbrtShape& shape, XmlAttributes& material) {
         if (std::istringstream rest(name == "checker" ? value : ""); name == "checker")
             rest >> other.x >> other.y >> other.z;
     }
-    color = texture_->type == "imagemap" ? color * glm::min(mean_of_image(*texture_), 1.0) : 0.5 * (color + other);
+    try {
+        color = texture_->type == "imagemap" ? color * glm::min(mean_of_image(*texture_), 1.0) : 0.5 * (color + other);
+    } catch (const InputError& error) { // which names the file
+        fail_at(texture_->place, error.what());
+    }
     std::erase_if(material, [](const auto& each) {
         return each.first == "texture" || each.first == "checker" || each.first == "repeat";
     });
@@ -383,8 +393,12 @@ void PbrtTranslator::write_emission(const PbrtShape& shape, std::optional<double
     const PbrtParameters& p = *light.parameters;
     glm::dvec3 radiance = light_color(light, "L");
     if (!p.text("filename").empty()) {
-        note(light.place, "an image that shines does so evenly here, as its mean");
-        radiance *= mean_of_image(light);
+        try {
+            radiance *= mean_of_image(light);
+            note(light.place, "an image that shines does so evenly here, as its mean");
+        } catch (const InputError& error) {
+            note(light.place, fmt::format("an image that shines does so evenly here, as white: {}", error.what()));
+        }
         if (const double luminance = glm::dot(radiance, luminance_of_rgb) / (p.number("scale", 1.0) * exposure_);
             p.number("power", -1.0) > 0.0 && luminance > 0.0)
             radiance /= luminance; // "power" is of that

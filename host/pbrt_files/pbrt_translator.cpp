@@ -262,13 +262,14 @@ void PbrtTranslator::write_filter() {
         return;
     }
     double x = p.number("xradius", kind->radius);
-    const double y = p.number("yradius", kind->radius), sigma = p.number("sigma", 0.5);
+    const double y = p.number("yradius", kind->radius);
+    const double sigma = filter.type == "gaussian" ? p.number("sigma", 0.5) : 0.0;
     if (x != y)
         note(filter.place, fmt::format("\"yradius\" is left out; the filter is {:g} pixels wide along either axis", x));
     if (filter.type == "gaussian" && 3.0 * sigma > (1.0 + 1e-6) * x)
         note(filter.place, "\"sigma\" is left out; it is a third of the radius");
     else if (filter.type == "gaussian") // beyond which there is a hundredth of it
-        x = 3.0 * sigma;
+        x = std::max(3.0 * sigma, 0.01);
     note_unused(filter);
     xml_.element("pixelFilter", {{"radius", xml_number(x)}}, kind->here, filter.place.text());
 }

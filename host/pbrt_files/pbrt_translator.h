@@ -5,6 +5,7 @@
 // zenith to the top, since maps stand upright here.
 #pragma once
 
+#include <map>
 #include <set>
 #include <span>
 #include <string>
@@ -88,7 +89,8 @@ private:
     void add_roughness(XmlAttributes& attributes, const PbrtThing& thing, const std::string& part = "");
     void add_texture(XmlAttributes& attributes, const PbrtThing& texture, const glm::dvec3& factor, int depth);
     void add_repeat(XmlAttributes& attributes, const PbrtThing& texture, double repeat);
-    glm::dvec3 mean_of_image(const PbrtThing& thing) const;
+    glm::dvec3 mean_of_image(const PbrtThing& thing);
+    bool has_places(const PbrtThing& mesh);
     PbrtTriangles with_places_of_texture(const PbrtThing& shape, PbrtTriangles mesh, XmlAttributes& material) const;
     void note_places(XmlAttributes& material);
     void even_out(const PbrtShape& shape, XmlAttributes& material);
@@ -121,6 +123,8 @@ private:
     // Of the material that was written last: its texture, and which part of pbrt's places it repeats in one.
     std::optional<PbrtThing> texture_;
     double texture_repeat_ = 1.0;
+    std::map<std::string, glm::dvec3> means_; // of images, and which meshes in files have places: read once
+    std::map<std::string, bool> have_places_;
     double exposure_ = 1.0; // by which pbrt's film multiplies radiance
 };
 

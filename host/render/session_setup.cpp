@@ -54,7 +54,7 @@ MediaFigures figures_of(const Assets& assets) {
 Session::Session(const Device& device, const Scene& scene, const RenderJob& job) : Session(device, scene, job, true) {
     result_.scene_hash = scene_hash(scene);
     check_moments();
-    make_followers(scene);
+    make_followers(moving_ ? *moving_ : scene);
     compile_all();
     watch_.lap();
 }
@@ -83,12 +83,17 @@ namespace {
 }
 } // namespace
 
-// Before anything is rendered, as far as few moments tell.
+// Before anything is rendered, as far as few moments tell. Nobody sees the very first and last.
 void Session::check_moments() const {
-    if (moving_)
-        for (const double time : telling_times(*moving_->motion_blur))
-            if (choose_method(with_preset(scene_of_time(*moving_, time))).paths != method_.paths)
-                fail_moments();
+    if (!moving_ || method_.paths == PATHS_CAMERA) // which it stays
+        return;
+    const MotionBlur& blur = *moving_->motion_blur;
+    const double within = 1e-4 * (blur.close - blur.open);
+    for (const double time : telling_times(blur)) {
+        const Scene then = scene_of_time(*moving_, std::clamp(time, blur.open + within, blur.close - within));
+        if (choose_method(with_preset(then)).paths != method_.paths)
+            fail_moments();
+    }
 }
 
 // Enters the moment of the sample that comes next: all before it are finished. The device keeps what it has compiled.

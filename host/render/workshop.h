@@ -36,6 +36,8 @@ public:
     void set_next(std::vector<GridFile> files) { next_ = std::move(files); }
     const std::vector<GridFile>& next() const { return next_; }
 
+    bool viewer_is_gone = false; // which earlier frames were shown to
+
     // Those of `warnings` that no frame has given yet.
     std::vector<std::string> new_warnings(const std::vector<std::string>& warnings) {
         std::vector<std::string> unheard;

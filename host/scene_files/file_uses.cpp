@@ -59,7 +59,7 @@ bool FileUses::is_newer_than_inputs(const path& file) const {
 }
 
 void FileUses::reads_files_of(const Scene& scene) {
-    for (const InputFile& input : input_files(scene))
+    for (const InputFile& input : input_files(scene, true))
         reads(input.what, input.file);
 }
 

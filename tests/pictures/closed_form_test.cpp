@@ -257,7 +257,7 @@ TEST_CASE("a lone voxel absorbs as its hat", "[gpu][hard][closed_form]") {
 // each add up to a relative variance of 5e-7. A ratio of 1 - 1e-6 in single precision would be 1.3 % too far from 1 at
 // each of them, and the result 0.6 % off; rounded as it is it errs by less than 0.1 %.
 TEST_CASE("what is seen through a box is so under a majorant a million times its density", "[gpu][hard][closed_form]") {
-    Scene scene = parse_scene(
+    const Scene scene = parse_scene(
         R"(<options><box width="1" height="1" depth="1"/><sigma_a>1</sigma_a><sigma_s>0</sigma_s>
         <integrator transmittance="ratio">ratioTracking</integrator><majorant scale="1e6"/>
         <lights><directional z="1" r="1" g="1" b="1"/></lights><fluence>0 0 0</fluence>

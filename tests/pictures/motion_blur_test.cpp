@@ -368,6 +368,10 @@ TEST_CASE("what is dark at some moments is rendered as what is not", "[motion]")
     CHECK(mean_of(second.film) == 0.0);
     CHECK(first.integrator == second.integrator);
     CHECK(choose_method(with_preset(with_steady_integrator(lit))).integrator == first.integrator);
+    // Also where it is lit at none of the moments that are looked at before.
+    const Scene pulse =
+        parse_at(body + R"(<sphere/><light y="1" r="1" multiplier="${= max(0, 1 - 20*abs(F - 0.1))}"/>)", 0);
+    CHECK(std::string(choose_method(with_preset(with_steady_integrator(pulse))).integrator) == "ratioTracking");
     lit.settings.integrator = "bidirectional"; // which has nothing to send at some
     CHECK_THROWS_WITH(Session(test_device(), lit, job), Contains("at some moments"));
     // Neither is a fire that is out at the last moment shown as fog.

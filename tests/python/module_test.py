@@ -369,7 +369,9 @@ class Running(unittest.TestCase):
                 "            print(error, flush=True)\n"
                 "    os._exit(7)  # as multiprocessing does: drivers wait at exit for threads of the parent's\n"
                 "print(os.waitstatus_to_exitcode(os.wait()[1]), session.render(2))")
-        done = subprocess.run([sys.executable, "-c", code, *sys.path], capture_output=True, text=True, timeout=120)
+        # From 3.12 on Python warns of forks where there are threads.
+        done = subprocess.run([sys.executable, "-W", "ignore::DeprecationWarning", "-c", code, *sys.path], capture_output=True,
+                              text=True, timeout=120)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(done.stdout.count("was forked from one that has used a device"), 2)
         self.assertTrue(done.stdout.endswith("7 2\n"))
