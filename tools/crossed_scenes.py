@@ -442,8 +442,16 @@ def main():
             z, by_pixel = apart(base, other), apart_by_pixel(base["picture"], other["picture"])
             where = by_pixel > pixel_limit
             if z > limit or where.any():
-                one, base16, _ = render(arguments.vkvol, scene, usual, 16 * SAMPLES, 3, "fused")
-                two, other16, _ = render(arguments.vkvol, scene, integrator, 16 * SAMPLES, 4, schedule)
+                try:
+                    one, base16, error = render(arguments.vkvol, scene, usual, 16 * SAMPLES, 3, "fused")
+                    if not error:
+                        two, other16, error = render(arguments.vkvol, scene, integrator, 16 * SAMPLES, 4, schedule)
+                except (Refused, subprocess.TimeoutExpired) as reason: # they are apart, and that is all that is known
+                    bad.append((command, command, f"{z:.1f} standard errors apart, and no second look: {reason}"))
+                    break
+                if error:
+                    bad.append((command, command, f"{z:.1f} standard errors apart, then {error}"))
+                    break
                 again = apart(base16, other16)
                 there = float(np.max(np.where(where, apart_by_pixel(base16["picture"], other16["picture"]), 0.0)))
                 print(f"{number}: {integrator} {z:.1f} standard errors apart, then {again:.1f} (pixel: {by_pixel.max():.1f}, {there:.1f}): "

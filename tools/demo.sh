@@ -9,8 +9,11 @@ install_packages
 build release vkvol make_field
 make_fields cumulus --output "$vkvol_root/density_fields/cumulus.nvdb" --if-missing
 
+case " $* " in
+*" --tonemap"*) ;;
+*) set -- --tonemap aces "$@" ;;
+esac
 say "Rendering scenes/cumulus.xml"
 mkdir -p "$vkvol_root/out"
-"$vkvol_root/build/vkvol" "$vkvol_root/scenes/cumulus.xml" -o "$vkvol_root/out/cumulus.png" -o "$vkvol_root/out/cumulus.exr" \
-    --tonemap aces "$@"
+"$vkvol_root/build/vkvol" "$vkvol_root/scenes/cumulus.xml" -o "$vkvol_root/out/cumulus.png" -o "$vkvol_root/out/cumulus.exr" "$@"
 say "The picture is $vkvol_root/out/cumulus.png ($((SECONDS - start)) s in all)"

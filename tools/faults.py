@@ -305,6 +305,8 @@ def main():
         stream_rows(lab, table)
         limit_rows(lab, table, options.quick)
     print(f"\n{table.runs} runs, {table.lost} with losses; {time.monotonic() - start:.0f} s")
+    if table.runs == 0:
+        sys.exit(f"no row's name contains {options.only!r}")
     return 1 if table.lost else 0
 
 

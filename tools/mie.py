@@ -43,10 +43,12 @@ def main():
     parser.add_argument("--diameter", type=float, required=True, help="mean [micrometres]")
     parser.add_argument("--spread", type=float, default=0.2, help="standard deviation over the mean; 0: one size")
     parser.add_argument("--wavelength", type=float, default=0.55, help="[micrometres]")
-    parser.add_argument("--index", type=complex, default=1.333, help="of refraction, relative to what is around")
+    parser.add_argument("--index", type=complex, default=1.333, help="n+kj of refraction, relative to what is around; k is not below 0, and absorbs")
     options = parser.parse_args()
     if not (options.diameter > 0 and options.spread >= 0 and options.wavelength > 0):
         parser.error("--diameter and --wavelength are lengths above 0, and --spread is not below 0")
+    if not (options.index.real > 0 and options.index.imag >= 0) or options.index == 1:
+        parser.error("--index is n+kj with n above 0 and k not below it (others write n-kj), and not 1, which scatters nothing")
     # Close together where the peak is, and where bows are.
     angles = np.unique(np.concatenate([np.geomspace(0.01, 10, 160), np.arange(10, 180.01, 0.25), [0.0]]))
     mu = np.cos(np.radians(angles))

@@ -17,6 +17,7 @@ esac
 packages+=(help2man dpkg-dev file patchelf)
 install_packages
 build release vkvol make_field
+cd "$vkvol_root"
 cmake --build --preset release --target package_files || die "man pages, completions or the demo's field could not be made"
 
 make_deb() {

@@ -3,7 +3,7 @@
 
     tools/same_pictures.py OLD_VKVOL [NEW_VKVOL] [--scenes FOLDER] [--only WORD] [--runs 1] [--width 64] [--spp 8]
 
-Renders every scene of scenes/, or of another folder if the old build does not know all that these have, every integrator in
+Renders every scene of scenes/ but large_grid, or of another folder if the old build does not know all that these have, every integrator in
 a cloud and in a homogeneous ball, a crop, and a render that is resumed from a checkpoint, by both builds with the same seed. Where bits differ, `vkvol compare` judges another seed of the new
 build, so that the two are independent, and its verdict is printed; the reason for such a difference is for people to find.
 Seconds are medians of --runs, in alternation. Fields: tools/all_scenes.sh makes them. Exit code 1: a picture differs by
@@ -81,6 +81,8 @@ def main():
             builds.append(Build(program.resolve(), Path(work) / name))
         old, new = builds
         chosen = [case for case in cases(new.program, options.scenes.resolve()) if options.only in case[0]]
+        if not chosen:
+            sys.exit(f"no picture's name contains {options.only!r}")
         for name, arguments in chosen:
             size = ["--width", options.width, "--spp", "400" if name == RESUMED else options.spp]
             # The whole table shows a difference by chance once in a hundred times.

@@ -49,7 +49,9 @@ install_packages() {
     command -v dpkg-query >/dev/null || die_unsupported "$(system NAME) is not Debian: packages cannot be installed"
     local missing=() package
     for package in "${packages[@]}"; do
-        [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+        # Of several architectures, each has a line.
+        dpkg-query -W -f='${Architecture} ${db:Status-Status}\n' "$package" 2>/dev/null |
+            grep -qxE "(all|$(dpkg --print-architecture)) installed" || missing+=("$package")
     done
     if [ ${#missing[@]} -eq 0 ]; then
         return
@@ -78,9 +80,9 @@ build() {
         shift
     fi
     say "Building ($preset)"
-    cd "$vkvol_root" || exit 1
-    cmake --preset "$preset" ${setting:+"$setting"} >/dev/null || die "cmake --preset $preset failed"
-    cmake --build --preset "$preset" ${1:+--target "$@"} || die "the build failed"
+    # Files that were named on the command line are where they were.
+    (cd "$vkvol_root" && cmake --preset "$preset" ${setting:+"$setting"} >/dev/null) || die "cmake --preset $preset failed"
+    (cd "$vkvol_root" && cmake --build --preset "$preset" ${1:+--target "$@"}) || die "the build failed"
 }
 
 # Density fields that are not there yet.
@@ -95,8 +97,10 @@ make_fields() {
 use_driver() {
     local manifest
     case $1 in
-    lavapipe) manifest=$(compgen -G "/usr/share/vulkan/icd.d/lvp_icd*.json" | head -n 1) ||
-        die "lavapipe is not installed; apt-get install mesa-vulkan-drivers brings it" ;;
+    lavapipe)
+        manifest=$(compgen -G "/usr/share/vulkan/icd.d/lvp_icd*$(uname -m).json" ||
+            compgen -G "/usr/share/vulkan/icd.d/lvp_icd*.json" | head -n 1)
+        [ -n "$manifest" ] || die "lavapipe is not installed; apt-get install mesa-vulkan-drivers brings it" ;;
     swiftshader)
         manifest=$vkvol_root/build/swiftshader/vk_swiftshader_icd.json
         [ -f "$manifest" ] || unpack_swiftshader "$(dirname "$manifest")"

@@ -2,6 +2,8 @@
 
 import importlib.util
 import pathlib
+import subprocess
+import sys
 import unittest
 
 import numpy as np
@@ -30,6 +32,12 @@ class MieTest(unittest.TestCase):
             scattered = np.sum(weights * (abs(s1) ** 2 + abs(s2) ** 2)) / x**2
             straight_on, _ = mie.amplitudes(x, 1.333, np.ones(1))
             self.assertAlmostEqual(scattered / (4 / x**2 * straight_on[0].real), 1.0, places=8)
+
+    def test_indices_that_would_amplify_are_refused(self):
+        for index in ("1.5-0.1j", "1", "-1.3"):
+            done = subprocess.run([sys.executable, PATH, "--diameter", "1", f"--index={index}"], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("--index is n+kj", done.stderr)
 
 
 if __name__ == "__main__":

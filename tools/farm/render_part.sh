@@ -4,7 +4,8 @@
 #     FRAME: a number, the scene's key F; or "still" for a scene without one
 #   VKVOL=PROGRAM      in place of vkvol
 #   FARM_LINES=openjd  progress and failures in the words of Open Job Description
-# A part that is there was rendered to its end and is not rendered again; of one that was killed what its last checkpoint has
+# A part that is there was rendered to its end and is not rendered again, nor taken for one of another scene or other arguments;
+# of one that was killed what its last checkpoint has
 # is gone on from. Windows of a picture have the bits that they have in the whole (but for particles): ranges of samples would
 # not, to the last.
 set -euo pipefail
@@ -14,7 +15,15 @@ export LC_ALL=C # numbers have points
 scene=$1 frame=$2 part=$3 parts=$4 name=$5
 shift 5
 output=$name.$frame.$part-of-$parts.exr
+mkdir -p -- "$(dirname -- "$name")"
+asked=$(cksum <"$scene")$(printf ' %q' "$@")
+request=$name.$frame.$part-of-$parts.request
 if [ -f "$output" ]; then
+    if [ -f "$request" ] && [ "$(cat "$request")" != "$asked" ]; then
+        echo "render_part.sh: error: $output is of another scene or other arguments; remove it, or take another NAME" >&2
+        [ "${FARM_LINES:-}" != openjd ] || echo "openjd_fail: $output is of another scene or other arguments"
+        exit 2
+    fi
     echo "$output is there"
     exit
 fi
@@ -48,4 +57,5 @@ style=(--progress none)
 echo "rendering $output"
 # What ends early writes what it has, and that is not the part: it gets the part's name when all of it is there.
 "${VKVOL:-vkvol}" "$scene" "${define[@]}" --crop "$window" --checkpoint 30s --resume "${style[@]}" -o "$partial.exr" "$@" 2>&1 | tell
+printf '%s\n' "$asked" >"$request"
 mv "$partial.exr" "$output"

@@ -133,7 +133,7 @@ def write_man_pages(vkvol, folder):
         words, page = ([], "vkvol") if name == "render" else ([name], f"vkvol-{name}")
         command = " ".join([shlex.quote(str(vkvol)), *words])  # help2man has a shell run it
         purpose = help_of(vkvol, *words).splitlines()[0].split(". ")[0].rstrip(".")
-        text = subprocess.run(["help2man", "--no-info", f"--name={purpose[0].lower()}{purpose[1:]}", "--version-string=" + version,
+        text = subprocess.run(["help2man", "--no-info", f"--name={purpose[0].lower()}{purpose[1:]}", f"--version-string={page} {version.split()[-1]}",
                                "--manual=vkvol", f"--source={version}", command], check=True, capture_output=True).stdout
         text = text.replace(str(vkvol).encode(), b"vkvol")
         (folder / f"{page}.1.gz").write_bytes(gzip.compress(text, mtime=0))

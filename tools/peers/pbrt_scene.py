@@ -215,8 +215,8 @@ def main():
     if scene.medium is not None and (np.ptp(scene.medium.sigma_t) or np.ptp(scene.medium.sigma_s)):
         print("note: pbrt renders spectra; coefficients that differ between r, g and b are smooth curves there, and the "
               "picture will differ", file=sys.stderr)
-    with open(options.output, "w") as file:
-        file.writelines(line + "\n" for line in scene_lines(scene, options))
+    text = "".join(line + "\n" for line in scene_lines(scene, options))  # all of it, or nothing
+    options.output.write_text(text)
     print(f"written: {options.output}")
     return 0
 

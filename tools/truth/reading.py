@@ -40,7 +40,8 @@ class Reader:
                 columns.setdefault(place, []).append((float(row["G"]), float(row["standardError.G"] or "inf")))
         if len(columns) == 1:
             mean = json.loads(report.read_text())["mean"]
-            return [(mean["value"][1], mean["standardError"][1] or math.inf)]
+            errors = mean["standardError"] # none of a single sample; 0 where nothing varies
+            return [(mean["value"][1], errors[1] if errors and errors[1] is not None else math.inf)]
         return [(sum(mean for mean, _ in column) / len(column), math.sqrt(sum(error**2 for _, error in column)) / len(column))
                 for _, column in sorted(columns.items())]
 
@@ -57,5 +58,5 @@ class Reader:
             short = (statistics.mean if case.is_map else max)((error / goal) ** 2 for (_, error), goal in zip(rows, wanted))
             if short <= 1.0 or samples >= MOST_SAMPLES:
                 return rows, samples
-            samples = min(MOST_SAMPLES, max(2 * samples, int(1.15 * short * samples)))
+            samples = min(MOST_SAMPLES, max(2 * samples, int(min(1.15 * short * samples, MOST_SAMPLES))))
             seed += 1

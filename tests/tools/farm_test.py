@@ -1,0 +1,64 @@
+"""The farm's scripts beside stand-ins for sbatch and vkvol; tools/farm/test.sh has them run by the real ones."""
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+FARM = pathlib.Path(__file__).resolve().parents[2] / "tools/farm"
+
+
+class FarmTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="farm with spaces ")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        (self.folder / "scene.xml").write_text("<options/>")
+        # Keeps what it is given, and tells a cluster's name behind the number.
+        self.program("sbatch", 'echo "$*" >>log; cat >>log; echo "7;cluster"')
+        self.program("vkvol", 'while [ $# -gt 0 ]; do [ "$1" != -o ] || echo picture >"$2"; shift; done')
+
+    def program(self, name, text):
+        file = self.folder / name
+        file.write_text(f"#!/bin/bash\n{text}\n")
+        file.chmod(0o755)
+
+    def run_script(self, name, *arguments):
+        environment = {**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}", "VKVOL": str(self.folder / "vkvol")}
+        return subprocess.run(["bash", FARM / name, *arguments], cwd=self.folder, env=environment, capture_output=True, text=True)
+
+    def frames_of(self, text):
+        (self.folder / "log").unlink(missing_ok=True)
+        done = self.run_script("slurm.sh", "scene.xml", text, "2", "out/100 %/a", "--spp", "4")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        log = (self.folder / "log").read_text()
+        self.assertIn("--dependency=afterok:7 ", log)
+        self.assertIn("--output=out/100 %%/a.%a.log", log)
+        frames = re.search(r"frames=\((.*)\)", log)[1].split()
+        self.assertIn(f"--array=0-{2 * len(frames) - 1}", log)
+        self.assertIn(f"for frame in {' '.join(frames)};", log)
+        return frames
+
+    def test_frames(self):
+        for text, frames in (("1,5,9", "1 5 9"), ("008-010", "8 9 10"), ("1-9:4,12", "1 5 9 12"), ("3", "3"), ("still", "still")):
+            with self.subTest(frames=text):
+                self.assertEqual(self.frames_of(text), frames.split())
+        self.assertTrue((self.folder / "out/100 %").is_dir())  # into which logs are written
+        for wrong in ("", "a", "5-1", "1-3:0", "1,,2", "1-"):
+            with self.subTest(frames=wrong):
+                self.assertEqual(self.run_script("slurm.sh", "scene.xml", wrong, "2", "a").returncode, 2)
+
+    def test_parts_of_other_requests_are_not_taken(self):
+        part = ("render_part.sh", "scene.xml", "still", "1", "2", "out/a")
+        self.assertEqual(self.run_script(*part, "--spp", "4").returncode, 0)
+        self.assertIn("is there", self.run_script(*part, "--spp", "4").stdout)
+        other = self.run_script(*part, "--spp", "5")
+        self.assertEqual(other.returncode, 2)
+        self.assertIn("is of another scene or other arguments", other.stderr)
+        (self.folder / "scene.xml").write_text("<options></options>")
+        self.assertEqual(self.run_script(*part, "--spp", "4").returncode, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
