@@ -37,6 +37,7 @@ build=$work/build
 # name ~ file ~ text ~ replacement ~ tests (a Catch2 specification). "^" parts several texts and their replacements.
 mutations() {
     cat <<'END'
+meshes of domains one unit high ~ host/assets/placement.cpp ~ if (loaded.mesh) { // about ~ if (false) { // about ~ [periodic]
 albedos of maps taken from 1 in single precision ~ host/fields/value_map.cpp ~ knot.absorbed = 1.0 - from.albedo; ~ knot.absorbed = 1.0f - glm::vec3(from.albedo); ~ [counted]
 collisions decided by 24 bits ~ shaders/lib/rng.glsl ~ + float(words.z & 255u) * 0.00390625 ~ ~ [rng]
 ratios of null collisions that round alike ~ shaders/estimators/transmittance/ratio_transmittance.glsl ~ T - T * (c.sigma_t / c.sigma_maj * c.ratio) ~ T * (1.0 - c.sigma_t / c.sigma_maj * c.ratio) ~ [closed_form]

@@ -45,6 +45,10 @@ glm::dmat4 medium_to_world(const Volume& volume, const LoadedMedium& loaded) {
 MediumBounds medium_bounds(const LoadedMedium& loaded) {
     if (loaded.is_layered)
         return {glm::dvec3(0.0), glm::dvec3(loaded.majorants->dims)};
+    if (loaded.mesh) { // about its middle, in world units
+        const glm::dvec3 half = box_center(*loaded.mesh) - lowest_corner(*loaded.mesh);
+        return {-half, half};
+    }
     if (!loaded.field)
         return {};
     const glm::ivec3 base = index_base(*loaded.field);

@@ -143,7 +143,8 @@ void check_periodic(const Scene& scene) {
     for (const Surface& surface : scene.surfaces)
         if (const auto* plane = std::get_if<PlaneSurface>(&surface.shape))
             for (int axis = 0; axis < 3; ++axis)
-                if (scene.periodic->size()[axis] > 0.0 && plane->normal[axis] != 0.0)
+                if (scene.periodic->size()[axis] > 0.0 &&
+                    std::abs(plane->normal[axis]) > 1e-9) // what turning it leaves
                     fail("a plane has to lie along all axes that repeat; turn it, or take a rectangle");
 }
 

@@ -279,7 +279,8 @@ double brightest_of(const Scene& scene, Media loaded, const LightTable& lights, 
 Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumParams> rows) {
     Glow glow;
     std::vector<GlowBox> boxes;
-    for (std::size_t i = 0; emits(scene) && i < scene.volumes.size(); ++i) {
+    const std::size_t volumes = emits(scene) ? scene.volumes.size() : 0;
+    for (std::size_t i = 0; i < volumes; ++i) {
         if (rows[i].kinds.shape == SHAPE_NONE)
             continue;
         const shared::EmissionParams& emission = rows[i].emission;

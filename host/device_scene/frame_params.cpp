@@ -120,9 +120,10 @@ shared::LayerParams make_layers(const Volume& volume, const MajorantGrid& cells)
     return params;
 }
 
-// `origin`: of render space, in world coordinates.
+// `origin`: of render space, in world coordinates. `is_chromatic`: extinction is, of any of the scene's media.
 shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const LoadedMedium& loaded,
-                                 const UploadLayout& layout, const Method& method, glm::dvec3 origin) {
+                                 const UploadLayout& layout, const Method& method, glm::dvec3 origin,
+                                 bool is_chromatic) {
     shared::MediumParams params{};
     fill_rows(params.to_medium, medium_to_world(volume, loaded), origin);
     const UnmovedShape shape = unmoved_shape(volume, loaded);
@@ -147,8 +148,7 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
     params.bvh_nodes = loaded.bvh ? static_cast<std::uint32_t>(loaded.bvh->nodes.size()) : 0;
     const Rgb sigma_t = world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr);
     params.sigma_t = static_cast<float>(largest(sigma_t));
-    params.sigma_ratio =
-        has_chromatic_extinction(scene) && largest(sigma_t) > 0.0 ? sigma_t / largest(sigma_t) : Rgb(1.0);
+    params.sigma_ratio = is_chromatic && largest(sigma_t) > 0.0 ? sigma_t / largest(sigma_t) : Rgb(1.0);
     params.usual_sigma_t = static_cast<float>(std::max(largest(sigma_t) * usual_density(volume, loaded), 1e-30));
     params.albedo = albedo_of(volume);
     params.absorbed = 1.0 - albedo_of(volume);
@@ -278,8 +278,9 @@ std::vector<shared::MediumParams> make_media(const Scene& scene, Media media, co
     rows.reserve(media.size());
     const std::vector<std::string> names =
         scene.layers & layer_media ? medium_names(scene) : std::vector<std::string>{};
+    const bool is_chromatic = has_chromatic_extinction(scene);
     for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
-        rows.push_back(make_medium(scene, scene.volumes[i], media[i], layout, method, origin));
+        rows.push_back(make_medium(scene, scene.volumes[i], media[i], layout, method, origin, is_chromatic));
         if (!names.empty())
             rows.back().layer = place_among(names, medium_name(scene, i));
     }
@@ -298,7 +299,8 @@ shared::FrameParams make_frame(const Scene& scene, Media media, const Method& me
             frame.lattice = make_lattice(whole->low(), whole->high(), whole->edge * glm::dvec3(whole->dims()),
                                          whole->dims(), nodes);
     } else if (!scene.volumes.empty()) {
-        frame.media[0] = make_medium(scene, scene.volumes.front(), media.front(), UploadLayout(media), method, origin);
+        frame.media[0] = make_medium(scene, scene.volumes.front(), media.front(), UploadLayout(media), method, origin,
+                                     has_chromatic_extinction(scene));
         if (method.nee == NEE_CACHED)
             frame.lattice = make_lattice_of(scene.volumes.front(), media.front(), nodes);
     }

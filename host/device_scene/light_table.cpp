@@ -269,8 +269,9 @@ double reach_of_lamps(const std::vector<Light>& lights, const glm::dvec3& origin
 LightTable make_light_table(const Scene& scene, const Assets& assets, const glm::dvec3& origin, double radius) {
     std::vector<Entry> entries;
     const std::vector<std::string> groups = plan_layers(scene).groups;
+    const Rows rows(scene, assets, origin, radius);
     for (const Light& light : scene.lights) {
-        entries.push_back(std::visit(Rows(scene, assets, origin, radius), light));
+        entries.push_back(std::visit(rows, light));
         entries.back().power = power_of(light, entries.back());
         entries.back().row.group = group_layer(groups, group_of(light));
         entries.back().row.body = body_of(light) == no_body ? NO_SURFACE : static_cast<std::uint32_t>(body_of(light));

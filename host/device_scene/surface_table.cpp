@@ -61,8 +61,8 @@ public:
                         mesh.normals.empty() ? nullptr : &mesh.normals[i],
                         has_places ? &mesh.places[i] : nullptr};
             // One of no area has no normal, and no ray meets it.
-            if (glm::length(glm::cross(piece.primitive.b - piece.primitive.a, piece.primitive.c - piece.primitive.a)) ==
-                0.0f)
+            const glm::dvec3 a(piece.primitive.a), b(piece.primitive.b), c(piece.primitive.c); // squares may be tiny
+            if (glm::cross(b - a, c - a) == glm::dvec3(0.0))
                 continue;
             for (const glm::vec3& corner : {piece.primitive.a, piece.primitive.b, piece.primitive.c})
                 piece.box.add(corner);

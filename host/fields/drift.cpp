@@ -23,6 +23,7 @@ glm::dvec3 to_vector(glm::vec3 value) {
 
 // `at`(voxel) -> glm::dvec3 or double.
 template <class At> auto trilinear(glm::dvec3 p, const At& at) {
+    p = glm::clamp(p, -0x1p25, 0x1p25); // beyond all grids, and whole numbers still
     const glm::dvec3 base = glm::floor(p), part = p - base;
     const glm::ivec3 i(base);
     auto sum = at(i) * 0.0;

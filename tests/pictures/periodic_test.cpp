@@ -9,6 +9,7 @@
 #include "camera_view.h"
 #include "error.h"
 #include "loaded_medium.h"
+#include "render_limits.h"
 #include "scene_hash.h"
 #include "shared/constants.h"
 #include "support/agreement.h"
@@ -16,6 +17,7 @@
 #include "support/scene_text.h"
 #include "support/scenes.h"
 #include "support/test_device.h"
+#include "support/test_meshes.h"
 #include "support/thorough.h"
 #include "tests/reference/reference.h"
 #include "tests/reference/transport.h"
@@ -109,6 +111,38 @@ TEST_CASE("a ray through a domain that repeats passes as much as its slant says"
 }
 
 // Far away over the horizon, and after a thousand domains.
+// Along an axis that does not repeat a mesh is as high as it is.
+TEST_CASE("meshes in a domain that repeats are whole", "[gpu][image][periodic][mesh]") {
+    const MeshFiles tower = write_mesh(make_box({-2.0, -5.0, -3.0}, {4.0, 5.0, 1.0}, 1));
+    Scene scene;
+    scene.volumes = {medium(tower, 0.2, 0.0)};
+    scene.periodic = Periodic{{-10.0, 0.0, -10.0}, {10.0, 0.0, 10.0}};
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.view_height = 1e-2;
+    scene.camera.position = {21.0, 50.0, -20.5}; // above another domain's
+    scene.camera.pitch = -90.0;
+    scene.picture = {4, 4, 0.0, 0.0, 4.0, 4.0};
+    scene.background = Rgb(1.0);
+    scene.settings.spp = 2000;
+    const Film seen = render_here(by(scene, "deltaTracking"), 1).film;
+    CHECK_AGREEMENT(agree_with_escapes(seen, std::vector<double>(16, std::exp(-2.0)), Rgb(1.0), Rgb(0.0), "tower"));
+    // Light upon the ground below it, by particles.
+    Scene ground = flux_through(-6.0, true, {2.0, 2.0}, 2, 4096);
+    ground.volumes = scene.volumes;
+    ground.periodic = scene.periodic;
+    ground.camera.position.x = 1.0;
+    ground.camera.position.z = -1.0;
+    ground.lights = {DirectionalLight{up_y, Rgb(1.0)}};
+    check_means(by(ground, "lightTracing"), std::exp(-2.0), "below a tower");
+}
+
+TEST_CASE("a plane that was turned lies along a domain that repeats", "[cpu][method][periodic]") {
+    const Scene scene =
+        parse(R"(<periodic x="-5 5" z="-5 5"/><surfaces><plane y="3"><transform><rotate x="1" angle="180"/>
+        </transform></plane></surfaces><backgroundColor r="1"/>)");
+    CHECK_NOTHROW(check_scene_limits(scene));
+}
+
 TEST_CASE("how often a ray is moved across costs it an ulp each time", "[gpu][image][periodic]") {
     Scene scene;
     scene.volumes = {medium(Box{{0.0, 0.0, 0.0}, {0.5, 2.0, 2.0}}, 0.004, 0.0)};
