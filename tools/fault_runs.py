@@ -255,12 +255,15 @@ class Table:
 
     def __init__(self, only):
         self.only, self.runs, self.lost = only, 0, 0
+        self.matched = False  # any row's name
         # Half of the time of a short run is reading, on one core.
         self.pool = concurrent.futures.ThreadPoolExecutor(max(1, (os.cpu_count() or 2)))
         print(f"{'fault':<58} {'runs':>5}  {'exit codes':<26} {'losses':>6}  verdict", flush=True)
 
     def wants(self, name):
-        return not self.only or self.only in name
+        wanted = not self.only or self.only in name
+        self.matched = self.matched or wanted
+        return wanted
 
     def row(self, name, job, items):
         """job(item) is one run, judged."""

@@ -305,7 +305,7 @@ def main():
         stream_rows(lab, table)
         limit_rows(lab, table, options.quick)
     print(f"\n{table.runs} runs, {table.lost} with losses; {time.monotonic() - start:.0f} s")
-    if table.runs == 0:
+    if not table.matched:
         sys.exit(f"no row's name contains {options.only!r}")
     return 1 if table.lost else 0
 

@@ -112,7 +112,7 @@ rays begin at the eye for the sake of planes ~ host/device_scene/sensor_params.c
 cosines at a panorama's poles by rounding ~ shaders/sensors/toward_sensor.glsl ~ max(level, 1.0e-12 * distance) ~ sqrt(max(1.0 - dot(ray, s.down) * dot(ray, s.down), 1.0e-12)) * distance ~ [particles]
 what holds nothing has no end ~ host/assets/superposition.cpp ~ whole.unbounded = ~ whole.unbounded = any_medium(scene, is_everywhere) || ~ [several]
 voxels of what holds nothing ~ host/device_scene/overlap_words.cpp ~ row.kinds.field == FIELD_GRID && row.kinds.shape != SHAPE_NONE ~ row.kinds.field == FIELD_GRID ~ [several]
-colours of what holds nothing ~ host/device_scene/frame_params.cpp ~ has_chromatic_extinction(scene) && largest(sigma_t) > 0.0 ~ has_chromatic_extinction(scene) ~ [several]
+colours of what holds nothing ~ host/device_scene/frame_params.cpp ~ is_chromatic && largest(sigma_t) > 0.0 ~ is_chromatic ~ [several]
 maps in no checkpoint ~ host/render/checkpoint.cpp ~ digest.add_all(medium.map_knots); ~ ; ~ [checkpoint]
 no far light where filters alone count it ~ host/device_scene/device_scene.cpp ~ beyond * (glm::length ~ 0.0 * beyond * (glm::length ~ [counted]
 lamps not seen where nothing scatters ~ host/methods/method.cpp ~ has_steps ? NEE_TENTATIVE : NEE_COLLISIONS ~ has_steps ? NEE_TENTATIVE : NEE_NONE ~ [lights]

@@ -1,5 +1,6 @@
 #include "surface_table.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -61,8 +62,10 @@ public:
                         mesh.normals.empty() ? nullptr : &mesh.normals[i],
                         has_places ? &mesh.places[i] : nullptr};
             // One of no area has no normal, and no ray meets it.
-            const glm::dvec3 a(piece.primitive.a), b(piece.primitive.b), c(piece.primitive.c); // squares may be tiny
-            if (glm::cross(b - a, c - a) == glm::dvec3(0.0))
+            const glm::vec3 u = piece.primitive.b - piece.primitive.a, v = piece.primitive.c - piece.primitive.a;
+            const glm::vec3 longest = glm::max(glm::abs(u), glm::abs(v));
+            const float scale = 1.0f / std::max({longest.x, longest.y, longest.z, 1e-30f}); // as kernels have it
+            if (glm::cross(scale * u, scale * v) == glm::vec3(0.0f))
                 continue;
             for (const glm::vec3& corner : {piece.primitive.a, piece.primitive.b, piece.primitive.c})
                 piece.box.add(corner);

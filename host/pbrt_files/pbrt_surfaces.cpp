@@ -214,13 +214,13 @@ void PbrtTranslator::note_places(XmlAttributes& material) {
 // Throws InputError, without a place, if it cannot be read.
 glm::dvec3 PbrtTranslator::mean_of_image(const PbrtThing& thing) {
     const std::string name = thing.parameters->text("filename");
-    const auto [mean, is_new] = means_.try_emplace(name);
-    if (is_new) {
-        const RadianceMap map = read_radiance_map(scene_.folder / name);
-        for (const glm::vec3& texel : map.texels)
-            mean->second += glm::dvec3(texel) / double(map.texels.size());
-    }
-    return mean->second;
+    if (const auto known = means_.find(name); known != means_.end())
+        return known->second;
+    const RadianceMap map = read_radiance_map(scene_.folder / name);
+    glm::dvec3 mean(0.0);
+    for (const glm::vec3& texel : map.texels)
+        mean += glm::dvec3(texel) / double(map.texels.size());
+    return means_[name] = mean;
 }
 
 // True as well where that cannot be told: whoever loads it says why.

@@ -85,7 +85,8 @@ namespace {
 
 // Before anything is rendered, as far as few moments tell. Nobody sees the very first and last.
 void Session::check_moments() const {
-    if (!moving_ || method_.paths == PATHS_CAMERA) // which it stays
+    // From the camera paths are whatever there is; of both some moments may have none from lights.
+    if (!moving_ || scene_.settings.choices.paths.value_or(choose_integrator(scene_).paths) == PATHS_CAMERA)
         return;
     const MotionBlur& blur = *moving_->motion_blur;
     const double within = 1e-4 * (blur.close - blur.open);

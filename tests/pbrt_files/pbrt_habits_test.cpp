@@ -154,6 +154,10 @@ TEST_CASE("pbrt's images become their means where they are left out", "[cpu][pbr
     CHECK(near(emission("\"float scale\" 2"), 2.0 * mean, 1e-6));
     // The power of an even one: its area and pi.
     CHECK(near(emission("\"float power\" 7"), glm::dvec3(7.0 / (std::numbers::pi * std::numbers::pi)), 1e-6));
+    directory.write("bad.exr", "no picture");
+    const Scene bad = scene_in(directory.path, "AreaLightSource \"diffuse\" \"string filename\" \"bad.exr\" Shape "
+                                               "\"disk\" Shape \"sphere\"");
+    CHECK((near(bad.surfaces.at(0).emission, glm::dvec3(1.0)) && near(bad.surfaces.at(1).emission, glm::dvec3(1.0))));
     const std::string shape =
         " Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"plymesh\" \"string filename\" "
         "\"corner.ply\"";

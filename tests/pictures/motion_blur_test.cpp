@@ -373,7 +373,8 @@ TEST_CASE("what is dark at some moments is rendered as what is not", "[motion]")
         parse_at(body + R"(<sphere/><light y="1" r="1" multiplier="${= max(0, 1 - 20*abs(F - 0.1))}"/>)", 0);
     CHECK(std::string(choose_method(with_preset(with_steady_integrator(pulse))).integrator) == "ratioTracking");
     lit.settings.integrator = "bidirectional"; // which has nothing to send at some
-    CHECK_THROWS_WITH(Session(test_device(), lit, job), Contains("at some moments"));
+    for (const RenderJob& each : {job, later})
+        CHECK_THROWS_WITH(Session(test_device(), lit, each), Contains("at some moments"));
     // Neither is a fire that is out at the last moment shown as fog.
     Scene fire =
         parse_at(body + R"(<sphere/><sigma_s>0</sigma_s><medium r="1" g="0.5" multiplier=")" + dims + "\"/>", 0);

@@ -110,7 +110,6 @@ TEST_CASE("a ray through a domain that repeats passes as much as its slant says"
     }
 }
 
-// Far away over the horizon, and after a thousand domains.
 // Along an axis that does not repeat a mesh is as high as it is.
 TEST_CASE("meshes in a domain that repeats are whole", "[gpu][image][periodic][mesh]") {
     const MeshFiles tower = write_mesh(make_box({-2.0, -5.0, -3.0}, {4.0, 5.0, 1.0}, 1));
@@ -143,6 +142,7 @@ TEST_CASE("a plane that was turned lies along a domain that repeats", "[cpu][met
     CHECK_NOTHROW(check_scene_limits(scene));
 }
 
+// Far away over the horizon, and after a thousand domains.
 TEST_CASE("how often a ray is moved across costs it an ulp each time", "[gpu][image][periodic]") {
     Scene scene;
     scene.volumes = {medium(Box{{0.0, 0.0, 0.0}, {0.5, 2.0, 2.0}}, 0.004, 0.0)};

@@ -41,7 +41,7 @@ class FarmTest(unittest.TestCase):
         return frames
 
     def test_frames(self):
-        for text, frames in (("1,5,9", "1 5 9"), ("008-010", "8 9 10"), ("1-9:4,12", "1 5 9 12"), ("3", "3"), ("still", "still")):
+        for text, frames in (("1,5,9", "1 5 9"), ("008-010", "8 9 10"), ("1-9:4,12", "1 5 9 12"), ("1-5,3", "1 2 3 4 5"), ("3", "3"), ("still", "still")):
             with self.subTest(frames=text):
                 self.assertEqual(self.frames_of(text), frames.split())
         self.assertTrue((self.folder / "out/100 %").is_dir())  # into which logs are written

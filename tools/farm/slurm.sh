@@ -24,7 +24,9 @@ if [ "$frames" != still ]; then
         last=$((10#${BASH_REMATCH[3]:-$first}))
         [ "$step" -gt 0 ] && [ "$last" -ge "$first" ] ||
             { echo "slurm.sh: frames '$span': expected the first, not above the last, and a step above 0" >&2; exit 2; }
-        for ((frame = first; frame <= last; frame += step)); do list+=("$frame"); done
+        for ((frame = first; frame <= last; frame += step)); do
+            [[ " ${list[*]} " == *" $frame "* ]] || list+=("$frame") # two tasks of one part would be in each other's way
+        done
     done
 fi
 mkdir -p -- "$(dirname -- "$name")" # into which the logs go, too
