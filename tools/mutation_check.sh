@@ -39,7 +39,7 @@ mutations() {
     cat <<'END'
 meshes of domains one unit high ~ host/assets/placement.cpp ~ if (loaded.mesh) { // about ~ if (false) { // about ~ [periodic]
 albedos of maps taken from 1 in single precision ~ host/fields/value_map.cpp ~ knot.absorbed = 1.0 - from.albedo; ~ knot.absorbed = 1.0f - glm::vec3(from.albedo); ~ [counted]
-collisions decided by 24 bits ~ shaders/lib/rng.glsl ~ + float(words.z & 255u) * 0.00390625 ~ ~ [rng]
+collisions decided by 24 bits ~ shaders/lib/rng.glsl ~ + float(words.z & 255u) * 0.00390625 ~ + 0.0 ~ [rng]
 ratios of null collisions that round alike ~ shaders/estimators/transmittance/ratio_transmittance.glsl ~ T - T * (c.sigma_t / c.sigma_maj * c.ratio) ~ T * (1.0 - c.sigma_t / c.sigma_maj * c.ratio) ~ [closed_form]
 variances of merged depths by one sample less ~ host/cli/merge.cpp ~ n / (n - 1.0) * squares[i] ~ squares[i] ~ [merge]
 depths without their product by weights ~ shaders/film/aovs.glsl ~ add_product(sum, sum_low, x); ~ ; ~ [aovs]
