@@ -302,7 +302,7 @@ colours by the order of channels ~ host/image/radiance_map.cpp ~ ending == ".exr
 panes of glass turned by rounding ~ host/pbrt_files/pbrt_sides.cpp ~ if (as_rectangle(mesh)) ~ if (false) ~ [pbrt]
 depths of merged pictures by samples alone ~ host/cli/merge.cpp ~ coverage ? coverage->mean[i].x * n : 0.0 ~ coverage ? 1.0 * n : 0.0 ~ [merge]
 telescoping by the difference of two sums ~ shaders/estimators/transmittance/telescoping_transmittance.glsl ~ == 0u ? -sampled : sampled ^ Spectrum of_lesser = exp(-sigma_t * min(w.depth, w.depth - w.partial)) ^ Spectrum size = of_lesser * one_minus_exp(sigma_t * abs(w.partial)) ^ w.partial > 0.0 ? -size : size ~ == 0u ? 2.0 * sampled : 0.0 ^ Spectrum of_lesser = exp(-sigma_t * w.partial) ^ Spectrum size = exp(-sigma_t * w.depth) - of_lesser ^ size ~ [transmittance]
-numbers of rows 256 apart the same ~ shaders/lib/rng.glsl ~ words ^ (words >> 16u) ~ words ~ [rng]
+numbers of rows 256 apart the same ~ shaders/lib/rng.glsl ~ (words >> 16u) ~ uvec4(0u) ~ [rng]
 noise looked at after 16 samples of few pixels ~ host/render/session.cpp ~ 4.0 / (*job_.noise_goal * pixels) ~ 0.0 ~ [determinism]
 errors of particles' sums from a resume on ~ host/render/session.cpp ~ write_sums(commands_, bands_, width(), from.sums); ~ ; ~ [particles]
 few samples judged as many ~ host/cli/compare.cpp ~ normal_of_t(z_of(sums.tested_a[c], sums.tested_b[c], variance.variance), variance.freedom()) ~ z_of(sums.tested_a[c], sums.tested_b[c], variance.variance) ~ [merge]
