@@ -1,5 +1,7 @@
 #include "xml_text.h"
 
+#include <charconv>
+
 namespace vkvol {
 
 std::string xml_escaped(const std::string& text) {
@@ -12,6 +14,12 @@ std::string xml_escaped(const std::string& text) {
                   : c == '$' ? "$$"
                              : std::string(1, c);
     return result;
+}
+
+double xml_value(const std::string& number) { // whatever a locale takes for a decimal point
+    double value = 0.0;
+    std::from_chars(number.data(), number.data() + number.size(), value);
+    return value;
 }
 
 void add_xyz(XmlAttributes& attributes, const glm::dvec3& v) {

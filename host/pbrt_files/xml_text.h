@@ -24,6 +24,7 @@ inline std::string xml_number(double value) {
 inline std::string xml_numbers(const glm::dvec3& v) {
     return fmt::format("{:.12g} {:.12g} {:.12g}", v.x, v.y, v.z);
 }
+double xml_value(const std::string& number); // of one that was written so
 void add_xyz(XmlAttributes& attributes, const glm::dvec3& v);
 void add_rgb(XmlAttributes& attributes, const glm::dvec3& color);
 
