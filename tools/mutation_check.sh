@@ -366,7 +366,7 @@ square map turned over ~ shaders/lights/equal_area.glsl ~ float cosine = below ?
 searches in phase functions not counted ~ host/render/plan.cpp ~ return iterations + loops.phase + loops.lights + records; ~ return iterations + loops.lights + records; ~ [determinism]
 lamp without its cosine ~ shaders/lights/flat.glsl ~ (light.area * max(-dot(direction, light.direction), 1.0e-12)) ~ light.area ~ [lights]
 lamps not drawn by the phase function ~ shaders/lights/lamp.glsl ~ bool by_phase = select < share; ~ bool by_phase = false; ~ [lights]
-one lamp for all that are seen ~ shaders/lights/lamp.glsl ~ seen.light *= met; ~ ; ~ [lights]
+one lamp for all that are seen ~ shaders/lights/lamp.glsl ~ seen.light *= met / own; ~ ; ~ [lights]
 tree's chance forgotten ~ shaders/lights/table.glsl ~ chance *= of_leaf; ~ ; ~ [lights]
 branch's chance not its own ~ shaders/lights/tree.glsl ~ float(goes_left ? share : 0u - share) ~ float(share) ~ [lights]
 cones of lamps seen from one point of their box ~ shaders/lights/tree.glsl ~ less_angle(seen, angle_of(sqrt(1.0 - half_square / square))) ~ seen ~ [lights]

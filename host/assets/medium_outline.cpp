@@ -84,6 +84,7 @@ MediumOutline make_outline(const Scene& scene, const Volume& volume, const Loade
         outline.cell_scale = 1.0 / scene.settings.majorant_scale;
         outline.densest = outline.cell_scale * loaded.majorants->most;
     }
+    outline.from_world = loaded.is_layered ? world_to_medium(volume, loaded) : glm::inverse(outline.to_world);
     return outline;
 }
 
@@ -102,6 +103,7 @@ MediumOutline make_outline(const Superposition& whole, bool emits) {
         outline.to_world = placed(whole.origin, glm::dvec3(everywhere_reach)); // whose cells go on beyond their grid
     else
         outline.cells = std::make_shared<const MajorantGrid>(whole.cells);
+    outline.from_world = glm::inverse(outline.to_world);
     outline.densest = *std::max_element(whole.cells.bounds.begin(), whole.cells.bounds.end());
     return outline;
 }
@@ -120,8 +122,8 @@ WorldBox world_box(const MediumOutline& outline) {
 std::optional<glm::dvec2> crossing(const MediumOutline& outline, glm::dvec3 origin, glm::dvec3 direction) {
     if (!outline.exists)
         return std::nullopt;
-    const glm::dmat4 from_world = glm::inverse(outline.to_world);
-    const glm::dvec3 o(from_world * glm::dvec4(origin, 1.0)), d(from_world * glm::dvec4(direction, 0.0));
+    const glm::dvec3 o(outline.from_world * glm::dvec4(origin, 1.0)),
+        d(outline.from_world * glm::dvec4(direction, 0.0));
     glm::dvec2 t = outline.is_ball ? crossing_of_ball(o, d) : crossing_of_box(outline.low, outline.high, o, d);
     t.x = std::max(t.x, 0.0);
     return t.x < t.y ? std::optional(t) : std::nullopt;
@@ -134,9 +136,8 @@ double depth_bound(const MediumOutline& outline, glm::dvec3 origin, glm::dvec3 d
     const double world_length = glm::length(direction);
     if (!outline.cells)
         return outline.sigma_t * outline.densest * (t->y - t->x) * world_length;
-    const glm::dmat4 from_world = glm::inverse(outline.to_world);
-    const glm::dvec3 o(from_world * glm::dvec4(origin + t->x * direction, 1.0));
-    const glm::dvec3 d(from_world * glm::dvec4(direction, 0.0));
+    const glm::dvec3 o(outline.from_world * glm::dvec4(origin + t->x * direction, 1.0));
+    const glm::dvec3 d(outline.from_world * glm::dvec4(direction, 0.0));
     const double index_length = glm::length(d);
     double sum = 0.0;
     walk_cells(*outline.cells, {}, o, d / index_length, (t->y - t->x) * index_length,

@@ -10,10 +10,10 @@
 namespace vkvol {
 
 struct MediumOutline {
-    bool exists = false;      // false: no volume, no voxel, or an extinction of 0, and what follows means nothing
-    bool is_ball = false;     // the unit ball of medium space; else the box
-    bool fills = true;        // the ball or box; meshes are somewhere in theirs
-    glm::dmat4 to_world{1.0}; // from medium space, which is a grid's index space
+    bool exists = false;  // false: no volume, no voxel, or an extinction of 0, and what follows means nothing
+    bool is_ball = false; // the unit ball of medium space; else the box
+    bool fills = true;    // the ball or box; meshes are somewhere in theirs
+    glm::dmat4 to_world{1.0}, from_world{1.0}; // from medium space, which is a grid's index space
     glm::dvec3 low{-1.0}, high{1.0};
     double sigma_t = 0.0;                      // the largest channel's [1 / world unit], times
     double densest = 1.0;                      // which no density exceeds

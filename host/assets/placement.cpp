@@ -42,6 +42,15 @@ glm::dmat4 medium_to_world(const Volume& volume, const LoadedMedium& loaded) {
     return loaded.mesh ? placed : volume.transform * placed; // a mesh's vertices have been moved
 }
 
+// What is everywhere reaches so far that heights would be lost if all of its placing were undone at once.
+glm::dmat4 world_to_medium(const Volume& volume, const LoadedMedium& loaded) {
+    if (!loaded.is_layered)
+        return glm::inverse(medium_to_world(volume, loaded));
+    const LayerBox box = layer_box(volume);
+    return glm::translate(glm::scale(glm::dmat4(1.0), glm::dvec3(loaded.majorants->dims) / box.size), -box.low) *
+           glm::inverse(volume.transform);
+}
+
 MediumBounds medium_bounds(const LoadedMedium& loaded) {
     if (loaded.is_layered)
         return {glm::dvec3(0.0), glm::dvec3(loaded.majorants->dims)};
@@ -68,13 +77,17 @@ double diagonal_of(const Volume& volume, const LoadedMedium& loaded) {
 }
 
 double distance_to(const Volume& volume, const LoadedMedium& loaded, const glm::dvec3& position) {
-    const glm::dmat4 to_world = medium_to_world(volume, loaded);
-    const glm::dvec3 inside = glm::inverse(to_world) * glm::dvec4(position, 1.0);
+    const glm::dvec3 inside = world_to_medium(volume, loaded) * glm::dvec4(position, 1.0);
     const MediumBounds bounds = medium_bounds(loaded);
-    return glm::length(glm::dmat3(to_world) * (inside - glm::clamp(inside, bounds.low, bounds.high)));
+    return glm::length(glm::dmat3(medium_to_world(volume, loaded)) *
+                       (inside - glm::clamp(inside, bounds.low, bounds.high)));
 }
 
 glm::dvec3 middle_of(const Volume& volume, const LoadedMedium& loaded) {
+    if (loaded.is_layered) {
+        const LayerBox box = layer_box(volume);
+        return glm::dvec3(volume.transform * glm::dvec4(box.low + 0.5 * box.size, 1.0));
+    }
     const MediumBounds bounds = medium_bounds(loaded);
     return glm::dvec3(medium_to_world(volume, loaded) * glm::dvec4((bounds.low + bounds.high) / 2.0, 1.0));
 }

@@ -15,6 +15,7 @@ glm::dmat4 index_to_world(const DensityField& field);
 
 // Medium space -> world: a ball, a cube, the grid's own index space, a mesh about its middle, or cells across layers.
 glm::dmat4 medium_to_world(const Volume& volume, const LoadedMedium& loaded);
+glm::dmat4 world_to_medium(const Volume& volume, const LoadedMedium& loaded);
 
 // Where the shape of a ball, a cube or a mesh has its middle, and half of its edges, before its volume's transform.
 struct UnmovedShape {

@@ -132,7 +132,8 @@ std::vector<double> layers_in_cells(const Volume& volume, const Upright& place, 
     std::vector<double> bounds;
     for (int k = 0; k < whole.dims()[place.axis]; ++k) {
         // A point on the device may be as far aside as single precision lets it be.
-        const double margin = 1e-3 * whole.edge;
+        const double reach = std::abs(whole.cells.origin[place.axis]) + whole.dims()[place.axis];
+        const double margin = (1e-3 + 1e-6 * reach) * whole.edge;
         const double low = whole.origin[place.axis] + whole.edge * (whole.cells.origin[place.axis] + k);
         const double from = low - margin, to = low + whole.edge + margin;
         const auto [a, b] = std::minmax({place.factor * from + place.offset, place.factor * to + place.offset});

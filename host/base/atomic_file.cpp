@@ -9,6 +9,7 @@
 #include <new>
 #include <optional>
 #include <poll.h>
+#include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
 
@@ -105,6 +106,18 @@ AtomicFile::AtomicFile(const path& name)
 
 // Without a name, so that the file goes with the process, however that ends; with one where there is nothing better.
 void AtomicFile::open_new() {
+    struct stat before {};
+    const bool replaces = stat(target_.c_str(), &before) == 0;
+    if (replaces && access(target_.c_str(), W_OK) != 0)
+        return; // of which errno says why
+    open_in_directory();
+    if (replaces && descriptor_ >= 0) { // whoever may see it still may, and nobody else
+        [[maybe_unused]] const int owned = fchown(descriptor_, static_cast<uid_t>(-1), before.st_gid);
+        fchmod(descriptor_, before.st_mode & 0777);
+    }
+}
+
+void AtomicFile::open_in_directory() {
     const path directory = target_.has_parent_path() ? target_.parent_path() : path(".");
     if (access("/proc/self/fd", X_OK) == 0)
         descriptor_ = open(directory.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
@@ -177,6 +190,13 @@ void AtomicFile::give_name() {
     }
     named_ = true;
     std::filesystem::copy_file(name_of(descriptor_), temporary_);
+    const int copy = open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+    const bool is_kept = copy >= 0 && fsync(copy) == 0;
+    const int reason = errno;
+    if (copy >= 0)
+        close(copy);
+    if (!is_kept)
+        fail(reason);
 }
 
 void AtomicFile::check() const {

@@ -28,6 +28,7 @@ public:
 
 private:
     void open_new();
+    void open_in_directory();
     void keep(const char* bytes, std::size_t size, std::size_t at) noexcept;
     void send_kept();
     void wait_for_reader();

@@ -1,7 +1,6 @@
 #include "number_table.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <optional>
@@ -9,6 +8,7 @@
 
 #include "error.h"
 #include "input_file.h"
+#include "number_text.h"
 #include "one_line.h"
 
 namespace vkvol {
@@ -31,11 +31,9 @@ std::vector<std::string> words_of(std::string line) {
 }
 
 std::optional<double> number_of(const std::string& word) {
-    double value = 0.0;
-    const char* const end = word.data() + word.size();
-    const auto [read, error] = std::from_chars(word.data() + (word[0] == '+' ? 1 : 0), end, value);
-    const bool good = error == std::errc() && read == end && std::abs(value) <= largest_value;
-    return good ? std::optional(value) : std::nullopt;
+    const NumberText read = read_number_text(word);
+    const bool good = read.is_number && !read.is_too_large && std::abs(read.value) <= largest_value;
+    return good ? std::optional(read.value) : std::nullopt;
 }
 
 void read_row(const std::filesystem::path& file, const NumberTableForm& form, int line,

@@ -162,7 +162,7 @@ std::optional<double> Bench::measure(std::size_t index, std::uint32_t samples, d
                  relative_mse(result.film, reference),
                  std::nullopt,
                  relative_noise(result.film)};
-    if (samples > 1)
+    if (samples > 1 && !measurement.estimator.scene.motion_blur) // of what moves it is not the variance that there is
         run.relmse_from_variance = relative_variance(result.film, reference);
     measurement.runs.push_back(run);
     measurement.last = std::exchange(result.film, {});

@@ -28,8 +28,8 @@ Figures own_figures(const BenchResult& result, const Measurement& measurement) {
     const std::vector<BenchRun>& runs = measurement.runs;
     Figures figures;
     figures.slope = error_slope(runs);
-    figures.efficiency = efficiency(runs);
-    figures.times_to_judge = times_to_judge(runs);
+    figures.efficiency = efficiency(runs, result.reference.offset_error);
+    figures.times_to_judge = times_to_judge(runs, result.reference.offset_error);
     figures.judged = figures.times_to_judge <= 1.0;
     figures.below_reference = result.reference.relmse.value_or(0.0) > points_of(runs).back().relmse;
     figures.noise = median_noise(runs);
@@ -49,7 +49,7 @@ void find_floors(std::vector<Row>& rows, double offset_error) {
         row.figures.floor = floor_of(row, probability_of_each(std::size_t(tested)));
 }
 
-void find_ratios(std::vector<Row>& rows) {
+void find_ratios(std::vector<Row>& rows, double offset_error) {
     const auto usual = std::find_if(rows.begin(), rows.end(), [](const Row& row) { return row.is_default(); });
     if (usual == rows.end() || !usual->figures.judged)
         return;
@@ -60,7 +60,7 @@ void find_ratios(std::vector<Row>& rows) {
         if (row.is_default())
             row.figures.ratio = Interval{1.0, 1.0, 1.0};
         else if (row.figures.judged)
-            row.figures.ratio = efficiency_ratio(row.measurement->runs, usual->measurement->runs,
+            row.figures.ratio = efficiency_ratio(row.measurement->runs, usual->measurement->runs, offset_error,
                                                  probability_of_each(std::size_t(others)));
 }
 
@@ -71,7 +71,7 @@ std::vector<Row> rows_of(const BenchResult& result) {
     for (const Measurement& measurement : result.measurements)
         rows.push_back({&measurement, own_figures(result, measurement)});
     find_floors(rows, result.reference.offset_error);
-    find_ratios(rows);
+    find_ratios(rows, result.reference.offset_error);
     return rows;
 }
 

@@ -112,12 +112,13 @@ double reference_share(const Reference& reference, const std::vector<Row>& rows)
     return share;
 }
 
-// The most efficient of `list`, which were judged, best first, and all that may well be as efficient: their intervals
-// overlap.
-std::string most_efficient(const std::vector<const Row*>& list) {
+// The most efficient of `list`, which were judged, best first, and all that may well be as efficient.
+std::string most_efficient(const std::vector<const Row*>& list, const Reference& reference) {
     Sentences names;
     for (const Row* row : list)
-        if (row == list.front() || row->figures.efficiency->high >= list.front()->figures.efficiency->low)
+        if (row == list.front() ||
+            !excludes_one(efficiency_ratio(row->measurement->runs, list.front()->measurement->runs,
+                                           reference.offset_error, probability_of_each(list.size() - 1))))
             names.push_back(row->name());
     return names.size() == 1 ? fmt::format("use {}, the most efficient unbiased integrator of those", names.front())
                              : fmt::format("use one of {}, whose efficiencies do not differ measurably, the most "
@@ -155,10 +156,11 @@ std::string verdict(const std::string& scene, const Reference& reference, const 
         return fmt::format("Too short to choose an integrator for {}: give --time {} or more.", scene, longer);
     const Row* usual = find_default(rows);
     if (!usual)
-        return fmt::format("For {} {} measured; the scene's default is not among them.", scene, most_efficient(list));
+        return fmt::format("For {} {} measured; the scene's default is not among them.", scene,
+                           most_efficient(list, reference));
     if (!usual->figures.judged)
         return fmt::format("For {} {} judged, until a longer bench judges {}, its default, too.", scene,
-                           most_efficient(list), usual->name());
+                           most_efficient(list, reference), usual->name());
     std::vector<const Row*> others, better;
     for (const Row* row : list) {
         if (row->is_default())

@@ -12,6 +12,7 @@
 #include "interrupt.h"
 #include "messages.h"
 #include "metadata.h"
+#include "program.h"
 #include "report.h"
 #include "scene_hash.h"
 #include "version.h"
@@ -75,11 +76,11 @@ std::optional<Reference> read_cached(const Estimator& candidate, const Reference
     describe(reference, metadata);
     reference.file = file.string();
     reference.cached = true;
-    const bool same = shows_all_of(reference.film, candidate.scene.picture) &&
-                      text_of(metadata, "vkvol/sceneHash") == scene_hash(candidate.scene) &&
-                      reference.integrator == candidate.integrator &&
-                      text_of(metadata, "vkvol/seed") == std::to_string(wish.seed) &&
-                      text_of(metadata, "vkvol/version") == version;
+    const bool same =
+        shows_all_of(reference.film, candidate.scene.picture) &&
+        text_of(metadata, "vkvol/sceneHash") == scene_hash(candidate.scene) &&
+        reference.integrator == candidate.integrator && text_of(metadata, "vkvol/seed") == std::to_string(wish.seed) &&
+        text_of(metadata, "vkvol/version") == version && text_of(metadata, "vkvol/kernels") == kernels_digest();
     const bool enough = reference.seconds >= 0.9 * wish.seconds;
     return same && reference.samples > 1 && enough ? std::optional(std::move(reference)) : std::nullopt;
 }

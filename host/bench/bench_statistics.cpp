@@ -38,9 +38,10 @@ bool all_positive(std::span<const BenchRun> runs) {
     return std::all_of(runs.begin(), runs.end(), [](const BenchRun& r) { return r.relmse > 0.0 && r.seconds > 0.0; });
 }
 
-// Mean of log 1 / (relMSE seconds), weighted by seconds, and its standard error.
+// Mean of log 1 / (relMSE seconds), weighted by seconds, and its standard error; and the mean relMSE, weighted
+// likewise.
 struct LogEfficiency {
-    double mean = 0.0, error = 0.0, freedom = 0.0;
+    double mean = 0.0, error = 0.0, freedom = 0.0, relmse = 0.0;
 };
 
 std::optional<LogEfficiency> log_efficiency(std::span<const BenchRun> runs) {
@@ -53,6 +54,7 @@ std::optional<LogEfficiency> log_efficiency(std::span<const BenchRun> runs) {
     double squares = 0.0; // of the weights
     for (const BenchRun& run : runs) {
         result.mean -= run.seconds / sum * std::log(run.relmse * run.seconds);
+        result.relmse += run.seconds / sum * run.relmse;
         squares += square(run.seconds / sum);
     }
     double scatter = 0.0;
@@ -178,6 +180,28 @@ double probability_of_each(std::size_t count) {
     return std::pow(0.95, 1.0 / double(std::max<std::size_t>(1, count)));
 }
 
+namespace {
+
+// Of a weighted mean whose parts scatter by no known law: each by its own square (MacKinnon and White 1985, HC2).
+// Beside a bias b a run's error e adds 2 b e to its difference, with variance in proportion to 1 / n: of so many runs,
+// as far as these are alike, the scatter is known. Weights are n (n - 1).
+double half_width_beside_floor(std::span<const double> differences, std::span<const double> weights, double mean,
+                               double probability) {
+    double sum = 0.0, scatter = 0.0, parts = 0.0, squares = 0.0;
+    for (const double weight : weights)
+        sum += weight;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        scatter += square(weights[i] * (differences[i] - mean)) / std::max(1.0 - weights[i] / sum, 1e-9);
+        const double part = std::pow(weights[i], 1.5); // weight^2 / n, n about sqrt(weight)
+        parts += part;
+        squares += square(part);
+    }
+    const double freedom = std::max(square(parts) / squares - 1.0, 1.0);
+    return student_two_sided(freedom, probability) * std::sqrt(scatter) / sum;
+}
+
+} // namespace
+
 std::optional<Interval> bias_floor(std::span<const BenchRun> runs, double offset_error, double probability) {
     std::vector<double> differences, weights;
     for (const BenchRun& run : runs)
@@ -196,36 +220,41 @@ std::optional<Interval> bias_floor(std::span<const BenchRun> runs, double offset
     for (std::size_t i = 0; i < differences.size(); ++i)
         squares += weights[i] * square(differences[i] - mean);
     const double freedom = double(differences.size()) - 1.0;
-    const double error = std::sqrt(squares / freedom / sum);
-    const double half_width =
-        std::hypot(student_two_sided(freedom, probability) * error, normal_two_sided(probability) * offset_error);
+    double half_width = student_two_sided(freedom, probability) * std::sqrt(squares / freedom / sum);
+    if (mean > half_width) // there is a floor
+        half_width = std::max(half_width, half_width_beside_floor(differences, weights, mean, probability));
+    half_width = std::hypot(half_width, normal_two_sided(probability) * offset_error);
     return Interval{mean, mean - half_width, mean + half_width};
 }
 
-std::optional<Interval> efficiency(std::span<const BenchRun> runs) {
+std::optional<Interval> efficiency(std::span<const BenchRun> runs, double offset_error) {
     const std::optional<LogEfficiency> log = log_efficiency(runs);
     if (!log)
         return std::nullopt;
-    return exponential(log->mean, student_t95(log->freedom) * log->error);
+    return exponential(log->mean, std::hypot(student_t95(log->freedom) * log->error,
+                                             normal_two_sided(0.95) * offset_error / log->relmse));
 }
 
 std::optional<Interval> efficiency_ratio(std::span<const BenchRun> runs, std::span<const BenchRun> base,
-                                         double probability) {
+                                         double offset_error, double probability) {
     const std::optional<LogEfficiency> a = log_efficiency(runs), b = log_efficiency(base);
     if (!a || !b)
         return std::nullopt;
     const double variance = square(a->error) + square(b->error);
     const double spread = square(square(a->error)) / a->freedom + square(square(b->error)) / b->freedom;
     const double freedom = spread > 0.0 ? square(variance) / spread : std::min(a->freedom, b->freedom);
-    return exponential(a->mean - b->mean, student_two_sided(freedom, probability) * std::sqrt(variance));
+    return exponential(a->mean - b->mean,
+                       std::hypot(student_two_sided(freedom, probability) * std::sqrt(variance),
+                                  normal_two_sided(probability) * offset_error * (1.0 / a->relmse - 1.0 / b->relmse)));
 }
 
-double times_to_judge(std::span<const BenchRun> runs) {
+double times_to_judge(std::span<const BenchRun> runs, double offset_error) {
     constexpr double fewest = 4.0, wanted = 5.0; // effective runs
     const std::optional<LogEfficiency> log = log_efficiency(runs);
     if (!log) // one run, or the reference is no better than the runs: it grows with the bench
         return std::max(2.0, wanted / std::max(1.0, double(runs.size())));
-    const double most = std::log(3.0), half_width = student_t95(log->freedom) * log->error;
+    const double most = std::log(3.0), half_width = std::hypot(student_t95(log->freedom) * log->error,
+                                                               normal_two_sided(0.95) * offset_error / log->relmse);
     const double effective = log->freedom + 1.0;
     if (effective >= fewest && half_width <= most)
         return 1.0;

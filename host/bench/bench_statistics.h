@@ -71,9 +71,10 @@ std::optional<Interval> error_slope(std::span<const BenchRun> runs);
 // differences. The variance of a picture's mean is estimated without bias, so with n samples of errors e_1 ... e_n the
 // difference is, pixel by pixel, the sum of e_k e_l over k != l, over n (n - 1): its expectation is the squared bias,
 // and without bias its variance is in proportion to 1 / (n (n - 1)), which gives the weights, whatever the tails of e.
-// Student's t with runs - 1 degrees of freedom on the weighted scatter; `offset_error`, of the reference, added in
-// quadrature. Runs of one sample do not count. May come out below 0 by chance. The interval holds the true value with
-// `probability`.
+// Student's t with runs - 1 degrees of freedom on the weighted scatter; beside a floor the variance is not in
+// proportion to the weights, and the interval is no narrower than one that does not ask for that. `offset_error`, of
+// the reference, is added in quadrature. Runs of one sample do not count. May come out below 0 by chance. The interval
+// holds the true value with `probability`.
 std::optional<Interval> bias_floor(std::span<const BenchRun> runs, double offset_error, double probability = 0.95);
 
 // What each of `count` intervals must hold its value with, for all together to do so with 95 % (Sidak): of many floors
@@ -81,21 +82,23 @@ std::optional<Interval> bias_floor(std::span<const BenchRun> runs, double offset
 double probability_of_each(std::size_t count);
 
 // 1 / (relMSE seconds), as a mean over all runs of its logarithm, weighted by seconds: short runs pay for starting up,
-// and it is long ones that are waited for. Student's t on the weighted scatter of the logarithms, with as many degrees
-// of freedom as there are effective runs, (sum w)^2 / sum w^2, less one. Not a bootstrap, whose intervals are too
-// narrow at the five or ten runs there are; and the logarithm makes the heavy right tail of relMSE a light one.
-std::optional<Interval> efficiency(std::span<const BenchRun> runs);
+// and it is long ones that are waited for. So it is a geometric mean: where few runs meet rare bright samples, what
+// most of them have. `offset_error`, of the reference, is the same in all runs, and added in quadrature. Student's t on
+// the weighted scatter of the logarithms, with as many degrees of freedom as there are effective runs, (sum w)^2 / sum
+// w^2, less one. Not a bootstrap, whose intervals are too narrow at the five or ten runs there are; and the logarithm
+// makes the heavy right tail of relMSE a light one.
+std::optional<Interval> efficiency(std::span<const BenchRun> runs, double offset_error = 0.0);
 
 // efficiency(runs) / efficiency(base): Welch's t on the logarithms. The interval holds the true value with
 // `probability`.
 std::optional<Interval> efficiency_ratio(std::span<const BenchRun> runs, std::span<const BenchRun> base,
-                                         double probability = 0.95);
+                                         double offset_error = 0.0, double probability = 0.95);
 
 // How many times as long a bench would have to be for the efficiency to be fit to compare: 1 if it is. Fit it is from
 // four effective runs on, with an interval from a third to thrice its value at most: what is measured so differs by
 // less than the estimators that are worth telling apart, and a t of fewer runs is a guess. From longer benches, with
 // five runs and errors in proportion to 1 / sqrt(seconds), t * error is to be log 3.
-double times_to_judge(std::span<const BenchRun> runs);
+double times_to_judge(std::span<const BenchRun> runs, double offset_error = 0.0);
 
 // Until the picture's noise is `target`: noise^2 seconds / target^2, the median over the runs of the most samples,
 // since noise^2 falls as 1 / seconds. Nothing if that is not known, as of single samples.

@@ -62,10 +62,10 @@ void print_bench(const BenchRequest& request, const BenchResult& result) {
     for (const Row& row : rows)
         table.push_back(cells_of(row, default_is_judged));
     print_cells(table);
-    tell(stdout,
-         "relMSE: error at the most samples per pixel (spp). efficiency: 1 / (relMSE x seconds); twice of it is "
-         "the same\npicture in half the time. s to 1 %: of rendering, until the noise is 1 %. In brackets: 95 % "
-         "confidence.\n\n");
+    tell(stdout, "relMSE: error at the most samples per pixel (spp). efficiency: 1 / (relMSE x seconds), the geometric "
+                 "mean\nof the runs; twice of it is the same picture in half the time. s to 1 %: of rendering, until "
+                 "the noise is 1 %. In brackets: 95 % "
+                 "confidence.\n\n");
     for (const std::string& finding : findings_of(request, result, rows))
         tell(stdout, "{}\n", finding);
 }

@@ -104,6 +104,11 @@ struct Noise {
     bool certain = false; // no variance, and too many samples for that to be chance
 };
 
+// How many independent parts its variance is known from: samples, or passes of these.
+double parts_of(const Film& film, std::size_t pixel) {
+    return film.passes > 0 ? std::min(film.passes, film.samples[pixel]) : film.samples[pixel];
+}
+
 Noise noise_of(const Film& a, const Film& b, std::size_t pixel, int channel) {
     Noise noise;
     const double own_a = a.variance[pixel][channel];
@@ -118,7 +123,7 @@ Noise noise_of(const Film& a, const Film& b, std::size_t pixel, int channel) {
     }
     const double per_sample = std::max(own_a * n_a, own_b * n_b);
     noise.variance = per_sample * (1 / n_a + 1 / n_b);
-    noise.freedom = std::max(1.0, std::min(n_a, n_b) - 1);
+    noise.freedom = std::max(1.0, std::min(parts_of(a, pixel), parts_of(b, pixel)) - 1);
     // All of 16 samples in one image and none of 16 in the other: at most 2^-32 by chance.
     noise.certain = per_sample == 0.0 && n_a >= 16 && n_b >= 16;
     return noise;
@@ -144,11 +149,11 @@ void add_plain_variance(const Film& a, const Film& b, std::size_t pixel, int cha
     const double n_a = a.samples[pixel];
     const double n_b = b.samples[pixel];
     if (n_a == 1)
-        sum.add(own_b * (n_b + 1), n_b);
+        sum.add(own_b * (n_b + 1), parts_of(b, pixel));
     else
-        sum.add(own_a * (n_b == 1 ? n_a + 1 : 1), n_a);
+        sum.add(own_a * (n_b == 1 ? n_a + 1 : 1), parts_of(a, pixel));
     if (n_a != 1 && n_b != 1)
-        sum.add(own_b, n_b);
+        sum.add(own_b, parts_of(b, pixel));
 }
 
 // Of a picture's sum, which is known: of what shares samples an estimate by itself, else one for each pixel.
@@ -244,8 +249,8 @@ Comparison compare_films(const Film& a, const Film& b, const CompareOptions& opt
             continue;
         }
         add_pixel(a.mean[i], b.mean[i], sums, result);
-        // The variance of two single samples is not known, nor that of a sum that has them.
-        if (is_correlated || a.samples[i] != 1 || b.samples[i] != 1)
+        // The variance of two single samples is not known, nor that of one beside an image of unknown making.
+        if (is_correlated || std::max(a.samples[i], b.samples[i]) != 1)
             for (int c = 0; c < 3; ++c) {
                 sums.tested_a[c] += a.mean[i][c];
                 sums.tested_b[c] += b.mean[i][c];
@@ -324,6 +329,10 @@ int run_compare(const CompareOptions& options) {
     Metadata metadata_a, metadata_b;
     const Film a = read_exr(options.a, &metadata_a);
     const Film b = read_exr(options.b, &metadata_b);
+    if (a.has_other_primaries != b.has_other_primaries)
+        tell(stderr,
+             "vkvol: warning: {}: its primaries are not those of the other image, but its numbers are taken as such\n",
+             (a.has_other_primaries ? options.a : options.b).string());
     const Comparison result = compare_films(a, b, options);
     if (result.identical_pixels < result.pixels) // a copy, or a render repeated: nothing is judged by statistics
         for (const std::string& note : comparison_notes(options, metadata_a, metadata_b))

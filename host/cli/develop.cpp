@@ -21,6 +21,10 @@ int run_develop(const DevelopOptions& options) {
     uses.check();
     Metadata metadata;
     const Film film = read_exr(options.input, &metadata);
+    if (film.has_other_primaries)
+        tell(stderr,
+             "vkvol: warning: {}: its primaries are not those of Rec.709 (sRGB), but its numbers are taken as such\n",
+             options.input.string());
     const Tone tone = choose_tone(options.tone, film, metadata);
     write_images(options.outputs, film, metadata, tone.mapping);
     if (options.quiet)

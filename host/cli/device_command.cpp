@@ -20,7 +20,10 @@ void print_table(const std::vector<DeviceInfo>& devices) {
         tell(stdout, "   driver {}; uuid {}\n", d.driver, d.uuid);
         tell(stdout, "   {:.0f} MiB of memory, {:.0f} MiB per storage buffer; grids {}\n", d.memory / mib,
              d.storage_range / mib, d.addresses ? "may be larger" : "may be no larger");
-        tell(stdout, "   {}\n", d.rejection.empty() ? "usable" : "not usable: " + d.rejection);
+        tell(stdout, "   {}\n",
+             !d.rejection.empty() ? "not usable: " + d.rejection
+             : d.conformant       ? "usable"
+                                  : "usable, but not conformant: it has not passed the tests of Vulkan");
     }
 }
 

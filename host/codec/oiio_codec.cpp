@@ -2,6 +2,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <cctype>
+#include <string_view>
 
 #include "picture_codec.h"
 
@@ -13,6 +14,15 @@ std::string reason_of(std::string message) {
     while (!message.empty() && std::isspace(static_cast<unsigned char>(message.back())))
         message.pop_back();
     return message.empty() ? "unknown reason" : message;
+}
+
+// Whether its bytes have that word, of letters of so many bytes, the last of which says which.
+bool holds(const OIIO::ParamValue& value, std::string_view word, std::size_t letter) {
+    const std::string_view bytes(static_cast<const char*>(value.data()), std::size_t(value.datasize()));
+    std::string wanted;
+    for (const char c : word)
+        wanted += (wanted.empty() ? "" : std::string(letter - 1, '\0')) + c;
+    return bytes.find(wanted) != std::string_view::npos;
 }
 
 Metadata attributes_of(const OIIO::ImageSpec& spec) {
@@ -27,13 +37,27 @@ Metadata attributes_of(const OIIO::ImageSpec& spec) {
             attributes[key] = value.get_string();
         else if (key == "chromaticities" && value.type().basetype == OIIO::TypeDesc::FLOAT)
             attributes[key] = value.get_string(); // eight numbers, with commas between
+        else if (key == "ICCProfile")             // which says its name, in words of one byte or two
+            attributes[key] = std::string(holds(value, "sRGB", 1) || holds(value, "sRGB", 2) ? "sRGB" : "another");
     }
     return attributes;
 }
 
-PictureHeader header_of(const OIIO::ImageSpec& spec) {
-    PictureHeader header{spec.width,      spec.height,      spec.depth, spec.x, spec.y, spec.full_x, spec.full_y,
-                         spec.full_width, spec.full_height, {},         {},     false,  {}};
+// What other files than .exr say of their place, on a sheet of paper say, is not meant of pixels.
+PictureHeader header_of(const OIIO::ImageSpec& spec, bool has_windows) {
+    PictureHeader header;
+    header.width = header.full_width = spec.width;
+    header.height = header.full_height = spec.height;
+    header.depth = spec.depth;
+    if (has_windows) {
+        header.x = spec.x;
+        header.y = spec.y;
+        header.full_x = spec.full_x;
+        header.full_y = spec.full_y;
+        header.full_width = spec.full_width;
+        header.full_height = spec.full_height;
+    }
+    header.pixel_bytes = spec.pixel_bytes(true);
     for (int c = 0; c < spec.nchannels; ++c) {
         header.channels.push_back(spec.channelnames[std::size_t(c)]);
         header.counts.push_back(spec.channelformat(c) == OIIO::TypeUInt32);
@@ -46,7 +70,8 @@ PictureHeader header_of(const OIIO::ImageSpec& spec) {
 class OiioReader : public PictureReader {
 public:
     explicit OiioReader(std::unique_ptr<OIIO::ImageInput> input)
-        : input_(std::move(input)), header_(header_of(input_->spec())) {}
+        : input_(std::move(input)),
+          header_(header_of(input_->spec(), std::string_view(input_->format_name()) == "openexr")) {}
     const PictureHeader& header() const override { return header_; }
     bool read(float* pixels) override {
         return input_->read_image(0, 0, 0, int(header_.channels.size()), OIIO::TypeDesc::FLOAT, pixels);

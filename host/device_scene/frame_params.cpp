@@ -58,8 +58,8 @@ shared::GridParams make_grid(const DensityField& field, const UploadLayout& layo
 }
 
 // Rows of the affine map from render space, whose origin is at `origin` in the world. Composed in double precision.
-void fill_rows(glm::vec4 (&rows)[3], const glm::dmat4& space_to_world, glm::dvec3 origin) {
-    const glm::dmat4 map = glm::inverse(space_to_world) * glm::translate(glm::dmat4(1.0), origin);
+void fill_rows(glm::vec4 (&rows)[3], const glm::dmat4& from_world, glm::dvec3 origin) {
+    const glm::dmat4 map = from_world * glm::translate(glm::dmat4(1.0), origin);
     for (int row = 0; row < 3; ++row)
         rows[row] = glm::vec4(map[0][row], map[1][row], map[2][row], map[3][row]);
 }
@@ -74,7 +74,7 @@ shared::EmissionParams make_emission(const Volume& volume, const LoadedMedium& l
     const TemperatureEmission& emission = volume.temperature;
     params.color = absorbed * emission.color;
     params.grid = make_grid(*loaded.temperature, layout);
-    fill_rows(params.to_index, index_to_world(*loaded.temperature), origin);
+    fill_rows(params.to_index, glm::inverse(index_to_world(*loaded.temperature)), origin);
     params.kelvin_scale = static_cast<float>(emission.scale);
     params.kelvin_offset = static_cast<float>(emission.offset);
     params.kelvin_cutoff = static_cast<float>(emission.cutoff);
@@ -125,7 +125,7 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
                                  const UploadLayout& layout, const Method& method, glm::dvec3 origin,
                                  bool is_chromatic) {
     shared::MediumParams params{};
-    fill_rows(params.to_medium, medium_to_world(volume, loaded), origin);
+    fill_rows(params.to_medium, world_to_medium(volume, loaded), origin);
     const UnmovedShape shape = unmoved_shape(volume, loaded);
     params.extent = shape.half;
     const MediumBounds bounds = medium_bounds(loaded);
@@ -154,7 +154,7 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
     params.absorbed = 1.0 - albedo_of(volume);
     if (loaded.albedo) {
         params.albedo_grid.grid = make_grid(*loaded.albedo, layout);
-        fill_rows(params.albedo_grid.to_index, index_to_world(*loaded.albedo), origin);
+        fill_rows(params.albedo_grid.to_index, glm::inverse(index_to_world(*loaded.albedo)), origin);
     }
     params.phase = phase_params(volume, loaded.phase_nodes);
     params.phase.first_node = layout.first_node(loaded);
@@ -167,7 +167,8 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
 // The superposition as one medium. Collisions ask its parts for what is theirs.
 shared::MediumParams make_whole(const Superposition& whole) {
     shared::MediumParams params{};
-    fill_rows(params.to_medium, glm::scale(glm::translate(glm::dmat4(1.0), whole.origin), glm::dvec3(whole.edge)),
+    fill_rows(params.to_medium,
+              glm::inverse(glm::scale(glm::translate(glm::dmat4(1.0), whole.origin), glm::dvec3(whole.edge))),
               whole.origin);
     params.cells_min = params.bounds_min = whole.low();
     params.bounds_max = whole.high();

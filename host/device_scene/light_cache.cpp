@@ -69,20 +69,26 @@ void LightCache::compile(const Specialization& specialization, unsigned form, Vk
         passes_.push_back(std::make_unique<ComputePass>(device_, bindings_, spirv, specialization, cache));
 }
 
-void LightCache::fill(Commands& commands) {
-    commands.fill(buffer_, 0); // the corners beyond the border are read, with weight 0
-    const auto run = [&](const ComputePass& pass, const shared::PassPush& push) {
+// A GPU's driver waits for a second or two: where noise or many media make a node dear, all of them would take longer.
+void LightCache::run(Commands& commands, const ComputePass& pass, shared::PassPush push) const {
+    constexpr std::uint32_t at_once = 1u << 15;
+    for (std::uint32_t begin = 0; begin < nodes_; begin += at_once) {
+        push.node_begin = begin;
         commands.run([&](VkCommandBuffer recorded) {
-            pass.record(recorded, push, nodes_);
+            pass.record(recorded, push, std::min(at_once, nodes_ - begin));
             record_barrier(recorded);
         });
-    };
-    run(*passes_.front(), {});
+    }
+}
+
+void LightCache::fill(Commands& commands) {
+    commands.fill(buffer_, 0); // the corners beyond the border are read, with weight 0
+    run(commands, *passes_.front(), {});
     for (std::size_t i = 0; i < directions_.size(); ++i) {
         shared::PassPush push{};
         push.lattice = static_cast<std::uint32_t>(1 + i);
         push.towards = directions_[i];
-        run(*passes_.back(), push);
+        run(commands, *passes_.back(), push);
     }
     passes_.clear();
 }

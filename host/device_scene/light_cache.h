@@ -39,6 +39,8 @@ public:
     const Buffer& buffer() const { return buffer_; }
 
 private:
+    void run(Commands& commands, const ComputePass& pass, shared::PassPush push) const;
+
     const Device& device_;
     Buffer buffer_;
     Bindings bindings_;

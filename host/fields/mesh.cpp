@@ -114,6 +114,7 @@ std::vector<std::uint32_t> find_bodies(std::size_t triangles, const std::vector<
 struct Body {
     std::vector<std::uint32_t> triangles;
     double volume = 0.0; // times 6; < 0: faces point inwards
+    double area = 0.0;   // times 2
     glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
     bool is_cavity = false;
 };
@@ -126,6 +127,7 @@ std::vector<Body> bodies_of(const Polygons& obj, const std::vector<std::uint32_t
         const glm::dvec3 apex = obj.vertices[obj.triangles[numbers[i]].x];
         const glm::dvec3 a = obj.vertices[t.x] - apex, b = obj.vertices[t.y] - apex, c = obj.vertices[t.z] - apex;
         body.volume += glm::dot(a, glm::cross(b, c));
+        body.area += glm::length(glm::cross(b - a, c - a));
         body.triangles.push_back(i);
         for (int corner = 0; corner < 3; ++corner) {
             body.low = glm::min(body.low, obj.vertices[t[corner]]);
@@ -153,10 +155,20 @@ bool is_within(const Polygons& obj, const Body& body, const glm::dvec3& point) {
     return within;
 }
 
+// Faces that are there twice, once each way, are closed and have nothing within them.
+void check_fills(const std::vector<Body>& bodies, const std::string& file) {
+    for (const Body& body : bodies)
+        if (!(std::abs(body.volume) > 1e-9 * std::pow(body.area, 1.5)))
+            throw InputError(fmt::format("{}: a body of {} triangles from ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g}) "
+                                         "encloses nothing; remove faces that are there twice, or give it a "
+                                         "thickness, e.g. in Blender by the modifier Solidify",
+                                         file, body.triangles.size(), body.low.x, body.low.y, body.low.z, body.high.x,
+                                         body.high.y, body.high.z));
+}
+
 // Turns every body's faces outward, but for cavities, whose faces point the other way than those of the smallest body
 // about them.
-void turn_outward(Polygons& obj, const std::vector<std::uint32_t>& numbers) {
-    std::vector<Body> bodies = bodies_of(obj, numbers);
+void turn_outward(Polygons& obj, std::vector<Body> bodies) {
     std::sort(bodies.begin(), bodies.end(),
               [](const Body& a, const Body& b) { return std::abs(a.volume) > std::abs(b.volume); });
     const auto is_inward = [](const Body& body) { return body.volume < 0.0; };
@@ -222,7 +234,9 @@ void close_polygons(Polygons& polygons, const std::string& name) {
                                      name));
     const std::vector<Edge> edges = sorted_edges(polygons.triangles);
     check_closed(polygons, edges, name);
-    turn_outward(polygons, find_bodies(polygons.triangles.size(), edges));
+    std::vector<Body> bodies = bodies_of(polygons, find_bodies(polygons.triangles.size(), edges));
+    check_fills(bodies, name);
+    turn_outward(polygons, std::move(bodies));
 }
 
 Mesh load_mesh(const MeshFiles& files, const glm::dmat4& transform) {

@@ -34,6 +34,8 @@ struct Film {
     std::vector<std::uint32_t> samples; // per pixel
     std::vector<FilmLayer> layers;      // those asked for
     std::vector<glm::dvec3> places;     // where a sensor of flux reads each, its patch's middle, world; else none
+    std::uint32_t passes = 0;           // the variance is known from so many means of several samples; 0: from samples
+    bool has_other_primaries = false;   // than Rec.709's, of a file from elsewhere
     bool is_premultiplied = false; // what is behind the media is left out, and the layer `alpha` says how much of it
     // Errors of pixels go together: what moves has the same moments in all of them, particles are parts of several.
     bool is_correlated = false;

@@ -211,6 +211,10 @@ void check_directory_writable(const path& target, const char* option) {
         throw InputError(fmt::format("{}: is a directory; expected the name of a file", target.string()));
     if (is_special(target))
         return;
+    if (std::filesystem::exists(target, error) && access(target.c_str(), W_OK) != 0)
+        throw InputError(
+            fmt::format("{}: is not to be written: {}; name another place with {}, or change its permissions",
+                        target.string(), std::strerror(errno), option));
     // Only making a file tells: permissions, read-only file systems and quotas all have a say.
     const path probe = temporary_name(target);
     unlink(probe.c_str()); // of a process long dead, with our number
@@ -284,6 +288,7 @@ Film read_exr(const path& file, Metadata* metadata) {
         fail_to_read(file, *reader);
     const Metadata found = metadata_of(header);
     Film film = film_of(header, pixels, file);
+    film.has_other_primaries = !is_rec709(header);
     read_facts(found, film);
     if (metadata)
         *metadata = found;

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "error.h"
+#include "number_text.h"
 #include "one_line.h"
 
 namespace vkvol {
@@ -30,6 +31,7 @@ std::optional<std::uint64_t> count_of(const Metadata& metadata, const std::strin
 
 namespace {
 constexpr const char* premultiplied_key = "vkvol/premultiplied";
+constexpr const char* passes_key = "vkvol/passes";
 constexpr const char* correlated_key = "vkvol/correlated";
 constexpr const char* sum_variance_key = "vkvol/sumVariance"; // red, green, blue
 } // namespace
@@ -38,6 +40,9 @@ void record_facts(const Film& film, Metadata& metadata) {
     metadata.erase(correlated_key);
     metadata.erase(sum_variance_key);
     metadata.erase(premultiplied_key);
+    metadata.erase(passes_key);
+    if (film.passes > 0)
+        metadata[passes_key] = std::to_string(film.passes);
     if (film.is_premultiplied)
         metadata[premultiplied_key] = 1;
     if (film.is_correlated)
@@ -49,6 +54,8 @@ void record_facts(const Film& film, Metadata& metadata) {
 void read_facts(const Metadata& metadata, Film& film) {
     film.is_premultiplied = text_of(metadata, premultiplied_key) == "1";
     film.is_correlated = text_of(metadata, correlated_key) == "1";
+    const NumberText passes = read_number_text(text_of(metadata, passes_key));
+    film.passes = passes.value >= 1.0 && passes.value < 1e9 ? static_cast<std::uint32_t>(passes.value) : 0;
     film.sum_variance.reset();
     std::istringstream text(text_of(metadata, sum_variance_key));
     glm::dvec3 v;

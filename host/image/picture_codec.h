@@ -20,6 +20,7 @@ struct PictureHeader {
     int x = 0, y = 0, full_x = 0, full_y = 0;
     int full_width = 0, full_height = 0;
     std::vector<std::string> channels;
+    std::size_t pixel_bytes = 0;   // as the file has it, but for what is packed more densely than in bytes
     std::vector<bool> counts;      // by channel: whole numbers of 32 bits
     bool is_whole_numbers = false; // all of them, as in a PNG
     Metadata attributes;

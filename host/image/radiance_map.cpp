@@ -5,16 +5,15 @@
 #include <cctype>
 #include <cmath>
 #include <fmt/format.h>
-#include <locale>
 #include <memory>
 #include <optional>
-#include <sstream>
 
 #include "error.h"
 #include "file_ending.h"
 #include "image_input.h"
 #include "input_file.h"
 #include "metadata.h"
+#include "number_text.h"
 #include "one_line.h"
 
 namespace vkvol {
@@ -96,25 +95,37 @@ std::array<std::size_t, 3> color_channels(const PictureHeader& header, const std
     return {*grey, *grey, *grey};
 }
 
-// Red, green, blue, white; x and y (CIE 1931). An .exr without is of these.
-bool is_rec709(const std::string& chromaticities) {
-    constexpr double rec709[] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
-    std::string text = chromaticities;
-    std::replace(text.begin(), text.end(), ',', ' ');
-    std::istringstream numbers(text);
-    numbers.imbue(std::locale::classic());
-    for (const double expected : rec709)
-        if (double number = 0.0; numbers >> number && std::abs(number - expected) > 2e-3)
-            return false;
-    return true;
-}
-
 // EXIF's numbers: 1 is as pictures are looked at.
 void check_orientation(const PictureHeader& header, const std::filesystem::path& file) {
     const std::string orientation = text_of(header.attributes, "Orientation");
     if (orientation.size() == 1 && orientation > "1" && orientation < "9") // others mean nothing
         throw InputError(fmt::format("{}: is stored turned or mirrored (orientation {}); save it upright",
                                      file.string(), orientation));
+}
+
+double number_of(const Metadata& metadata, const std::string& key, double fallback) {
+    const NumberText found = read_number_text(text_of(metadata, key));
+    return found.is_number && found.value > 0.0 && std::isfinite(found.value) ? found.value : fallback;
+}
+
+// What the file says of its numbers beyond them, where they are taken otherwise.
+std::vector<std::string> warnings_of(const PictureHeader& header, const std::filesystem::path& file) {
+    std::vector<std::string> warnings;
+    const auto warn = [&](const std::string& what) { warnings.push_back(fmt::format("{}: {}", file.string(), what)); };
+    if (!is_rec709(header))
+        warn("its primaries are not those of Rec.709 (sRGB), but its numbers are taken as such; convert it to linear "
+             "Rec.709");
+    if (header.is_whole_numbers && text_of(header.attributes, "ICCProfile") == "another")
+        warn("its ICC profile is not sRGB's, but its numbers are taken as such; convert it to sRGB");
+    const double gamma = number_of(header.attributes, "oiio:Gamma", 2.2);
+    if (header.is_whole_numbers && (gamma < 1.8 || gamma > 2.6))
+        warn(fmt::format("its numbers are of gamma {:g}, but taken as sRGB; save it as sRGB, or as .exr", gamma));
+    if (const double exposure = number_of(header.attributes, "hdr:exposure", 1.0); exposure != 1.0)
+        warn(fmt::format(
+            "its numbers are {:g} times the radiance (EXPOSURE), and taken as they are; multiplier=\"{:g}\" "
+            "undoes that",
+            exposure, 1.0 / exposure));
+    return warnings;
 }
 
 } // namespace
@@ -162,11 +173,8 @@ RadianceMap read_radiance_map(const std::filesystem::path& file) {
     if (map.mended > 0)
         map.warnings.push_back(
             fmt::format("{}: {} texels were negative or not finite, and count as 0", file.string(), map.mended));
-    if (!is_rec709(text_of(header.attributes, "chromaticities")))
-        map.warnings.push_back(
-            fmt::format("{}: its primaries are not those of Rec.709 (sRGB), but its numbers are taken "
-                        "as such; convert it to linear Rec.709",
-                        file.string()));
+    for (const std::string& warning : warnings_of(header, file))
+        map.warnings.push_back(warning);
     return map;
 }
 

@@ -106,9 +106,12 @@ ShownLayer show_layer(const Film& film, const Film* sketch, const std::string& l
         shown.scale = "black: 0; white: 1";
         return shown;
     }
-    const std::vector<glm::vec3> sketched = !found && sketch ? over_sketch(film, *sketch) : std::vector<glm::vec3>{};
-    const std::vector<glm::vec3>& radiance = found ? found->mean : sketch ? sketched : film.mean;
-    const Tone chosen = choose_tone(tone, film, metadata); // of the whole picture, so that its parts compare
+    Film sketched;
+    if (sketch)
+        sketched.mean = over_sketch(film, *sketch);
+    const Film& whole = sketch ? sketched : film;
+    const std::vector<glm::vec3>& radiance = found ? found->mean : whole.mean;
+    const Tone chosen = choose_tone(tone, whole, metadata); // of the whole picture, so that its parts compare
     shown.mapping = chosen.mapping;
     shown.clipped = chosen.clipped;
     shown.rgba = tone_map_opaque(radiance, chosen.mapping);

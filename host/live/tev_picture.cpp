@@ -25,8 +25,10 @@ static_assert(std::endian::native == std::endian::little, "packets are written a
 using Clock = std::chrono::steady_clock;
 
 constexpr timeval patience{5, 0}; // to connect
-// For a viewer to take a picture, whole; where the render is to end, the little that others need.
+// For a viewer to take a picture, whole, or as long as one of its size takes over half a gigabit a second; where the
+// render is to end, the little that others need.
 constexpr std::chrono::milliseconds to_take{5000}, to_take_at_last{500};
+constexpr std::size_t bytes_a_millisecond = 60000;
 constexpr std::size_t largest_packet = 64u << 20u; // bytes of pixels; larger pictures go some rows at a time
 
 enum class PacketType : char { create_image = 4, update_image = 6 };
@@ -62,12 +64,13 @@ Addresses look_up(const std::string& address) {
     const std::size_t colon = address.rfind(':');
     if (colon == std::string::npos || colon == 0 || colon + 1 == address.size())
         throw InputError(fmt::format("--tev: '{}' is not HOST:PORT; e.g. --tev={}", address, tev_address));
+    std::string host = address.substr(0, colon);
+    if (host.starts_with('[') && host.ends_with(']')) // whose numbers have colons of their own
+        host = host.substr(1, host.size() - 2);
     addrinfo hints{};
     hints.ai_socktype = SOCK_STREAM;
     addrinfo* found = nullptr;
-    if (const int error =
-            getaddrinfo(address.substr(0, colon).c_str(), address.substr(colon + 1).c_str(), &hints, &found);
-        error != 0)
+    if (const int error = getaddrinfo(host.c_str(), address.substr(colon + 1).c_str(), &hints, &found); error != 0)
         throw InputError(
             fmt::format("--tev: {}: {}; expected HOST:PORT, e.g. --tev={}", address, gai_strerror(error), tev_address));
     return {found, freeaddrinfo};
@@ -126,6 +129,7 @@ void TevPicture::update(const Film& film, const std::vector<std::string>& channe
     std::vector<std::uint32_t> pixels = interleaved_channels(film);
     for (std::size_t i = samples_channel; i < pixels.size(); i += channels.size())
         pixels[i] = std::bit_cast<std::uint32_t>(static_cast<float>(pixels[i]));
+    to_take_ = std::max(to_take, std::chrono::milliseconds(4 * pixels.size() / bytes_a_millisecond));
     const std::size_t row = std::size_t(film.width()) * channels.size();
     const int rows = static_cast<int>(std::max<std::size_t>(largest_packet / (4 * row), 1));
     for (int y = 0; y < film.height(); y += rows) {
@@ -151,7 +155,7 @@ bool TevPicture::send(const std::string& packet) {
         poll(&ready, 1, 100);
         const ssize_t taken = ::send(socket_, packet.data() + sent, packet.size() - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
         const int error = taken > 0 ? 0 : errno;
-        const Clock::duration limit = interrupted() ? to_take_at_last : to_take;
+        const Clock::duration limit = interrupted() ? to_take_at_last : to_take_;
         if (taken > 0)
             sent += static_cast<std::size_t>(taken);
         if (sent < packet.size() && Clock::now() - begun_ > limit)

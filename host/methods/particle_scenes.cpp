@@ -36,6 +36,11 @@ glm::dvec2 sensor_size(const Scene& scene) {
            glm::dvec2(picture.width / picture.reference_width, picture.height / picture.reference_height);
 }
 
+// As camera_ray does, which goes on beyond them.
+bool shows_beyond_poles(const Picture& picture) {
+    return picture.start_y < -0.5 || picture.start_y + picture.height > picture.reference_height + 0.5;
+}
+
 // In domains that repeat particles are counted, and the sensor, which repeats as well, is passed once in each.
 const char* why_no_particles_in_domain(const Scene& scene) {
     if (!has_plain_pixels(scene.settings) && scene.camera.projection != Projection::absorption)
@@ -79,6 +84,8 @@ const char* why_no_particles(const Scene& scene, bool both, bool emits) {
     if (scene.camera.projection == Projection::equirectangular && !has_plain_pixels(scene.settings) &&
         scene.settings.pixel_filter_radius > 0.5 * scene.picture.reference_height + 0.5)
         return "a pixel filter that reaches beyond both poles of a panorama has a point in too many pixels";
+    if (scene.camera.projection == Projection::equirectangular && shows_beyond_poles(scene.picture))
+        return "rows of a panorama beyond a pole see what others see, and particles look for one of them";
     if (scene.periodic)
         if (const char* why = why_no_particles_in_domain(scene))
             return why;

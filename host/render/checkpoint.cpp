@@ -14,7 +14,7 @@
 #include "digest.h"
 #include "error.h"
 #include "image_io.h"
-#include "version.h"
+#include "program.h"
 
 namespace vkvol {
 
@@ -123,6 +123,8 @@ Checkpoint parse(std::string_view bytes) {
     take(bytes, std::span(checkpoint.layers));
     if (checkpoint.pixels)
         take(bytes, std::span(*checkpoint.pixels));
+    if (!bytes.empty())
+        throw std::length_error("it is too long");
     return checkpoint;
 }
 
@@ -162,7 +164,7 @@ RenderIdentity identify(const shared::FrameParams& frame, const Specialization& 
         if (medium.bvh)
             digest.add_all(medium.bvh->triangles);
     }
-    return {digest.text(), version, device, std::move(band_rows)};
+    return {digest.text(), program_text(), device, std::move(band_rows)};
 }
 
 void save_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint) {

@@ -21,7 +21,7 @@ namespace vkvol {
 struct RenderIdentity {
     std::string
         kernel; // fingerprint of all that the kernels see: scene, estimators, seed, samples' offset, crop, grids
-    std::string program;                  // version of vkvol
+    std::string program;                  // program_text() of vkvol
     std::string device;                   // and its driver
     std::vector<std::uint32_t> band_rows; // how the film lies in buffers
 

@@ -20,7 +20,7 @@ std::uint64_t record_bytes(const shared::AovParams& layers) {
 
 // What is too much would not fail: the system would end the program later, without a word.
 void check_memory(const Crop& crop, std::uint32_t layers, int films) {
-    // As sums, in memory of this machine for devices that are its processor; the same read back, for checkpoints; mean,
+    // As sums, in memory of this machine for devices that share it; the same read back, for checkpoints; mean,
     // variance and samples.
     const double sums = sizeof(shared::FilmPixel) + layers * layer_bytes;
     const double bytes = sums * (films + 1.0) + (1.0 + layers) * 2.0 * sizeof(glm::vec3) + 4.0;

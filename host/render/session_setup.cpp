@@ -348,8 +348,8 @@ void Session::make_film() {
             layers.records = std::max({layers.records, plan.slots, plan.waiting});
         }
     const auto films =
-        std::count_if(job_.others.begin(), job_.others.end(), [](const Device* d) { return d->is_cpu(); }) +
-        (device_.is_cpu() ? 1 : 0);
+        std::count_if(job_.others.begin(), job_.others.end(), [](const Device* d) { return d->shares_memory(); }) +
+        (device_.shares_memory() ? 1 : 0);
     bands_ = make_bands(device_, commands_, job_.crop, result_.plan.most_film_bytes, job_.plan.band_rows, layers,
                         int(films));
     records_ = layers.records;

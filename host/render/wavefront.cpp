@@ -351,19 +351,26 @@ void Wavefront::read_figures() {
                                       device_.limits().timestampPeriod * 1e-9;
 }
 
+// What comes next may be as dear as anything was, and a GPU's driver waits for a second or two at most.
+std::uint32_t Wavefront::bearable_budget() const {
+    const double most = longest_submit / std::max(worst_turn_, 1e-9);
+    return device_.is_cpu() ? plan_.budget : static_cast<std::uint32_t>(std::clamp(most, 16.0, 1e9));
+}
+
 // First lanes work for longer at a time, for they are laid aside less often then; after that there are more rounds.
 // Only where a round alone takes far too long, as a slow device's driver would not suffer, lanes work for less long
 // again.
 void Wavefront::adapt(double seconds) {
-    worst_turn_ = std::max(0.9 * worst_turn_, seconds / (double(rounds_) * push_.budget));
+    // Not forgotten while a batch ends, when few lanes have work: the next begins with all of them.
+    const bool all_work = items_handed_out() < items_to_hand_out();
+    worst_turn_ = std::max((all_work ? 0.9 : 1.0) * worst_turn_, seconds / (double(rounds_) * push_.budget));
     const double factor = std::clamp(plan_.submit_seconds / std::max(seconds, 1e-6), 0.5, 2.0);
     if (factor > 1.0 && push_.budget < plan_.budget)
-        push_.budget = std::min(2 * push_.budget, plan_.budget);
+        push_.budget = std::min({2 * push_.budget, plan_.budget, bearable_budget()});
     else if (rounds_ == 1 && seconds > 4.0 * plan_.submit_seconds)
         push_.budget = std::min(std::max(push_.budget / 2, 16u), plan_.budget);
     else
         rounds_ = std::clamp(static_cast<std::uint32_t>(rounds_ * factor + 0.5), 1u, most_rounds);
-    // What comes next may be as dear as anything was, and a GPU's driver waits for a second or two at most.
     const double dearest = worst_turn_ * push_.budget;
     if (!device_.is_cpu())
         rounds_ = std::min(rounds_, static_cast<std::uint32_t>(std::max(longest_submit / dearest, 1.0)));

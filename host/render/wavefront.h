@@ -82,6 +82,7 @@ private:
     void record_readback(VkCommandBuffer commands);
     void read_figures();
     void adapt(double seconds);
+    std::uint32_t bearable_budget() const;
 
     const Device& device_;
     Plan plan_;

@@ -8,6 +8,7 @@
 
 #include "camera_view.h"
 #include "metadata.h"
+#include "program.h"
 #include "render_notes.h"
 #include "requested_scene.h"
 #include "scene_hash.h"
@@ -199,6 +200,7 @@ Metadata make_metadata(const RenderRequest& request, const Scene& scene, const D
                       {"samplesPerPixel", static_cast<int>(*most)},
                       {"renderTimeSeconds", static_cast<float>(result.render_seconds)},
                       {"vkvol/version", std::string(version)},
+                      {"vkvol/kernels", kernels_digest()},
                       {"vkvol/sceneHash", result.scene_hash},
                       {"vkvol/integrator", result.integrator},
                       {"vkvol/biased", bias_of(result)},

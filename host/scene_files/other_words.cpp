@@ -66,9 +66,10 @@ std::string said_here(const std::string& element) {
     return known_as(elements, element);
 }
 
-std::string said_here(const std::string& element, const std::string& attribute) {
-    // g is green of many things.
-    return attribute == "g" && element != "phase" ? "" : known_as(attributes, attribute);
+std::string said_here(const std::string& element, const std::string& attribute, bool has_text) {
+    // g is green of many things, and value stands between the tags of what has something there.
+    const bool is_other = (attribute == "g" && element != "phase") || (attribute == "value" && !has_text);
+    return is_other ? "" : known_as(attributes, attribute);
 }
 
 } // namespace vkvol

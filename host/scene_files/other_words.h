@@ -5,8 +5,8 @@
 
 namespace vkvol {
 
-// How an element, or an attribute of one, is said here; empty if nothing is known of it.
+// How an element, or an attribute of one, which may have text, is said here; empty if nothing is known of it.
 std::string said_here(const std::string& element);
-std::string said_here(const std::string& element, const std::string& attribute);
+std::string said_here(const std::string& element, const std::string& attribute, bool has_text);
 
 } // namespace vkvol

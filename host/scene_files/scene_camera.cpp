@@ -100,13 +100,20 @@ Projection projection_of(const XmlElement& element) {
 Lens lens_of(const XmlElement& element, const Camera& camera) {
     Lens lens;
     lens.radius = element.attribute_number("lensRadius", 0.0, {0.0, largest_length, true, true, "a number from 0"});
+    const double focus = element.attribute_number("focus", 0.0, length);
+    lens.blades = static_cast<int>(element.attribute_integer("blades", 0, 0, 100));
+    if (lens.blades == 1 || lens.blades == 2)
+        element.fail_attribute("blades",
+                               "<camera> blades: fewer than three make no aperture; expected 3 to 100, or 0 for "
+                               "a round one");
+    lens.rotation = element.attribute_number("bladeRotation", 0.0, any_number);
     if (lens.radius == 0.0) {
         if (const char* name = first_of(element, {"focus", "blades", "bladeRotation"}))
             element.warn(fmt::format("{} is without effect on a pinhole; add lensRadius, in world units", name));
-        return lens;
+        return {};
     }
     if (element.has("focus"))
-        lens.focus = element.attribute_number("focus", 0.0, length);
+        lens.focus = focus;
     else if (element.has("lookAt"))
         lens.focus = glm::dot(triple(element, "lookAt", coordinate) - camera.position, -camera_rotation(camera)[2]);
     else
@@ -118,12 +125,6 @@ Lens lens_of(const XmlElement& element, const Camera& camera) {
                                fmt::format("<camera> lensRadius: {:g} is more than {:g} times the distance of what is "
                                            "sharp, {:g}; lower it, or raise focus",
                                            lens.radius, widest_lens, lens.focus));
-    lens.blades = static_cast<int>(element.attribute_integer("blades", 0, 0, 100));
-    if (lens.blades == 1 || lens.blades == 2)
-        element.fail_attribute("blades",
-                               "<camera> blades: fewer than three make no aperture; expected 3 to 100, or 0 for "
-                               "a round one");
-    lens.rotation = element.attribute_number("bladeRotation", 0.0, any_number);
     return lens;
 }
 

@@ -12,16 +12,6 @@ namespace vkvol {
 
 namespace {
 
-glm::dvec3 upwards(const XmlElement& element, const glm::dvec3& forward) {
-    if (!element.has("up"))
-        return is_parallel(forward, {0.0, 1.0, 0.0}) ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0);
-    const glm::dvec3 up = triple(element, "up", any_number);
-    if (up == glm::dvec3(0.0) || is_parallel(forward, up))
-        element.fail_attribute("up", "<irradiance> up: expected a direction along the rectangle, not 0 0 0 and not the "
-                                     "one it faces, e.g. up=\"0 0 1\"");
-    return up;
-}
-
 std::vector<glm::dvec3> triples(const std::vector<double>& numbers) {
     std::vector<glm::dvec3> points;
     for (std::size_t i = 0; i + 2 < numbers.size(); i += 3)
@@ -55,7 +45,7 @@ Camera SceneReader::irradiance(const XmlElement& element) const {
     const glm::dvec3 forward = triple(element, "lookAt", coordinate) - camera.position;
     if (forward == glm::dvec3(0.0))
         element.fail_attribute("lookAt", "<irradiance> lookAt: is where the sensor is; move one of them");
-    look_along(camera, forward, upwards(element, forward));
+    look_along(camera, forward, axes_facing(element, vkvol::unit(forward))[1]);
     camera.size = {element.attribute_number("width", 1.0, length), element.attribute_number("height", 1.0, length)};
     return camera;
 }

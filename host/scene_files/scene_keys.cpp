@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <fmt/format.h>
@@ -10,6 +9,7 @@
 #include "error.h"
 #include "expression.h"
 #include "nearest_name.h"
+#include "number_text.h"
 
 namespace vkvol {
 
@@ -25,12 +25,9 @@ bool in_key(char c) {
 
 // None if it is no number.
 std::optional<double> as_number(const std::string& text) {
-    double value = 0.0;
-    const char* end = text.data() + text.size();
-    const auto [last, error] = std::from_chars(text.data() + (!text.empty() && text[0] == '+' ? 1 : 0), end, value);
-    if (error != std::errc() || last != end || !std::isfinite(value))
-        return std::nullopt;
-    return value;
+    const NumberText read = read_number_text(text);
+    const bool good = read.is_number && !read.is_too_large && std::isfinite(read.value);
+    return good ? std::optional(read.value) : std::nullopt;
 }
 
 // Of words that are no numbers, as files' names are, none is of a time.

@@ -235,9 +235,14 @@ void SceneReader::read_light(Scene& scene) const {
     const XmlElement element = one("light");
     element.allow({"x", "y", "z", "zenith", "azimuth", "r", "g", "b", "multiplier", "group"});
     const Rgb irradiance = color(element);
-    if (irradiance == Rgb(0.0))
+    const std::string group = group_name(element);
+    const bool has_direction =
+        element.has("zenith") || element.has("azimuth") || xyz(element, any_number) != glm::dvec3(0.0);
+    if (irradiance == Rgb(0.0) && !has_direction)
         return;
-    scene.lights.push_back(DirectionalLight{direction_towards(element), irradiance, group_name(element)});
+    const glm::dvec3 direction = direction_towards(element);
+    if (irradiance != Rgb(0.0))
+        scene.lights.push_back(DirectionalLight{direction, irradiance, group});
 }
 
 // What asks for something that this renderer does not do, each with what is done in its place.

@@ -10,10 +10,13 @@ namespace vkvol {
 namespace {
 
 constexpr const char* shape_names[] = {"densityField", "sphere", "box", "everywhere", "models"};
+const std::vector<std::string> field_attributes = {"baseDir", "grid", "velocity", "framesPerSecond"};
 
 bool asks_for_shape(const XmlElement& element, pugi::xml_node node) {
     if (element.name() == "densityField")
-        return !element.text().empty() || !element.attribute("baseDir").empty();
+        return !element.text().empty() ||
+               std::any_of(std::begin(field_attributes), std::end(field_attributes),
+                           [&](const std::string& name) { return !element.attribute(name.c_str()).empty(); });
     return element.name() != "models" || node.child("model");
 }
 
@@ -88,7 +91,7 @@ XmlElement SceneReader::shape_element(pugi::xml_node scope, const std::string& i
         if (!element.exists())
             continue;
         if (element.name() == "densityField")
-            element.allow({"baseDir", "grid", "velocity", "framesPerSecond"}, true);
+            element.allow(field_attributes, true);
         if (element.name() == "models")
             element.allow({}, false, {"model"});
         if (!asks_for_shape(element, node))
@@ -154,12 +157,17 @@ std::filesystem::path SceneReader::file_path(const XmlElement& element, const st
     if (one_line(path) != path)
         element.fail(fmt::format("<{}> names a file that is very long or has control characters: '{}'; rename the file",
                                  element.name(), path.substr(0, 60)));
-    return (document_.file().parent_path() / path).lexically_normal();
+    const std::filesystem::path whole = document_.file().parent_path() / path, shorter = whole.lexically_normal();
+    // Beyond a link to a folder .. is another one than before it, and means what it means elsewhere.
+    std::error_code error;
+    return std::filesystem::exists(whole, error) && !std::filesystem::equivalent(whole, shorter, error) ? whole
+                                                                                                        : shorter;
 }
 
 GridFile SceneReader::grid_file(const XmlElement& element) const {
     GridFile file;
-    file.path = file_path(element, "cloud.nvdb");
+    if (!overrides_.grid) // whose file it is then
+        file.path = file_path(element, "cloud.nvdb");
     for (const std::string& name : {element.text(), file.path.filename().string()})
         if (const auto found = overrides_.grids.find(name); found != overrides_.grids.end() && !file.memory)
             file.memory = found->second;

@@ -181,9 +181,8 @@ void SceneReader::read_volumes(Scene& scene) {
     const bool has_groups = !list.child("volume").empty();
     if (has_groups && overrides_.grid)
         groups.fail("--grid: of several <volumes> it is not clear which one is meant; write the grid's file into one");
-    if (!has_groups || shape_element(scene.settings.integrator).exists())
-        if (const std::optional<Volume> medium = volume(scene.settings.integrator))
-            scene.volumes.push_back(*medium);
+    if (const std::optional<Volume> medium = volume(scene.settings.integrator))
+        scene.volumes.push_back(*medium);
     const NamedVolumes named = named_volumes(list);
     for (const pugi::xml_node node : list.children("volume")) {
         scopes_ = with_those_it_is_like(node, named);

@@ -11,6 +11,7 @@
 
 #include "error.h"
 #include "nearest_name.h"
+#include "number_text.h"
 #include "other_words.h"
 
 namespace vkvol {
@@ -49,14 +50,13 @@ bool inside(double value, const Limits& limits) {
 
 // Empty when `text` is a number within the limits, else what is wrong with it.
 std::string read_number(const std::string& text, const Limits& limits, double& value) {
-    const char* first = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
-    const char* last = text.data() + text.size();
-    const auto [end, error] = std::from_chars(first, last, value);
+    const NumberText read = read_number_text(text);
+    value = read.value;
     if (text.empty())
         return fmt::format("is empty; expected {}", limits.expected);
-    if (error == std::errc::result_out_of_range)
+    if (read.is_too_large)
         return fmt::format("{} is out of range; expected {}", quoted(text), limits.expected);
-    if (error != std::errc() || end != last || !std::isfinite(value))
+    if (!read.is_number || !std::isfinite(value))
         return fmt::format("{} is not a number; expected {}{}", quoted(text), limits.expected,
                            text.find(',') != std::string::npos ? "; between numbers stand spaces, no commas" : "");
     if (limits.device && std::abs(value) < smallest_number)
@@ -209,10 +209,15 @@ std::string XmlDocument::place_of_offset(std::ptrdiff_t offset) const {
         return std::prev(after)->second;
     const auto before = std::clamp<std::ptrdiff_t>(offset, 0, std::ptrdiff_t(text_.size()));
     const auto line = std::upper_bound(line_starts_.begin(), line_starts_.end(), before) - line_starts_.begin();
-    const auto line_start = text_.begin() + line_starts_[std::size_t(line - 1)], end = text_.begin() + before;
+    const std::ptrdiff_t line_start = line_starts_[std::size_t(line - 1)];
+    // From where it was counted to last, if that is in this line: a scene may be all in one.
+    if (counted_to_ < line_start || counted_to_ > before)
+        counted_to_ = line_start, column_there_ = 1;
     // UTF-8 continuation bytes belong to the character before them.
-    const auto column = 1 + std::count_if(line_start, end, [](char c) { return (c & 0xC0) != 0x80; });
-    return fmt::format("{}:{}:{}", file_.string(), line, column);
+    column_there_ +=
+        std::count_if(text_.begin() + counted_to_, text_.begin() + before, [](char c) { return (c & 0xC0) != 0x80; });
+    counted_to_ = before;
+    return fmt::format("{}:{}:{}", file_.string(), line, column_there_);
 }
 
 std::string XmlDocument::place(pugi::xml_node element) const {
@@ -234,7 +239,7 @@ void XmlElement::allow(const std::vector<std::string>& attributes, bool text,
     for (const pugi::xml_attribute attribute : node_.attributes()) {
         if (std::find(attributes.begin(), attributes.end(), attribute.name()) != attributes.end())
             continue;
-        const std::string here = said_here(name(), attribute.name());
+        const std::string here = said_here(name(), attribute.name(), text);
         const std::string hint = !here.empty()        ? "; " + here
                                  : attributes.empty() ? "; it has none"
                                                       : name_hint(attribute.name(), attributes);
@@ -358,7 +363,8 @@ void XmlElement::fail_text(const std::string& message) const {
 }
 
 void XmlElement::fail_attribute(const char* attribute_name, const std::string& message) const {
-    fail_at(document_->place(node_.attribute(attribute_name)), message);
+    const pugi::xml_attribute found = node_.attribute(attribute_name);
+    fail_at(found ? document_->place(found) : place(), message); // of one with its default, the element's
 }
 
 } // namespace vkvol

@@ -57,6 +57,7 @@ private:
     ElementPlaces places_;
     std::string text_; // as read, for places
     std::vector<std::ptrdiff_t> line_starts_{0};
+    mutable std::ptrdiff_t counted_to_ = 0, column_there_ = 1; // of the place that was last asked for
     std::vector<char> buffer_; // what pugixml parsed in place: names still point into it
     std::filesystem::path file_;
     SceneKeys keys_;

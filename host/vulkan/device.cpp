@@ -39,10 +39,15 @@ const char* type_name(VkPhysicalDeviceType type) {
     }
 }
 
-// Lower is better: a real GPU before a software driver.
-int preference(const DeviceInfo& info) {
+// Rather a driver that has passed the tests than one that has not, a real GPU than a software driver, much memory than
+// little.
+bool is_better(const DeviceInfo& a, const DeviceInfo& b) {
     constexpr std::array order = {"discrete", "integrated", "virtual", "other", "cpu"};
-    return static_cast<int>(std::find(order.begin(), order.end(), info.type) - order.begin());
+    const auto rank = [&](const DeviceInfo& info) {
+        const auto kind = std::find(order.begin(), order.end(), info.type) - order.begin();
+        return std::tuple(!info.conformant, kind, ~info.memory);
+    };
+    return rank(a) < rank(b);
 }
 
 std::optional<std::uint32_t> find_compute_family(VkPhysicalDevice physical, std::uint32_t* timestamp_bits = nullptr) {
@@ -107,6 +112,8 @@ DeviceInfo describe(VkPhysicalDevice physical, int index) {
     info.driver = fmt::format("{} {}", properties12.driverName, properties12.driverInfo);
     if (properties12.driverID == VK_DRIVER_ID_MESA_LLVMPIPE)
         std::sscanf(properties12.driverInfo, "Mesa %u", &info.lavapipe);
+    const VkConformanceVersion& tests = properties12.conformanceVersion;
+    info.conformant = tests.major != 0 || tests.minor != 0;
     info.storage_range = properties.properties.limits.maxStorageBufferRange;
     for (std::uint8_t byte : id.deviceUUID)
         info.uuid += fmt::format("{:02x}", byte);
@@ -280,7 +287,7 @@ void Device::choose_physical(const std::string& choice) {
             reason = fmt::format("it does not match --device {}", choice);
         if (!reason.empty())
             reasons += fmt::format("; {} \"{}\": {}", i, info.name, reason);
-        else if (best < 0 || preference(info) < preference(info_)) {
+        else if (best < 0 || is_better(info, info_)) {
             best = i;
             info_ = info;
         }

@@ -32,6 +32,7 @@ struct DeviceInfo {
     std::uint64_t memory = 0;        // bytes, device-local heaps
     std::uint64_t storage_range = 0; // bytes one storage buffer may span
     unsigned lavapipe = 0;           // Mesa's major version, of its software driver
+    bool conformant = true;          // has passed Khronos' tests, by its own word
     bool addresses = false;          // kernels may reach buffers by address, and so larger grids
     std::string rejection;
 };
@@ -55,6 +56,8 @@ public:
     VkDeviceSize most_allocation() const { return most_allocation_; } // bytes, in one piece
     const VkPhysicalDeviceProperties& properties() const { return properties_; }
     bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+    // Its memory is this machine's.
+    bool shares_memory() const { return is_cpu() || properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU; }
     // A kernel has each access to storage as often as a group has lanes, and takes as long to compile: Mesa's software
     // driver, not of 22.3, but of 25.0. Of those between nothing is known.
     bool writes_out_lanes() const { return info_.lavapipe >= 23; }

@@ -12,8 +12,14 @@ float voxel_shift() {
     return FILTER == FILTER_NEAREST ? 0.5 : 0.0;
 }
 
+// With trilinear lookup the last cell begins at the last voxel.
+ivec3 last_voxel(MediumParams v) {
+    return v.density.voxel_max + (FILTER == FILTER_NEAREST ? 1 : 0);
+}
+
+// Rounding may put where the medium begins a little before its box.
 void begin_voxels(MediumParams v, inout Walk w) {
-    w.cell = clamp(ivec3(floor(w.origin + voxel_shift())), v.density.voxel_min - 1, v.density.voxel_max + 1);
+    w.cell = clamp(ivec3(floor(w.origin + voxel_shift())), v.density.voxel_min - 1, last_voxel(v));
 }
 
 // Density along the piece as a polynomial in s in [0, 1].
@@ -78,9 +84,8 @@ uint next_voxel(MediumParams v, Block block, float t_exit, vec3 t_face, inout Wa
                          block.low + block.size - 1);
     ivec3 beyond = mix(block.low - 1, block.low + block.size, greaterThan(w.direction, vec3(0.0)));
     w.cell = inside + axis * (beyond - inside);
-    // Rounding may put the last face a little before t_end. With trilinear lookup the last cell begins at the last voxel.
-    ivec3 last = v.density.voxel_max + (FILTER == FILTER_NEAREST ? 1 : 0);
-    bool beyond_all = w.cell != clamp(w.cell, v.density.voxel_min - 1, last);
+    // Rounding may put the last face a little before t_end.
+    bool beyond_all = w.cell != clamp(w.cell, v.density.voxel_min - 1, last_voxel(v));
     return t_exit >= w.t_end || beyond_all ? EVENT_LEFT : EVENT_MOVING;
 }
 

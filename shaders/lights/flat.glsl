@@ -8,6 +8,16 @@ bool is_on_flat(LightRow light, vec2 at) {
     return light.kind == LIGHT_DISK ? dot(at, at) < 1.0 : all(lessThan(abs(at), vec2(1.0)));
 }
 
+// Square of how far the nearest of it is.
+float flat_square(LightRow light, vec3 from) {
+    vec3 aside = from - light.position;
+    vec2 at = vec2(dot(aside, light.edge_u) / dot(light.edge_u, light.edge_u),
+                   dot(aside, light.edge_v) / dot(light.edge_v, light.edge_v));
+    at = light.kind == LIGHT_DISK ? at / max(length(at), 1.0) : clamp(at, -1.0, 1.0);
+    vec3 apart = aside - at.x * light.edge_u - at.y * light.edge_v;
+    return dot(apart, apart);
+}
+
 // How far it is to where it shines at a ray; FAR where it does not.
 float hit_flat(LightRow light, vec3 from, vec3 direction) {
     float facing = -dot(direction, light.direction);

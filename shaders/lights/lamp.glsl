@@ -21,10 +21,12 @@ float lamp_pdf(LightRow light, vec3 from, vec3 direction, float t) {
 }
 
 // c: next to nothing for what is small as seen from here, against the narrowest that the phase function draws; most for what is
-// large, but never all. What 0.85 is worth: tools/results/README.md.
+// large, but never all. What 0.85 is worth: tools/results/README.md. Of what is flat it is the nearest of it that counts, which may
+// be long; of a ball directions are even anyway.
 float other_share(float peak, LightRow light, vec3 from) {
     vec3 apart = light.position - from;
-    float s = peak * light.area / max(dot(apart, apart), 1.0e-30);
+    float square = light.kind == LIGHT_SPHERE ? dot(apart, apart) : flat_square(light, from);
+    float s = peak * light.area / max(square, 1.0e-30);
     float share = 0.85 * s / (1.0 + s);
     return MIS == MIS_LIGHT ? 0.0 : MIS == MIS_PHASE ? 1.0 : share;
 }
@@ -70,26 +72,28 @@ uint nearest_body(vec3 from, vec3 direction, out float nearest) {
     return row;
 }
 
-// What the camera sees along a ray: one of the lamps that it meets, drawn by u in [0, 1) from all of them alike, and its row.
+// What the camera sees along a ray: one of the lamps that it meets, drawn by u in [0, 1) as each of them is bright, and its row.
 LightSample seen_lamp(vec3 from, vec3 direction, float u, out uint row) {
     LightSample seen = LightSample(direction, FAR, vec3(0.0), 0.0);
-    float met = 0.0;
+    float met = 0.0, own = 1.0; // radiances, summed over the channels: of all so far, and of the one at hand
     row = frame.lamp_first;
     float hidden;
     uint front = nearest_body(from, direction, hidden);
     for (uint i = frame.lamp_first; i < frame.lamp_first + frame.lamp_count; ++i) {
         float t = hit_lamp(light_at(i), from, direction);
         if (t < hidden || i == front) {
-            // With chance 1 / met the latest takes the place of the one before: u is stretched to what is left of it.
-            met += 1.0;
-            bool taken = u * met < 1.0;
-            u = taken ? u * met : (u * met - 1.0) / max(met - 1.0, 1.0);
+            // With chance latest / met the latest takes the place of the one before: u is stretched to what is left of it.
+            float latest = dot(light_at(i).radiance, vec3(1.0)), before = met;
+            met += latest;
+            bool taken = latest > 0.0 && (u * met < latest || before == 0.0);
+            u = min(taken ? u * met / latest : (u * met - latest) / max(before, 1.0e-30), 0.99999994);
             seen.distance = taken ? t : seen.distance;
             seen.light = taken ? light_at(i).radiance : seen.light;
+            own = taken ? latest : own;
             row = taken ? i : row;
         }
     }
-    seen.light *= met;
+    seen.light *= met / own;
     return seen;
 }
 

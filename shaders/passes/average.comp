@@ -8,7 +8,7 @@
 #include "lib/rng.glsl"
 
 void main() {
-    uint i = gl_GlobalInvocationID.x;
+    uint i = push.node_begin + gl_GlobalInvocationID.x;
     LatticeParams l = frame.lattice;
     if (i >= uint(l.dims.x * l.dims.y * l.dims.z))
         return;

@@ -10,7 +10,7 @@
 const float DARK = 20.0; // deeper than this no light is seen, and none is looked for
 
 void main() {
-    uint i = gl_GlobalInvocationID.x;
+    uint i = push.node_begin + gl_GlobalInvocationID.x;
     LatticeParams l = frame.lattice;
     if (i >= uint(l.dims.x * l.dims.y * l.dims.z))
         return;

@@ -362,6 +362,7 @@ struct PassPush {
     uint places;     // staged: pixels whose samples may wait to be added to the film
     uint budget;     // loop iterations after which a lane takes no further item
     uint step_limit; // steps after which a flight is cut, counted as a cap
+    uint node_begin; // average, shade: the first of the lattice's nodes that they fill
     uint lattice;    // shade: which one is filled, and towards where (unit)
     vec3 towards;
 };

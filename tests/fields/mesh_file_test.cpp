@@ -188,6 +188,8 @@ TEST_CASE("what is no closed surface is refused, with the remedy", "[mesh]") {
                Contains("4 edges") && Contains("close the"));
     CHECK_THAT(directory.error(cube_vertices + "f 4 3 2 1\nf 8 7 6 5\n" + cube_sides),
                Contains("4 edges") && Contains("Recalculate Outside"));
+    CHECK_THAT(directory.error("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 4 3\nf 3 4 2 1\n"),
+               Contains("encloses nothing") && Contains("Solidify"));
     CHECK_THAT(directory.error(cube + "f 1 2 7\n"), Contains("3 edges"));
     CHECK_THAT(directory.error(cube + "f 1 2 9\n"), Contains("vertex 9") && Contains("8 vertices"));
     CHECK_THAT(directory.error(cube + "f 1 2 -9\n"), Contains("vertex -9"));

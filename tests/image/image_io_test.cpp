@@ -204,6 +204,21 @@ TEST_CASE("a link stays a link, and a device a device", "[cpu][image_io]") {
     CHECK(fs::is_character_file("/dev/null"));
 }
 
+TEST_CASE("who may see a file still may, and nobody else", "[cpu][image_io]") {
+    const Scratch scratch;
+    const fs::path name = scratch.path / "a.json";
+    write_text(name, "1");
+    fs::permissions(name, fs::perms::owner_read | fs::perms::owner_write | fs::perms::group_read);
+    write_text(name, "22");
+    CHECK(fs::status(name).permissions() == (fs::perms::owner_read | fs::perms::owner_write | fs::perms::group_read));
+    fs::permissions(name, fs::perms::owner_read);
+    if (geteuid() == 0) // who may write it nevertheless
+        return;
+    CHECK_THROWS_WITH(check_directory_writable(name), Catch::Contains("not to be written"));
+    CHECK_THROWS_AS(write_text(name, "333"), RenderError);
+    CHECK(fs::file_size(name) == 2);
+}
+
 TEST_CASE("a file is whole or not there", "[cpu][image_io]") {
     const Scratch scratch;
     const fs::path name = scratch.path / "a.json";

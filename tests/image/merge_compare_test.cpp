@@ -277,6 +277,47 @@ TEST_CASE("compare: against what has no samples the others' number counts", "[cp
     CHECK(different <= 4); // as above
 }
 
+// Of eight passes of 100 samples the variance is known as well as of eight samples.
+TEST_CASE("compare: variances of passes are known from these", "[cpu][merge][compare]") {
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> normal;
+    int different = 0, by_samples = 0;
+    for (int i = 0; i < 100; ++i) {
+        Film a, b;
+        a.picture_width = a.picture_height = 64;
+        a.crop = {0, 64, 0, 64};
+        a.samples.assign(4096, 800u);
+        b = a;
+        for (int pixel = 0; pixel < 4096; ++pixel) {
+            std::vector<double> means(8);
+            double mean = 0.0, squares = 0.0;
+            for (double& each : means)
+                mean += (each = 1.0 + normal(random)) / 8.0;
+            for (const double each : means)
+                squares += (each - mean) * (each - mean);
+            a.mean.emplace_back(float(mean));
+            a.variance.emplace_back(float(squares / 7.0 / 8.0));
+            b.mean.emplace_back(1.0f);
+            b.variance.emplace_back(1e-8f);
+        }
+        by_samples += compare_films(a, b, options_at()).different ? 1 : 0;
+        a.passes = 8;
+        different += compare_films(a, b, options_at()).different ? 1 : 0;
+    }
+    CHECK(by_samples > 20);
+    CHECK(different <= 4); // as above
+}
+
+// Its difference would count, and no variance.
+TEST_CASE("compare: single samples beside an image of unknown making are not judged", "[cpu][merge][compare]") {
+    const Film noisy = film_of(draw(7, 1, 1.0, 256), {0, 16, 0, 16});
+    Film exact = noisy;
+    exact.mean.assign(256, glm::vec3(100.0f));
+    exact.variance.assign(256, glm::vec3(0.0f));
+    exact.samples.assign(256, 0u);
+    CHECK(compare_films(noisy, exact, options_at()).mean_z[0] == 0.0);
+}
+
 // Pixels that share samples: of one window by the numbers of samples, windows side by side add up.
 TEST_CASE("variances of sums are merged, and compared by", "[cpu][merge][compare]") {
     const auto with = [](Film film, glm::dvec3 variance) {

@@ -109,3 +109,61 @@ TEST_CASE("a small part of a tiled picture is no damage", "[cpu][image_io]") {
     CHECK((map.width == 128 && map.height == 128));
     CHECK(map.texels[16 * 128 + 16] == glm::vec3(1.0f, 2.0f, 3.0f));
 }
+
+TEST_CASE("what a picture's file says of paper is not meant of its pixels", "[cpu][image_io]") {
+    const TestDirectory directory;
+    for (const char* name : {"tile.png", "tile.tif"}) {
+        CAPTURE(name);
+        OIIO::ImageSpec spec(4, 4, 3, OIIO::TypeDesc::UINT8);
+        spec.x = 512; // as of a part that was cut out, which then has an offset of its own
+        spec.attribute("XPosition", 512.0f);
+        const std::string file = (directory.path / name).string();
+        const auto output = OIIO::ImageOutput::create(file);
+        REQUIRE(output->open(file, spec));
+        const std::vector<std::uint8_t> pixels(4 * 4 * 3, 255);
+        REQUIRE(output->write_image(OIIO::TypeDesc::UINT8, pixels.data()));
+        output->close();
+        const RadianceMap map = read_radiance_map(file);
+        CHECK((map.width == 4 && map.height == 4));
+        CHECK(map.texels == std::vector<glm::vec3>(16, glm::vec3(1.0f)));
+    }
+}
+
+TEST_CASE("a large board is a small file, and no damage", "[cpu][image_io]") {
+    const TestDirectory directory;
+    constexpr int edge = 4096;
+    OIIO::ImageSpec spec(edge, edge, 3, OIIO::TypeDesc::UINT8);
+    const std::string file = (directory.path / "board.png").string();
+    const auto output = OIIO::ImageOutput::create(file);
+    REQUIRE(output->open(file, spec));
+    std::vector<std::uint8_t> pixels(std::size_t(edge) * edge * 3);
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        pixels[i] = (i / 3 / 256 + i / 3 / edge / 256) % 2 ? 255 : 0;
+    REQUIRE(output->write_image(OIIO::TypeDesc::UINT8, pixels.data()));
+    output->close();
+    CHECK(read_radiance_map(file).width == edge);
+}
+
+TEST_CASE("what a map says of its numbers is told", "[cpu][image_io]") {
+    const TestDirectory directory;
+    const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=0.125\n\n-Y 1 +X 1\n";
+    const RadianceMap map = read_radiance_map(directory.write("sky.hdr", header + "\x80\x80\x80\x81"));
+    REQUIRE(map.warnings.size() == 1);
+    CHECK_THAT(map.warnings[0], Contains("EXPOSURE") && Contains("multiplier=\"8\""));
+    // gAMA 1.0, as of a picture of numbers that are linear.
+    const auto png = [&](float gamma) {
+        OIIO::ImageSpec spec(2, 2, 3, OIIO::TypeDesc::UINT8);
+        spec.attribute("oiio:ColorSpace", "GammaCorrected");
+        spec.attribute("oiio:Gamma", gamma);
+        const std::string file = (directory.path / "albedo.png").string();
+        const auto output = OIIO::ImageOutput::create(file);
+        REQUIRE(output->open(file, spec));
+        const std::vector<std::uint8_t> pixels(12, 99);
+        REQUIRE(output->write_image(OIIO::TypeDesc::UINT8, pixels.data()));
+        output->close();
+        return read_radiance_map(file).warnings;
+    };
+    CHECK(png(2.2f).empty());
+    REQUIRE(png(1.0f).size() == 1);
+    CHECK_THAT(png(1.0f)[0], Contains("gamma 1"));
+}

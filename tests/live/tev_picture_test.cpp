@@ -159,6 +159,7 @@ TEST_CASE("tev gets a picture with all its channels", "[cpu][live]") {
 
 TEST_CASE("a viewer that is not there, or goes away", "[cpu][live]") {
     CHECK_THROWS_WITH(TevPicture("127.0.0.1:1", "a"), Contains("127.0.0.1:1") && Contains("start tev"));
+    CHECK_THROWS_WITH(TevPicture("[::1]:1", "a"), Contains("start tev"));
     CHECK_THROWS_WITH(TevPicture("nowhere", "a"), Contains("HOST:PORT"));
     CHECK_THROWS_WITH(TevPicture(":5", "a"), Contains("HOST:PORT"));
     CHECK_THROWS_WITH(TevPicture("127.0.0.1:port", "a"), Contains("HOST:PORT"));

@@ -262,6 +262,17 @@ TEST_CASE("layers are shown as what they are", "[cpu][live]") {
     CHECK(show_layer(film, nullptr, "direct", {}, {}).rgba[0] == 255);
 }
 
+TEST_CASE("what a sketch shows is exposed as it is, whatever else is there yet", "[cpu][live]") {
+    Film film = grey_film(2, 1, 0.0f);
+    film.samples.assign(2, 0u);
+    const Film sketch = grey_film(2, 1, 4000.0f);
+    ToneRequest automatic;
+    automatic.automatic_exposure = true;
+    const ShownLayer shown = show_layer(film, &sketch, "", automatic, {});
+    CHECK(shown.mapping.exposure < -10.0);
+    CHECK(shown.clipped == 0);
+}
+
 TEST_CASE("a page's camera is one that a scene may have", "[cpu][live]") {
     Json camera{{"position", {0, 0, 1}}, {"forward", {0, 0, -1}}, {"up", {0, 1, 0}}, {"projection", "perspective"},
                 {"fov", 1e-4},           {"viewHeight", 1},       {"lensRadius", 0}, {"focus", 1}};

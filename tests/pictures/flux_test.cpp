@@ -356,7 +356,7 @@ TEST_CASE("sensors of flux in scene files", "[cpu][xml][flux]") {
     const std::pair<const char*, const char*> errors[] = {
         {R"(<irradiance/>)", "needs lookAt"},
         {R"(<irradiance lookAt="0 0 0"/>)", "is where the sensor is"},
-        {R"(<irradiance lookAt="0 1 0" up="0 2 0"/>)", "expected a direction along the rectangle"},
+        {R"(<irradiance lookAt="0 1 0" up="0 2 0"/>)", "is the direction that it faces"},
         {R"(<irradiance lookAt="0 1 0" width="0"/>)", "width"},
         {R"(<camera/><fluence>0 0 0</fluence>)", "a <fluence> beside the <camera> at s.xml:1:"},
         {"<fluence/>", "needs points"},

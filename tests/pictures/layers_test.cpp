@@ -101,6 +101,23 @@ TEST_CASE("rays through an exponential atmosphere have its optical depth", "[gpu
     }
 }
 
+TEST_CASE("air that is tilted and moved is as dense as a box of it", "[gpu][image][layers]") {
+    const Layers layers{1, 10.0, 60.0, 5.0, 12.0};
+    Volume air = atmosphere(0.3, 0.0, layers), box = air;
+    box.shape = Box{{0.0, 35.0, 0.0}, {4e3, 50.0, 4e3}};
+    const glm::dmat4 to = glm::translate(glm::dmat4(1.0), glm::dvec3(3.0, 30.0, -4.0));
+    const glm::dmat4 tilts[] = {glm::rotate(glm::dmat4(1.0), 0.1, glm::dvec3(0.0, 0.0, 1.0)),
+                                glm::rotate(glm::dmat4(1.0), 0.2, glm::normalize(glm::dvec3(1.0, 0.0, 1.0)))};
+    for (const glm::dmat4& tilt : tilts) {
+        air.transform = box.transform = to * tilt;
+        const Film tilted = render_here(parallel_rays(air, {3.0, 120.0, -2.0}, -60.0), 1).film;
+        const Film expected = render_here(parallel_rays(box, {3.0, 120.0, -2.0}, -60.0), 2).film;
+        CHECK_AGREEMENT(agree(tilted, expected, "tilted air"));
+        CHECK(image_mean(expected).value.x < 0.9);
+        CHECK(image_mean(expected).value.x > 0.1);
+    }
+}
+
 TEST_CASE("an exponential is what it is hundreds of scale heights up", "[gpu][image][layers]") {
     for (const double top : {30.0, 80.0, 88.0, 300.0}) {
         CAPTURE(top);

@@ -378,6 +378,45 @@ TEST_CASE("lamps are seen", "[gpu][lights]") {
     CHECK_AGREEMENT(agree(render_here(absorbing, 35).film, render_reference(absorbing, 36), "lamps alone"));
 }
 
+// One behind another, in empty space, where nothing is left to chance but which of them is seen.
+TEST_CASE("lamps before one another are seen without noise", "[gpu][lights]") {
+    Scene scene = lit_by({}, 1.0,
+                         {RectangleLight{{0.0, 0.0, 2.0}, {5.0, 0.0, 0.0}, {0.0, 5.0, 0.0}, Rgb(1.0)},
+                          SphereLight{{0.0, 0.0, 0.0}, 3.0, Rgb(1000.0)},
+                          DiskLight{{0.0, 0.0, 4.0}, {0.0, 0.0, 1.0}, 9.0, Rgb(0.25)},
+                          DiskLight{{0.0, 0.0, 5.0}, {0.0, 0.0, 1.0}, 9.0, Rgb(0.0)}},
+                         64);
+    scene.volumes.clear();
+    scene.background = Rgb(0.0);
+    const Film film = render_here(scene, 40).film;
+    for (std::size_t i = 0; i < film.mean.size(); ++i) {
+        CAPTURE(i, film.mean[i].x, film.variance[i].x);
+        REQUIRE(film.mean[i].x == Approx(1001.25f).epsilon(1e-5));
+        REQUIRE(film.variance[i].x < 1e-6f);
+    }
+}
+
+// A hundred long, and lit close by its end: the variance of a look is 7 squared means there, and 2800 if the way to its
+// middle says how large it is from here. A ray scatters once in 5.
+TEST_CASE("light from the end of a long lamp has bounded noise", "[gpu][lights]") {
+    Scene scene = lit_by(medium(Sphere{{49.5, 0.01, 0.0}, 0.004}, 30.0, 1.0, 0.0), 1.0,
+                         {RectangleLight{{0.0, 0.0, 0.0}, {0.0, 0.0, 0.005}, {50.0, 0.0, 0.0}, Rgb(1.0)}}, 4096);
+    scene.camera = Camera{};
+    scene.camera.position = {49.5, 0.01, 1.0};
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.view_height = 0.004;
+    scene.picture = {2, 2, 0.0, 0.0, 2.0, 2.0};
+    scene.background = Rgb(0.0);
+    scene.settings.choices.scattering = SCATTERING_SINGLE;
+    const Film film = render_here(scene, 41).film;
+    for (std::size_t i = 0; i < film.mean.size(); ++i) {
+        const double relative = 4096.0 * film.variance[i].x / (film.mean[i].x * film.mean[i].x);
+        CAPTURE(i, film.mean[i].x, relative);
+        CHECK(film.mean[i].x > 0.0f);
+        CHECK(relative < 200.0);
+    }
+}
+
 // llvmpipe ends all loops of an invocation after 65535 iterations. Four hundred lamps in one place shine as one.
 TEST_CASE("no lamp of many is lost, however long a lane works", "[gpu][lights]") {
     const auto picture = [](int count) {

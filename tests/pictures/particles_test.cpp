@@ -262,6 +262,20 @@ TEST_CASE("particles at a panorama's pole count as much as paths there", "[gpu][
           4.5 * std::hypot(paths.standard_error->x, particles.standard_error->x));
 }
 
+TEST_CASE("no particles look for rows beyond a panorama's poles", "[cpu][particles]") {
+    Scene scene = still({}, {PointLight{{1.2, 1.9, 1.5}, {12.0, 9.0, 6.0}}});
+    scene.camera.projection = Projection::equirectangular;
+    scene.picture = {16, 12, 0.0, 0.0, 16.0, 12.0};
+    for (const char* integrator : {"lightTracing", "bidirectional"}) {
+        CHECK_NOTHROW(choose_method(by(scene, integrator)));
+        Scene above = by(scene, integrator), below = above;
+        above.picture.start_y = -2.0;
+        below.picture.height = 14;
+        CHECK_THROWS_WITH(choose_method(above), Catch::Contains("beyond a pole"));
+        CHECK_THROWS_WITH(choose_method(below), Catch::Contains("beyond a pole"));
+    }
+}
+
 TEST_CASE("particles are seen by every camera through every filter", "[gpu][particles]") {
     const PointLight point{{1.2, 1.9, 1.5}, {12.0, 9.0, 6.0}};
     const Scene usual = still({with_material(left, MaterialKind::diffuse)}, {point});

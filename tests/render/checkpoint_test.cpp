@@ -7,6 +7,7 @@
 
 #include "checkpoint.h"
 #include "error.h"
+#include "program.h"
 #include "support/images.h"
 #include "support/scenes.h"
 #include "support/test_device.h"
@@ -164,6 +165,8 @@ TEST_CASE("a checkpoint is continued by its own render alone", "[gpu][checkpoint
         rest.sample_offset = 1;
     }
     SECTION("of the program") {
+        CHECK_THAT(last->identity.program, Catch::Contains("kernels " + kernels_digest()));
+        CHECK(kernels_digest().size() == 16);
         last->identity.program += "x";
     }
     SECTION("of the device") {

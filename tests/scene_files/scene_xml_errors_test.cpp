@@ -168,3 +168,45 @@ TEST_CASE("scene files that cannot be read", "[cpu][xml]") {
     CHECK_THROWS_WITH(load_scene(std::string(VKVOL_SOURCE_DIR) + "/scenes"), Catch::Contains("is a directory"));
     CHECK_THROWS_AS(load_scene("/dev/zero"), InputError);
 }
+
+TEST_CASE("places are found in a scene that is one line", "[cpu][xml]") {
+    std::string text = "<options><!-- \xc3\xa4 --><surfaces>";
+    for (int i = 0; i < 3; ++i)
+        text += "<sphere x='" + std::to_string(i) + "'/>";
+    const Scene scene = parse_scene(text + "</surfaces><sphere/></options>", "s.xml");
+    REQUIRE(scene.surfaces.size() == 3);
+    CHECK(scene.surfaces[0].place == "s.xml:1:30");
+    CHECK(scene.surfaces[1].place == "s.xml:1:45");
+    CHECK(scene.surfaces[2].place == "s.xml:1:60");
+    CHECK_THROWS_WITH(parse_scene(text + "<sphere rad='1'/></surfaces></options>", "s.xml"),
+                      Catch::StartsWith("s.xml:1:83"));
+    // The later of two places is asked for first.
+    CHECK_THROWS_WITH(parse_scene("<options><sphere/><box/></options>", "s.xml"),
+                      Catch::StartsWith("s.xml:1:19") && Catch::Contains("s.xml:1:10"));
+}
+
+TEST_CASE("an attribute that is not there has its element's place", "[cpu][xml]") {
+    CHECK_THAT(error_of("<lights>\n <daylight x='1'/></lights>"), Catch::StartsWith("s.xml:3:2: "));
+    CHECK_THAT(error_of("<lights>\n <sun y='1' multiplier='1e9'/></lights>"), Catch::StartsWith("s.xml:3:2: "));
+}
+
+TEST_CASE("what is in no volume is said, and read", "[cpu][xml]") {
+    const std::string volumes = "<volumes><volume><box/></volume></volumes>";
+    const Scene scene = parse("<sigma_s>4</sigma_s>" + volumes);
+    CHECK(scene.volumes.size() == 1);
+    CHECK(warns(scene, "it is in no volume"));
+    CHECK_THAT(error_of("<sigma_s>abc</sigma_s>" + volumes), Catch::Contains("not a number"));
+    CHECK_THAT(error_of("<phase>nonsense</phase>" + volumes), Catch::Contains("nonsense"));
+    CHECK(parse(volumes).warnings.empty());
+}
+
+TEST_CASE("what is without effect has numbers all the same", "[cpu][xml]") {
+    CHECK_THAT(error_of("<sphere/><light x='abc'/>"), Catch::Contains("not a number"));
+    CHECK_THAT(error_of("<sphere/><light x='1' zenith='9'/>"), Catch::Contains("say the direction already"));
+    CHECK_THAT(error_of("<sphere/><light group='a b'/>"), Catch::Contains("group"));
+    CHECK(parse("<sphere/><light multiplier='0'/>").lights.empty());
+    CHECK_THAT(error_of("<sphere/><camera focus='abc'/>"), Catch::Contains("not a number"));
+    CHECK_THAT(error_of("<sphere/><camera blades='2'/>"), Catch::Contains("fewer than three"));
+    CHECK_THAT(error_of("<sphere/><lights><point value='1'/></lights>"), !Catch::Contains("between the tags"));
+    CHECK_THAT(error_of("<sphere/><sigma_a value='1'/>"), Catch::Contains("between the tags"));
+}

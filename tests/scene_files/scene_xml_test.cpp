@@ -250,6 +250,10 @@ TEST_CASE("the command line's grid and integrator replace the scene's", "[cpu][x
     CHECK(warns(parse("<sphere/>", {}, overrides), "<sphere> is left out"));
     CHECK(grid.warnings.empty());
     CHECK(grid_of(parse("", {}, overrides)).path == "other.vdb");
+    const Scene drifting = parse("<densityField grid='d' velocity='v'/><motionBlur/>", {}, overrides);
+    CHECK(grid_of(drifting).grid == "d");
+    CHECK(drifting.volumes.at(0).drift.grid == "v");
+    CHECK_THAT(error_of("<densityField grid='d'/>"), Catch::Contains("names no file"));
     CHECK(warns(parse("<sphere/><noise/>", {}, overrides), "<noise> is left out"));
     CHECK_FALSE(parse("<sphere/><noise/>", {}, overrides).volumes.at(0).noise);
     overrides = {};

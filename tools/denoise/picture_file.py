@@ -99,10 +99,14 @@ def encoded(picture):
 
 def write(file, picture):
     """Under another name first, so that nobody finds half a file."""
-    temporary = Path(f"{file}.{os.getpid()}.partial")
+    target = Path(os.path.realpath(file))  # a link stays a link
+    temporary = Path(f"{target}.{os.getpid()}.partial")
     try:
-        temporary.write_bytes(encoded(picture))
-        os.replace(temporary, file)
+        with open(temporary, "wb") as out:
+            out.write(encoded(picture))
+            out.flush()
+            os.fsync(out.fileno())
+        os.replace(temporary, target)
     except OSError as error:
         raise Refusal(f"{file}: cannot be written: {error.strerror}; name another place with -o")
     finally:

@@ -88,6 +88,7 @@ class Measured:
                 break
             self.samples *= 2
         self.samples = max(1, round(self.samples * target / seconds))
+        self.renderer.render(self.samples, seed)  # which some compile another kernel for than for powers of two
 
     def render(self, seed, reference, variance):
         image, seconds, cores = self.renderer.render(self.samples, seed)
@@ -177,7 +178,7 @@ class Contest:
         passes = np.stack([measured.renderer.render(samples, self.next_seed())[0] for _ in range(count)])
         mean, variance = passes.mean(axis=0), passes.var(axis=0, ddof=1) / count
         path = f"{self.name}.{self.measured.index(measured)}.exr"
-        exr.write(path, mean, variance, samples * count)
+        exr.write(path, mean, variance, samples * count, passes=count)
         command = [self.options.vkvol.resolve(), "compare", path, self.reference_file, "--json", "--significance", "0.001"]
         done = subprocess.run(command, capture_output=True, text=True)
         verdict = json.loads(done.stdout) if done.stdout else sys.exit(done.stderr)

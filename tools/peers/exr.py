@@ -46,8 +46,8 @@ def zipped(raw):
     return packed if len(packed) < len(raw) else raw
 
 
-def write_channels(path, images, compress=False):
-    """Scan lines of channels by name, each [row, column] of u4, f2 or f4."""
+def write_channels(path, images, compress=False, numbers=None):
+    """Scan lines of channels by name, each [row, column] of u4, f2 or f4. `numbers`: whole ones, by name, in the header."""
     names = sorted(images)
     height, width = images[names[0]].shape
     step = ZIP_LINES if compress else 1
@@ -62,7 +62,8 @@ def write_channels(path, images, compress=False):
         attribute("dataWindow", "box2i", window), attribute("displayWindow", "box2i", window),
         attribute("lineOrder", "lineOrder", b"\0"), attribute("pixelAspectRatio", "float", struct.pack("<f", 1)),
         attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)),
-        attribute("screenWindowWidth", "float", struct.pack("<f", 1)))) + b"\0"
+        attribute("screenWindowWidth", "float", struct.pack("<f", 1)),
+        *(attribute(name, "int", struct.pack("<i", number)) for name, number in (numbers or {}).items()))) + b"\0"
     blocks = []
     for y in range(0, height, step):
         raw = b"".join(images[name][row].tobytes() for row in range(y, min(y + step, height)) for name in names)
@@ -72,9 +73,10 @@ def write_channels(path, images, compress=False):
     Path(path).write_bytes(header + places.astype("<u8").tobytes() + b"".join(blocks))
 
 
-def write(path, mean, variance, samples):
-    """The channels of vkvol's films: mean, variance of the mean, samples of each pixel."""
+def write(path, mean, variance, samples, passes=0):
+    """The channels of vkvol's films: mean, variance of the mean, samples of each pixel. `passes`: that the variance is known
+    from, if not from samples."""
     images = {c: mean[..., i].astype("<f4") for i, c in enumerate("RGB")}
     images.update({"variance." + c: variance[..., i].astype("<f4") for i, c in enumerate("RGB")})
     images["samples"] = np.full(mean.shape[:2], samples, "<u4")
-    write_channels(path, images)
+    write_channels(path, images, numbers={"vkvol/passes": passes} if passes else None)

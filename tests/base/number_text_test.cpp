@@ -1,0 +1,28 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "number_text.h"
+
+using namespace vkvol;
+
+TEST_CASE("numbers are read as they are written anywhere", "[cpu][xml]") {
+    const auto value_of = [](std::string_view text) {
+        const NumberText read = read_number_text(text);
+        return read.is_number && !read.is_too_large ? read.value : std::nan("");
+    };
+    CHECK(value_of("+0.5") == 0.5);
+    CHECK(value_of("-3e2") == -300.0);
+    CHECK(value_of(".25") == 0.25);
+    for (const char* none : {"", "+", "-", "+-3", "++3", "1,5", " 1", "1 ", "0x10", "1e", "1e400", "-2e999"}) {
+        CAPTURE(none);
+        CHECK(std::isnan(value_of(none)));
+    }
+    // What is too small to be held is nothing, however it is written.
+    for (const std::string& small :
+         {std::string("1e-400"), std::string("-3.5E-999"), "0." + std::string(400, '0') + "1"}) {
+        CAPTURE(small);
+        CHECK(value_of(small) == 0.0);
+    }
+    CHECK(read_number_text(std::string(400, '9')).is_too_large);
+    CHECK_FALSE(read_number_text("1e400x").is_number);
+}
