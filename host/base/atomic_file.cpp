@@ -104,19 +104,18 @@ AtomicFile::AtomicFile(const path& name)
         fail(errno);
 }
 
-// Without a name, so that the file goes with the process, however that ends; with one where there is nothing better.
 void AtomicFile::open_new() {
-    struct stat before {};
-    const bool replaces = stat(target_.c_str(), &before) == 0;
-    if (replaces && access(target_.c_str(), W_OK) != 0)
-        return; // of which errno says why
     open_in_directory();
-    if (replaces && descriptor_ >= 0) { // whoever may see it still may, and nobody else
-        [[maybe_unused]] const int owned = fchown(descriptor_, static_cast<uid_t>(-1), before.st_gid);
-        fchmod(descriptor_, before.st_mode & 0777);
-    }
+    struct stat before {};
+    if (descriptor_ < 0 || stat(target_.c_str(), &before) != 0)
+        return;
+    // Whoever may see what is there still may, and nobody else: if it cannot be given back, its group is another.
+    const bool has_group = fchown(descriptor_, before.st_uid, before.st_gid) == 0 ||
+                           fchown(descriptor_, static_cast<uid_t>(-1), before.st_gid) == 0;
+    fchmod(descriptor_, before.st_mode & (has_group ? 0777 : 0707));
 }
 
+// Without a name, so that the file goes with the process, however that ends; with one where there is nothing better.
 void AtomicFile::open_in_directory() {
     const path directory = target_.has_parent_path() ? target_.parent_path() : path(".");
     if (access("/proc/self/fd", X_OK) == 0)

@@ -11,8 +11,8 @@ namespace vkvol {
 class AtomicFile {
 public:
     // Throws std::system_error if no file can be made in that place. A link stays a link: the file behind it is
-    // replaced. A device or pipe is written to, once all is there; of a pipe a reader is waited for, until a signal
-    // comes.
+    // replaced, by one that the same people may see. A device or pipe is written to, once all is there; of a pipe a
+    // reader is waited for, until a signal comes.
     explicit AtomicFile(const std::filesystem::path& name);
     // Without put_in_place nothing of the new file is left.
     ~AtomicFile();

@@ -1,17 +1,26 @@
 #include "number_text.h"
 
+#include <algorithm>
 #include <charconv>
 
 namespace vkvol {
 
 namespace {
 
-// Of a number that cannot be held: by the sign of its exponent, or by whether it has digits before its point.
+// Of a number that cannot be held: by the place of its first digit that is not 0, before or behind the point, and its
+// exponent.
 bool is_small(std::string_view text) {
-    const std::size_t exponent = text.find_first_of("eE");
-    if (exponent != std::string_view::npos)
-        return text.substr(exponent + 1).starts_with('-');
-    return text.find_first_of("123456789") > text.find('.');
+    const std::size_t behind = std::min(text.find_first_of("eE"), text.size());
+    const std::string_view digits = text.substr(0, behind), exponent = text.substr(std::min(behind + 1, text.size()));
+    const auto point = static_cast<long long>(std::min(digits.find('.'), digits.size())),
+               first = static_cast<long long>(digits.find_first_of("123456789"));
+    constexpr long long far = 1'000'000'000;
+    long long power = 0;
+    const std::string_view unsigned_part = exponent.substr(exponent.starts_with('+') ? 1 : 0);
+    if (std::from_chars(unsigned_part.data(), unsigned_part.data() + unsigned_part.size(), power).ec ==
+        std::errc::result_out_of_range)
+        power = exponent.starts_with('-') ? -far : far;
+    return point - first + std::clamp(power, -far, far) < 0;
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Numbers as people write them in scenes, tables and on the command line: the same whatever the locale.
+// Numbers as people write them in scenes and tables: the same whatever the locale.
 #pragma once
 
 #include <string_view>

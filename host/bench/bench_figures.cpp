@@ -29,7 +29,7 @@ Figures own_figures(const BenchResult& result, const Measurement& measurement) {
     Figures figures;
     figures.slope = error_slope(runs);
     figures.efficiency = efficiency(runs, result.reference.offset_error);
-    figures.times_to_judge = times_to_judge(runs, result.reference.offset_error);
+    figures.times_to_judge = times_to_judge(runs);
     figures.judged = figures.times_to_judge <= 1.0;
     figures.below_reference = result.reference.relmse.value_or(0.0) > points_of(runs).back().relmse;
     figures.noise = median_noise(runs);

@@ -38,10 +38,10 @@ bool all_positive(std::span<const BenchRun> runs) {
     return std::all_of(runs.begin(), runs.end(), [](const BenchRun& r) { return r.relmse > 0.0 && r.seconds > 0.0; });
 }
 
-// Mean of log 1 / (relMSE seconds), weighted by seconds, and its standard error; and the mean relMSE, weighted
-// likewise.
+// Mean of log 1 / (relMSE seconds), weighted by seconds, and its standard error; and by how much it falls where all
+// relMSE are larger by 1, the mean of 1 / relMSE.
 struct LogEfficiency {
-    double mean = 0.0, error = 0.0, freedom = 0.0, relmse = 0.0;
+    double mean = 0.0, error = 0.0, freedom = 0.0, slope = 0.0;
 };
 
 std::optional<LogEfficiency> log_efficiency(std::span<const BenchRun> runs) {
@@ -54,7 +54,7 @@ std::optional<LogEfficiency> log_efficiency(std::span<const BenchRun> runs) {
     double squares = 0.0; // of the weights
     for (const BenchRun& run : runs) {
         result.mean -= run.seconds / sum * std::log(run.relmse * run.seconds);
-        result.relmse += run.seconds / sum * run.relmse;
+        result.slope += run.seconds / sum / run.relmse;
         squares += square(run.seconds / sum);
     }
     double scatter = 0.0;
@@ -232,7 +232,7 @@ std::optional<Interval> efficiency(std::span<const BenchRun> runs, double offset
     if (!log)
         return std::nullopt;
     return exponential(log->mean, std::hypot(student_t95(log->freedom) * log->error,
-                                             normal_two_sided(0.95) * offset_error / log->relmse));
+                                             normal_two_sided(0.95) * offset_error * log->slope));
 }
 
 std::optional<Interval> efficiency_ratio(std::span<const BenchRun> runs, std::span<const BenchRun> base,
@@ -245,16 +245,15 @@ std::optional<Interval> efficiency_ratio(std::span<const BenchRun> runs, std::sp
     const double freedom = spread > 0.0 ? square(variance) / spread : std::min(a->freedom, b->freedom);
     return exponential(a->mean - b->mean,
                        std::hypot(student_two_sided(freedom, probability) * std::sqrt(variance),
-                                  normal_two_sided(probability) * offset_error * (1.0 / a->relmse - 1.0 / b->relmse)));
+                                  normal_two_sided(probability) * offset_error * (a->slope - b->slope)));
 }
 
-double times_to_judge(std::span<const BenchRun> runs, double offset_error) {
+double times_to_judge(std::span<const BenchRun> runs) {
     constexpr double fewest = 4.0, wanted = 5.0; // effective runs
     const std::optional<LogEfficiency> log = log_efficiency(runs);
     if (!log) // one run, or the reference is no better than the runs: it grows with the bench
         return std::max(2.0, wanted / std::max(1.0, double(runs.size())));
-    const double most = std::log(3.0), half_width = std::hypot(student_t95(log->freedom) * log->error,
-                                                               normal_two_sided(0.95) * offset_error / log->relmse);
+    const double most = std::log(3.0), half_width = student_t95(log->freedom) * log->error;
     const double effective = log->freedom + 1.0;
     if (effective >= fewest && half_width <= most)
         return 1.0;

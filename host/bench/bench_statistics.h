@@ -98,7 +98,7 @@ std::optional<Interval> efficiency_ratio(std::span<const BenchRun> runs, std::sp
 // four effective runs on, with an interval from a third to thrice its value at most: what is measured so differs by
 // less than the estimators that are worth telling apart, and a t of fewer runs is a guess. From longer benches, with
 // five runs and errors in proportion to 1 / sqrt(seconds), t * error is to be log 3.
-double times_to_judge(std::span<const BenchRun> runs, double offset_error = 0.0);
+double times_to_judge(std::span<const BenchRun> runs);
 
 // Until the picture's noise is `target`: noise^2 seconds / target^2, the median over the runs of the most samples,
 // since noise^2 falls as 1 / seconds. Nothing if that is not known, as of single samples.

@@ -116,9 +116,11 @@ Noise noise_of(const Film& a, const Film& b, std::size_t pixel, int channel) {
     const double n_a = a.samples[pixel];
     const double n_b = b.samples[pixel];
     if (n_a < 1 || n_b < 1) { // an image of unknown making, whose values are taken for exact unless it has variances
+        if (n_a + n_b == 1)   // the other's is unknown
+            return noise;
         noise.variance = own_a + own_b;
         if (n_a + n_b > 0)
-            noise.freedom = std::max(1.0, n_a + n_b - 1);
+            noise.freedom = std::max(1.0, parts_of(a, pixel) + parts_of(b, pixel) - 1);
         return noise;
     }
     const double per_sample = std::max(own_a * n_a, own_b * n_b);
@@ -161,7 +163,7 @@ void add_sum(const Film& film, int channel, SumOfVariances& sum) {
     if (film.is_correlated)
         return sum.add((*film.sum_variance)[channel], *std::max_element(film.samples.begin(), film.samples.end()));
     for (std::size_t i = 0; i < film.pixel_count(); ++i)
-        sum.add(film.variance[i][channel], film.samples[i]);
+        sum.add(film.variance[i][channel], parts_of(film, i));
 }
 
 SumOfVariances of_sums(const Film& a, const Film& b, int channel) {

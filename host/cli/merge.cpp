@@ -187,6 +187,14 @@ FilmLayer merge_layer(const std::vector<MergeInput>& inputs, std::size_t which, 
     return merged;
 }
 
+// Of pictures whose variances are known from passes: as many as all have.
+std::uint32_t passes_of(const std::vector<MergeInput>& inputs) {
+    std::uint32_t passes = 0;
+    for (const MergeInput& input : inputs)
+        passes += input.film.passes;
+    return passes;
+}
+
 Film film_of(const std::vector<Moments>& moments, const Film& like, const Crop& window) {
     Film film;
     film.is_premultiplied = like.is_premultiplied;
@@ -262,6 +270,7 @@ MergeResult merge_films(const std::vector<MergeInput>& inputs) {
         add_means(input.film, input.film.mean, input.film.variance, window, moments);
     MergeResult result;
     result.film = film_of(moments, inputs.front().film, window);
+    result.film.passes = passes_of(inputs);
     if (result.film.is_correlated)
         result.film.sum_variance = merged_sum_variance(inputs);
     for (std::size_t i = 0; i < inputs.front().film.layers.size(); ++i)

@@ -20,13 +20,14 @@ struct Mesh {
     std::vector<std::string> warnings; // what was understood but is not honoured
 };
 
-// Welds equal positions and turns bodies that are inside out. InputError, with `name`, for what is not closed.
+// Welds equal positions and turns bodies that are inside out. InputError, with `name`, for what is not closed or
+// encloses nothing.
 void close_polygons(Polygons& polygons, const std::string& name);
 // For each vertex one at the same position, the same for all of them there.
 std::vector<std::uint32_t> welded_vertices(const std::vector<glm::dvec3>& vertices);
 
 // Reads all files, with the .mtl files they name beside them, and welds equal positions within each. Bodies that are
-// inside out are turned. InputError for what is not closed, or not readable.
+// inside out are turned. InputError for what is not closed, encloses nothing, or is not readable.
 // `transform`: of all of them.
 Mesh load_mesh(const MeshFiles& files, const glm::dmat4& transform = glm::dmat4(1.0));
 

@@ -33,8 +33,10 @@ void check_size(const PictureHeader& header, const path& file) {
                                      "edges from 1 to {}, nearby",
                                      file.string(), header.width, header.height, header.x, header.y, header.full_width,
                                      header.full_height, header.full_x, header.full_y, largest_edge));
-    // As of zlib, or, of files that may have eight pixels in a byte, eight times that; and what any file may have.
-    const std::uint64_t best_compression = header.is_whole_numbers ? 8 * 1040 : 1040, small = 64 << 20;
+    // As of zlib, or, of files that may have eight pixels in a byte and their colours in a list, so many times that;
+    // and what any file may have.
+    const std::uint64_t best_compression = header.is_whole_numbers ? 8 * 1040 * header.channels.size() : 1040,
+                        small = 16 << 20;
     std::error_code error;
     const std::uint64_t file_bytes = std::filesystem::file_size(file, error);
     const std::uint64_t bytes =

@@ -18,7 +18,7 @@ namespace vkvol {
 // behind.
 void check_writable(const std::filesystem::path& path);
 
-// The same for any file (a report): only that it can be made.
+// The same for any file (a report): only that it can be made, and what is there replaced.
 void check_directory_writable(const std::filesystem::path& path, const char* option = "-o");
 
 // Whether it is for looking at: .png.

@@ -55,7 +55,8 @@ void read_facts(const Metadata& metadata, Film& film) {
     film.is_premultiplied = text_of(metadata, premultiplied_key) == "1";
     film.is_correlated = text_of(metadata, correlated_key) == "1";
     const NumberText passes = read_number_text(text_of(metadata, passes_key));
-    film.passes = passes.value >= 1.0 && passes.value < 1e9 ? static_cast<std::uint32_t>(passes.value) : 0;
+    film.passes =
+        passes.is_number && passes.value >= 1.0 && passes.value < 1e9 ? static_cast<std::uint32_t>(passes.value) : 0;
     film.sum_variance.reset();
     std::istringstream text(text_of(metadata, sum_variance_key));
     glm::dvec3 v;

@@ -108,6 +108,12 @@ double number_of(const Metadata& metadata, const std::string& key, double fallba
     return found.is_number && found.value > 0.0 && std::isfinite(found.value) ? found.value : fallback;
 }
 
+// As its library says, of whichever version.
+bool is_linear(const PictureHeader& header) {
+    const std::string space = text_of(header.attributes, "oiio:ColorSpace");
+    return space == "linear" || space == "Linear" || space.starts_with("lin_");
+}
+
 // What the file says of its numbers beyond them, where they are taken otherwise.
 std::vector<std::string> warnings_of(const PictureHeader& header, const std::filesystem::path& file) {
     std::vector<std::string> warnings;
@@ -117,13 +123,13 @@ std::vector<std::string> warnings_of(const PictureHeader& header, const std::fil
              "Rec.709");
     if (header.is_whole_numbers && text_of(header.attributes, "ICCProfile") == "another")
         warn("its ICC profile is not sRGB's, but its numbers are taken as such; convert it to sRGB");
-    const double gamma = number_of(header.attributes, "oiio:Gamma", 2.2);
+    const double gamma = is_linear(header) ? 1.0 : number_of(header.attributes, "oiio:Gamma", 2.2);
     if (header.is_whole_numbers && (gamma < 1.8 || gamma > 2.6))
         warn(fmt::format("its numbers are of gamma {:g}, but taken as sRGB; save it as sRGB, or as .exr", gamma));
     if (const double exposure = number_of(header.attributes, "hdr:exposure", 1.0); exposure != 1.0)
         warn(fmt::format(
-            "its numbers are {:g} times the radiance (EXPOSURE), and taken as they are; multiplier=\"{:g}\" "
-            "undoes that",
+            "the last EXPOSURE of its header is {:g}: its numbers are so many times the radiance, and taken as "
+            "they are; a factor of {:g} undoes that",
             exposure, 1.0 / exposure));
     return warnings;
 }

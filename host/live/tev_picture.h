@@ -33,7 +33,7 @@ private:
     std::string address_, name_;
     int socket_ = -1;
     std::chrono::steady_clock::time_point begun_; // with the picture that is being sent
-    std::chrono::milliseconds to_take_{};
+    std::chrono::milliseconds to_take_{5000};
     bool is_there_ = false;
     std::string failure_;
 };

@@ -36,9 +36,9 @@ glm::dvec2 sensor_size(const Scene& scene) {
            glm::dvec2(picture.width / picture.reference_width, picture.height / picture.reference_height);
 }
 
-// As camera_ray does, which goes on beyond them.
+// As camera_ray does, which goes on beyond them; but for rounding.
 bool shows_beyond_poles(const Picture& picture) {
-    return picture.start_y < -0.5 || picture.start_y + picture.height > picture.reference_height + 0.5;
+    return picture.start_y < -1e-6 || picture.start_y + picture.height > picture.reference_height + 1e-6;
 }
 
 // In domains that repeat particles are counted, and the sensor, which repeats as well, is passed once in each.

@@ -210,6 +210,7 @@ void Wavefront::free_slots(std::uint32_t begin, std::uint32_t end) {
     push_.work_end = no_end;
     push_.places = plan_.waiting / samples();
     finished_ = sorted_ = 0;
+    most_in_flight_ = 0;
     rounds_ = 1; // many came to little at the end of the last batch
     if (collect_)
         commands_.fill(buffer(BINDING_SPLATS), 0);
@@ -362,8 +363,9 @@ std::uint32_t Wavefront::bearable_budget() const {
 // again.
 void Wavefront::adapt(double seconds) {
     // Not forgotten while a batch ends, when few lanes have work: the next begins with all of them.
-    const bool all_work = items_handed_out() < items_to_hand_out();
-    worst_turn_ = std::max((all_work ? 0.9 : 1.0) * worst_turn_, seconds / (double(rounds_) * push_.budget));
+    most_in_flight_ = std::max(most_in_flight_, in_flight());
+    const bool ends = 2 * in_flight() < most_in_flight_;
+    worst_turn_ = std::max((ends ? 1.0 : 0.9) * worst_turn_, seconds / (double(rounds_) * push_.budget));
     const double factor = std::clamp(plan_.submit_seconds / std::max(seconds, 1e-6), 0.5, 2.0);
     if (factor > 1.0 && push_.budget < plan_.budget)
         push_.budget = std::min({2 * push_.budget, plan_.budget, bearable_budget()});

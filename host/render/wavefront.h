@@ -100,6 +100,7 @@ private:
     std::uint64_t finished_ = 0;       // paths of the batch
     std::uint32_t sorted_ = 0;         // pixels of which those that miss the medium never were paths
     double worst_turn_ = 0.0;          // seconds of a round over its budget, at most
+    std::uint64_t most_in_flight_ = 0; // of the batch
     std::uint32_t rounds_ = 1, rounds_run_ = 0;
 };
 

@@ -174,10 +174,8 @@ void SceneReader::warn_without_volume() const {
     for (const char* name : {"sigma_a", "sigma_s", "heyneygreenstein_g", "heynegreenstein_g", "phase", "medium",
                              "albedo", "densityMap", "transferFunction", "noise", "layers"})
         if (const XmlElement element = one(name); element.exists()) {
-            const bool has_groups = !document_.root().child("volumes").child("volume").empty();
-            element.warn(fmt::format("<{}> is without effect: {}", name,
-                                     has_groups ? "it is in no volume; write it into each <volume> that it is meant of"
-                                                : "the scene has no densityField, sphere, box or model"));
+            element.warn(
+                fmt::format("<{}> is without effect: the scene has no densityField, sphere, box or model", name));
             return;
         }
 }

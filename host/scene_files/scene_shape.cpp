@@ -14,9 +14,7 @@ const std::vector<std::string> field_attributes = {"baseDir", "grid", "velocity"
 
 bool asks_for_shape(const XmlElement& element, pugi::xml_node node) {
     if (element.name() == "densityField")
-        return !element.text().empty() ||
-               std::any_of(std::begin(field_attributes), std::end(field_attributes),
-                           [&](const std::string& name) { return !element.attribute(name.c_str()).empty(); });
+        return !element.text().empty() || !element.attribute("baseDir").empty();
     return element.name() != "models" || node.child("model");
 }
 
@@ -62,6 +60,11 @@ std::optional<Shape> SceneReader::shape(const std::string& integrator, std::stri
 XmlElement SceneReader::shape_element(const std::string& integrator) const {
     for (const pugi::xml_node scope : scopes_)
         if (const XmlElement element = shape_element(scope, integrator); element.exists())
+            return element;
+    // One that names a grid and no file is --grid's, or forgot it.
+    for (const pugi::xml_node scope : scopes_)
+        if (const XmlElement element(document_, find_one(document_, scope, {"densityField"}));
+            !element.attribute("grid").empty() || !element.attribute("velocity").empty())
             return element;
     return {document_, {}};
 }

@@ -173,6 +173,19 @@ std::vector<pugi::xml_node> SceneReader::with_those_it_is_like(pugi::xml_node vo
     return chain;
 }
 
+void SceneReader::warn_of_what_is_in_no_volume() const {
+    for (const std::string& name : in_a_volume)
+        if (const XmlElement element(document_, document_.root().child(name.c_str())); element.exists()) {
+            if (name == "models" || name == "densityField") // empty, as the original's own scenes have them
+                continue;
+            element.warn(
+                fmt::format("<{}> is without effect: it is in no volume; write it into each <volume> that it is "
+                            "meant of",
+                            name));
+            return;
+        }
+}
+
 // What stands in the scene itself is one, too.
 void SceneReader::read_volumes(Scene& scene) {
     const XmlElement groups = one("volumes");
@@ -181,7 +194,9 @@ void SceneReader::read_volumes(Scene& scene) {
     const bool has_groups = !list.child("volume").empty();
     if (has_groups && overrides_.grid)
         groups.fail("--grid: of several <volumes> it is not clear which one is meant; write the grid's file into one");
-    if (const std::optional<Volume> medium = volume(scene.settings.integrator))
+    if (has_groups && !shape_element(scene.settings.integrator).exists())
+        warn_of_what_is_in_no_volume();
+    else if (const std::optional<Volume> medium = volume(scene.settings.integrator))
         scene.volumes.push_back(*medium);
     const NamedVolumes named = named_volumes(list);
     for (const pugi::xml_node node : list.children("volume")) {

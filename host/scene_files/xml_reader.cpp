@@ -193,7 +193,7 @@ void XmlDocument::fill_in(pugi::xml_node node) {
     }
 }
 
-// `place` is called for messages alone: it counts lines from the beginning.
+// `place` is called for messages alone.
 template <class Place> std::string XmlDocument::substitute(const std::string& raw, const Place& place) {
     try {
         return keys_.fill_in(raw);
@@ -211,8 +211,10 @@ std::string XmlDocument::place_of_offset(std::ptrdiff_t offset) const {
     const auto line = std::upper_bound(line_starts_.begin(), line_starts_.end(), before) - line_starts_.begin();
     const std::ptrdiff_t line_start = line_starts_[std::size_t(line - 1)];
     // From where it was counted to last, if that is in this line: a scene may be all in one.
-    if (counted_to_ < line_start || counted_to_ > before)
-        counted_to_ = line_start, column_there_ = 1;
+    if (counted_to_ < line_start || counted_to_ > before) {
+        counted_to_ = line_start;
+        column_there_ = 1;
+    }
     // UTF-8 continuation bytes belong to the character before them.
     column_there_ +=
         std::count_if(text_.begin() + counted_to_, text_.begin() + before, [](char c) { return (c & 0xC0) != 0x80; });

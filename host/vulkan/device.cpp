@@ -39,13 +39,13 @@ const char* type_name(VkPhysicalDeviceType type) {
     }
 }
 
-// Rather a driver that has passed the tests than one that has not, a real GPU than a software driver, much memory than
-// little.
+// Rather a real GPU than a software driver, of GPUs one whose driver has passed Vulkan's tests, a discrete one, one of
+// much memory.
 bool is_better(const DeviceInfo& a, const DeviceInfo& b) {
     constexpr std::array order = {"discrete", "integrated", "virtual", "other", "cpu"};
     const auto rank = [&](const DeviceInfo& info) {
         const auto kind = std::find(order.begin(), order.end(), info.type) - order.begin();
-        return std::tuple(!info.conformant, kind, ~info.memory);
+        return std::tuple(info.type == "cpu", !info.conformant, kind, ~info.memory);
     };
     return rank(a) < rank(b);
 }

@@ -26,8 +26,8 @@ float lamp_pdf(LightRow light, vec3 from, vec3 direction, float t) {
 float other_share(float peak, LightRow light, vec3 from) {
     vec3 apart = light.position - from;
     float square = light.kind == LIGHT_SPHERE ? dot(apart, apart) : flat_square(light, from);
-    float s = peak * light.area / max(square, 1.0e-30);
-    float share = 0.85 * s / (1.0 + s);
+    float filled = peak * light.area;
+    float share = 0.85 * filled / (filled + max(square, 1.0e-30));
     return MIS == MIS_LIGHT ? 0.0 : MIS == MIS_PHASE ? 1.0 : share;
 }
 
@@ -72,28 +72,34 @@ uint nearest_body(vec3 from, vec3 direction, out float nearest) {
     return row;
 }
 
-// What the camera sees along a ray: one of the lamps that it meets, drawn by u in [0, 1) as each of them is bright, and its row.
+// What the camera sees along a ray: one of the lamps that it meets, and its row. By u in [0, 1), half of the time as each of them
+// is bright, and half all alike: nobody knows yet what is in the way of which.
 LightSample seen_lamp(vec3 from, vec3 direction, float u, out uint row) {
     LightSample seen = LightSample(direction, FAR, vec3(0.0), 0.0);
-    float met = 0.0, own = 1.0; // radiances, summed over the channels: of all so far, and of the one at hand
+    bool alike = u < 0.5;
+    u = alike ? 2.0 * u : 2.0 * u - 1.0;
+    float met = 0.0, sum = 0.0, own = 0.0, weights = 0.0; // how many, their radiances over all channels, and of the one at hand
     row = frame.lamp_first;
     float hidden;
     uint front = nearest_body(from, direction, hidden);
     for (uint i = frame.lamp_first; i < frame.lamp_first + frame.lamp_count; ++i) {
         float t = hit_lamp(light_at(i), from, direction);
-        if (t < hidden || i == front) {
-            // With chance latest / met the latest takes the place of the one before: u is stretched to what is left of it.
-            float latest = dot(light_at(i).radiance, vec3(1.0)), before = met;
-            met += latest;
-            bool taken = latest > 0.0 && (u * met < latest || before == 0.0);
-            u = min(taken ? u * met / latest : (u * met - latest) / max(before, 1.0e-30), 0.99999994);
+        float bright = dot(light_at(i).radiance, vec3(1.0));
+        if ((t < hidden || i == front) && bright > 0.0) {
+            // With chance weight / weights the latest takes the place of the one before: u is stretched to what is left of it.
+            float weight = alike ? 1.0 : bright, before = weights;
+            weights += weight;
+            bool taken = u * weights < weight || before == 0.0;
+            u = min(taken ? u * weights / weight : (u * weights - weight) / max(before, 1.0e-30), 0.99999994);
+            met += 1.0;
+            sum += bright;
             seen.distance = taken ? t : seen.distance;
             seen.light = taken ? light_at(i).radiance : seen.light;
-            own = taken ? latest : own;
+            own = taken ? bright : own;
             row = taken ? i : row;
         }
     }
-    seen.light *= met / own;
+    seen.light *= met > 0.0 ? 2.0 / (1.0 / met + own / sum) : 0.0;
     return seen;
 }
 

@@ -17,8 +17,8 @@ float hit_sphere(LightRow light, vec3 from, vec3 direction) {
     float middle = dot(apart, direction);
     vec3 miss = apart - middle * direction;
     float inside = light.extent * light.extent - dot(miss, miss);
-    // The nearer of two, whose product is the square of the distance to the middle less the radius's: no difference of what
-    // is about as large, so that right above the ball all digits are known.
+    // The nearer of two, whose product is the square of the distance to the middle less the radius's: positive from outside,
+    // however near the ball is.
     float far = length(apart);
     float t = (far - light.extent) * (far + light.extent) / (middle + sqrt(max(inside, 0.0)));
     return inside > 0.0 && middle > 0.0 && t > 0.0 ? t : FAR;

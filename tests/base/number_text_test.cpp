@@ -18,11 +18,16 @@ TEST_CASE("numbers are read as they are written anywhere", "[cpu][xml]") {
         CHECK(std::isnan(value_of(none)));
     }
     // What is too small to be held is nothing, however it is written.
-    for (const std::string& small :
-         {std::string("1e-400"), std::string("-3.5E-999"), "0." + std::string(400, '0') + "1"}) {
+    const std::string zeros(400, '0'), nines(400, '9');
+    for (const std::string& small : {std::string("1e-400"), std::string("-3.5E-999"), "0." + zeros + "1",
+                                     "." + zeros + "1e5", std::string("1e-99999999999999999999")}) {
         CAPTURE(small);
         CHECK(value_of(small) == 0.0);
     }
-    CHECK(read_number_text(std::string(400, '9')).is_too_large);
+    for (const std::string& large :
+         {nines, nines + "e-5", nines + ".5", std::string("0.1e+400"), std::string("1e99999999999999999999")}) {
+        CAPTURE(large);
+        CHECK(read_number_text(large).is_too_large);
+    }
     CHECK_FALSE(read_number_text("1e400x").is_number);
 }

@@ -268,7 +268,7 @@ TEST_CASE("what a sketch shows is exposed as it is, whatever else is there yet",
     const Film sketch = grey_film(2, 1, 4000.0f);
     ToneRequest automatic;
     automatic.automatic_exposure = true;
-    const ShownLayer shown = show_layer(film, &sketch, "", automatic, {});
+    const ShownLayer shown = show_layer(film, &sketch, "picture", automatic, {});
     CHECK(shown.mapping.exposure < -10.0);
     CHECK(shown.clipped == 0);
 }

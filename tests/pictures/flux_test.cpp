@@ -338,6 +338,12 @@ TEST_CASE("sensors of flux in scene files", "[cpu][xml][flux]") {
     CHECK(facing.picture.width * facing.picture.height == 1);
     CHECK(glm::distance(-camera_rotation(facing.camera)[2], glm::dvec3(0.0, 1.0, 0.0)) < 1e-12);
     CHECK(parse(R"(<irradiance lookAt="0 1 0"/><width>7</width><height>3</height>)").picture.width == 7);
+    // As a rectangle, nearly upwards too: its width along x.
+    const Scene aslant = parse(R"(<irradiance lookAt="0.02 1 0"/><lights><rectangle lookAt="0.02 1 0"/></lights>)");
+    const auto& rectangle = std::get<RectangleLight>(aslant.lights.at(0));
+    const glm::dvec3 across = camera_rotation(aslant.camera)[0];
+    CHECK(std::abs(std::abs(glm::dot(across, glm::normalize(rectangle.edge_u))) - 1.0) < 1e-12);
+    CHECK(std::abs(across.x) > 0.99);
     const Scene points = parse("<fluence>0 1 2\n 3 4 5  6 7 8</fluence>");
     CHECK(points.camera.points == std::vector<glm::dvec3>{{0, 1, 2}, {3, 4, 5}, {6, 7, 8}});
     CHECK(points.picture.width == 3);

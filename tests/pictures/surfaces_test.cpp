@@ -623,6 +623,27 @@ TEST_CASE("looks from along flights find the same light beside surfaces", "[gpu]
         check_by_both_schedules(each, name);
 }
 
+// Behind a wall that parts the fog there is all of the light, and before it none.
+TEST_CASE("looks from along flights do not go through walls", "[gpu][image][surfaces]") {
+    Scene scene;
+    scene.volumes = {box_of_fog(0.5, 0.9)};
+    scene.lights = {PointLight{{0.0, 0.0, -1.0}, Rgb(10.0)}};
+    scene.background = Rgb(0.0);
+    scene.camera = Camera{};
+    scene.camera.position = {0.0, 0.0, 12.0};
+    scene.camera.fov = 20.0;
+    scene.picture = {8, 8, 0.0, 0.0, 8.0, 8.0};
+    scene.settings.choices.distance = DISTANCE_MIXED;
+    scene.settings.spp = 256;
+    Surface wall;
+    wall.shape = RectangleSurface{{0.0, 0.0, 0.0}, {99.0, 0.0, 0.0}, {0.0, 99.0, 0.0}};
+    wall.material.color = Rgb(0.0);
+    scene.surfaces = {wall};
+    CHECK(image_mean(render_here(scene, 1).film).value == glm::dvec3(0.0));
+    scene.surfaces.front().shape = RectangleSurface{{0.0, 0.0, -2.0}, {99.0, 0.0, 0.0}, {0.0, 99.0, 0.0}};
+    CHECK(image_mean(render_here(scene, 2).film).value.x > 0.01);
+}
+
 TEST_CASE("surfaces that shine are lamps with bodies", "[gpu][image][surfaces]") {
     // All shapes, from both sides, before and behind each other, as mirrors and glass show them, one itself of rough
     // glass; against the reference, which meets them by chance.

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <unistd.h>
 
 #include "error.h"
 #include "integrators.h"
@@ -24,6 +25,23 @@ const GridFile& grid_of(const Scene& scene) {
 }
 
 } // namespace
+
+TEST_CASE("above a folder is what lies there, behind a link to it too", "[cpu][xml]") {
+    namespace fs = std::filesystem;
+    const fs::path folder = fs::temp_directory_path() / ("vkvol-linked-" + std::to_string(getpid()));
+    fs::create_directories(folder / "real" / "scenes");
+    std::ofstream(folder / "real" / "x.nvdb") << "x";
+    fs::create_directory_symlink(folder / "real" / "scenes", folder / "link");
+    const auto path_of = [&](const std::string& file) {
+        return grid_of(parse_scene("<options><densityField>" + file + "</densityField></options>",
+                                   folder / "link" / "s.xml"))
+            .path;
+    };
+    CHECK(fs::exists(path_of("../x.nvdb")));
+    CHECK(path_of("../none.nvdb") == folder / "none.nvdb");
+    CHECK(path_of("a/../b.nvdb") == folder / "link" / "b.nvdb");
+    fs::remove_all(folder);
+}
 
 TEST_CASE("an empty scene has the defaults of the documentation", "[cpu][xml]") {
     const Scene scene = parse("");
