@@ -25,6 +25,7 @@
 #include "options.h"
 #include "printable.h"
 #include "render_command.h"
+#include "software_lanes.h"
 #include "view.h"
 
 namespace {
@@ -41,6 +42,7 @@ void prepare_process() {
     }
     vkvol::install_file_limit_handler();
     std::signal(SIGPIPE, SIG_IGN);
+    vkvol::take_all_lanes();
 }
 
 // As in `vkvol info cloud.nvdb | head -1`.

@@ -15,6 +15,7 @@
 #include "memory_grids.h"
 #include "printable.h"
 #include "python_session.h"
+#include "software_lanes.h"
 #include "version.h"
 
 namespace py = pybind11;
@@ -332,6 +333,7 @@ void add_classes(py::module_& module) {
 
 PYBIND11_MODULE(_vkvol, module) {
     using namespace vkvol;
+    take_all_lanes();
     python::add_errors(module);
     python::add_classes(module);
     module.attr("version") = version;

@@ -1,11 +1,13 @@
 // That Mesa's lavapipe compiles a kernel once, and not for numbers of a scene: it does so for those that alone decide a
 // branch or end a loop, at every submit, and renders took up to four times as long. See by_lane in
-// shaders/lib/buffers.glsl.
+// shaders/lib/buffers.glsl. And that how many lanes it has is nothing that a picture shows.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include "image_io.h"
 #include "support/command_folder.h"
+#include "support/images.h"
 #include "support/test_device.h"
 
 using namespace vkvol;
@@ -63,4 +65,30 @@ TEST_CASE("the driver compiles a kernel once", "[gpu][command]") {
         <sigma_a>0.2</sigma_a><sigma_s>$x</sigma_s><backgroundColor r="$x"/>
         <lights><point x="2" y="3" z="$x" r="9" g="9" b="5"/></lights></options>)",
                          "--integrator bidirectional");
+}
+
+// A lane knows nothing of its neighbours.
+TEST_CASE("the driver's lanes change no bit", "[gpu][command]") {
+    if (test_device().info().name.find("llvmpipe") == std::string::npos) {
+        WARN("skipped: it is about Mesa's lavapipe");
+        return;
+    }
+    const Folder folder("");
+    folder.write("scene.xml", R"(<options><width>24</width><height>16</height><rayPerPixelCount>16</rayPerPixelCount>
+        <camera y="1" z="6" pitch="-4"/><sphere radius="1.5"/><noise frequency="3" octaves="3"/><sigma_s>4</sigma_s>
+        <lights><sun y="1" x="1" r="3" g="3" b="3"/><daylight y="1"/></lights>
+        <surfaces><plane y="-1.5" lookAt="0 5 0"/><sphere x="1" y="-1" z="1" radius="0.4" material="dielectric"/></surfaces>
+        </options>)");
+    const auto picture = [&](const char* name, const char* environment) {
+        const Run run = folder.vkvol(fmt::format("scene.xml -q --schedule fused --seed 3 -o {}.exr", name),
+                                     fmt::format("MESA_SHADER_CACHE_DISABLE=true {}", environment));
+        INFO(run.text);
+        REQUIRE(run.code == 0);
+        return read_exr(folder.file(std::string(name) + ".exr"));
+    };
+    const Film eight = picture("eight", "LP_NATIVE_VECTOR_WIDTH=256");
+    CHECK(same_bits(eight, picture("four", "LP_NATIVE_VECTOR_WIDTH=128")));
+    CHECK(same_bits(eight, picture("all", "")));
+    const Run devices = folder.vkvol("devices", "LP_NATIVE_VECTOR_WIDTH=256");
+    CHECK_THAT(devices.text, Catch::Contains("256 bits"));
 }

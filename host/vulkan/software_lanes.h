@@ -1,0 +1,10 @@
+// How many lanes Mesa's software driver works with.
+#pragma once
+
+namespace vkvol {
+
+// Sixteen where the processor has AVX-512, of which the driver by itself uses half: see tools/results/README.md. By the
+// environment, which is the driver's only way to be told, and only what nobody has set there. Before there are threads.
+void take_all_lanes();
+
+} // namespace vkvol
