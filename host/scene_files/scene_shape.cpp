@@ -10,7 +10,6 @@ namespace vkvol {
 namespace {
 
 constexpr const char* shape_names[] = {"densityField", "sphere", "box", "everywhere", "models"};
-const std::vector<std::string> field_attributes = {"baseDir", "grid", "velocity", "framesPerSecond"};
 
 bool asks_for_shape(const XmlElement& element, pugi::xml_node node) {
     if (element.name() == "densityField")
@@ -94,7 +93,7 @@ XmlElement SceneReader::shape_element(pugi::xml_node scope, const std::string& i
         if (!element.exists())
             continue;
         if (element.name() == "densityField")
-            element.allow(field_attributes, true);
+            element.allow({"baseDir", "grid", "velocity", "framesPerSecond"}, true);
         if (element.name() == "models")
             element.allow({}, false, {"model"});
         if (!asks_for_shape(element, node))

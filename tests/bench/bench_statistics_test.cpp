@@ -143,7 +143,7 @@ TEST_CASE("of many floors of 0 hardly ever one seems to be more", "[cpu][bench]"
         each += one_each ? 1 : 0;
     }
     CHECK(together <= 0.05 * trials);
-    CHECK(each > 0.1 * trials); // 1 - 0.975^10 is 0.22, less what the wider of two intervals holds
+    CHECK(each > 0.1 * trials); // by far what all together may be: without the correction it would be seen
 }
 
 TEST_CASE("a bench is called too short until its figures are fit to compare", "[cpu][bench]") {
@@ -185,7 +185,7 @@ TEST_CASE("95 % intervals hold the truth in 95 % of benches", "[cpu][bench]") {
             const auto noise = [&](std::uint32_t n) { return 0.3 / std::sqrt(n * (n - 0.999)) * normal(random); };
             hits += holds(bias_floor(runs_of(0.01, noise), 0.0), 0.01) ? 1 : 0;
         }
-        CHECK(hits >= 0.93 * 4000);
+        CHECK(hits >= 0.936 * 4000);
         CHECK(hits <= 0.985 * 4000);
     }
     // Beside a bias b errors e leave 2 b e, whose variance falls as 1 / n only. At least in 95 % then.
@@ -203,7 +203,7 @@ TEST_CASE("95 % intervals hold the truth in 95 % of benches", "[cpu][bench]") {
         int hits = 0;
         for (int i = 0; i < 4000; ++i)
             hits += trial() ? 1 : 0;
-        CHECK(hits >= 0.93 * 4000);
+        CHECK(hits >= 0.936 * 4000);
     }
     SECTION("efficiency: beside a reference whose noise all runs share, of all counts") {
         check_coverage([&] {
