@@ -87,7 +87,8 @@ void Session::compile_all() {
     std::vector<std::future<void>> compiling;
     for (const auto& follower : followers_) {
         Session& session = *follower->session;
-        if (session.devices_text() == fmt::format("{}, {}", device_.info().name, device_.info().driver)) {
+        if (session.device_.info().name == device_.info().name &&
+            session.device_.info().driver == device_.info().driver) {
             session.wish_.schedule = result_.plan.schedule;
             session.result_.plan = session.plan_by(result_.plan.schedule);
         }

@@ -14,6 +14,7 @@
 #include "scene_hash.h"
 #include "schedule_memory.h"
 #include "session.h"
+#include "software_lanes.h"
 #include "surface_mesh.h"
 #include "workshop.h"
 
@@ -356,10 +357,10 @@ void Session::make_film() {
     film_layers_ = layers;
 }
 
-// Names each kind of device once: those of one kind compute alike.
+// Names each kind of device once: those of one kind compute the same bits.
 std::string Session::devices_text() const {
     const auto text_of = [](const Device& device) {
-        return fmt::format("{}, {}", device.info().name, device.info().driver);
+        return fmt::format("{}, {}", name_by_bits(device.info().name), device.info().driver);
     };
     std::string text = text_of(device_);
     for (const Device* other : job_.others)

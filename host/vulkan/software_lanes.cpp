@@ -1,6 +1,7 @@
 #include "software_lanes.h"
 
 #include <cstdlib>
+#include <string_view>
 
 namespace vkvol {
 
@@ -25,6 +26,14 @@ void take_all_lanes() {
     // The driver keeps code on disk for whoever asks next, by what these flags are and not by how many lanes it has.
     // This one is of textures with levels of detail, which no kernel has.
     setenv(flags, "no_quad_lod", 0);
+}
+
+std::string name_by_bits(std::string device_name) {
+    constexpr std::string_view sixteen = ", 512 bits", eight = ", 256 bits";
+    const std::size_t place = device_name.find(sixteen);
+    if (device_name.starts_with("llvmpipe") && place != std::string::npos)
+        device_name.replace(place, sixteen.size(), eight);
+    return device_name;
 }
 
 } // namespace vkvol
