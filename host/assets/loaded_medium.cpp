@@ -410,6 +410,7 @@ Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
             throw InputError(fmt::format("{}: {}", volume.place, error.what()));
         }
     }
+    check_everywhere(scene, assets.media);
     if (is_superposition(scene))
         assets.superposition = superpose(scene, assets.media, method);
     for (const Light& light : scene.lights)

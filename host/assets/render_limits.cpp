@@ -112,21 +112,6 @@ void check_distance(const Scene& scene, const Extent& extent) {
         check("point", point);
 }
 
-// A path that never comes to an end would be followed for ever.
-void check_everywhere(const Scene& scene, const Volume& volume, const LoadedMedium& loaded) {
-    constexpr double thinnest = 1e-15; // whose mean free path is a hundred thousandth of the way to where it ends
-    const double sigma_t = largest(world_sigma_t(volume, nullptr));
-    if (sigma_t > 0.0 && sigma_t < thinnest)
-        throw InputError(fmt::format("the extinction, {:.3g} per world unit, is too thin to be <everywhere>; expected "
-                                     "at least {:g}, or a <box>",
-                                     sigma_t, thinnest));
-    const Rgb lost = volume.sigma_a + (Rgb(1.0) - most_map_albedo(volume)) * volume.sigma_s;
-    const bool for_ever = std::min({lost.x, lost.y, lost.z}) < 1e-6 * largest(volume.sigma_a + volume.sigma_s);
-    if (!loaded.is_layered && sigma_t > 0.0 && for_ever && !scene.settings.max_depth)
-        throw InputError("a medium that is <everywhere> and absorbs nothing keeps its paths for ever; raise sigma_a, "
-                         "or give a <maxDepth>");
-}
-
 void check_glow(const Volume& volume, const LoadedMedium& loaded) {
     const double most = hottest_radiance(volume, loaded);
     if (!(most <= brightest_light))
@@ -240,13 +225,42 @@ void check_limits(const Scene& scene, const Volume& volume, const LoadedMedium& 
     if (empty_grid)
         return;
     check_extinction(volume, loaded);
-    if (is_everywhere(volume))
-        return check_everywhere(scene, volume, loaded);
+    if (is_everywhere(volume)) // see check_everywhere
+        return;
     const Extent extent = extent_of(volume, loaded);
     check_distance(scene, extent);
     const double sigma_t = largest(world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr));
     check_patience(scene, method, majorant_depth(scene, volume, loaded, extent.diagonal, sigma_t));
     check_glow(volume, loaded);
+}
+
+// A path that never comes to an end would be followed for ever. Of several media what they lose together counts.
+void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media) {
+    constexpr double thinnest = 1e-15; // whose mean free path is a hundred thousandth of the way to where it ends
+    std::string place;                 // of the first
+    Rgb all(0.0), endless(0.0), lost(0.0);
+    for (std::size_t i = 0; i < media.size(); ++i) {
+        const Volume& volume = scene.volumes[i];
+        if (!is_everywhere(volume))
+            continue;
+        if (place.empty() && !volume.place.empty())
+            place = volume.place + ": ";
+        const Rgb sigma_t = world_sigma_t(volume, nullptr);
+        all += sigma_t;
+        if (media[i].is_layered)
+            continue;
+        endless += sigma_t;
+        lost += volume.density_scale * (volume.sigma_a + (Rgb(1.0) - most_map_albedo(volume)) * volume.sigma_s);
+    }
+    if (largest(all) > 0.0 && largest(all) < thinnest)
+        throw InputError(
+            fmt::format("{}the extinction, {:.3g} per world unit, is too thin to be <everywhere>; expected "
+                        "at least {:g}, or a <box>",
+                        place, largest(all), thinnest));
+    if (largest(endless) > 0.0 && std::min({lost.x, lost.y, lost.z}) < 1e-6 * largest(endless) &&
+        !scene.settings.max_depth)
+        throw InputError(place + "a medium that is <everywhere> and absorbs nothing keeps its paths for ever; raise "
+                                 "sigma_a, or give a <maxDepth>");
 }
 
 } // namespace vkvol

@@ -13,6 +13,10 @@ void check_scene_limits(const Scene& scene);
 // Throws InputError with the figure and the remedy.
 void check_limits(const Scene& scene, const Volume& volume, const LoadedMedium& loaded, const Method& method);
 
+// Throws InputError for media that are everywhere and together too thin to be met, or lose too little ever to end a
+// path.
+void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media);
+
 // What is rendered, but not well: mean free paths that are hardly more than places are known to. Empty: none.
 std::string too_short_paths(const Scene& scene, const Volume& volume, const LoadedMedium& loaded);
 

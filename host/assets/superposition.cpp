@@ -20,6 +20,7 @@ namespace {
 constexpr double most_cells = 1 << 21;        // of all, or of bricks
 constexpr double most_coarse_cells = 1 << 18; // beside bricks
 constexpr int most_bits = 5;
+constexpr std::size_t most_overlaps = std::size_t{1} << 29;
 
 // A box along the axes around a box of another space.
 struct AxisBox {
@@ -384,6 +385,9 @@ void fill(const std::vector<Member>& members, PieceStore& pieces, Superposition&
         touch(member, whole.edge, [&](std::uint32_t entry, float bound) {
             // Upwards, by more than the device's sum of the same terms in the same order may be rounded.
             bounds[entry] = std::nextafter(bounds[entry] + bound, std::numeric_limits<float>::infinity());
+            if (found.size() == most_overlaps)
+                throw InputError("the lists of which volumes are where take more than 2 GiB; leave volumes out, or let "
+                                 "fewer lie in one another");
             found.push_back({entry, member.number});
         });
     list_overlaps(found, whole);

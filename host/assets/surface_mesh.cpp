@@ -15,12 +15,14 @@ namespace vkvol {
 
 namespace {
 
-TriangleSurface load(const MeshSurface& mesh, const glm::dmat4& transform, bool closed) {
+TriangleSurface load(const MeshSurface& mesh, const glm::dmat4& transform, bool closed,
+                     std::vector<std::string>& place_warnings) {
     if (closed) {
         Mesh loaded = load_mesh({{mesh.file}}, transform);
         return {std::move(loaded.vertices), std::move(loaded.triangles), std::move(loaded.normals), {}, true};
     }
     Polygons read = read_polygons(mesh.file);
+    place_warnings = std::move(read.place_warnings);
     for (glm::dvec3& vertex : read.vertices)
         vertex = glm::dvec3(transform * glm::dvec4(vertex, 1.0));
     TriangleSurface shape{std::move(read.vertices), std::move(read.triangles), std::move(read.normals),
@@ -93,12 +95,16 @@ void set_normals(TriangleSurface& mesh, MeshNormals which, const glm::dmat4& tra
     complete(mesh);
 }
 
-void load(const MeshSurface& mesh, Surface& surface) {
-    TriangleSurface loaded = load(mesh, surface.transform, surface.material.kind == MaterialKind::dielectric);
+void load(const MeshSurface& mesh, Surface& surface, std::vector<std::string>& warnings) {
+    std::vector<std::string> of_places;
+    TriangleSurface loaded =
+        load(mesh, surface.transform, surface.material.kind == MaterialKind::dielectric, of_places);
     set_normals(loaded, mesh.normals, surface.transform);
+    if (is_textured(surface.material))
+        warnings.insert(warnings.end(), of_places.begin(), of_places.end());
     if (is_textured(surface.material) && loaded.places.empty())
         throw InputError(fmt::format("{}: does not say where on a texture its corners are; export it with texture "
-                                     "coordinates (UVs)",
+                                     "coordinates (UVs), of a .ply those of vertices, s and t",
                                      mesh.file.string()));
     surface.shape = std::move(loaded);
 }
@@ -145,7 +151,7 @@ Scene with_surface_files(Scene scene) {
         Material& material = surface.material;
         try {
             if (const auto* found = std::get_if<MeshSurface>(&surface.shape))
-                load(MeshSurface(*found), surface);
+                load(MeshSurface(*found), surface, scene.warnings);
             else if (auto* mesh = std::get_if<TriangleSurface>(&surface.shape); mesh && mesh->is_mesh)
                 finish(*mesh, surface);
             if (!material.texture.empty() && !textures[material.texture])

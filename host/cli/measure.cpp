@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <utility>
 
 #include "atomic_file.h"
 #include "bench.h"
@@ -200,12 +201,15 @@ std::vector<SpectralBand> bands_of(const MeasureOptions& options) {
 }
 
 // Of what a reading warns and is biased by: each line once, however many readings have it.
-void tell_once(const MeasureOptions& options, const Scene& scene, const RenderResult& result, Workshop& workshop) {
-    std::vector<std::string> warnings = scene.warnings;
+void tell_once(const MeasureOptions& options, const RenderScene& loaded, const RenderResult& result,
+               Workshop& workshop) {
+    std::vector<std::string> warnings = loaded.scene.warnings;
     warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
     for (const std::string& warning : workshop.new_warnings(warnings))
         tell(stderr, "vkvol: warning: {}\n", warning);
     std::vector<std::string> notes;
+    if (!loaded.assumed.empty())
+        notes.push_back(loaded.assumed);
     if (!result.biased.empty())
         notes.push_back("the readings are biased: " + result.biased);
     if (options.request.noise_goal && !result.interrupted && result.samples > 1 && !relative_noise(result.film))
@@ -231,13 +235,16 @@ int run_measure(const MeasureOptions& options) {
     RenderResult told;     // what all readings together were cut short by
     const auto measure_band = [&](const Values& values, std::size_t band, Film& sum) {
         of_values(options.sweeps, values, bands[band], [&] {
-            const RenderScene loaded = load_render_scene(request_of(options, values, bands[band]), workshop.fields());
+            RenderScene loaded = load_render_scene(request_of(options, values, bands[band]), workshop.fields());
+            if (std::exchange(loaded.scene.layers, 0u) != 0)
+                loaded.scene.warnings.push_back(
+                    "<film aov>: a table has no layers, and none is rendered; leave it out");
             const RenderResult result = measure(options, loaded.scene, static_cast<std::uint32_t>(band), workshop);
             was_interrupted = result.interrupted;
             add_counts(told.counts, result.counts);
             told.counts.cleaned_voxels = std::max(told.counts.cleaned_voxels, result.counts.cleaned_voxels);
             if (!options.quiet)
-                tell_once(options, loaded.scene, result, workshop);
+                tell_once(options, loaded, result, workshop);
             if (result.samples == 0 && !was_interrupted)
                 throw RenderError("ended before any sample was done");
             if (result.samples > 0) {

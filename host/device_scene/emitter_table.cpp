@@ -173,7 +173,10 @@ struct FlatPiece {
         spare = SURFACE_SPARE * reach;
     }
 
-    // As nearly as rays know it: see lies_in, surfaces/nearest.glsl.
+    // By how much rays from what lies in it are kept apart; 0: it does not lie in it, as nearly as rays know it. See
+    // lies_in, surfaces/nearest.glsl.
+    double spare_of(const glm::dvec3& place, double extent) const { return holds(place, extent) ? spare : 0.0; }
+
     bool holds(const glm::dvec3& place, double extent) const {
         const double off = glm::dot(normal, place - corners[0]);
         if (!(std::abs(off) <= 0.125 * spare))
@@ -194,6 +197,12 @@ struct FlatPiece {
     glm::dvec3 normal;
     double spare;
 };
+
+double spare_of_ball(const shared::SurfacePrimitive& ball, const glm::dvec3& place) {
+    const glm::dvec3 middle(ball.a), reach = glm::abs(middle) + double(ball.c.x);
+    const double spare = SURFACE_SPARE * std::max({reach.x, reach.y, reach.z});
+    return std::abs(glm::distance(place, middle) - double(ball.c.x)) <= 0.125 * spare ? spare : 0.0;
+}
 
 // The most, roughly, that a particle brings which leaves a lamp or surface of those the sensor sees: its part of all
 // that is sent out, over the patch that a pixel has there, and over all pixels. `eye`: render space.
@@ -308,12 +317,13 @@ void keep_apart(std::vector<shared::LightRow>& lights, const SurfaceTable& surfa
         return;
     for (std::size_t i = surfaces.planes; i < surfaces.met; ++i) {
         const shared::SurfacePrimitive& p = surfaces.primitives[i];
-        if (p.shape == SURFACE_SPHERE)
-            continue;
-        const FlatPiece piece(p);
+        const bool is_ball = p.shape == SURFACE_SPHERE;
+        const FlatPiece flat(p);
         for (shared::LightRow& light : lights)
-            if ((light.kind & LIGHT_PLACED) && piece.holds(light.position, extent_of(light)))
-                light.apart = std::max(light.apart, static_cast<float>(piece.spare));
+            if (light.kind & LIGHT_PLACED)
+                light.apart = std::max(light.apart,
+                                       static_cast<float>(is_ball ? spare_of_ball(p, light.position)
+                                                                  : flat.spare_of(light.position, extent_of(light))));
     }
 }
 

@@ -34,7 +34,9 @@ glm::dmat4 without_rounding(glm::dmat4 map) {
 
 void take_in(const Volume& volume, const LoadedMedium& loaded, Range& range) {
     const MediumBounds bounds = medium_bounds(loaded);
-    const glm::dmat4 to_world = without_rounding(medium_to_world(volume, loaded));
+    Volume turned = volume; // before the reach of layers is: 1e20 times what rounding leaves
+    turned.transform = without_rounding(volume.transform);
+    const glm::dmat4 to_world = without_rounding(medium_to_world(turned, loaded));
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 pick(corner & 1, corner >> 1 & 1, corner >> 2);
         range.take_in(glm::dvec3(to_world * glm::dvec4(glm::mix(bounds.low, bounds.high, pick), 1.0)));

@@ -36,12 +36,17 @@ public:
     void operator()(const DiskSurface& disk) const {
         add(SURFACE_DISK, disk.center, disk.normal, disk.radius, axes(0.5 / disk.radius, 0.5));
     }
+    // By its point that is nearest to the origin: hits are known as well as numbers of that point's size are. A texture
+    // begins where it did, but for whole ones.
     void operator()(const PlaneSurface& plane) const {
-        planes_.push_back({{plane.point - origin_, row_, plane.normal, SURFACE_PLANE, glm::vec3(0.0f), 0},
-                           {},
-                           nullptr,
-                           nullptr,
-                           axes(1.0, 0.0)});
+        const glm::dvec3 point = plane.point - origin_, foot = plane.normal * glm::dot(plane.normal, point);
+        Piece piece{
+            {foot, row_, plane.normal, SURFACE_PLANE, glm::vec3(0.0f), 0}, {}, nullptr, nullptr, axes(1.0, 0.0)};
+        if (piece.axes) {
+            const glm::dvec2 apart(glm::dot(surface_.axes[0], foot - point), glm::dot(surface_.axes[1], foot - point));
+            piece.axes->c = glm::dvec3(glm::fract(apart * surface_.material.repeat) / surface_.material.repeat, 0.0);
+        }
+        planes_.push_back(piece);
     }
     void operator()(const RectangleSurface& rectangle) const {
         static const TriangleSurface flat = RectangleSurface().triangles(); // whose places stay

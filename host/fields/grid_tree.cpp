@@ -232,9 +232,9 @@ private:
         const glm::ivec3 size = field_.voxel_max - field_.voxel_min;
         field_.leaf_min = field_.voxel_min >> 3;
         field_.leaf_dims = (field_.voxel_max >> 3) - field_.leaf_min + 1;
-        const std::int64_t blocks = std::int64_t{field_.leaf_dims.x} * field_.leaf_dims.y * field_.leaf_dims.z;
+        const double blocks = double(field_.leaf_dims.x) * field_.leaf_dims.y * field_.leaf_dims.z; // up to 2^66
         const auto bytes = static_cast<std::int64_t>(field_.bytes.size());
-        if (blocks > std::min(most_blocks, small_table + bytes / 2))
+        if (blocks > double(std::min(most_blocks, small_table + bytes / 2)))
             throw InputError(
                 fmt::format("{}: the box of active voxels spans {} x {} x {} voxels, too much for a table of "
                             "its blocks; crop stray voxels or split the grid",

@@ -176,12 +176,19 @@ void turn_outward(Polygons& obj, std::vector<Body> bodies) {
         std::all_of(bodies.begin(), bodies.end(), is_inward) || std::none_of(bodies.begin(), bodies.end(), is_inward);
     for (std::size_t i = 0; i < bodies.size() && !are_alike; ++i) {
         Body& body = bodies[i];
+        const auto is_other_way = [&](const Body& about) { return is_inward(about) != is_inward(body); };
+        const auto has_in_box = [&](const Body& about) {
+            return glm::all(glm::lessThan(about.low, body.low)) && glm::all(glm::greaterThan(about.high, body.high));
+        };
+        // A drop of spray need not be looked for among the faces of a sea that is the same way round.
+        const auto end = bodies.begin() + std::ptrdiff_t(i);
+        if (std::none_of(bodies.begin(), end, [&](const Body& b) { return is_other_way(b) && has_in_box(b); }))
+            continue;
         for (std::size_t k = i; k-- > 0;) {
             const Body& about = bodies[k];
-            if (!glm::all(glm::lessThan(about.low, body.low)) || !glm::all(glm::greaterThan(about.high, body.high)) ||
-                !is_within(obj, about, obj.vertices[obj.triangles[body.triangles.front()].x]))
+            if (!has_in_box(about) || !is_within(obj, about, obj.vertices[obj.triangles[body.triangles.front()].x]))
                 continue;
-            body.is_cavity = (body.volume < 0.0) != (about.volume < 0.0) && !about.is_cavity;
+            body.is_cavity = is_other_way(about) && !about.is_cavity;
             break;
         }
     }

@@ -70,6 +70,10 @@ bool is_nvdb_magic(std::uint64_t magic) {
 }
 
 void check_header(const std::filesystem::path& file, const Header& header) {
+    if (header.magic == NANOVDB_MAGIC_NUMBER + (1ull << 56)) // "NanoVDB1": a grid as it lies in memory
+        throw InputError(fmt::format("{}: a raw NanoVDB grid without a file's header; write it with "
+                                     "nanovdb::io::writeGrid, or convert the .vdb with `nanovdb_convert`",
+                                     file.string()));
     if (!is_nvdb_magic(header.magic))
         throw InputError(fmt::format("{}: not a NanoVDB file; .nvdb files come from `nanovdb_convert`, .vdb files are "
                                      "read too if their name ends in .vdb",

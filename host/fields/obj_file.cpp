@@ -45,26 +45,33 @@ bool has_numbers(std::string_view line) {
     return word == "v" || word == "vn" || word == "vt" || word == "f";
 }
 
-// In names of materials. tinyobjloader ends names at blanks, from 2.0rc11 on, in one of the two places where it reads
-// them.
+// In names of materials and of files. tinyobjloader ends names at blanks, from 2.0rc11 on, in one of the two places
+// where it reads them.
 constexpr char joint = '\x1f';
 
-void join_name(std::string& line) {
+// A line may name several libraries, which are in `folder`, or one whose name has blanks.
+void join_name(std::string& line, const std::filesystem::path& folder) {
     const std::string word = line.substr(0, line.find_first_of(" \t"));
-    if (word != "newmtl" && word != "usemtl")
+    if (word != "newmtl" && word != "usemtl" && word != "mtllib")
         return;
     std::string name = line.substr(std::min(line.find_first_not_of(" \t", word.size()), line.size()));
     name.resize(name.find_last_not_of(" \t") + 1);
-    if (name.empty())
+    std::error_code error;
+    if (name.empty() || (word == "mtllib" && !std::filesystem::is_regular_file(folder / name, error)))
         return;
     std::replace(name.begin(), name.end(), '\t', joint);
     std::replace(name.begin(), name.end(), ' ', joint);
     line = word + ' ' + name;
 }
 
+std::string file_name(std::string joined) {
+    std::replace(joined.begin(), joined.end(), joint, ' ');
+    return joined;
+}
+
 // For parsers that know nothing of them: without a mark of UTF-8, without comments behind numbers, names in one piece,
-// and, if `joins`, with lines that end in \ joined to the next; as many lines as before.
-std::string plain_lines(std::string_view text, bool joins = true) {
+// and, if `joins`, with lines that end in \ joined to the next; as many lines as before. What they name is in `folder`.
+std::string plain_lines(std::string_view text, const std::filesystem::path& folder, bool joins = true) {
     constexpr std::string_view mark = "\xef\xbb\xbf", blanks = " \t";
     text.remove_prefix(text.substr(0, mark.size()) == mark ? mark.size() : 0);
     std::string plain, line; // `line`: as far as it has been joined
@@ -72,11 +79,13 @@ std::string plain_lines(std::string_view text, bool joins = true) {
     std::size_t joined = 0;
     while (!text.empty()) {
         const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+        const std::size_t added = line.size(); // behind what needs no second look
         line += text.substr(0, end);
         text.remove_prefix(std::min(end + (text.substr(end, 2) == "\r\n" ? 2 : 1), text.size()));
-        line = line.substr(std::min(line.find_first_not_of(blanks), line.size()));
+        if (!line.empty() && blanks.find(line.front()) != std::string_view::npos)
+            line.erase(0, line.find_first_not_of(blanks));
         if (has_numbers(line))
-            line.resize(std::min(line.find('#'), line.size()));
+            line.resize(std::min(line.find('#', std::min(added, line.size())), line.size()));
         const std::size_t last = line.find_last_not_of(blanks);
         if (joins && last != std::string::npos && line[last] == '\\' && line[0] != '#' && !text.empty()) {
             line.resize(last);
@@ -84,7 +93,7 @@ std::string plain_lines(std::string_view text, bool joins = true) {
             ++joined;
             continue;
         }
-        join_name(line);
+        join_name(line, folder);
         plain += line;
         plain.append(1 + joined, '\n');
         line.clear();
@@ -182,7 +191,7 @@ tinyobj::callback_t make_callbacks() {
         const bool is_usable = std::abs(x) <= 1e30f && std::abs(y) <= 1e30f; // neither NaN
         progress.places.emplace_back(is_usable ? glm::vec2(x, y) : glm::vec2(0.0f));
         if (!is_usable && !std::exchange(progress.has_odd_places, true))
-            progress.obj->warnings.push_back(
+            progress.obj->place_warnings.push_back(
                 fmt::format("{}: vt {} {} counts as 0 0: its numbers are to be finite, and 1e30 at most",
                             progress.path->string(), x, y));
     };
@@ -211,9 +220,10 @@ public:
 
     bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
                     std::map<std::string, int>* indices, std::string*, std::string*) override {
-        const std::filesystem::path file = obj_.parent_path() / name;
+        const std::filesystem::path file = obj_.parent_path() / file_name(name);
         try {
-            std::istringstream stream(plain_lines(read_mesh_text(file), false)); // a path may end with one
+            // A path may end with one.
+            std::istringstream stream(plain_lines(read_mesh_text(file), file.parent_path(), false));
             std::string warning, error;
             tinyobj::LoadMtl(indices, materials, &stream, &warning, &error);
             return true;
@@ -251,7 +261,7 @@ std::vector<Corners> of_corners(const std::vector<Value>& values, const std::vec
 } // namespace
 
 Polygons read_obj(const std::filesystem::path& path) {
-    const std::string text = plain_lines(read_mesh_text(path));
+    const std::string text = plain_lines(read_mesh_text(path), path.parent_path());
     Polygons obj;
     obj.vertices = parse_vertices(text, path);
     Progress progress;
@@ -268,10 +278,18 @@ Polygons read_obj(const std::filesystem::path& path) {
                                      path.string()));
     obj.normals = of_corners<glm::mat3>(progress.normals, progress.of_triangles);
     obj.places = of_corners<glm::mat3x2>(progress.places, progress.places_of_triangles);
+    const auto bare =
+        std::count_if(progress.places_of_triangles.begin(), progress.places_of_triangles.end(),
+                      [](const glm::ivec3& corners) { return glm::any(glm::lessThan(corners, glm::ivec3(0))); });
+    if (!obj.places.empty() && bare > 0)
+        obj.place_warnings.push_back(
+            fmt::format("{}: {} of its {} triangles do not say where on a texture their corners "
+                        "are, which count as 0 0; unwrap these faces too",
+                        path.string(), bare, obj.triangles.size()));
     return obj;
 }
 
-// As tinyobjloader reads it: names between spaces.
+// As tinyobjloader reads it: names between spaces, but for one that has some.
 std::vector<std::filesystem::path> material_libraries(const std::filesystem::path& path) {
     std::vector<std::filesystem::path> files;
     std::error_code error;
@@ -283,14 +301,14 @@ std::vector<std::filesystem::path> material_libraries(const std::filesystem::pat
     } catch (const InputError&) { // told by who reads the mesh
         return files;
     }
-    std::istringstream stream(plain_lines(text));
+    std::istringstream stream(plain_lines(text, path.parent_path()));
     for (std::string line; std::getline(stream, line);) {
         std::istringstream words(line);
         std::string name;
         if (!(words >> name) || name != "mtllib")
             continue;
         while (words >> name)
-            files.push_back(path.parent_path() / name);
+            files.push_back(path.parent_path() / file_name(name));
     }
     return files;
 }

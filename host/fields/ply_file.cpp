@@ -137,6 +137,8 @@ private:
                                                         : Format::little_endian;
             } else if (word == "element") {
                 Element& element = elements_.emplace_back();
+                if (elements_.size() > 1000)
+                    fail("its header has more than 1000 elements");
                 if (!(words >> element.name >> element.count))
                     fail("its header has an element without a name and a count");
                 element.name = one_line(element.name.substr(0, 40));
@@ -149,8 +151,6 @@ private:
         }
         if (!has_format)
             fail("its header says no format");
-        if (elements_.size() > 1000)
-            fail("its header has more than 1000 elements");
     }
 
     void read_property(std::istringstream& words) {

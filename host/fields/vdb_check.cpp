@@ -24,7 +24,7 @@ namespace {
 // As in openvdb/io: bits of a grid's compression, and what a node's values begin with.
 constexpr std::uint32_t compress_zip = 1, compress_active = 2, compress_blosc = 4;
 enum ValuesKind : std::int8_t { one_inactive = 2, mask = 3, mask_one_inactive = 4, mask_two_inactive = 5, all = 6 };
-constexpr std::uint32_t oldest_version = 222, newest_version = 224; // of the format: since OpenVDB 2.0
+constexpr std::uint32_t oldest_version = 222, newest_version = 225; // of the format: OpenVDB 2.0 to 13
 constexpr std::uint32_t longest_string = 4096;
 
 // Metadata whose reader looks at its type and not at the size that the file states.
@@ -209,8 +209,8 @@ private:
         const auto version = get<std::uint32_t>();
         if (version < oldest_version || version > newest_version)
             throw InputError(
-                fmt::format("{}: has version {} of the OpenVDB format, but {} to {} are read; save it again "
-                            "with a current program",
+                fmt::format("{}: has version {} of the OpenVDB format, but {} to {} are read, which OpenVDB 2 to 13 "
+                            "write; save it again with a program that uses one of these",
                             file_.string(), version, oldest_version, newest_version));
         skip(8); // of the library
         const auto offsets = get<std::uint8_t>();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <iterator>
+#include <map>
+#include <string>
 
 #include "digest.h"
 #include "estimator_traits.h"
@@ -27,10 +29,24 @@ public:
         fmt::format_to(std::back_inserter(text_), "{}={}:{};", key, value.size(), value);
     }
 
+    // Grids that many volumes share are gone through once.
+    void add(const MemoryGrids& grids) {
+        std::string& digests = digests_[&grids];
+        if (digests.empty()) {
+            Writer one;
+            for (const MemoryGrids::Grid& grid : grids.grids)
+                one.add(grid.name.c_str(),
+                        digest_text({reinterpret_cast<const char*>(grid.bytes.data()), grid.bytes.size()}));
+            digests = one.text_;
+        }
+        text_ += digests;
+    }
+
     std::string hash() const { return digest_text(text_); }
 
 private:
     std::string text_;
+    std::map<const MemoryGrids*, std::string> digests_;
 };
 
 void add_file(Writer& writer, const std::filesystem::path& path) {
@@ -39,13 +55,6 @@ void add_file(Writer& writer, const std::filesystem::path& path) {
     writer.add("file", path.filename().string());
     writer.add("bytes", error ? -1.0 : double(size));
     writer.add("content", digest_of_file(path));
-}
-
-void add_grids(Writer& writer, const MemoryGrids& grids) {
-    for (const MemoryGrids::Grid& grid : grids.grids) {
-        const std::string bytes(reinterpret_cast<const char*>(grid.bytes.data()), grid.bytes.size());
-        writer.add(grid.name.c_str(), digest_text(bytes));
-    }
 }
 
 void add_shape(Writer& writer, const Volume& volume) {
@@ -57,7 +66,7 @@ void add_shape(Writer& writer, const Volume& volume) {
         writer.add("size", box->size);
     } else if (const GridFile* grid = std::get_if<GridFile>(&volume.shape)) {
         if (grid->memory)
-            add_grids(writer, *grid->memory);
+            writer.add(*grid->memory);
         else
             add_file(writer, grid->path);
         writer.add("grid", grid->grid);

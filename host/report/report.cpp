@@ -11,6 +11,7 @@
 #include "program.h"
 #include "render_notes.h"
 #include "requested_scene.h"
+#include "sample_ranges.h"
 #include "scene_hash.h"
 #include "version.h"
 
@@ -221,6 +222,9 @@ Metadata make_metadata(const RenderRequest& request, const Scene& scene, const D
                       {"vkvol/abandonedPaths", metadata_count(result.counts.abandoned)},
                       {"vkvol/nonFiniteSamples", metadata_count(result.counts.non_finite)},
                       {"vkvol/cleanedVoxels", metadata_count(result.counts.cleaned_voxels)}};
+    if (result.samples > *most) // random numbers that every pixel dropped were used as well
+        metadata[sample_ranges_key] = to_text(SampleRanges{
+            {{request.seed, request.sample_offset, std::uint64_t{request.sample_offset} + result.samples}}, true});
     record_facts(result.film, metadata);
     if (!scene.units.empty())
         metadata["vkvol/units"] = scene.units;

@@ -135,8 +135,8 @@ vec3 bsdf_guess(Bsdf b, vec3 wo, vec2 u) {
 float bsdf_adjoint(Bsdf b, vec3 wo, vec3 wi) {
     bool crosses = is_glass(b.material) && dot(b.face, wi) < 0.0;
     float factor = crosses ? b.eta.x * b.eta.x : 1.0;
-    if (HAS_SMOOTH_FACES)
-        factor *= abs(dot(wo, b.normal) * dot(wi, b.face)) / max(abs(dot(wo, b.face) * dot(wi, b.normal)), 1.0e-6);
+    if (HAS_SMOOTH_FACES && b.normal != b.face)
+        factor *= abs(dot(wo, b.normal) * dot(wi, b.face)) / max(abs(dot(wo, b.face) * dot(wi, b.normal)), 1.0e-12);
     return factor;
 }
 

@@ -138,6 +138,10 @@ TEST_CASE("readings are a table, a row for each point and combination of values"
     const Run dark = folder.vkvol("measure glow.xml -D sigma=0 -D glow=1 --noise 5%");
     CHECK(dark.code == exit_done);
     CHECK_THAT(dark.text, Contains("no light came in 2097152 samples"));
+    folder.write("seen.xml", "<options><width>2</width><height>1</height><film aov='depth'/><sphere/></options>");
+    const Run seen = folder.vkvol("measure seen.xml --spp 2");
+    CHECK(seen.code == exit_done);
+    CHECK_THAT(seen.text, Contains("a table has no layers") && Contains("<camera"));
     const Run plain = folder.vkvol("measure glow.xml -D sigma=1 -D glow=1 --noise 5%");
     CHECK(plain.code == exit_done);
     CHECK(std::count(plain.text.begin(), plain.text.end(), '\n') == 3);
@@ -153,6 +157,8 @@ TEST_CASE("what is wrong with one of many values says which", "[gpu][command]") 
     CHECK(folder.vkvol("measure glow.xml -D sigma=1 -D glow=1 -o glow.xml").code == exit_bad_input);
     CHECK(folder.text("glow.xml") == ball);
     CHECK(folder.vkvol("measure").code == exit_bad_input);
+    CHECK_THAT(folder.vkvol("measure glow.xml -D sigma=1 -D glow=1 -D x=1,2").text,
+               Contains("-D x: the table has a column of that name"));
     // What is read more than once cannot come through a pipe.
     CHECK_THAT(folder.script("cat glow.xml | \"$vkvol\" measure /dev/stdin -D sigma=1 -D glow=1").text,
                Contains("/dev/stdin: a pipe is read once, but measure"));

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <unistd.h>
+#include <utility>
 
 #include "density_field.h"
 #include "error.h"
@@ -23,6 +25,7 @@ struct VdbFile {
     std::string parent, metadata_type = "bool", map = "ScaleTranslateMap";
     std::uint32_t metadata_bytes = 1;
     std::int32_t origin = 4096;
+    std::optional<std::int32_t> second; // another tile: where along each axis
 
     template <class T> static void add(std::string& text, const T& value) {
         text.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -49,12 +52,16 @@ struct VdbFile {
             return text;
         add(text, std::uint32_t{1}); // buffers
         add(text, 0.0f);
-        add(text, tiles);
+        add(text, tiles + (second ? 1 : 0));
         add(text, children);
-        for (const std::int32_t place : {origin, 0, 0})
+        const glm::ivec3 first = second ? glm::ivec3(origin) : glm::ivec3(origin, 0, 0);
+        for (const glm::ivec3 place : {first, glm::ivec3(second.value_or(0))}) {
             add(text, place);
-        add(text, 0.5f);
-        add(text, std::uint8_t{1});
+            add(text, 0.5f);
+            add(text, std::uint8_t{1});
+            if (!second)
+                break;
+        }
         return text;
     }
 
@@ -146,8 +153,19 @@ TEST_CASE("counts, sizes and places in .vdb files are not believed", "[cpu][dens
                }),
                Contains("\"smoke\", which the file does not have"));
     CHECK_THAT(error_of([](VdbFile& f) { f.version = 219; }), Contains("version 219"));
+    CHECK_THAT(error_of([](VdbFile& f) { f.version = 225; }), is_read); // OpenVDB 13
+    CHECK_THAT(error_of([](VdbFile& f) { f.version = 226; }), Contains("version 226"));
     CHECK_THAT(error_of([](VdbFile& f) { f.offsets = 0; }), is_read); // one after another
     CHECK_THAT(error_of([](VdbFile& f) { f.offsets = 2; }), Contains("offsets"));
+}
+
+TEST_CASE("the size of a table of blocks has no limit of 2^63", "[cpu][density]") {
+    for (const auto& [origin, second] : {std::pair{-16777216, 16773120}, {-8998912, 8998912}}) // 2^66 and 1.1e19 blocks
+        CHECK_THAT(error_of([&](VdbFile& f) {
+                       f.origin = origin;
+                       f.second = second;
+                   }),
+                   Contains("too much for a table of its blocks"));
 }
 
 TEST_CASE("a .vdb file cut anywhere is an error", "[cpu][density]") {

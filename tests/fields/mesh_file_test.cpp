@@ -169,10 +169,19 @@ TEST_CASE("materials", "[mesh]") {
     CHECK(glm::length(*mesh.diffuse - Rgb(0.75, 0.25, 0.125)) < 1e-6);
     REQUIRE(mesh.warnings.size() == 1);
     CHECK_THAT(mesh.warnings[0], Contains("Kd"));
+    // Of concern to textures alone.
     mesh = directory.load("vt 0 1e39\n" + head + "usemtl red\n" + caps + cube_sides);
-    REQUIRE(mesh.warnings.size() == 1);
-    CHECK_THAT(mesh.warnings[0], Contains("vt 0 inf counts as 0 0"));
+    CHECK(mesh.warnings.empty());
+    const std::string placed = "vt 0 1e39\nvt 1 1\n" + cube_vertices + "f 4/1 3/2 2/2 1/2\n" + cube_sides;
+    const Polygons textured = read_polygons(directory.write("placed.obj", placed));
+    REQUIRE(textured.place_warnings.size() == 2);
+    CHECK_THAT(textured.place_warnings[0], Contains("vt 0 inf counts as 0 0"));
+    CHECK_THAT(textured.place_warnings[1], Contains("8 of its 10 triangles do not say where on a texture"));
     CHECK(!directory.load("mtllib missing.mtl\n" + cube_vertices + "usemtl red\n" + caps + cube_sides).diffuse);
+    directory.write("my scene.mtl", "newmtl red\nKd 0.75 0.25 0.125\n");
+    mesh = directory.load("mtllib my scene.mtl\n" + cube_vertices + "usemtl red\n" + caps + cube_sides);
+    CHECK(mesh.diffuse);
+    CHECK(mesh.warnings.empty());
     // Several files: the first face of all.
     const auto red = directory.write("red.obj", head + "usemtl red\n" + caps + cube_sides);
     const auto plain = directory.write("plain.obj", as_obj(make_box({5, 0, 0}, {6, 2, 1}, 2)));

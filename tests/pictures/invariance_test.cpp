@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fmt/format.h>
+#include <memory>
 
 #include "support/images.h"
 #include "support/scenes.h"
@@ -121,4 +122,31 @@ TEST_CASE("grids may be rotated, sheared, stretched and mirrored", "[gpu][hard][
     scene.settings.filter = Filter::trilinear;
     scene.settings.spp = 128;
     CHECK_AGREEMENT(agree(render_here(scene, 27).film, render_reference(scene, 28), name + " grid"));
+}
+
+// Its author may name any point of a plane. A texture begins at it, and these tiles are 2 wide.
+TEST_CASE("a plane is where it is by each of its points", "[gpu][hard][invariance][surfaces]") {
+    const glm::vec3 red(0.9f, 0.4f, 0.1f), grey(0.2f);
+    const auto image = std::make_shared<const Texture>(Texture{2, 2, {red, grey, grey, red}, true});
+    const glm::dvec3 there(1e6, 0.0, -5e5);
+    for (const double tilt : {0.0, 0.25}) {
+        CAPTURE(tilt);
+        const glm::dvec3 normal = glm::normalize(glm::dvec3(0.0, 1.0, tilt)), along(0.0, -tilt, 1.0);
+        const auto picture = [&](const glm::dvec3& point, std::uint32_t seed) {
+            Scene scene = scene_of({}, 8.0, 20, 25.0, there, {10.0, -40.0, 0.0});
+            scene.volumes.clear();
+            scene.lights = {sunlight()};
+            scene.settings.spp = 64;
+            scene.surfaces.emplace_back().shape = BallSurface{there + normal, 1.0};
+            Surface& ground = scene.surfaces.emplace_back();
+            ground.shape = PlaneSurface{point, normal};
+            ground.axes = glm::dmat3(glm::dvec3(1.0, 0.0, 0.0), glm::normalize(along), normal);
+            ground.material.image = image;
+            ground.material.repeat = glm::dvec2(0.5);
+            return render_here(scene, seed).film;
+        };
+        const Film near = picture(there, 30);
+        CHECK_AGREEMENT(agree(picture(there - glm::dvec3(1e6, 0.0, 0.0), 31), near, "far along x"));
+        CHECK_AGREEMENT(agree(picture(there + 1e5 * glm::normalize(along), 32), near, "far along z"));
+    }
 }

@@ -444,6 +444,18 @@ TEST_CASE("lamps that lie in the plane of a surface shine before it", "[gpu][par
         }
 }
 
+TEST_CASE("lamps that lie on a large ball shine before it", "[gpu][particles]") {
+    const glm::dvec3 down = glm::normalize(glm::dvec3(-0.13, -1.0, 0.21)), middle(0.37, 1.7, 0.41);
+    Scene scene = still({}, {PointLight{middle, Rgb(5.0)}});
+    scene.volumes.clear();
+    scene.background = Rgb(0.0);
+    const Film open = render_here(scene, 1).film;
+    scene.surfaces.emplace_back().shape = BallSurface{middle - 1e4 * down, 1e4};
+    scene.surfaces.back().material.color = Rgb(0.0);
+    for (const char* integrator : {"ratioTracking", "lightTracing"})
+        CHECK_AGREEMENT(agree(render_here(by(scene, integrator), 2).film, open, integrator));
+}
+
 // Splats are numbers of so many digits, and what paths from the camera bring are splats as well.
 TEST_CASE("what is seen may be far brighter than what particles bring", "[gpu][particles]") {
     Scene scene =

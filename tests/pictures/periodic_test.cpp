@@ -1,5 +1,6 @@
 // Domains that repeat: against closed forms, domains that hold the same several times, and the reference, which unfolds
 // them.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fmt/format.h>
@@ -9,6 +10,8 @@
 #include "camera_view.h"
 #include "error.h"
 #include "loaded_medium.h"
+#include "method.h"
+#include "period.h"
 #include "render_limits.h"
 #include "scene_hash.h"
 #include "shared/constants.h"
@@ -196,6 +199,25 @@ TEST_CASE("domains that repeat equal the reference's, unfolded", "[gpu][image][p
     all.emplace_back("clouds in air", in_air);
     for (const auto& [name, each] : in_turn(all, 0))
         check_against_reference(each, name);
+}
+
+// Half a turn leaves 1e-16 where there should be nothing, of what reaches 1e20 far.
+TEST_CASE("air that is turned reaches as far as air that is not", "[cpu][periodic]") {
+    for (const double degrees : {90.0, 180.0, 270.0}) {
+        CAPTURE(degrees);
+        Volume air = medium(Everywhere{}, 0.05, 0.9);
+        air.layers = Layers{1, 0.0, 20.0, 1.0, 0.0};
+        air.transform = glm::rotate(glm::dmat4(1.0), glm::radians(degrees), glm::dvec3(1.0, 0.0, 0.0));
+        Scene scene = above(air);
+        if (degrees != 180.0)
+            scene.periodic = Periodic{{-5.0, -5.0, 0.0}, {5.0, 5.0, 0.0}};
+        const Assets assets = load_assets(scene, choose_method(scene));
+        const shared::PeriodParams period = make_period(scene, assets.media, glm::dvec3(0.0));
+        const int axis = degrees == 180.0 ? 1 : 2;
+        const double top = degrees == 90.0 ? 20.0 : -20.0;
+        CHECK(period.range_low[axis] == Approx(std::min(top, 0.0)).margin(0.1));
+        CHECK(period.range_high[axis] == Approx(std::max(top, 0.0)).margin(0.1));
+    }
 }
 
 TEST_CASE("all unbiased estimators agree where a domain repeats", "[gpu][image][periodic][hard]") {

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# One task of a farm: a window of a frame, one of PARTS from the top, as NAME.FRAME.PART-of-PARTS.exr.
+# One task of a farm: a window of a frame, one of PARTS from the top, as NAME.FRAME.PART-of-PARTS.exr. As many PARTS as the
+# picture has rows are the most; readings of few pixels are parted by --sample-offset.
 #   render_part.sh SCENE FRAME PART PARTS NAME [further arguments of vkvol ...]
 #     FRAME: a number, the scene's key F; or "still" for a scene without one
 #   VKVOL=PROGRAM      in place of vkvol
