@@ -1,10 +1,17 @@
 #include "vdb_import.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <fmt/format.h>
+#include <fstream>
 #include <mutex>
 #include <nanovdb/util/OpenToNanoVDB.h>
+#include <openvdb/io/Archive.h>
+#include <openvdb/io/GridDescriptor.h>
 #include <openvdb/openvdb.h>
+#include <utility>
+#include <vector>
 
 #include "error.h"
 #include "one_line.h"
@@ -51,21 +58,86 @@ private:
     std::vector<std::string> types_;
 };
 
+// The version of the format that files have which are newer than the library is told it as its own: see check_vdb. It
+// would read them, and print a warning for each.
+class KnownVersion : public std::filebuf {
+protected:
+    int_type underflow() override {
+        const int_type first = std::filebuf::underflow();
+        if (!std::exchange(begun_, true) && egptr() - eback() >= 12) {
+            std::uint32_t version = 0; // behind 8 bytes that all files begin with
+            std::memcpy(&version, eback() + 8, sizeof version);
+            version = std::min(version, static_cast<std::uint32_t>(openvdb::OPENVDB_FILE_VERSION));
+            std::memcpy(eback() + 8, &version, sizeof version);
+        }
+        return first;
+    }
+
+private:
+    bool begun_ = false;
+};
+
+// As openvdb::io::File reads a grid, at once: a file may change.
+class OneGrid : openvdb::io::Archive {
+public:
+    // The file's grid of this number, and the tree of another that it may share.
+    openvdb::GridBase::Ptr read(const std::filesystem::path& path, std::size_t number) {
+        KnownVersion bytes;
+        bytes.open(path, std::ios_base::in | std::ios_base::binary);
+        std::istream file(&bytes);
+        readHeader(file);
+        auto traits = openvdb::SharedPtr<openvdb::io::StreamMetadata>(new openvdb::io::StreamMetadata);
+        traits->setSeekable(true);
+        openvdb::io::setStreamMetadataPtr(file, traits, false);
+        setFormatVersion(file);
+        setLibraryVersion(file);
+        setDataCompression(file);
+        openvdb::MetaMap().readMeta(file);
+        std::vector<Place> places;
+        for (auto count = readGridCount(file); count > 0; --count) {
+            Place& place = places.emplace_back();
+            place.grid = place.descriptor.read(file);
+            if (inputHasGridOffsets())
+                place.descriptor.seekToEnd(file);
+            else
+                readGrid(place.grid, place.descriptor, file);
+        }
+        const Place& found = places.at(number);
+        fill(found, file);
+        if (found.descriptor.isInstance())
+            for (const Place& place : places)
+                if (place.descriptor.uniqueName() == found.descriptor.instanceParentName()) {
+                    fill(place, file);
+                    found.grid->setTree(place.grid->baseTreePtr());
+                }
+        return found.grid;
+    }
+
+private:
+    struct Place {
+        openvdb::io::GridDescriptor descriptor;
+        openvdb::GridBase::Ptr grid; // not filled yet, where the file says where it lies
+    };
+
+    void fill(const Place& place, std::istream& file) const {
+        if (!inputHasGridOffsets())
+            return;
+        place.descriptor.seekToGrid(file);
+        readGrid(place.grid, place.descriptor, file);
+    }
+};
+
 openvdb::GridBase::Ptr read_grid(const std::filesystem::path& path, const std::string& name, GridValues allowed) {
     const std::vector<VdbEntry> entries = read_vdb_entries(path);
-    std::string full_name = name;
-    for (const VdbEntry& entry : entries)
-        if (entry.name == name)
-            full_name = entry.full_name;
-    check_vdb(path, full_name.c_str(), allowed);
+    const auto entry =
+        std::find_if(entries.begin(), entries.end(), [&](const VdbEntry& other) { return other.name == name; });
+    check_vdb(path, entry == entries.end() ? name.c_str() : entry->full_name.c_str(), allowed);
     static std::mutex types; // of grids that are read ahead: OpenVDB has one table of them
     const std::scoped_lock lock(types);
     try {
         openvdb::initialize();
         const StandIns stand_ins(entries);
-        openvdb::io::File file(path.string());
-        file.open(false); // all at once: no delayed loading from a file that may change
-        return file.readGrid(full_name);
+        return OneGrid().read(path, static_cast<std::size_t>(entry - entries.begin()));
     } catch (const std::exception& e) {
         throw InputError(
             one_line(fmt::format("{}: not readable as OpenVDB: {}; copy or export it again", path.string(), e.what())));
