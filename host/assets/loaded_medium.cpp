@@ -222,11 +222,12 @@ void Loader::load_temperature(const Volume& volume, const GridFile& file, Loaded
 void Loader::load_blackbody(const TemperatureEmission& emission, const GridFile& file, LoadedMedium& loaded) {
     loaded.hottest = std::max({emission.scale * loaded.largest_temperature + emission.offset, emission.offset, 0.0});
     if (loaded.hottest < 500.0 || loaded.hottest > 40000.0)
-        warn(loaded,
-             fmt::format("{}: \"{}\" reaches {:.0f} kelvin by temperatureScale and "
-                         "temperatureOffset; flames have 1000 to 3000, and beside what is so hot the brightness of "
-                         "flames is known the worse",
-                         file.path.string(), emission.grid, loaded.hottest));
+        warn(loaded, fmt::format("{}: \"{}\" reaches {:.0f} kelvin by temperatureScale and temperatureOffset; flames "
+                                 "have 1000 to 3000, {}",
+                                 file.path.string(), emission.grid, loaded.hottest,
+                                 loaded.hottest < 500.0
+                                     ? "and what is so cool hardly glows; raise temperatureScale"
+                                     : "and beside what is so hot the brightness of flames is known the worse"));
     if (!(loaded.hottest <= hottest_kelvin))
         throw InputError(fmt::format("{}: \"{}\" reaches {:.3g} kelvin by temperatureScale and temperatureOffset, but "
                                      "{:g} is the most; lower temperatureScale",

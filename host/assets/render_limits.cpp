@@ -114,10 +114,13 @@ void check_distance(const Scene& scene, const Extent& extent) {
 
 void check_glow(const Volume& volume, const LoadedMedium& loaded) {
     const double most = hottest_radiance(volume, loaded);
+    const bool by_kelvin = volume.temperature.model == TemperatureEmission::Model::blackbody;
     if (!(most <= brightest_light))
-        throw InputError(fmt::format("<emission> reaches a radiance of {:.3g} where \"{}\" is hottest, but {:g} is the "
-                                     "most; lower its multiplier or temperatureScale, or raise referenceTemperature",
-                                     most, volume.temperature.grid, brightest_light));
+        throw InputError(
+            fmt::format("<emission> reaches a radiance of {:.3g} where \"{}\" is {}, but {:g} is the most; "
+                        "lower its multiplier{}",
+                        most, volume.temperature.grid, by_kelvin ? "hottest" : "largest", brightest_light,
+                        by_kelvin ? " or temperatureScale, or raise referenceTemperature" : ""));
 }
 
 void check_periodic(const Scene& scene) {
@@ -237,18 +240,19 @@ void check_limits(const Scene& scene, const Volume& volume, const LoadedMedium& 
 // A path that never comes to an end would be followed for ever. Of several media what they lose together counts.
 void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media) {
     constexpr double thinnest = 1e-15; // whose mean free path is a hundred thousandth of the way to where it ends
-    std::string place;                 // of the first
+    std::string place, endless_place;  // of the first
     Rgb all(0.0), endless(0.0), lost(0.0);
     for (std::size_t i = 0; i < media.size(); ++i) {
         const Volume& volume = scene.volumes[i];
         if (!is_everywhere(volume))
             continue;
-        if (place.empty() && !volume.place.empty())
-            place = volume.place + ": ";
+        const std::string here = volume.place.empty() ? "" : volume.place + ": ";
+        place = place.empty() ? here : place;
         const Rgb sigma_t = world_sigma_t(volume, nullptr);
         all += sigma_t;
         if (media[i].is_layered)
             continue;
+        endless_place = endless_place.empty() ? here : endless_place;
         endless += sigma_t;
         lost += volume.density_scale * (volume.sigma_a + (Rgb(1.0) - most_map_albedo(volume)) * volume.sigma_s);
     }
@@ -259,8 +263,9 @@ void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media
                         place, largest(all), thinnest));
     if (largest(endless) > 0.0 && std::min({lost.x, lost.y, lost.z}) < 1e-6 * largest(endless) &&
         !scene.settings.max_depth)
-        throw InputError(place + "a medium that is <everywhere> and absorbs nothing keeps its paths for ever; raise "
-                                 "sigma_a, or give a <maxDepth>");
+        throw InputError(endless_place +
+                         "a medium that is <everywhere> and absorbs nothing keeps its paths for ever; raise "
+                         "sigma_a, or give a <maxDepth>");
 }
 
 } // namespace vkvol

@@ -170,6 +170,18 @@ void check_output(const MeasureOptions& options, const Scene& scene) {
     check_directory_writable(*options.output, "-o");
 }
 
+// A table has one column of a name.
+void check_keys(const MeasureOptions& options, const Scene& scene) {
+    Values columns = {"R", "G", "B", "samples"};
+    if (!options.means)
+        columns.insert(columns.end(), {"column", "row"});
+    if (!options.means && reads_flux(scene.camera))
+        columns.insert(columns.end(), {"x", "y", "z"});
+    for (const Sweep& sweep : options.sweeps)
+        if (std::find(columns.begin(), columns.end(), sweep.key) != columns.end())
+            throw InputError(fmt::format("-D {}: the table has a column of that name; rename the key", sweep.key));
+}
+
 void write(const MeasureOptions& options, const std::vector<Values>& rows) {
     if (rows.empty())
         return;
@@ -184,7 +196,9 @@ void check_all(const MeasureOptions& options, const std::vector<SpectralBand>& b
     for (const Values& values : combinations(options.sweeps))
         for (const SpectralBand& band : bands)
             of_values(options.sweeps, values, band, [&] {
-                check_output(options, load_render_scene(request_of(options, values, band), workshop.fields()).scene);
+                const RenderScene loaded = load_render_scene(request_of(options, values, band), workshop.fields());
+                check_output(options, loaded.scene);
+                check_keys(options, loaded.scene);
             });
 }
 
@@ -236,7 +250,7 @@ int run_measure(const MeasureOptions& options) {
     const auto measure_band = [&](const Values& values, std::size_t band, Film& sum) {
         of_values(options.sweeps, values, bands[band], [&] {
             RenderScene loaded = load_render_scene(request_of(options, values, bands[band]), workshop.fields());
-            if (std::exchange(loaded.scene.layers, 0u) != 0)
+            if ((std::exchange(loaded.scene.layers, 0u) & ~layer_alpha) != 0)
                 loaded.scene.warnings.push_back(
                     "<film aov>: a table has no layers, and none is rendered; leave it out");
             const RenderResult result = measure(options, loaded.scene, static_cast<std::uint32_t>(band), workshop);

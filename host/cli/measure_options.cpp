@@ -1,11 +1,9 @@
 #include "measure_options.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
-#include <string_view>
 
 #include "error.h"
 #include "option_groups.h"
@@ -105,9 +103,6 @@ void parse_measure(const std::vector<std::string>& arguments, Options& options) 
         if (std::count_if(measure.sweeps.begin(), measure.sweeps.end(),
                           [&](const Sweep& other) { return other.key == sweep.key; }) > 1)
             fail_command_line(fmt::format("-D: {} given twice; write its values with commas between", sweep.key));
-        constexpr std::array<std::string_view, 9> columns = {"column", "row", "x", "y", "z", "R", "G", "B", "samples"};
-        if (std::find(columns.begin(), columns.end(), sweep.key) != columns.end())
-            fail_command_line(fmt::format("-D {}: the table has a column of that name; rename the key", sweep.key));
         count *= sweep.values.size();
         if (count > most_values)
             fail_command_line(fmt::format("-D: more than {} combinations of values", most_values));

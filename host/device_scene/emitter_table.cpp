@@ -294,7 +294,9 @@ Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumPar
             continue;
         const shared::EmissionParams& emission = rows[i].emission;
         const double even = channel_mean(emission.constant) + channel_mean(most_map_emission(scene.volumes[i]));
-        const double usual = even + channel_mean(emission.color);
+        // A grid's values are of any size; usual are those of a tenth of its largest.
+        const double usual =
+            even + (channel_mean(emission.color) > 0.0 ? 0.1 * hottest_radiance(scene.volumes[i], loaded[i]) : 0.0);
         if (!(usual > 0.0))
             continue;
         boxes.push_back(box_of(rows[i]));

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -60,32 +61,10 @@ struct Descriptor {
     std::string plain_name() const { return name.substr(0, name.find(separator)); }
 };
 
-// As OpenVDB writes names for people, "name[1]", and back.
+// As OpenVDB writes names for people, "name[1]".
 std::string shown_name(const std::string& name) {
     const std::size_t at = name.find(separator);
     return at == std::string::npos ? name : fmt::format("{}[{}]", name.substr(0, at), name.substr(at + 1));
-}
-
-std::string stored_name(std::string name) {
-    if (const std::size_t at = name.find('['); at != std::string::npos && name.back() == ']') {
-        name.pop_back();
-        name[at] = separator;
-    }
-    return name;
-}
-
-// The one that OpenVDB opens by this name, or null: for a name without number the first of its copies.
-const Descriptor* find(const std::vector<Descriptor>& grids, const std::string& name) {
-    const std::string stored = stored_name(name);
-    const auto pick = [&](const std::string& plain) -> const Descriptor* {
-        for (const Descriptor& grid : grids)
-            if (grid.plain_name() == plain && (name == stored || grid.name == stored || grid.name == name))
-                return &grid;
-        return nullptr;
-    };
-    const bool literal =
-        std::any_of(grids.begin(), grids.end(), [&](const Descriptor& grid) { return grid.plain_name() == name; });
-    return pick(literal ? name : stored.substr(0, stored.find(separator)));
 }
 
 class Walk {
@@ -100,16 +79,17 @@ public:
                 fmt::format("{}: cannot be opened: {}", file.string(), error ? error.message() : std::strerror(errno)));
     }
 
-    std::vector<VdbEntry> walk(const char* name, GridValues allowed) {
+    std::vector<VdbEntry> walk(std::optional<std::size_t> number, GridValues allowed) {
         const std::vector<Descriptor> grids = headers();
-        if (const Descriptor* grid = name ? find(grids, name) : nullptr)
-            check(grids, *grid, allowed);
+        if (number && *number < grids.size())
+            check(grids, grids[*number], allowed);
         std::vector<VdbEntry> entries;
+        std::set<std::string> seen;
         for (const Descriptor& grid : grids) {
             // The first of several is known by the plain name too, if it has one.
             const std::string plain = grid.plain_name();
-            const bool first = !plain.empty() && &grid == find(grids, plain);
-            entries.push_back({first ? plain : shown_name(grid.name), grid.type, shown_name(grid.name)});
+            const bool first = !plain.empty() && seen.insert(plain).second;
+            entries.push_back({first ? plain : shown_name(grid.name), grid.type});
         }
         return entries;
     }
@@ -122,7 +102,7 @@ private:
                         file_.string(), what, position_));
     }
 
-    // The grid that OpenVDB will read, and the one that holds its tree.
+    // The grid that will be read, and the one that holds its tree.
     void check(const std::vector<Descriptor>& grids, const Descriptor& grid, GridValues allowed) {
         value_bytes_ = value_bytes(grid.type);
         const bool colors = allowed != GridValues::numbers;
@@ -132,17 +112,19 @@ private:
                                          value_bytes_ > 0
                                              ? "<albedo> and <emission model=\"color\"> take grids of colours"
                                          : allowed == GridValues::vectors ? "velocities are vec3s"
-                                                                          : "only float and half are read"));
+                                                                          : "only float is read, also saved as half"));
         check_grid(grid);
         if (grid.parent.empty())
             return;
-        const Descriptor* parent = find(grids, shown_name(grid.parent));
-        if (!parent || !parent->parent.empty() || parent->type != grid.type)
+        const auto parent = std::find_if(grids.begin(), grids.end(),
+                                         [&](const Descriptor& other) { return other.name == grid.parent; });
+        const bool is_there = parent != grids.end();
+        if (!is_there || !parent->parent.empty() || parent->type != grid.type)
             throw InputError(fmt::format("{}: grid \"{}\" shares the tree of \"{}\", {}; save it again without "
                                          "instances",
                                          file_.string(), one_line(shown_name(grid.name)),
                                          one_line(shown_name(grid.parent)),
-                                         !parent                   ? "which the file does not have"
+                                         !is_there                 ? "which the file does not have"
                                          : !parent->parent.empty() ? "which has none of its own"
                                                                    : "which is of another type"));
         check_grid(*parent);
@@ -417,8 +399,9 @@ private:
 
 } // namespace
 
-std::vector<VdbEntry> check_vdb(const std::filesystem::path& file, const char* grid, GridValues allowed) {
-    return Walk(file).walk(grid, allowed);
+std::vector<VdbEntry> check_vdb(const std::filesystem::path& file, std::optional<std::size_t> number,
+                                GridValues allowed) {
+    return Walk(file).walk(number, allowed);
 }
 
 } // namespace vkvol

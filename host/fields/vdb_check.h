@@ -1,7 +1,9 @@
 // The structure of .vdb files, walked before OpenVDB reads them: OpenVDB takes every count and size in a file for true.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,12 +15,12 @@ namespace vkvol {
 struct VdbEntry {
     std::string name;
     std::string type;
-    std::string full_name; // by which OpenVDB knows it: that of the first has a number too
 };
 
 // The grids of a file, in its order. Throws InputError where a count, a size or an offset of the file's headers, or of
-// the named grid (if `grid` is not null and the file has it), leads beyond the file or contradicts another, or where
-// that grid's values are not `allowed`. What is wrong with other grids is no reason to refuse this one.
-std::vector<VdbEntry> check_vdb(const std::filesystem::path& file, const char* grid, GridValues allowed);
+// the grid of this number, if one is given, leads beyond the file or contradicts another, or where that grid's values
+// are not `allowed`. What is wrong with other grids is no reason to refuse this one.
+std::vector<VdbEntry> check_vdb(const std::filesystem::path& file, std::optional<std::size_t> number,
+                                GridValues allowed);
 
 } // namespace vkvol

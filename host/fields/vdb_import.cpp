@@ -83,7 +83,8 @@ public:
     // The file's grid of this number, and the tree of another that it may share.
     openvdb::GridBase::Ptr read(const std::filesystem::path& path, std::size_t number) {
         KnownVersion bytes;
-        bytes.open(path, std::ios_base::in | std::ios_base::binary);
+        if (!bytes.open(path, std::ios_base::in | std::ios_base::binary))
+            throw openvdb::IoError("it cannot be opened");
         std::istream file(&bytes);
         readHeader(file);
         auto traits = openvdb::SharedPtr<openvdb::io::StreamMetadata>(new openvdb::io::StreamMetadata);
@@ -129,15 +130,17 @@ private:
 
 openvdb::GridBase::Ptr read_grid(const std::filesystem::path& path, const std::string& name, GridValues allowed) {
     const std::vector<VdbEntry> entries = read_vdb_entries(path);
-    const auto entry =
-        std::find_if(entries.begin(), entries.end(), [&](const VdbEntry& other) { return other.name == name; });
-    check_vdb(path, entry == entries.end() ? name.c_str() : entry->full_name.c_str(), allowed);
+    const auto entry = std::find_if(entries.begin(), entries.end(), [&](const VdbEntry& e) { return e.name == name; });
+    if (entry == entries.end())
+        throw InputError(one_line(fmt::format("{}: has no grid \"{}\"", path.string(), name)));
+    const auto number = static_cast<std::size_t>(entry - entries.begin());
+    check_vdb(path, number, allowed);
     static std::mutex types; // of grids that are read ahead: OpenVDB has one table of them
     const std::scoped_lock lock(types);
     try {
         openvdb::initialize();
         const StandIns stand_ins(entries);
-        return OneGrid().read(path, static_cast<std::size_t>(entry - entries.begin()));
+        return OneGrid().read(path, number);
     } catch (const std::exception& e) {
         throw InputError(
             one_line(fmt::format("{}: not readable as OpenVDB: {}; copy or export it again", path.string(), e.what())));
@@ -157,7 +160,7 @@ template <class Grid> GridBytes to_nanovdb(Grid& grid) {
 } // namespace
 
 std::vector<VdbEntry> read_vdb_entries(const std::filesystem::path& path) {
-    return check_vdb(path, nullptr, GridValues::numbers);
+    return check_vdb(path, {}, GridValues::numbers);
 }
 
 GridBytes read_vdb_grid(const std::filesystem::path& path, const std::string& name, GridValues allowed) {
@@ -171,8 +174,8 @@ GridBytes read_vdb_grid(const std::filesystem::path& path, const std::string& na
         throw InputError(one_line(fmt::format("{}: grid \"{}\" cannot be converted: {}; copy or export it again",
                                               path.string(), name, e.what())));
     }
-    throw InputError(fmt::format("{}: grid \"{}\" is not a grid of floats; only float and half are read", path.string(),
-                                 one_line(name)));
+    throw InputError(fmt::format("{}: grid \"{}\" is not a grid of floats; only float is read, also saved as half",
+                                 path.string(), one_line(name)));
 }
 
 } // namespace vkvol

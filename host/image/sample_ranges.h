@@ -22,8 +22,8 @@ struct SampleRanges {
     bool complete = true;           // false: the image may hold others
 };
 
-// "0:0-4096 7:0-64": what a merged image says instead of a seed and an offset. With "unknown" at the end, it is not
-// complete.
+// "0:0-4096 7:0-64": what a merged image says instead of a seed and an offset, and a render beside them if it has fewer
+// samples than it drew, in every pixel. With "unknown" at the end, it is not complete.
 inline constexpr const char* sample_ranges_key = "vkvol/ranges";
 std::string to_text(const SampleRanges& ranges);
 

@@ -47,6 +47,8 @@ Scene with_preset(Scene scene) {
         if (adjusts(adjust_default_noise) && !volume.noise) {
             if (std::holds_alternative<GridFile>(volume.shape))
                 warn("the density is the grid's, not noise, which fills spheres, boxes and models");
+            else if (is_everywhere(volume) || volume.layers)
+                warn("what is everywhere, or has layers, has no noise, which fills spheres, boxes and models");
             else
                 volume.noise = Noise{};
         }

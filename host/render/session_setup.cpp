@@ -343,8 +343,12 @@ double Session::paths_per_second(Wavefront& wavefront, const Plan& plan) {
 // Where either schedule may be taken there is room for the paths of both.
 void Session::make_film() {
     shared::AovParams layers = device_scene_->frame().layers;
+    const auto may_be = [&](Schedule schedule) {
+        const bool is_tried = schedule == Schedule::fused || !device_.is_cpu() || job_.plan.tries;
+        return wish_.schedule == schedule || (wish_.schedule == Schedule::automatic && is_tried);
+    };
     for (const Schedule schedule : {Schedule::fused, Schedule::staged})
-        if (layers.count > 0 && (wish_.schedule == schedule || wish_.schedule == Schedule::automatic)) {
+        if (layers.count > 0 && may_be(schedule)) {
             const Plan plan = plan_by(schedule);
             layers.records = std::max({layers.records, plan.slots, plan.waiting});
         }

@@ -197,6 +197,8 @@ bool matches(const DeviceInfo& info, const std::string& choice) {
         return true;
     if (choice == "cpu")
         return info.type == "cpu";
+    if (choice.empty()) // as a variable is that is not set
+        return false;
     if (std::all_of(choice.begin(), choice.end(), [](unsigned char c) { return std::isdigit(c); }) && choice.size() < 4)
         return info.index == std::stoi(choice);
     const auto lower = [](std::string text) {

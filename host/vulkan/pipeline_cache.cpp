@@ -35,6 +35,17 @@ std::string file_name(const VkPhysicalDeviceProperties& p) {
     return fmt::format("{:x}-{:x}-{:x}-{}.bin", p.vendorID, p.deviceID, p.driverVersion, uuid);
 }
 
+// Behind the data stands their digest. Drivers take data for what they once gave, and need not survive others.
+constexpr std::size_t digest_bytes = 16;
+
+bool take_digest(std::vector<char>& data) {
+    if (data.size() < digest_bytes)
+        return false;
+    const std::string digest(data.end() - digest_bytes, data.end());
+    data.resize(data.size() - digest_bytes);
+    return digest == digest_text({data.data(), data.size()});
+}
+
 bool header_fits(const std::vector<char>& data, const VkPhysicalDeviceProperties& p) {
     VkPipelineCacheHeaderVersionOne header;
     if (data.size() < sizeof(header))
@@ -52,7 +63,7 @@ PipelineCache::PipelineCache(const Device& device, bool use_disk) : device_(devi
     if (const std::filesystem::path directory = cache_directory(); use_disk && !directory.empty()) {
         path_ = directory / file_name(device.properties());
         data = read_if_possible(path_);
-        if (!header_fits(data, device.properties()))
+        if (!take_digest(data) || !header_fits(data, device.properties()))
             data.clear();
     }
     on_disk_ = digest_text({data.data(), data.size()});
@@ -101,6 +112,7 @@ void PipelineCache::save() const {
         std::filesystem::create_directories(path_.parent_path());
         AtomicFile file(path_);
         file.write(data.data(), size, 0);
+        file.write(digest.data(), digest.size(), static_cast<std::int64_t>(size));
         file.put_in_place();
         on_disk_ = digest;
     } catch (const std::system_error&) {

@@ -24,7 +24,8 @@ nlohmann::json report_of(const Folder& folder, const char* name) {
 // A checkpoint of the ball, as an interrupted render leaves it.
 void leave_checkpoint(const Folder& folder, const std::string& environment = "") {
     const Run run = folder.script(
-        environment + " \"$vkvol\" ball.xml -o ball.exr -q --spp 1000000000 --checkpoint 0.1s & "
+        environment + " \"$vkvol\" ball.xml -o ball.exr -q --spp 1000000000 --checkpoint 0.1s "
+                      "${VKVOL_TEST_DEVICE:+--device \"$VKVOL_TEST_DEVICE\"} & "
                       "until [ -f ball.checkpoint ] || ! kill -0 $!; do sleep 0.05; done; kill -TERM $!; wait $!");
     REQUIRE(run.code == exit_interrupted);
     REQUIRE(fs::exists(folder.file("ball.checkpoint")));
@@ -147,9 +148,9 @@ TEST_CASE("--checkpoint without --resume spares what is there", "[gpu][command][
 // Machines of a farm differ in how many lanes Mesa's software driver has, which changes no bit.
 TEST_CASE("by eight lanes goes on what was begun by sixteen", "[gpu][command][checkpoint]") {
     const Folder folder("");
-    leave_checkpoint(folder, "LP_NATIVE_VECTOR_WIDTH=512");
-    const Run run =
-        folder.vkvol("ball.xml -o ball.exr --spp 1000000000 --resume --time 0.1s", "LP_NATIVE_VECTOR_WIDTH=256");
+    leave_checkpoint(folder, "MESA_SHADER_CACHE_DISABLE=true LP_NATIVE_VECTOR_WIDTH=512");
+    const Run run = folder.vkvol("ball.xml -o ball.exr --spp 1000000000 --resume --time 0.1s",
+                                 "MESA_SHADER_CACHE_DISABLE=true LP_NATIVE_VECTOR_WIDTH=256");
     INFO(run.text);
     CHECK(run.code == exit_done);
 }

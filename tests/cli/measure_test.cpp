@@ -157,8 +157,14 @@ TEST_CASE("what is wrong with one of many values says which", "[gpu][command]") 
     CHECK(folder.vkvol("measure glow.xml -D sigma=1 -D glow=1 -o glow.xml").code == exit_bad_input);
     CHECK(folder.text("glow.xml") == ball);
     CHECK(folder.vkvol("measure").code == exit_bad_input);
-    CHECK_THAT(folder.vkvol("measure glow.xml -D sigma=1 -D glow=1 -D x=1,2").text,
-               Contains("-D x: the table has a column of that name"));
+    // A key of the name of a column, where there is one.
+    folder.write("seen.xml", "<options><width>2</width><height>1</height><camera x='$x' z='5'/><sphere/>"
+                             "<light y='1' r='1' g='1' b='1'/></options>");
+    CHECK(folder.vkvol("measure seen.xml -D x=1,2 --spp 2").code == exit_done);
+    folder.write("read.xml",
+                 "<options><sphere x='$x'/><light y='1' r='1' g='1' b='1'/><fluence>0 0 0</fluence></options>");
+    CHECK_THAT(folder.vkvol("measure read.xml -D x=1,2").text, Contains("-D x: the table has a column of that name"));
+    CHECK(folder.vkvol("measure read.xml -D x=1,2 --mean --spp 2").code == exit_done);
     // What is read more than once cannot come through a pipe.
     CHECK_THAT(folder.script("cat glow.xml | \"$vkvol\" measure /dev/stdin -D sigma=1 -D glow=1").text,
                Contains("/dev/stdin: a pipe is read once, but measure"));

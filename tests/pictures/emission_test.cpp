@@ -122,6 +122,25 @@ TEST_CASE("an opaque fire without scattering has its own radiance", "[gpu][emiss
             CHECK(pixel[c] == Approx(2.0 * volume.temperature.color[c]).epsilon(4 * 6e-8));
 }
 
+TEST_CASE("particles of what glows know grids of any unit", "[gpu][emission][particles]") {
+    const auto picture = [](double unit, const char* integrator, std::uint32_t seed) {
+        GridRecipe density{{0, 0, 0},       {9, 9, 9},   [](glm::ivec3) { return 1.0f; }, {}, 0.0f,
+                           glm::dmat3(0.2), {-1, -1, -1}};
+        GridRecipe heat = density;
+        heat.value = [unit](glm::ivec3 i) { return float(unit * (0.5 + 0.1 * i.x)); };
+        heat.name = "temperature";
+        Volume volume = medium(write_grids({density, heat}), 0.5, 0.5);
+        volume.temperature.color = Rgb(3.0, 2.0, 1.0) / unit;
+        Scene scene = scene_of(volume, 3.0, 8);
+        scene.settings.spp = 1024;
+        scene.settings.integrator = integrator;
+        return render_here(scene, seed).film;
+    };
+    const Film expected = picture(1.0, "deltaTracking", 1);
+    for (const double unit : {1e-11, 1.0, 1e12})
+        CHECK_AGREEMENT(agree(picture(unit, "lightTracing", 2), expected, fmt::format("in units of {}", unit)));
+}
+
 TEST_CASE("a file without a temperature grid does not glow, and says so", "[gpu][emission]") {
     Scene scene = scene_of(medium(write_grid(cloud_grid()), 2.0, 0.5), 11.0, 8);
     scene.volumes.front().temperature.color = Rgb(1.0);

@@ -134,6 +134,10 @@ TEST_CASE("particles, which reach any pixel, are one device's", "[gpu][devices]"
                       Contains("--sample-offset"));
 }
 
+TEST_CASE("a device of no name is none", "[gpu][devices]") {
+    CHECK_THROWS_AS(Device(DeviceOptions{"", false, false}), DeviceError);
+}
+
 TEST_CASE("the command line names several devices", "[gpu][devices][command]") {
     const Folder folder("");
     const std::string number = std::to_string(test_device().info().index), both = number + "," + number;
