@@ -444,13 +444,19 @@ TEST_CASE("lamps that lie in the plane of a surface shine before it", "[gpu][par
         }
 }
 
+// Rounding has some of them within it.
 TEST_CASE("lamps that lie on a large ball shine before it", "[gpu][particles]") {
     const glm::dvec3 down = glm::normalize(glm::dvec3(-0.13, -1.0, 0.21)), middle(0.37, 1.7, 0.41);
-    Scene scene = still({}, {PointLight{middle, Rgb(5.0)}});
-    scene.volumes.clear();
+    const glm::dvec3 center(glm::vec3(middle - 1e4 * down));
+    std::vector<Light> lamps;
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec3 near = middle + glm::dvec3(std::cos(i), 0.0, std::sin(i)) * 0.5;
+        lamps.push_back(PointLight{center + 1e4 * glm::normalize(near - center), Rgb(0.6)});
+    }
+    Scene scene = still({}, lamps); // about its medium
     scene.background = Rgb(0.0);
     const Film open = render_here(scene, 1).film;
-    scene.surfaces.emplace_back().shape = BallSurface{middle - 1e4 * down, 1e4};
+    scene.surfaces.emplace_back().shape = BallSurface{center, 1e4};
     scene.surfaces.back().material.color = Rgb(0.0);
     for (const char* integrator : {"ratioTracking", "lightTracing"})
         CHECK_AGREEMENT(agree(render_here(by(scene, integrator), 2).film, open, integrator));
