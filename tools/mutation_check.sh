@@ -92,6 +92,7 @@ textures of planes from where they are nearest ~ host/device_scene/surface_table
 turned air as far as what rounding leaves reaches ~ host/device_scene/period.cpp ~ turned.transform = without_rounding(volume.transform); ~ ; ~ [periodic]
 tables of more blocks than numbers count ~ host/fields/grid_tree.cpp ~ const double blocks = double(field_.leaf_dims.x) * field_.leaf_dims.y * field_.leaf_dims.z; ~ const double blocks = double(field_.leaf_dims.x * field_.leaf_dims.y * field_.leaf_dims.z); ~ [density]
 files of OpenVDB 13 ~ host/fields/vdb_check.cpp ~ newest_version = 225 ~ newest_version = 224 ~ [density]
+versions of files told to the library ~ host/fields/vdb_import.cpp ~ version = std::min(version, static_cast<std::uint32_t>(openvdb::OPENVDB_FILE_VERSION)); ~ version = std::max(version, 0u); ~ [density]
 names of libraries with blanks ~ host/fields/obj_file.cpp ~ && word != "mtllib") ~ ) ~ [mesh]
 checkpoints of other lanes ~ host/render/session_setup.cpp ~ name_by_bits(device.info().name) ~ device.info().name ~ [checkpoint]
 media that end paths only together ~ host/assets/render_limits.cpp ~ lost += volume.density_scale ~ lost = volume.density_scale ~ [layers]
