@@ -10,18 +10,52 @@
 #include "mesh.h"
 #include "polygons.h"
 #include "radiance_map.h"
+#include "seams.h"
 
 namespace vkvol {
 
 namespace {
 
-TriangleSurface load(const MeshSurface& mesh, const glm::dmat4& transform, bool closed,
+// What files of meshes hold: those that several surfaces have are read once.
+class MeshFileReader {
+public:
+    explicit MeshFileReader(const std::vector<Surface>& surfaces) {
+        for (const Surface& surface : surfaces)
+            if (const MeshSurface* mesh = std::get_if<MeshSurface>(&surface.shape); mesh && !is_closed(surface))
+                ++left_[mesh->file];
+    }
+
+    static bool is_closed(const Surface& surface) { return surface.material.kind == MaterialKind::dielectric; }
+
+    // For the next of its surfaces.
+    Polygons of(const std::filesystem::path& file) {
+        const bool is_last = --left_[file] == 0;
+        const auto found = read_.find(file);
+        if (found == read_.end()) {
+            Polygons polygons = read_polygons(file);
+            if (!is_last)
+                read_.emplace(file, polygons);
+            return polygons;
+        }
+        if (!is_last)
+            return found->second;
+        Polygons polygons = std::move(found->second);
+        read_.erase(found);
+        return polygons;
+    }
+
+private:
+    std::map<std::filesystem::path, std::size_t> left_;
+    std::map<std::filesystem::path, Polygons> read_;
+};
+
+TriangleSurface load(const MeshSurface& mesh, const glm::dmat4& transform, bool closed, MeshFileReader& files,
                      std::vector<std::string>& place_warnings) {
     if (closed) {
         Mesh loaded = load_mesh({{mesh.file}}, transform);
         return {std::move(loaded.vertices), std::move(loaded.triangles), std::move(loaded.normals), {}, true};
     }
-    Polygons read = read_polygons(mesh.file);
+    Polygons read = files.of(mesh.file);
     place_warnings = std::move(read.place_warnings);
     for (glm::dvec3& vertex : read.vertices)
         vertex = glm::dvec3(transform * glm::dvec4(vertex, 1.0));
@@ -95,10 +129,9 @@ void set_normals(TriangleSurface& mesh, MeshNormals which, const glm::dmat4& tra
     complete(mesh);
 }
 
-void load(const MeshSurface& mesh, Surface& surface, std::vector<std::string>& warnings) {
+void load(const MeshSurface& mesh, Surface& surface, MeshFileReader& files, std::vector<std::string>& warnings) {
     std::vector<std::string> of_places;
-    TriangleSurface loaded =
-        load(mesh, surface.transform, surface.material.kind == MaterialKind::dielectric, of_places);
+    TriangleSurface loaded = load(mesh, surface.transform, MeshFileReader::is_closed(surface), files, of_places);
     set_normals(loaded, mesh.normals, surface.transform);
     if (is_textured(surface.material))
         warnings.insert(warnings.end(), of_places.begin(), of_places.end());
@@ -147,11 +180,12 @@ std::shared_ptr<const Texture> load_texture(const std::filesystem::path& file, s
 
 Scene with_surface_files(Scene scene) {
     std::map<std::filesystem::path, std::shared_ptr<const Texture>> textures;
+    MeshFileReader files(scene.surfaces);
     for (Surface& surface : scene.surfaces) {
         Material& material = surface.material;
         try {
             if (const auto* found = std::get_if<MeshSurface>(&surface.shape))
-                load(MeshSurface(*found), surface, scene.warnings);
+                load(MeshSurface(*found), surface, files, scene.warnings);
             else if (auto* mesh = std::get_if<TriangleSurface>(&surface.shape); mesh && mesh->is_mesh)
                 finish(*mesh, surface);
             if (!material.texture.empty() && !textures[material.texture])
@@ -162,6 +196,8 @@ Scene with_surface_files(Scene scene) {
             throw InputError(surface.place.empty() ? error.what() : fmt::format("{}: {}", surface.place, error.what()));
         }
     }
+    if (scene.periodic)
+        keep_off_seams(*scene.periodic, scene.surfaces);
     return scene;
 }
 

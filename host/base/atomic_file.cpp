@@ -25,12 +25,6 @@ using std::filesystem::path;
     throw std::system_error(error, std::generic_category());
 }
 
-path behind_links(const path& name) {
-    std::error_code error;
-    const path real = std::filesystem::is_symlink(name, error) ? std::filesystem::canonical(name, error) : name;
-    return error ? name : real;
-}
-
 // A stream of this process, even if it ends in a file: who sent it there wants it gone on with.
 std::optional<int> stream_of(const path& target) {
     const std::string name = target.lexically_normal().string();
@@ -78,6 +72,14 @@ path name_of(int descriptor) {
 
 } // namespace
 
+path behind_links(path name) {
+    constexpr int most = 40; // as many as Linux follows
+    std::error_code error;
+    for (int i = 0; i < most && !stream_of(name) && std::filesystem::is_symlink(name, error); ++i)
+        name = name.parent_path() / std::filesystem::read_symlink(name, error);
+    return name;
+}
+
 path temporary_name(const path& target) {
     path name = target;
     name.replace_filename(fmt::format(".{}.{}.tmp{}", target.stem().string(), getpid(), target.extension().string()));
@@ -94,7 +96,7 @@ bool is_special(const path& target) {
 }
 
 AtomicFile::AtomicFile(const path& name)
-    : target_(stream_of(name) ? name : behind_links(name)), temporary_(temporary_name(target_)),
+    : target_(is_special(name) ? name : behind_links(name)), temporary_(temporary_name(target_)),
       special_(is_special(target_)), interrupted_before_(interrupted()) {
     if (special_)
         descriptor_ = open_special(target_);

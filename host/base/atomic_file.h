@@ -49,4 +49,7 @@ std::filesystem::path temporary_name(const std::filesystem::path& target);
 // A device or pipe (/dev/stdout, say): written to, never replaced by a file.
 bool is_special(const std::filesystem::path& target);
 
+// The file that a chain of links leads to, whether or not it is there; a name that is no link leads to itself.
+std::filesystem::path behind_links(std::filesystem::path name);
+
 } // namespace vkvol

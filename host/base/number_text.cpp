@@ -38,4 +38,13 @@ NumberText read_number_text(std::string_view text) {
     return read;
 }
 
+std::from_chars_result read_number_at(const char* begin, const char* end, double& value) {
+    std::from_chars_result result = std::from_chars(begin, end, value);
+    if (result.ec == std::errc::result_out_of_range && is_small({begin, result.ptr})) {
+        value = 0.0;
+        result.ec = std::errc();
+    }
+    return result;
+}
+
 } // namespace vkvol

@@ -1,6 +1,9 @@
 #include "checkpoint_file.h"
 
+#include <cerrno>
+#include <cstring>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "atomic_file.h"
 #include "error.h"
@@ -21,6 +24,9 @@ std::string CheckpointFile::not_ours() const {
     std::error_code ignored;
     if (!std::filesystem::exists(path_, ignored) || is_checkpoint(path_))
         return "";
+    if (access(path_.c_str(), R_OK) != 0)
+        return fmt::format("{}: cannot be read: {}, and stays; change its permissions, or name another picture with -o",
+                           path_.string(), std::strerror(errno));
     return fmt::format("{}: {}, and stays; rename it, or name another picture with -o", path_.string(),
                        std::filesystem::is_directory(path_, ignored) ? "is a directory" : "is no checkpoint of vkvol");
 }

@@ -182,13 +182,20 @@ void check_keys(const MeasureOptions& options, const Scene& scene) {
             throw InputError(fmt::format("-D {}: the table has a column of that name; rename the key", sweep.key));
 }
 
+// A table that no file takes is printed: it may be of hours.
 void write(const MeasureOptions& options, const std::vector<Values>& rows) {
     if (rows.empty())
         return;
-    if (options.output)
-        write_text(*options.output, as_csv(rows));
-    else
+    if (!options.output) {
         put(stdout, as_text(rows));
+        return;
+    }
+    try {
+        write_text(*options.output, as_csv(rows));
+    } catch (const RenderError& error) {
+        put(stdout, as_csv(rows));
+        throw RenderError(fmt::format("{}; the readings are on standard output instead", error.what()));
+    }
 }
 
 // Before any time is spent: what is wrong with the last of many values is wrong now.
@@ -275,15 +282,22 @@ int run_measure(const MeasureOptions& options) {
         if (added == bands.size()) // of some bands alone it would be another reading
             add(options.sweeps, values, options.means ? mean_table(sum) : film_table(sum), rows);
     };
+    const bool is_kept = options.output && !is_special(*options.output); // from reading to reading
     try {
-        for (const Values& values : combinations(options.sweeps))
-            if (!was_interrupted)
-                measure_one(values);
+        for (const Values& values : combinations(options.sweeps)) {
+            if (was_interrupted)
+                break;
+            measure_one(values);
+            if (is_kept)
+                write(options, rows);
+        }
     } catch (const std::exception&) { // what was measured is not lost
-        write(options, rows);
+        if (!is_kept)
+            write(options, rows);
         throw;
     }
-    write(options, rows);
+    if (!is_kept)
+        write(options, rows);
     if (!options.quiet)
         print_caps(options.request, told);
     return was_interrupted ? exit_interrupted : exit_done;

@@ -94,7 +94,7 @@ void RenderOutputs::write_report(const Device& device, const RenderResult& resul
 }
 
 void RenderOutputs::fail(const std::string& error) {
-    if (reported_ || options_.dry_run)
+    if (reported_ || options_.dry_run || !options_.report)
         return;
     if (std::string failure;
         !try_report(make_failure_report(options_, scene_, device_ ? &*device_ : nullptr, error), failure))

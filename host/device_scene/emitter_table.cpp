@@ -313,19 +313,28 @@ Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumPar
     return glow;
 }
 
+// By how much rays from a light of that place and extent are kept off a primitive that it lies in.
+double spare_of(const shared::SurfacePrimitive& p, const glm::dvec3& place, double extent) {
+    return p.shape == SURFACE_SPHERE ? spare_of_ball(p, place) : FlatPiece(p).spare_of(place, extent);
+}
+
 void keep_apart(std::vector<shared::LightRow>& lights, const SurfaceTable& surfaces) {
-    constexpr std::size_t most_pairs = 100'000'000; // half a second; of more nothing is kept apart
-    if (lights.size() * surfaces.met > most_pairs)
-        return;
-    for (std::size_t i = surfaces.planes; i < surfaces.met; ++i) {
-        const shared::SurfacePrimitive& p = surfaces.primitives[i];
-        const bool is_ball = p.shape == SURFACE_SPHERE;
-        const FlatPiece flat(p);
-        for (shared::LightRow& light : lights)
-            if (light.kind & LIGHT_PLACED)
-                light.apart = std::max(light.apart,
-                                       static_cast<float>(is_ball ? spare_of_ball(p, light.position)
-                                                                  : flat.spare_of(light.position, extent_of(light))));
+    for (shared::LightRow& light : lights) {
+        if (!(light.kind & LIGHT_PLACED))
+            continue;
+        const glm::dvec3 place = light.position;
+        const double extent = extent_of(light);
+        for (std::size_t i = 0; i < surfaces.nodes.size();) {
+            const shared::BvhNode& node = surfaces.nodes[i];
+            const glm::dvec3 low = node.low, high = node.high, reach = glm::max(glm::abs(low), glm::abs(high));
+            const double margin = extent + SURFACE_SPARE * std::max({reach.x, reach.y, reach.z});
+            const bool near = glm::all(glm::greaterThanEqual(place, low - margin)) &&
+                              glm::all(glm::lessThanEqual(place, high + margin));
+            for (std::size_t k = 0; near && k < node.leaf % 8; ++k)
+                light.apart = std::max(
+                    light.apart, static_cast<float>(spare_of(surfaces.primitives[node.leaf / 8 + k], place, extent)));
+            i = near && node.leaf == 0 ? i + 1 : node.skip;
+        }
     }
 }
 

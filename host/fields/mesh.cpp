@@ -1,6 +1,7 @@
 #include "mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <limits>
 #include <map>
@@ -174,15 +175,17 @@ void turn_outward(Polygons& obj, std::vector<Body> bodies) {
     const auto is_inward = [](const Body& body) { return body.volume < 0.0; };
     const bool are_alike =
         std::all_of(bodies.begin(), bodies.end(), is_inward) || std::none_of(bodies.begin(), bodies.end(), is_inward);
+    std::array<std::vector<std::size_t>, 2> before; // bodies whose faces point outward, and inward
     for (std::size_t i = 0; i < bodies.size() && !are_alike; ++i) {
         Body& body = bodies[i];
+        before[is_inward(body)].push_back(i);
         const auto is_other_way = [&](const Body& about) { return is_inward(about) != is_inward(body); };
         const auto has_in_box = [&](const Body& about) {
             return glm::all(glm::lessThan(about.low, body.low)) && glm::all(glm::greaterThan(about.high, body.high));
         };
         // A drop of spray need not be looked for among the faces of a sea that is the same way round.
-        const auto end = bodies.begin() + std::ptrdiff_t(i);
-        if (std::none_of(bodies.begin(), end, [&](const Body& b) { return is_other_way(b) && has_in_box(b); }))
+        const std::vector<std::size_t>& others = before[!is_inward(body)];
+        if (std::none_of(others.begin(), others.end(), [&](std::size_t k) { return has_in_box(bodies[k]); }))
             continue;
         for (std::size_t k = i; k-- > 0;) {
             const Body& about = bodies[k];

@@ -1,7 +1,6 @@
 #include "obj_file.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "error.h"
+#include "number_text.h"
 #include "one_line.h"
 #include "polygon.h"
 
@@ -28,7 +28,7 @@ glm::dvec3 parse_vertex(std::string_view line, const std::filesystem::path& path
     for (int axis = 0; axis < 3; ++axis) {
         while (at != end && (*at == ' ' || *at == '\t' || *at == '+'))
             ++at;
-        const auto [next, error] = std::from_chars(at, end, vertex[axis]);
+        const auto [next, error] = read_number_at(at, end, vertex[axis]);
         if (error != std::errc() || !(std::abs(vertex[axis]) <= largest_coordinate))
             throw InputError(fmt::format("{}:{}: a vertex needs three finite numbers of at most {:g}, but has \"{}\"; "
                                          "export the mesh again",

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>
 #include <sstream>
 
 #include "error.h"
+#include "number_text.h"
 #include "one_line.h"
 #include "polygon.h"
 
@@ -174,7 +174,7 @@ private:
         if (format_ == Format::ascii) {
             at_ = std::min(text_.find_first_not_of(" \t\r\n+", at_), text_.size());
             double value = 0.0;
-            const auto [next, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+            const auto [next, error] = read_number_at(text_.data() + at_, text_.data() + text_.size(), value);
             if (at_ == text_.size())
                 fail("the file ends before it");
             if (error != std::errc())

@@ -1,5 +1,6 @@
 #include "polygons.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
@@ -19,7 +20,9 @@ std::string read_mesh_text(const std::filesystem::path& path) {
     std::string text{std::istreambuf_iterator<char>(stream), {}};
     if (stream.bad())
         throw InputError(fmt::format("{}: cannot be read; check the disk, or copy the file again", path.string()));
-    constexpr std::size_t most = std::size_t{1} << 34u; // bytes, unpacked
+    // Meshes are packed to a fifth or so: no more is unpacked than memory may be asked for by a file of such a size.
+    constexpr std::size_t most_times = 100, small = std::size_t{1} << 26u;
+    const std::size_t most = std::max(most_times * text.size(), small);
     return unpacked(std::move(text), path, most);
 }
 

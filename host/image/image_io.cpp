@@ -202,7 +202,8 @@ void check_writable(const path& target) {
 }
 
 void check_directory_writable(const path& target, const char* option) {
-    const path directory = target.has_parent_path() ? target.parent_path() : path(".");
+    const path place = is_special(target) ? target : behind_links(target);
+    const path directory = place.has_parent_path() ? place.parent_path() : path(".");
     std::error_code error;
     if (!std::filesystem::exists(directory, error))
         throw InputError(
@@ -216,7 +217,7 @@ void check_directory_writable(const path& target, const char* option) {
             fmt::format("{}: is not to be written: {}; name another place with {}, or change its permissions",
                         target.string(), std::strerror(errno), option));
     // Only making a file tells: permissions, read-only file systems and quotas all have a say.
-    const path probe = temporary_name(target);
+    const path probe = temporary_name(place);
     unlink(probe.c_str()); // of a process long dead, with our number
     const int descriptor = open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     if (descriptor < 0)

@@ -10,6 +10,7 @@
 #include "estimator_traits.h"
 #include "memory_grids.h"
 #include "method.h"
+#include "obj_file.h"
 #include "preset.h"
 #include "shared/constants.h"
 #include "surface_lamps.h"
@@ -338,6 +339,15 @@ void add_method(Writer& writer, const RenderSettings& settings, const Method& me
     }
 }
 
+// Of models, whose colour may be that of their matter.
+void add_materials(Writer& writer, const std::vector<Volume>& volumes) {
+    for (const Volume& volume : volumes)
+        if (const MeshFiles* mesh = std::get_if<MeshFiles>(&volume.shape))
+            for (const std::filesystem::path& path : mesh->paths)
+                for (const std::filesystem::path& library : material_libraries(path))
+                    add_file(writer, library);
+}
+
 void add_motion(Writer& writer, const Scene& scene) {
     const MotionBlur& blur = *scene.motion_blur;
     writer.add("motion", glm::dvec3(blur.open, blur.close, 0.0));
@@ -384,6 +394,8 @@ std::string scene_hash(const Scene& authored) {
     if (scene.holds_out)
         writer.add("holdout", 1);
     add_method(writer, scene.settings, method);
+    if (method.material_colour)
+        add_materials(writer, scene.volumes);
     if (scene.motion_blur)
         add_motion(writer, scene);
     return writer.hash();

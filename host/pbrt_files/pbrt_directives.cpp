@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <iterator>
+#include <map>
 #include <utility>
 
 #include "error.h"
@@ -16,7 +17,7 @@ namespace vkvol {
 
 namespace {
 
-constexpr std::size_t most_shapes = 5'000'000;
+constexpr std::size_t most_shapes = 5'000'000, most_triangles = 20'000'000;
 constexpr std::size_t deepest_state = 10'000;
 
 using Kind = PbrtToken::Kind;
@@ -321,11 +322,9 @@ void PbrtDirectives::read_attribute(const PbrtToken& directive) {
     const std::vector<std::string> known = {"shape", "light", "material", "medium", "texture"};
     if (std::find(known.begin(), known.end(), target) == known.end())
         fail_at(directive.place, fmt::format("Attribute \"{}\" is unknown{}", target, name_hint(target, known)));
-    std::vector<PbrtParameter> parameters = PbrtParameters(tokens_).all(); // the last first
-    for (PbrtParameter& parameter : parameters)
-        parameter.color_space = state_.color_space;
-    std::vector<PbrtParameter>& defaults = state_.defaults[target];
-    defaults.insert(defaults.begin(), parameters.begin(), parameters.end()); // the last one counts
+    const PbrtParameters parameters(tokens_, state_.color_space); // the last first
+    std::vector<SharedParameter>& defaults = state_.defaults[target];
+    defaults.insert(defaults.begin(), parameters.all().begin(), parameters.all().end()); // the last one counts
 }
 
 void PbrtDirectives::read_medium_interface() {
@@ -397,6 +396,12 @@ void PbrtDirectives::place_objects() {
                   std::back_inserter(all));
         taken = end;
     };
+    std::map<std::string, std::size_t> triangles_of; // of an object, but for files
+    for (const auto& [name, shapes] : objects_)
+        for (const PbrtShape& shape : shapes)
+            if (const PbrtParameter* indices = shape.thing.parameters->find("indices"))
+                triangles_of[name] += indices->numbers.size() / 3;
+    std::size_t triangles = 0;
     for (const Instance& instance : instances_) {
         take(instance.before);
         const auto object = objects_.find(instance.object);
@@ -404,6 +409,12 @@ void PbrtDirectives::place_objects() {
             fail_at(instance.place, fmt::format("no object \"{}\"; ObjectBegin defines one", instance.object));
         if (all.size() + object->second.size() > most_shapes)
             fail_at(instance.place, fmt::format("comes to more than {} shapes, the most that are read", most_shapes));
+        triangles += triangles_of[instance.object];
+        if (triangles > most_triangles)
+            fail_at(instance.place,
+                    fmt::format("instances come to more than {} triangles, the most that are read: each "
+                                "has its own here; put such meshes into files (plymesh)",
+                                most_triangles));
         for (PbrtShape shape : object->second) {
             shape.thing.transform = instance.transform * shape.thing.transform;
             all.push_back(std::move(shape));

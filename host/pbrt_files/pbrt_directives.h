@@ -18,9 +18,9 @@ struct PbrtState {
     std::optional<PbrtThing> light;
     std::string inside, outside;
     std::string color_space = "srgb";
-    std::map<std::string, std::vector<PbrtParameter>> defaults; // by what they are for
-    bool is_moving = false;                                     // transforms count at the shutter's end alone
-    PbrtPlace begun;                                            // the AttributeBegin or the like that it is within
+    std::map<std::string, std::vector<SharedParameter>> defaults; // by what they are for
+    bool is_moving = false;                                       // transforms count at the shutter's end alone
+    PbrtPlace begun;                                              // the AttributeBegin or the like that it is within
 };
 
 class PbrtDirectives {

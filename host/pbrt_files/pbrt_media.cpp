@@ -217,6 +217,8 @@ void PbrtTranslator::count_media() {
         const auto medium = scene_.media.find(name);
         return medium != scene_.media.end() && medium->second.type != "homogeneous";
     };
+    if (is_grid(scene_.camera_medium))
+        grids.insert(scene_.camera_medium);
     for (const PbrtShape& shape : scene_.shapes) {
         if (shape.inside == shape.outside)
             continue;

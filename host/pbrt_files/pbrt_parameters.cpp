@@ -72,21 +72,23 @@ const std::vector<double>& numbers_of(const PbrtParameter& parameter, std::size_
 
 } // namespace
 
-PbrtParameters::PbrtParameters(PbrtTokens& tokens) {
+PbrtParameters::PbrtParameters(PbrtTokens& tokens, const std::string& color_space) {
     for (PbrtToken token = tokens.next();; token = tokens.next()) {
         if (!token.is(PbrtToken::Kind::quoted)) {
             tokens.put_back(std::move(token));
             break;
         }
-        parameters_.push_back(read_parameter(tokens, token));
+        PbrtParameter parameter = read_parameter(tokens, token);
+        parameter.color_space = color_space;
+        parameters_.push_back(std::make_shared<const PbrtParameter>(std::move(parameter)));
     }
     std::reverse(parameters_.begin(), parameters_.end()); // of two of one name the last one counts
     used_.resize(parameters_.size());
 }
 
-void PbrtParameters::add_defaults(const std::vector<PbrtParameter>& defaults) {
-    for (const PbrtParameter& parameter : defaults) {
-        const auto is_same = [&](const PbrtParameter& other) { return other.name == parameter.name; };
+void PbrtParameters::add_defaults(const std::vector<SharedParameter>& defaults) {
+    for (const SharedParameter& parameter : defaults) {
+        const auto is_same = [&](const SharedParameter& other) { return other->name == parameter->name; };
         if (std::any_of(parameters_.begin(), parameters_.end(), is_same))
             continue;
         parameters_.push_back(parameter);
@@ -97,9 +99,9 @@ void PbrtParameters::add_defaults(const std::vector<PbrtParameter>& defaults) {
 const PbrtParameter* PbrtParameters::find(const std::string& name) const {
     const PbrtParameter* found = nullptr;
     for (std::size_t i = 0; i < parameters_.size(); ++i)
-        if (parameters_[i].name == name) {
+        if (parameters_[i]->name == name) {
             used_[i] = true; // also what is overridden
-            found = found ? found : &parameters_[i];
+            found = found ? found : parameters_[i].get();
         }
     return found;
 }
@@ -197,7 +199,7 @@ std::vector<const PbrtParameter*> PbrtParameters::unused() const {
     std::vector<const PbrtParameter*> result;
     for (std::size_t i = 0; i < parameters_.size(); ++i)
         if (!used_[i])
-            result.push_back(&parameters_[i]);
+            result.push_back(parameters_[i].get());
     return result;
 }
 

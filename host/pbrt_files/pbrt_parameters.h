@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,15 +20,19 @@ struct PbrtParameter {
     std::string color_space = {}; // of its colours; empty: that of what it belongs to
 };
 
+// Shared by all that an Attribute gives them to.
+using SharedParameter = std::shared_ptr<const PbrtParameter>;
+
 // Getters throw InputError for values of a wrong type or number.
 class PbrtParameters {
 public:
     PbrtParameters() = default;
-    explicit PbrtParameters(PbrtTokens& tokens); // all up to the next directive
+    // All up to the next directive; `color_space`: of their colours.
+    explicit PbrtParameters(PbrtTokens& tokens, const std::string& color_space = "");
 
     // What is not among them: after all others.
-    void add_defaults(const std::vector<PbrtParameter>& defaults);
-    const std::vector<PbrtParameter>& all() const { return parameters_; }
+    void add_defaults(const std::vector<SharedParameter>& defaults);
+    const std::vector<SharedParameter>& all() const { return parameters_; }
 
     const PbrtParameter* find(const std::string& name) const; // null if there is none
     bool has(const std::string& name) const { return find(name) != nullptr; }
@@ -49,7 +54,7 @@ public:
 private:
     const PbrtParameter* of_one(const std::string& name, const char* expected) const;
 
-    std::vector<PbrtParameter> parameters_;
+    std::vector<SharedParameter> parameters_;
     mutable std::vector<bool> used_;
 };
 

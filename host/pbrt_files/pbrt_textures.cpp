@@ -105,8 +105,9 @@ void PbrtTranslator::add_repeat(XmlAttributes& attributes, const PbrtThing& text
     const PbrtParameters& p = *texture.parameters;
     texture_ = texture;
     texture_repeat_ = repeat;
-    attributes.emplace_back("repeat", fmt::format("{} {}", std::abs(p.number("uscale", 1.0)) * repeat,
-                                                  std::abs(p.number("vscale", 1.0)) * repeat));
+    constexpr double least = 1e-9; // for 0, which pbrt takes for one place all along
+    const auto repeats = [&](const char* name) { return std::max(std::abs(p.number(name, 1.0)) * repeat, least); };
+    attributes.emplace_back("repeat", fmt::format("{} {}", repeats("uscale"), repeats("vscale")));
     p.find("udelta");
     p.find("vdelta");
 }

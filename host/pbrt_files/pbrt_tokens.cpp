@@ -1,7 +1,6 @@
 #include "pbrt_tokens.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>
@@ -9,6 +8,7 @@
 #include "error.h"
 #include "gzip.h"
 #include "input_file.h"
+#include "number_text.h"
 #include "one_line.h"
 
 namespace vkvol {
@@ -172,7 +172,7 @@ std::optional<double> pbrt_number(const std::string& text) {
     const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
     const char* end = text.data() + text.size();
     double value = 0.0;
-    const auto [stop, error] = std::from_chars(begin, end, value);
+    const auto [stop, error] = read_number_at(begin, end, value);
     if (error != std::errc() || stop != end || !std::isfinite(value))
         return std::nullopt;
     return value;

@@ -132,7 +132,8 @@ std::optional<PbrtRectangle> as_rectangle(const PbrtTriangles& mesh) {
         const unsigned o = first[corner], a = first[(corner + 1) % 3], b = first[(corner + 2) % 3];
         const glm::dvec3 u = at(a) - at(o), v = at(b) - at(o);
         const double size = glm::length(u) + glm::length(v);
-        if (!(size > 0.0) || std::abs(glm::dot(u, v)) > tolerance * glm::length(u) * glm::length(v))
+        if (!(glm::length(u) * glm::length(v) > 0.0) ||
+            std::abs(glm::dot(u, v)) > tolerance * glm::length(u) * glm::length(v))
             continue;
         for (int other = 0; other < 3; ++other) {
             const glm::dvec3 far = at(second[other]);

@@ -105,8 +105,10 @@ template <class T> void take(std::string_view& bytes, std::span<T> values) {
 
 Checkpoint parse(std::string_view bytes) {
     std::uint64_t sum = 0;
-    if (bytes.size() < sizeof magic + sizeof sum || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
-        throw std::invalid_argument("it is none");
+    if (bytes.size() < sizeof magic + sizeof sum)
+        throw std::length_error("it is too short");
+    if (std::memcmp(bytes.data(), magic, sizeof magic) != 0) // but for its last character
+        throw std::invalid_argument("another version of vkvol wrote it");
     std::memcpy(&sum, bytes.data() + bytes.size() - sizeof sum, sizeof sum);
     bytes.remove_suffix(sizeof sum);
     if (sum != checksum(bytes))
@@ -207,7 +209,7 @@ Checkpoint load_checkpoint(const std::filesystem::path& file) {
         throw;
     } catch (const std::exception& error) {
         throw InputError(
-            fmt::format("{}: not a checkpoint of vkvol: {}; remove it to begin anew", file.string(), error.what()));
+            fmt::format("{}: no checkpoint to go on from: {}; remove it to begin anew", file.string(), error.what()));
     }
 }
 

@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 
 #include "camera_view.h"
+#include "error.h"
 #include "metadata.h"
 #include "program.h"
 #include "render_notes.h"
@@ -289,13 +290,26 @@ std::string make_report(const RenderRequest& request, const Scene& scene, const 
     return text_of(report);
 }
 
+namespace {
+
+// Nothing of a scene that no method renders, which may be what failed.
+Json hash_if_rendered(const Scene& scene) {
+    try {
+        return scene_hash(scene);
+    } catch (const InputError&) {
+        return {};
+    }
+}
+
+} // namespace
+
 std::string make_failure_report(const RenderRequest& request, const Scene& scene, const DeviceInfo* device,
                                 const std::string& error) {
     Json report;
     report["version"] = version;
     report["error"] = error;
     report["scene"] = request.scene.string();
-    report["sceneHash"] = scene_hash(scene);
+    report["sceneHash"] = hash_if_rendered(scene);
     report["device"] = device ? device_json(*device) : Json();
     report["seed"] = request.seed;
     report["sampleOffset"] = request.sample_offset;

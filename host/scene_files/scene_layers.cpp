@@ -78,6 +78,10 @@ void SceneReader::read_layers(Volume& volume) const {
     if (!element.exists() || (!may_have && is_behind_shape("layers")))
         return;
     element.allow({"up", "scaleHeight", "height", "bottom", "top"}, false, {"layer"});
+    if (!may_have && overrides_.grid) {
+        element.warn("<layers> are left out: the density is that of --grid");
+        return;
+    }
     if (!may_have)
         element.fail("<layers> are for a <box>, or <everywhere>; remove them, or take one of these");
     if (volume.noise)

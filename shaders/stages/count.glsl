@@ -50,8 +50,14 @@ void count_flight(MediumParams v, vec3 from, uint event, Lane lane) {
     float t = flying_as_far_as(lane);
     if (!collided && !NULL_FLIGHT)
         lane.beta *= depth_weight(v, lane.beta, lane.walk.depth, false);
+    vec3 to = collided ? lane.path.position : from + t * lane.path.direction;
+#ifdef SURFACES
+    // A long flight's end is known to ulps of its length, and a sensor may lie in the surface.
+    if (event == EVENT_LEFT && t < FAR && t == lane.reach)
+        to = surface_point(lane.struck, to).position;
+#endif
     if (collided || event == EVENT_LEFT)
-        count_passing(from, collided || t < FAR, collided ? lane.path.position : from + t * lane.path.direction, lane);
+        count_passing(from, collided || t < FAR, to, lane);
 }
 
 // Counts the power that a collision absorbs, per volume.

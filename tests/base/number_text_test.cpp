@@ -31,3 +31,14 @@ TEST_CASE("numbers are read as they are written anywhere", "[cpu][xml]") {
     }
     CHECK_FALSE(read_number_text("1e400x").is_number);
 }
+
+TEST_CASE("numbers amid other text are no less than 0 for being small", "[cpu][xml]") {
+    double value = 1.0;
+    const std::string text = "1e-400 2";
+    const auto [end, error] = read_number_at(text.data(), text.data() + text.size(), value);
+    CHECK(error == std::errc());
+    CHECK(value == 0.0);
+    CHECK(end == text.data() + 6);
+    const std::string large = "1e400";
+    CHECK(read_number_at(large.data(), large.data() + large.size(), value).ec == std::errc::result_out_of_range);
+}

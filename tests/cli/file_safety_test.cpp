@@ -264,3 +264,13 @@ TEST_CASE("one picture that cannot be developed takes no other with it", "[gpu][
     CHECK_THAT(run.text, Contains("full.png: cannot be written") && Contains("written: b.png"));
     CHECK(fs::exists(folder.file("b.png")));
 }
+
+TEST_CASE("the report says what no method renders", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("r.json", "{\"error\": null}");
+    CHECK(folder.vkvol("ball.xml -q --integrator lightTracing --aov depth -o a.exr --report r.json").code ==
+          exit_bad_input);
+    const auto json = report_of(folder, "r.json");
+    CHECK_THAT(json["error"].get<std::string>(), Contains("layers"));
+    CHECK(json["sceneHash"].is_null());
+}

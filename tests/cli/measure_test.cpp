@@ -147,6 +147,22 @@ TEST_CASE("readings are a table, a row for each point and combination of values"
     CHECK(std::count(plain.text.begin(), plain.text.end(), '\n') == 3);
 }
 
+TEST_CASE("readings are not lost", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("glow.xml", ball);
+    std::filesystem::create_symlink("/dev/full", folder.file("full.csv"));
+    const Run full = folder.vkvol("measure glow.xml -D sigma=1 -D glow=1 --spp 64 -o full.csv");
+    CHECK(full.code == exit_render_failed);
+    CHECK_THAT(full.text, Contains("sigma,glow,") && Contains("No space left") && Contains("on standard output"));
+    // As soon as they are there.
+    const Run killed =
+        folder.script("$vkvol measure glow.xml -D sigma=1,2 -D glow=1 --spp 1000000000 --time 1 -o t.csv "
+                      "& i=0; until [ -s t.csv ] || [ $i = 600 ]; do sleep 0.1; i=$((i + 1)); done; "
+                      "kill -KILL $!; wait $!; true");
+    CHECK(killed.code == 0);
+    CHECK(lines_of(folder.text("t.csv")).size() >= 3);
+}
+
 TEST_CASE("what is wrong with one of many values says which", "[gpu][command]") {
     const Folder folder("");
     folder.write("glow.xml", ball);

@@ -204,6 +204,22 @@ TEST_CASE("a link stays a link, and a device a device", "[cpu][image_io]") {
     CHECK(fs::is_character_file("/dev/null"));
 }
 
+TEST_CASE("links that lead to what is not there yet", "[cpu][image_io]") {
+    const Scratch scratch;
+    fs::create_directories(scratch.path / "far" / "away");
+    fs::create_symlink("far/away/second.json", scratch.path / "first.json");
+    fs::create_symlink("../later.json", scratch.path / "far" / "away" / "second.json");
+    CHECK(behind_links(scratch.path / "first.json").lexically_normal() == scratch.path / "far" / "later.json");
+    CHECK_NOTHROW(check_directory_writable(scratch.path / "first.json"));
+    write_text(scratch.path / "first.json", "22");
+    CHECK(fs::is_symlink(scratch.path / "first.json"));
+    CHECK(fs::file_size(scratch.path / "far" / "later.json") == 2);
+    fs::create_symlink("none/a.json", scratch.path / "lost.json");
+    CHECK_THROWS_WITH(check_directory_writable(scratch.path / "lost.json"), Catch::Contains("none does not exist"));
+    fs::create_symlink("round.json", scratch.path / "round.json");
+    CHECK_NOTHROW(behind_links(scratch.path / "round.json"));
+}
+
 TEST_CASE("who may see a file still may, and nobody else", "[cpu][image_io]") {
     const Scratch scratch;
     const fs::path name = scratch.path / "a.json";

@@ -10,6 +10,7 @@
 #include "scene_facts.h"
 #include "scene_hash.h"
 #include "shared/constants.h"
+#include "support/test_directory.h"
 
 using namespace vkvol;
 
@@ -385,4 +386,17 @@ TEST_CASE("the hash tells expectations apart, not estimators", "[cpu][method]") 
     CHECK(scene_hash(noise) == scene_hash(other));
     noise.volumes[0].shape = MeshFiles{{"/b/ball.obj", "/b/cube.obj"}};
     CHECK(scene_hash(noise) != scene_hash(other));
+}
+
+TEST_CASE("a scene's hash has the colours of models where they show", "[cpu][method]") {
+    const TestDirectory directory;
+    const std::filesystem::path model = directory.write("a.obj", "mtllib a.mtl\n");
+    const auto hash = [&](const char* colour, const std::string& integrator) {
+        directory.write("a.mtl", std::string("newmtl m\nKd ") + colour + "\n");
+        Scene scene = scene_of(integrator, FIELD_CONSTANT);
+        scene.volumes[0].shape = MeshFiles{{model}};
+        return scene_hash(scene);
+    };
+    CHECK(hash("1 0 0", "densitySampling") != hash("1 0 0.25", "densitySampling"));
+    CHECK(hash("1 0 0", "ratioTracking") == hash("1 0 0.25", "ratioTracking"));
 }

@@ -146,6 +146,17 @@ TEST_CASE("pbrt's media that are not rendered as in pbrt are named", "[cpu][pbrt
     CHECK(fog("LightSource \"point\"").warnings.empty());
 }
 
+TEST_CASE("a grid about pbrt's camera is one of its media", "[cpu][pbrt]") {
+    const Scene scene = scene_of(
+        "MakeNamedMedium \"c\" \"string type\" \"uniformgrid\" \"integer nx\" 1 \"integer ny\" 1 \"integer nz\" 1 "
+        "\"float density\" [ 1 ] \"point3 p0\" [ -9 -9 -9 ] \"point3 p1\" [ 9 9 9 ] MediumInterface \"\" \"c\" "
+        "Camera \"perspective\" WorldBegin MakeNamedMedium \"a\" \"string type\" \"homogeneous\" "
+        "MediumInterface \"a\" \"\" Material \"interface\" Shape \"plymesh\" \"string filename\" \"a.ply\"");
+    CHECK(std::any_of(scene.warnings.begin(), scene.warnings.end(), [](const std::string& warning) {
+        return warning.find("\"plymesh\" encloses medium \"a\", which is left out") != std::string::npos;
+    }));
+}
+
 TEST_CASE("images of pbrt's textures that are taken otherwise are named", "[cpu][pbrt]") {
     const auto check = [](const std::string& parameter, const std::string& expected) {
         check_noted("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" " + parameter +

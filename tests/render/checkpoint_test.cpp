@@ -214,3 +214,11 @@ TEST_CASE("damaged checkpoints are refused", "[cpu][checkpoint]") {
     std::filesystem::remove(file);
     CHECK_THROWS_AS(load_checkpoint(file), InputError);
 }
+
+TEST_CASE("checkpoints of other versions are told from other files", "[cpu][checkpoint]") {
+    const auto file = temporary("vkvol-old-checkpoint");
+    std::ofstream(file, std::ios::binary) << "vkvolch5" << std::string(100, '\0');
+    CHECK(is_checkpoint(file));
+    CHECK_THROWS_WITH(load_checkpoint(file), Catch::Contains("another version of vkvol wrote it"));
+    std::filesystem::remove(file);
+}

@@ -398,3 +398,16 @@ TEST_CASE("what a picture is expected to show", "[cpu][xml]") {
         CHECK_THROWS_WITH(read(attributes), Catch::Contains(message));
     }
 }
+
+TEST_CASE("layers are left out where the density is that of --grid", "[cpu][xml]") {
+    SceneOverrides overrides;
+    overrides.grid = "other.nvdb";
+    const Scene scene = parse("<box/><layers scaleHeight='1'/>", {}, overrides);
+    CHECK_FALSE(scene.volumes.at(0).layers);
+    CHECK(warns(scene, "<layers> are left out"));
+}
+
+TEST_CASE("digits of a frame are of whole numbers", "[cpu][xml]") {
+    CHECK_THROWS_WITH(parse("<densityField>smoke.$F4.nvdb</densityField>", {{"F", "2.5"}}),
+                      Catch::Contains("F is 2.5") && Catch::Contains("${F}"));
+}

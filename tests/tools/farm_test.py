@@ -59,6 +59,35 @@ class FarmTest(unittest.TestCase):
         (self.folder / "scene.xml").write_text("<options></options>")
         self.assertEqual(self.run_script(*part, "--spp", "4").returncode, 2)
 
+    def test_parts_begun_with_other_arguments_begin_anew(self):
+        checkpoint = self.folder / "out/a.still.1-of-2.partial.checkpoint"
+        self.program("vkvol", "exit 1")
+        self.assertEqual(self.run_script("render_part.sh", "scene.xml", "still", "1", "2", "out/a", "--spp", "4").returncode, 1)
+        checkpoint.write_text("of 4 samples")
+        self.program("vkvol", f'[ -f "{checkpoint}" ] && exit 2; while [ $# -gt 0 ]; do [ "$1" != -o ] || echo picture >"$2"; shift; done')
+        done = self.run_script("render_part.sh", "scene.xml", "still", "1", "2", "out/a", "--spp", "5")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("of another scene or other arguments", done.stdout)
+
+    def test_parts_begun_by_others_begin_anew(self):
+        part = ("render_part.sh", "scene.xml", "still", "1", "2", "out/a")
+        checkpoint = self.folder / "out/a.still.1-of-2.partial.checkpoint"
+        checkpoint.parent.mkdir()
+        checkpoint.write_text("of another device")
+        self.program("vkvol", "exit 2")  # whatever it begins from
+        self.assertEqual(self.run_script(*part).returncode, 2)
+        self.assertEqual(checkpoint.read_text(), "of another device")
+        self.program("vkvol", f'[ -f "{checkpoint}" ] && exit 2; while [ $# -gt 0 ]; do [ "$1" != -o ] || echo picture >"$2"; shift; done')
+        self.assertEqual(self.run_script(*part).returncode, 0)
+        self.assertEqual([file.name for file in checkpoint.parent.glob("*partial*")], [])
+
+    def test_strict_parts_fail_and_are_rendered_once(self):
+        self.program("vkvol", 'echo run >>runs; while [ $# -gt 0 ]; do [ "$1" != -o ] || echo picture >"$2"; shift; done; exit 5')
+        for _ in range(2):
+            self.assertEqual(self.run_script("render_part.sh", "scene.xml", "still", "1", "2", "out/a", "--strict").returncode, 5)
+        self.assertEqual((self.folder / "runs").read_text(), "run\n")
+        self.assertTrue((self.folder / "out/a.still.1-of-2.exr").exists())
+
 
 if __name__ == "__main__":
     unittest.main()
