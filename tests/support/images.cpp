@@ -220,6 +220,20 @@ Agreement agree_with_escapes(const Film& film, const std::vector<double>& p, con
     return judge.judge(name, film, &expected);
 }
 
+const FilmLayer& layer_of(const Film& film, const std::string& name) {
+    const FilmLayer* layer = film.layer(name);
+    INFO(name);
+    REQUIRE(layer);
+    return *layer;
+}
+
+Film as_film(Film film, const std::string& name) {
+    const FilmLayer& layer = layer_of(film, name);
+    film.mean = layer.mean;
+    film.variance = layer.variance;
+    return film;
+}
+
 bool same_bits(const Film& a, const Film& b) {
     const auto same = [](const auto& x, const auto& y) {
         return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0);

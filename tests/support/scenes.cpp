@@ -198,6 +198,18 @@ std::vector<NamedPhase> all_phases() {
             {"table", table, 0.0, PhaseDetails{.file = bow}}};
 }
 
+Scene absorption(glm::dvec3 middle, glm::dvec3 edges, glm::ivec3 cells, std::uint32_t spp) {
+    Scene scene;
+    scene.camera.projection = Projection::absorption;
+    scene.camera.position = middle;
+    scene.camera.edges = edges;
+    scene.camera.cells = cells;
+    const int rows = cells.y * cells.z;
+    scene.picture = {cells.x, rows, 0.0, 0.0, double(cells.x), double(rows)};
+    scene.settings.spp = spp;
+    return scene;
+}
+
 DirectionalLight sunlight(Rgb irradiance) {
     return {glm::normalize(glm::dvec3(1.0, 1.5, 1.0)), irradiance};
 }

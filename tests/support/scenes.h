@@ -61,6 +61,9 @@ Scene by(Scene scene, const char* integrator);
 Scene scene_of(const Volume& volume, double width, int pixels, double distance = 10.0,
                glm::dvec3 target = glm::dvec3(0.0), glm::dvec3 pitch_yaw_roll = glm::dvec3(0.0));
 
+// What is absorbed in each of the cells of a box.
+Scene absorption(glm::dvec3 middle, glm::dvec3 edges, glm::ivec3 cells, std::uint32_t spp);
+
 // One of each kind, about a body some 3 across amid the world.
 struct LightsAbout {
     PointLight point{{1.2, 1.9, 1.5}, {12.0, 9.0, 6.0}};
