@@ -24,6 +24,7 @@ done
 start=$SECONDS
 install_packages
 [ -z "$driver" ] || use_driver "$driver"
+[ "$driver" != swiftshader ] || export VKVOL_APART=1 # it keeps what it compiles as long as a process lasts
 build "$preset" -DVKVOL_WERROR=ON
 
 say "Scene files against their schema"

@@ -10,13 +10,12 @@
 #include "mesh.h"
 #include "polygons.h"
 #include "radiance_map.h"
-#include "seams.h"
 
 namespace vkvol {
 
 namespace {
 
-// What files of meshes hold: those that several surfaces have are read once.
+// What files of meshes hold: those that several surfaces have are read once, but for what is to be closed.
 class MeshFileReader {
 public:
     explicit MeshFileReader(const std::vector<Surface>& surfaces) {
@@ -196,12 +195,10 @@ Scene with_surface_files(Scene scene) {
             throw InputError(surface.place.empty() ? error.what() : fmt::format("{}: {}", surface.place, error.what()));
         }
     }
-    if (scene.periodic)
-        keep_off_seams(*scene.periodic, scene.surfaces);
     return scene;
 }
 
-std::optional<SurfaceBounds> bounds_of(const std::vector<Surface>& surfaces) {
+std::optional<SurfaceBounds> bounds_of(std::span<const Surface> surfaces) {
     constexpr double infinite = std::numeric_limits<double>::infinity();
     SurfaceBounds bounds{glm::dvec3(infinite), glm::dvec3(-infinite)};
     const auto add = [&](const glm::dvec3& middle, double reach) {
@@ -229,7 +226,7 @@ double reach_of(const SurfaceBounds& bounds, const glm::dvec3& origin) {
     return glm::length(glm::max(glm::abs(bounds.low - origin), glm::abs(bounds.high - origin)));
 }
 
-double reach_of_surfaces(const std::vector<Surface>& surfaces, const glm::dvec3& origin) {
+double reach_of_surfaces(std::span<const Surface> surfaces, const glm::dvec3& origin) {
     for (const Surface& surface : surfaces)
         if (std::holds_alternative<PlaneSurface>(surface.shape))
             return std::numeric_limits<double>::infinity();

@@ -1,6 +1,8 @@
 // Surfaces as they are in files.
 #pragma once
 
+#include <span>
+
 #include "scene.h"
 
 namespace vkvol {
@@ -14,11 +16,11 @@ Scene with_surface_files(Scene scene);
 struct SurfaceBounds {
     glm::dvec3 low, high;
 };
-std::optional<SurfaceBounds> bounds_of(const std::vector<Surface>& surfaces); // of planes there are none
+std::optional<SurfaceBounds> bounds_of(std::span<const Surface> surfaces); // of planes there are none
 // The distance from `origin` to the farthest corner.
 double reach_of(const SurfaceBounds& bounds, const glm::dvec3& origin);
 
 // The distance from `origin` to the end of what is farthest away; infinite for planes.
-double reach_of_surfaces(const std::vector<Surface>& surfaces, const glm::dvec3& origin);
+double reach_of_surfaces(std::span<const Surface> surfaces, const glm::dvec3& origin);
 
 } // namespace vkvol

@@ -86,7 +86,8 @@ path temporary_name(const path& target) {
     return name;
 }
 
-bool is_special(const path& target) {
+bool is_special(const path& name) {
+    const path target = behind_links(name);
     if (stream_of(target))
         return true;
     std::error_code ignored;
@@ -96,8 +97,8 @@ bool is_special(const path& target) {
 }
 
 AtomicFile::AtomicFile(const path& name)
-    : target_(is_special(name) ? name : behind_links(name)), temporary_(temporary_name(target_)),
-      special_(is_special(target_)), interrupted_before_(interrupted()) {
+    : target_(behind_links(name)), temporary_(temporary_name(target_)), special_(is_special(target_)),
+      interrupted_before_(interrupted()) {
     if (special_)
         descriptor_ = open_special(target_);
     else

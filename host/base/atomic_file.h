@@ -47,9 +47,10 @@ private:
 std::filesystem::path temporary_name(const std::filesystem::path& target);
 
 // A device or pipe (/dev/stdout, say): written to, never replaced by a file.
-bool is_special(const std::filesystem::path& target);
+bool is_special(const std::filesystem::path& name);
 
-// The file that a chain of links leads to, whether or not it is there; a name that is no link leads to itself.
+// The file that a chain of links leads to, whether or not it is there, or the stream of this process; a name that is no
+// link leads to itself.
 std::filesystem::path behind_links(std::filesystem::path name);
 
 } // namespace vkvol

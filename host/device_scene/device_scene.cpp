@@ -12,6 +12,7 @@
 #include "kernel_text.h"
 #include "light_table.h"
 #include "overlap_words.h"
+#include "seams.h"
 #include "surface_mesh.h"
 
 namespace vkvol {
@@ -25,9 +26,11 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
       layers_(plan_layers(scene)), form_(is_chromatic(scene) || method.paths != PATHS_CAMERA ? form_chromatic : 0),
       text_(kernel_text(specialization_, assets, is_chromatic(scene))),
       origin_(render_origin(scene, assets.media, whole_of(assets))), cache_directions_(cache_layout(scene).directions) {
-    if (!scene.surfaces.empty())
-        surfaces_ = make_surface_table(scene.surfaces, origin_,
-                                       assets.sky ? static_cast<std::uint32_t>(assets.sky->texels.size()) : 0);
+    const std::uint32_t first_texel = assets.sky ? static_cast<std::uint32_t>(assets.sky->texels.size()) : 0;
+    if (!scene.surfaces.empty() && scene.periodic)
+        surfaces_ = make_surface_table(kept_off_seams(*scene.periodic, origin_, scene.surfaces), origin_, first_texel);
+    else if (!scene.surfaces.empty())
+        surfaces_ = make_surface_table(scene.surfaces, origin_, first_texel);
     if (specialization_[SPEC_LIGHTS] != LIGHTS_LONE)
         make_lights(scene, method, assets);
     if (assets.superposition)

@@ -21,9 +21,9 @@ std::string read_mesh_text(const std::filesystem::path& path) {
     if (stream.bad())
         throw InputError(fmt::format("{}: cannot be read; check the disk, or copy the file again", path.string()));
     // Meshes are packed to a fifth or so: no more is unpacked than memory may be asked for by a file of such a size.
-    constexpr std::size_t most_times = 100, small = std::size_t{1} << 26u;
-    const std::size_t most = std::max(most_times * text.size(), small);
-    return unpacked(std::move(text), path, most);
+    constexpr std::size_t most_times = 100, least = std::size_t{1} << 26u, most = std::size_t{1} << 34u;
+    const std::size_t limit = std::clamp(most_times * text.size(), least, most);
+    return unpacked(std::move(text), path, limit);
 }
 
 Polygons read_polygons(const std::filesystem::path& path) {

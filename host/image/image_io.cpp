@@ -202,7 +202,7 @@ void check_writable(const path& target) {
 }
 
 void check_directory_writable(const path& target, const char* option) {
-    const path place = is_special(target) ? target : behind_links(target);
+    const path place = behind_links(target);
     const path directory = place.has_parent_path() ? place.parent_path() : path(".");
     std::error_code error;
     if (!std::filesystem::exists(directory, error))

@@ -10,6 +10,7 @@
 
 #include "device_json.h"
 #include "error.h"
+#include "image_io.h"
 #include "integrators.h"
 #include "interrupt.h"
 #include "memory_grids.h"
@@ -290,7 +291,12 @@ void add_errors(py::module_& module) {
 void add_classes(py::module_& module) {
     py::class_<MemoryGrids, std::shared_ptr<MemoryGrids>>(module, "Grids")
         .def(py::init(&grids_of), py::arg("arrays"), py::arg("voxel_size"), py::arg("origin"))
-        .def("nvdb", [](const MemoryGrids& grids) { return py::bytes(nvdb_file_of(grids)); });
+        .def(
+            "write",
+            [](const MemoryGrids& grids, const std::filesystem::path& file) {
+                write_text(file, nvdb_file_of(grids), "Grids.write");
+            },
+            py::arg("file"));
     py::class_<SceneSource>(module, "Scene")
         .def(py::init([](std::filesystem::path file, std::optional<std::string> xml, Defines defines,
                          const std::map<std::string, std::shared_ptr<MemoryGrids>>& grids, const std::string& up) {

@@ -28,7 +28,7 @@ std::string both_names(const path& output, const path& other) {
 
 path real_name(const path& file) {
     std::error_code error;
-    const path absolute = std::filesystem::absolute(file, error);
+    const path absolute = std::filesystem::absolute(behind_links(file), error);
     if (error)
         return file.lexically_normal();
     const path real = std::filesystem::weakly_canonical(absolute, error);

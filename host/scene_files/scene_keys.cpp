@@ -150,10 +150,10 @@ std::string SceneKeys::value_of(const std::string& key, bool live) {
         return "";
     const std::optional<std::string> value = find(key);
     if (const auto frame = values_.find(frame_key); !value && digits_of_frame(key) > 0 && frame != values_.end())
-        throw InputError(fmt::format(
-            "${} has no value: F is {}, which has no digits; give a whole number with -f 1..8 or -D F=1, or "
-            "take ${{{}}}, which is F as it is",
-            key, frame->second.empty() ? "empty" : frame->second, frame_key));
+        throw InputError(
+            fmt::format("${} has no value: F is {}, no whole number from 0 on; give one with -f 1..8 or -D F=1, or "
+                        "take ${{{}}}, which is F as it is",
+                        key, frame->second.empty() ? "empty" : frame->second, frame_key));
     if (!value && (key == frame_key || digits_of_frame(key) > 0))
         throw InputError(
             fmt::format("${} has no value: it is the number of a frame; give it with -f 1..8 or -D F=1, or "

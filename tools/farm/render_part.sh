@@ -7,7 +7,7 @@
 #   FARM_LINES=openjd  progress and failures in the words of Open Job Description
 # A part that is there was rendered to its end and is not rendered again, nor taken for one of another scene or other arguments;
 # with --strict it fails again if limits cut some of its light off. Of one that was killed what its last checkpoint has is gone
-# on from, if that is of the same arguments, and vkvol and its device have the same bits. Windows of a picture have the bits that they have in the whole (but for particles): ranges of samples would
+# on from, if the same arguments, a device of the same bits and the same vkvol began it. Windows of a picture have the bits that they have in the whole (but for particles): ranges of samples would
 # not, to the last.
 set -euo pipefail
 export LC_ALL=C # numbers have points
@@ -20,16 +20,16 @@ mkdir -p -- "$(dirname -- "$name")"
 asked=$(cksum <"$scene")$(printf ' %q' "$@")
 request=$name.$frame.$part-of-$parts.request
 readonly caps_hit=5 # vkvol's exit code: the picture is whole, and --strict wants none of this kind
-begun=$( [ ! -f "$request" ] || head -n 1 "$request")
 if [ -f "$output" ]; then
-    if [ -n "$begun" ] && [ "$begun" != "$asked" ]; then
+    if [ -f "$request" ] && [ "$(head -n 1 "$request")" != "$asked" ]; then
         echo "render_part.sh: error: $output is of another scene or other arguments; remove it, or take another NAME" >&2
         [ "${FARM_LINES:-}" != openjd ] || echo "openjd_fail: $output is of another scene or other arguments"
         exit 2
     fi
     echo "$output is there"
-    [ "$(tail -n +2 "$request" 2>/dev/null)" != "$caps_hit" ] || exit $caps_hit
-    exit 0
+    [ "$(tail -n +2 "$request" 2>/dev/null)" = "$caps_hit" ] || exit 0
+    [ "${FARM_LINES:-}" != openjd ] || echo "openjd_fail: limits cut off light in $output, and --strict wants none of that"
+    exit $caps_hit
 fi
 define=()
 [ "$frame" = still ] || define=(-D "F=$frame")
@@ -58,30 +58,23 @@ tell() {
 
 style=(--progress none)
 [ "${FARM_LINES:-}" != openjd ] || style=(--progress json)
+printf '%s\n' "$asked" >"$request"
+checkpoint=$partial.checkpoint
 code=0
 render() {
     code=0
-    "${VKVOL:-vkvol}" "$scene" "${define[@]}" --crop "$window" --checkpoint 30s --resume "${style[@]}" -o "$partial.exr" "$@" 2>&1 | tell || code=$?
+    "${VKVOL:-vkvol}" "$scene" "${define[@]}" --crop "$window" --checkpoint 30s --resume "${style[@]}" -o "$partial.exr" "$@" 2>&1 |
+        tee -- "$partial.log" | tell || code=$?
 }
-checkpoint=$partial.checkpoint
-if [ -f "$checkpoint" ] && [ -n "$begun" ] && [ "$begun" != "$asked" ]; then
-    echo "$checkpoint is of another scene or other arguments: $output begins anew"
-    rm -- "$checkpoint"
-fi
-printf '%s\n' "$asked" >"$request"
 echo "rendering $output"
-was_begun=$([ ! -f "$checkpoint" ] || echo yes)
 render "$@"
-if [ $code -eq 2 ] && [ -n "$was_begun" ] && [ -f "$checkpoint" ]; then # begun on another device, say, or by another vkvol
-    mv -- "$checkpoint" "$checkpoint.other"
+# By other arguments, on another device or by another vkvol: its bits are of no use here.
+if [ $code -eq 2 ] && [ -f "$checkpoint" ] && grep -qE -e '--resume: the checkpoint is of|no checkpoint to go on from' "$partial.log"; then
     echo "$output begins anew"
+    rm -- "$checkpoint"
     render "$@"
-    if [ $code -eq 2 ]; then # which was not the reason
-        mv -- "$checkpoint.other" "$checkpoint"
-    else
-        rm -- "$checkpoint.other"
-    fi
 fi
+rm -f -- "$partial.log"
 # What ends early writes what it has, and that is not the part: it gets the part's name when all of it is there.
 [ $code -eq 0 ] || [ $code -eq $caps_hit ] || exit $code
 [ $code -eq 0 ] || echo "$code" >>"$request"

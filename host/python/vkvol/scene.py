@@ -38,13 +38,7 @@ class Grids:
 
     def write(self, file: StrPath) -> None:
         """Writes them as an .nvdb file, which renders to the same bits."""
-        target = Path(os.path.realpath(file))
-        partial = target.with_name(f".{target.stem}.{os.getpid()}.tmp{target.suffix}")
-        try:
-            partial.write_bytes(self._grids.nvdb())
-            partial.replace(target)  # whole, or what was there before
-        finally:
-            partial.unlink(missing_ok=True)
+        self._grids.write(Path(file))
 
 
 def _three(name: str, value: npt.ArrayLike) -> tuple[float, float, float]:

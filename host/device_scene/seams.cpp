@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "shared/constants.h"
 #include "surface_mesh.h"
@@ -10,17 +11,14 @@ namespace vkvol {
 
 namespace {
 
-// Along one axis.
+// Along one axis. `spare`: by which rays are kept off the surface, see surfaces/surface_point.glsl.
 struct Seams {
     int axis;
     double low, high, spare;
 
     bool is_at(double seam, const glm::dvec3& place) const { return std::abs(place[axis] - seam) <= 0.5 * spare; }
     void move(glm::dvec3& place) const {
-        if (is_at(low, place))
-            place[axis] = low + spare;
-        else if (is_at(high, place))
-            place[axis] = high - spare;
+        place[axis] += is_at(low, place) ? 1.5 * spare : is_at(high, place) ? -1.5 * spare : 0.0;
     }
 
     void operator()(BallSurface&) const {}  // touches them in a point
@@ -50,16 +48,14 @@ struct Seams {
 
 } // namespace
 
-void keep_off_seams(const Periodic& periodic, std::vector<Surface>& surfaces) {
-    const glm::dvec3 size = periodic.size();
-    double reach = glm::length(size);
-    if (const auto bounds = bounds_of(surfaces))
-        reach = std::max(reach, glm::length(bounds->high - bounds->low));
-    for (int axis = 0; axis < 3; ++axis)
-        if (size[axis] > 0.0)
-            for (Surface& surface : surfaces)
-                std::visit(Seams{axis, periodic.low[axis], periodic.high[axis], 2.0 * SURFACE_SPARE * reach},
-                           surface.shape);
+std::vector<Surface> kept_off_seams(const Periodic& periodic, const glm::dvec3& origin, std::vector<Surface> surfaces) {
+    for (Surface& surface : surfaces) {
+        const double spare = SURFACE_SPARE * reach_of_surfaces(std::span(&surface, 1), origin);
+        for (int axis = 0; axis < 3; ++axis)
+            if (periodic.size()[axis] > 0.0)
+                std::visit(Seams{axis, periodic.low[axis], periodic.high[axis], spare}, surface.shape);
+    }
+    return surfaces;
 }
 
 } // namespace vkvol
