@@ -86,7 +86,7 @@ lamps in the planes of large surfaces hidden from looks ~ shaders/surfaces/neare
 whatever is met near a light passed over ~ shaders/surfaces/nearest.glsl ~ <= 0.125 * at.apart; ~ <= 1.0e9 * at.apart; ~ [surfaces]
 particles that begin within large surfaces ~ host/device_scene/emitter_table.cpp ~ : FlatPiece(p).spare_of(place, extent); ~ : 0.0; ~ [particles]
 particles that begin within large balls ~ host/device_scene/emitter_table.cpp ~ ? spare_of_ball(p, place) ~ ? 0.0 ~ [particles]
-glow of grids of another unit ~ host/device_scene/emitter_table.cpp ~ ? 0.1 * hottest_radiance(scene.volumes[i], loaded[i]) ~ ? channel_mean(emission.color) ~ [emission]
+glow of grids of another unit ~ host/device_scene/emitter_table.cpp ~ even + 0.1 * most; ~ even + channel_mean(emission.color); ~ [emission]
 planes known by any of their points ~ host/device_scene/surface_table.cpp ~ foot = plane.normal * glm::dot(plane.normal, point); ~ foot = point; ~ [invariance]
 textures of planes from where they are nearest ~ host/device_scene/surface_table.cpp ~ glm::fract(apart * surface_.material.repeat) ~ glm::fract(0.0 * apart) ~ [surfaces]
 turned air as far as what rounding leaves reaches ~ host/device_scene/period.cpp ~ turned.transform = without_rounding(volume.transform); ~ ; ~ [periodic]
@@ -322,7 +322,7 @@ spectral weight missing ~ shaders/estimators/flight/spectral_flight.glsl ~ max(P
 weighted flight without sign ~ shaders/estimators/flight/weighted_flight.glsl ~ sign(sigma_n) ~ 1.0 ~ [free_flight]
 channels not weighted ~ shaders/estimators/channel.glsl ~ density * total(abs(beta)) / mean ~ vec3(1.0) ~ [agreement]
 cubic through wrong values ~ shaders/field/voxels.glsl ~ -5.5 * f[0] + 9.0 * f[1] ~ -5.5 * f[0] + 8.9 * f[1] ~ [free_flight]
-colours over alpha after their curve ~ host/image/tone_map.cpp ~ display_value(exposed(film.mean[i], gain) / a, mapping.curve, white) ~ clamped(display_value(exposed(film.mean[i], gain), mapping.curve, white) / a) ~ [aovs]
+colours over alpha after their curve ~ host/image/tone_map.cpp ~ display_value(color_of(i), mapping.curve, white) ~ clamped(display_value(exposed(film.mean[i], gain), mapping.curve, white) / a) ~ [aovs]
 smooth across indices alone ~ host/assets/surface_mesh.cpp ~ sum += glm::dot(sums[*other], own) > 0.0 ? sums[*other] : glm::dvec3(0.0) ~ sum += *other == vertex ? own : glm::dvec3(0.0) ~ [mesh]
 grids without a name ~ host/fields/vdb_check.cpp ~ !plain.empty() && seen.insert(plain).second ~ seen.insert(plain).second ~ [density]
 files of moments ~ host/scene_files/scene_keys.cpp ~ if (!are_numbers(text)) ~ if (are_numbers("x")) ~ [motion]
@@ -441,6 +441,11 @@ numbers amid text never small ~ host/base/number_text.cpp ~ && is_small({begin, 
 lines of no area taken for rectangles ~ host/pbrt_files/pbrt_triangles.cpp ~ glm::length(u) * glm::length(v) > 0.0 ~ size > 0.0 ~ [pbrt]
 instances of any number of triangles ~ host/pbrt_files/pbrt_directives.cpp ~ if (triangles > most_triangles) ~ if (false) ~ [pbrt]
 grids about a camera no medium of its scene ~ host/pbrt_files/pbrt_media.cpp ~ if (is_grid(scene_.camera_medium)) ~ if (false) ~ [pbrt]
+exposures advised beside the camera's ~ host/report/explain_causes.cpp ~ mapping.curve) - camera; ~ mapping.curve) - 0.0 * camera; ~ [explain]
+white of what is not divided by alpha yet ~ host/image/tone_map.cpp ~ std::max(white, brightest_channel(color_of(i))) ~ std::max(white, brightest_channel(exposed(film.mean[i], gain))) ~ [image_io]
+glow beside what is too cold black ~ host/fields/blackbody.cpp ~ reference > 0.0 && blackbody_xyz(kelvin).y > 0.0 ~ false ~ [emission]
+emission without effect in units ~ host/scene_files/scene_medium.cpp ~ return is_grid ? emission : TemperatureEmission(); ~ return emission; ~ [xml]
+values of a viewed grid from before ~ host/cli/view.cpp ~ // Grids that stand in it, or that it names, may be others. ~ if (false) ~ [live]
 END
 }
 

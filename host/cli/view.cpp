@@ -89,8 +89,11 @@ private:
     // False: there is nothing more to do for this wish.
     bool render_wish() {
         const ViewWish wish = board_.wish(&wish_number_);
-        if (std::exchange(has_new_file_, false)) // whatever comes of it: what cannot be read is not read again
+        if (std::exchange(has_new_file_, false)) { // whatever comes of it: what cannot be read is not read again
+            // Grids that stand in it, or that it names, may be others.
+            rendering_.clear();
             see_file_camera();
+        }
         WatchedScene::Read read = read_with_layers(wish.layer);
         const std::string what = read.xml + '\n' + layers_ + asked_text(options_.request, read.scene);
         if (what != rendering_ || !session_) {
@@ -134,14 +137,16 @@ private:
         const WatchedScene::Read file = source_.read({}, "", workshop_.fields());
         std::string lights;
         for (const Shining& light : what_shines(file.xml))
-            lights += light.name + (light.direction ? " far\n" : "\n");
+            lights += light.name + (light.direction ? fmt::format(" {} {} {}\n", light.direction->x, light.direction->y,
+                                                                  light.direction->z)
+                                                    : "\n");
         if (lights != file_lights_)
             board_.forget_lights();
         file_lights_ = lights;
         const Camera& camera = file.scene.camera;
         const auto key = [](const Camera& c) {
-            return fmt::format("{} {} {} {} {} {} {} {}", c.position.x, c.position.y, c.position.z, c.pitch, c.yaw,
-                               c.roll, c.fov, c.view_height);
+            return fmt::format("{} {} {} {} {} {} {} {} {}", c.position.x, c.position.y, c.position.z, c.pitch, c.yaw,
+                               c.roll, c.fov, c.view_height, c.lens.focus);
         };
         if (key(camera) != key(file_camera_))
             board_.forget_camera();

@@ -294,16 +294,19 @@ Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumPar
             continue;
         const shared::EmissionParams& emission = rows[i].emission;
         const double even = channel_mean(emission.constant) + channel_mean(most_map_emission(scene.volumes[i]));
-        // A grid's values are of any size; usual are those of a tenth of its largest.
-        const double usual =
-            even + (channel_mean(emission.color) > 0.0 ? 0.1 * hottest_radiance(scene.volumes[i], loaded[i]) : 0.0);
+        // A grid's values are of any size; usual are those of a tenth of its largest. Of these matter sends out the
+        // share that it does not scatter.
+        const double color = channel_mean(scene.volumes[i].temperature.color);
+        const double most =
+            color > 0.0 ? hottest_radiance(scene.volumes[i], loaded[i]) * channel_mean(emission.color) / color : 0.0;
+        const double usual = even + 0.1 * most;
         if (!(usual > 0.0))
             continue;
         boxes.push_back(box_of(rows[i]));
         const double power = 4.0 * pi * boxes.back().volume() * rows[i].usual_sigma_t * usual;
         glow.power += power;
         glow.hidden += std::max(power - pi * boxes.back().area() * usual, 0.0);
-        glow.most = std::max(glow.most, even + hottest_radiance(scene.volumes[i], loaded[i]));
+        glow.most = std::max(glow.most, even + most);
     }
     if (boxes.empty())
         return glow;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 namespace vkvol {
 
@@ -56,8 +57,10 @@ glm::dvec3 blackbody_rgb(double kelvin, double reference) {
     if (!(kelvin > 0.0))
         return glm::dvec3(0.0);
     const double unit = reference > 0.0 ? blackbody_xyz(reference).y : largest_planck(kelvin);
-    if (!(unit > 0.0)) // nothing of it is to be seen
-        return glm::dvec3(0.0);
+    if (!(unit > 0.0)) { // nothing of it is to be seen, and any other glow is beyond all numbers beside it
+        const bool is_seen = reference > 0.0 && blackbody_xyz(kelvin).y > 0.0;
+        return glm::dvec3(is_seen ? std::numeric_limits<double>::infinity() : 0.0);
+    }
     const glm::dvec3 xyz = blackbody_xyz(kelvin) / unit;
     const glm::dvec3 rgb(3.2404542 * xyz.x - 1.5371385 * xyz.y - 0.4985314 * xyz.z,
                          -0.9692660 * xyz.x + 1.8760108 * xyz.y + 0.0415560 * xyz.z,

@@ -157,9 +157,9 @@ double white_of(std::span<const glm::vec3> radiance, double gain) {
     return white;
 }
 
-// Those of each pixel go where `bytes` says, `each` from pixel to pixel.
-void write_colors(std::span<const glm::vec3> radiance, const ToneMapping& mapping, std::uint8_t* bytes,
-                  std::size_t each) {
+// Those of each pixel go where `bytes` says, `each` from pixel to pixel. `whole`: has the white, where the curve asks.
+void write_colors(std::span<const glm::vec3> radiance, const ToneMapping& mapping, std::span<const glm::vec3> whole,
+                  std::uint8_t* bytes, std::size_t each) {
     static const SrgbBytes srgb_bytes;
     const double gain = std::exp2(mapping.exposure), rounding = rounding_of(mapping.curve);
     if (mapping.curve == ToneCurve::srgb || mapping.curve == ToneCurve::aces) {
@@ -171,7 +171,7 @@ void write_colors(std::span<const glm::vec3> radiance, const ToneMapping& mappin
         }
         return;
     }
-    const double white = mapping.curve == ToneCurve::reinhard ? white_of(radiance, gain) : 0.0;
+    const double white = mapping.curve == ToneCurve::reinhard ? white_of(whole, gain) : 0.0;
     for (const glm::vec3& mean : radiance) {
         const Vec3 v = display_value(exposed(mean, gain), mapping.curve, white);
         for (int channel = 0; channel < 3; ++channel)
@@ -184,24 +184,29 @@ void write_colors(std::span<const glm::vec3> radiance, const ToneMapping& mappin
 
 std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping) {
     std::vector<std::uint8_t> bytes(film.mean.size() * 3);
-    write_colors(film.mean, mapping, bytes.data(), 3);
+    write_colors(film.mean, mapping, film.mean, bytes.data(), 3);
     return bytes;
 }
 
-std::vector<std::uint8_t> tone_map_opaque(std::span<const glm::vec3> radiance, const ToneMapping& mapping) {
+std::vector<std::uint8_t> tone_map_opaque(std::span<const glm::vec3> radiance, const ToneMapping& mapping,
+                                          std::span<const glm::vec3> whole) {
     std::vector<std::uint8_t> bytes(radiance.size() * 4, 255);
-    write_colors(radiance, mapping, bytes.data(), 4);
+    write_colors(radiance, mapping, whole, bytes.data(), 4);
     return bytes;
 }
 
 std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping, const FilmLayer& alpha) {
     const double gain = std::exp2(mapping.exposure), rounding = rounding_of(mapping.curve);
-    const double white = mapping.curve == ToneCurve::reinhard ? white_of(film.mean, gain) : 0.0;
+    const auto alpha_of = [&](std::size_t i) { return std::clamp(double(alpha.mean[i].x), 0.0, 1.0); };
+    const auto color_of = [&](std::size_t i) { return exposed(film.mean[i], gain) / alpha_of(i); };
+    double white = 0.0;
+    for (std::size_t i = 0; i < film.mean.size() && mapping.curve == ToneCurve::reinhard; ++i)
+        white = alpha_of(i) > 0.0 ? std::max(white, brightest_channel(color_of(i))) : white;
     std::vector<std::uint8_t> bytes;
     bytes.reserve(film.mean.size() * 4);
     for (std::size_t i = 0; i < film.mean.size(); ++i) {
-        const double a = std::clamp(double(alpha.mean[i].x), 0.0, 1.0);
-        const Vec3 v = a > 0.0 ? display_value(exposed(film.mean[i], gain) / a, mapping.curve, white) : Vec3(0.0);
+        const double a = alpha_of(i);
+        const Vec3 v = a > 0.0 ? display_value(color_of(i), mapping.curve, white) : Vec3(0.0);
         for (int channel = 0; channel < 3; ++channel)
             bytes.push_back(static_cast<std::uint8_t>(255.0 * v[channel] + rounding));
         bytes.push_back(static_cast<std::uint8_t>(255.0 * a + 0.5));

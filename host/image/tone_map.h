@@ -13,7 +13,7 @@ namespace vkvol {
 
 // srgb: clip, then the sRGB curve. aces: Narkowicz' fit of the ACES filmic curve, then sRGB. agx: Sobotka's AgX in the
 // polynomial form of Wrensch. reinhard: the original renderer's curve, v (1 + v/w^2) / (1 + v) with w the
-// brightest channel value of the picture, and no sRGB encoding.
+// brightest channel value of the picture (over its alpha, where it has one), and no sRGB encoding.
 enum class ToneCurve { srgb, aces, agx, reinhard };
 
 struct ToneMapping {
@@ -29,8 +29,9 @@ std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping)
 // would look like behind the medium; light where alpha is 0, as flames may be, is lost.
 std::vector<std::uint8_t> tone_map(const Film& film, const ToneMapping& mapping, const FilmLayer& alpha);
 
-// As the first of these, but with a fourth byte, 255, as screens have it.
-std::vector<std::uint8_t> tone_map_opaque(std::span<const glm::vec3> radiance, const ToneMapping& mapping);
+// As the first of these, but with a fourth byte, 255, as screens have it. `whole`: of which the brightest value counts.
+std::vector<std::uint8_t> tone_map_opaque(std::span<const glm::vec3> radiance, const ToneMapping& mapping,
+                                          std::span<const glm::vec3> whole);
 
 // Pixels brighter than the curve has values for, in one channel or more: what they differ by is lost.
 std::size_t clipped_pixels(const Film& film, const ToneMapping& mapping);

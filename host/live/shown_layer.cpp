@@ -114,7 +114,7 @@ ShownLayer show_layer(const Film& film, const Film* sketch, const std::string& l
     const Tone chosen = choose_tone(tone, whole, metadata); // of the whole picture, so that its parts compare
     shown.mapping = chosen.mapping;
     shown.clipped = chosen.clipped;
-    shown.rgba = tone_map_opaque(radiance, chosen.mapping);
+    shown.rgba = tone_map_opaque(radiance, chosen.mapping, whole.mean);
     return shown;
 }
 

@@ -28,9 +28,16 @@ using Words = std::span<const std::uint32_t>;
 constexpr std::uint32_t most_rounds = 64; // per submit
 constexpr VkDeviceSize queue_bytes = QUEUE_COUNT * sizeof(shared::QueueHeader);
 constexpr double longest_submit = 0.5;        // seconds, on a GPU
-constexpr std::uint32_t first_budget = 64;    // on a device of unknown speed
 constexpr std::uint32_t no_end = 0xffffffffu; // of the work handed out
 constexpr std::uint32_t no_queue = QUEUE_COUNT;
+
+// Turns, on a device of unknown speed, and the least: of a slow GPU a few may take as long as its driver waits.
+std::uint32_t first_budget(const Device& device) {
+    return device.is_cpu() ? 64 : 8;
+}
+std::uint32_t least_budget(const Device& device) {
+    return device.is_cpu() ? 16 : 1;
+}
 
 // Nothing left of what the last pass saw, and nothing pushed since.
 bool is_empty(const shared::QueueHeader& header) {
@@ -83,7 +90,7 @@ Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, st
                    (std::uint64_t{most_pixels} + 2) * plan.splats * SPLAT_WORDS * sizeof(std::uint32_t));
     bindings_.emplace(device, bound(scene_buffers));
     make_passes(specialization, form, cache, meanwhile);
-    push_.budget = std::min(plan.budget, first_budget);
+    push_.budget = std::min(plan.budget, first_budget(device));
     push_.step_limit = plan.step_limit;
     commands_.fill(buffer(BINDING_QUEUES), 0);
     commands_.fill(buffer(BINDING_COUNTERS), 0);
@@ -355,7 +362,7 @@ void Wavefront::read_figures() {
 // What comes next may be as dear as anything was, and a GPU's driver waits for a second or two at most.
 std::uint32_t Wavefront::bearable_budget() const {
     const double most = longest_submit / std::max(worst_turn_, 1e-9);
-    return device_.is_cpu() ? plan_.budget : static_cast<std::uint32_t>(std::clamp(most, 16.0, 1e9));
+    return device_.is_cpu() ? plan_.budget : static_cast<std::uint32_t>(std::clamp(most, 1.0, 1e9));
 }
 
 // First lanes work for longer at a time, for they are laid aside less often then; after that there are more rounds.
@@ -370,7 +377,7 @@ void Wavefront::adapt(double seconds) {
     if (factor > 1.0 && push_.budget < plan_.budget)
         push_.budget = std::min({2 * push_.budget, plan_.budget, bearable_budget()});
     else if (rounds_ == 1 && seconds > 4.0 * plan_.submit_seconds)
-        push_.budget = std::min(std::max(push_.budget / 2, 16u), plan_.budget);
+        push_.budget = std::min(std::max(push_.budget / 2, least_budget(device_)), plan_.budget);
     else
         rounds_ = std::clamp(static_cast<std::uint32_t>(rounds_ * factor + 0.5), 1u, most_rounds);
     const double dearest = worst_turn_ * push_.budget;

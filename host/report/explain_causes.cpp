@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "camera_view.h"
 #include "kernel_constants.h"
 #include "scene_facts.h"
 #include "shared/constants.h"
@@ -335,8 +336,10 @@ Answer unlike_colours(const Evidence& e) {
 }
 
 std::string exposure_advice(const Evidence& e) {
-    const double suits = suitable_exposure(e.result->film, e.tone->mapping.curve);
-    return fmt::format("--exposure {:g} suits, also of vkvol develop", suits);
+    const double camera =
+        e.scene.camera.exposure ? stops_of(*e.scene.camera.exposure) : 0.0; // on top of which it comes
+    const double suits = suitable_exposure(e.result->film, e.tone->mapping.curve) - camera;
+    return fmt::format("--exposure {:.2f} suits, also of vkvol develop", suits);
 }
 
 Answer dim(const Evidence& e) {

@@ -129,7 +129,7 @@ TemperatureEmission SceneReader::temperature_emission(bool is_grid) const {
     if (element.exists() && emission.color != Rgb(0.0) && !is_grid)
         element.warn("spheres, boxes and models have no temperature grid: <emission> is without effect; <medium> glows "
                      "uniformly");
-    return emission;
+    return is_grid ? emission : TemperatureEmission();
 }
 
 std::string SceneReader::albedo_grid(bool is_grid) const {

@@ -1,5 +1,7 @@
 #include "bindings.h"
 
+#include <cstring>
+
 #include "shared/frame.h"
 #include "vulkan_error.h"
 
@@ -24,7 +26,8 @@ Bindings::Bindings(const Device& device, const BoundBuffers& buffers)
     : device_(device), unused_(device, "placeholder", 256,
                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
                                    VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
-                               BufferPlace::device) {
+                               BufferPlace::host) {
+    std::memset(unused_.mapped(), 0, unused_.bytes()); // what is read in vain, and nothing of it used, may be an index
     try {
         create();
         for (std::uint32_t i = 0; i < BINDING_BUFFERS; ++i)

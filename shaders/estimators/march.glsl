@@ -44,7 +44,7 @@ uint march_step(MediumParams v, float rho, float dt, inout Walk w, inout Spectru
         w.depth += w.tau / v.sigma_t;
         return EVENT_COLLIDED;
     }
-    w.tau -= tau;
+    w.tau = max(w.tau - tau, 0.0); // as in majorant.glsl
     w.depth += rho * dt;
     return EVENT_MOVING;
 }

@@ -109,7 +109,7 @@ uint voxel_step(MediumParams v, bool seeing, inout Walk w, inout Tally tally) {
         w.depth += rest;
         return EVENT_COLLIDED;
     }
-    w.tau -= seeing ? 0.0 : v.sigma_t * depth;
+    w.tau = max(w.tau - (seeing ? 0.0 : v.sigma_t * depth), 0.0); // as in majorant.glsl
     w.depth += depth;
     return next_voxel(v, block, t_exit, t_face, w);
 }

@@ -157,7 +157,7 @@ uint advance(MediumParams v, bool residual, inout Walk w) {
         w.t = min(w.t + w.tau / w.sigma_maj, t_exit);
         return EVENT_COLLIDED;
     }
-    w.tau -= tau_cell;
+    w.tau = max(w.tau - tau_cell, 0.0); // a driver may have rounded only one of the products
     return next_cell(v, residual, t_exit, t_face, w);
 }
 

@@ -288,6 +288,21 @@ TEST_CASE("exposures that do not suit are explained, with one that does", "[gpu]
     CHECK_FALSE(explain(glaring, result, {}));
 }
 
+TEST_CASE("exposures that suit come on top of the camera's", "[gpu][command][explain]") {
+    const Folder folder("");
+    folder.write("lit.xml",
+                 "<options><sphere/><sigma_a>0.1</sigma_a><sigma_s>3</sigma_s><width>16</width><height>16</height>"
+                 "<camera z=\"5\" fov=\"30\" shutter=\"0.01\" fNumber=\"8\"/>"
+                 "<light y=\"1\" z=\"1\" r=\"5\" g=\"5\" b=\"5\"/></options>");
+    const Run dim = folder.vkvol("lit.xml --spp 8 -o a.png");
+    CHECK_THAT(dim.text, Contains("next to nothing at exposure -12.9"));
+    std::smatch match;
+    REQUIRE(std::regex_search(dim.text, match, std::regex("--exposure (\\S+) suits")));
+    const Run bright = folder.vkvol("lit.xml --spp 8 -o a.png --exposure=" + match[1].str());
+    CHECK(bright.code == exit_done);
+    CHECK_THAT(bright.text, !Contains("suits"));
+}
+
 TEST_CASE("renders that ended early, and those that found nothing, are explained", "[gpu][explain]") {
     const Scene scene = parse(lit_ball);
     RenderJob job;

@@ -98,7 +98,8 @@ TEST_CASE("screens, files and what is opaque get the same bytes", "[cpu][image_i
     const FilmLayer opaque{"alpha", std::vector<glm::vec3>(film.mean.size(), glm::vec3(1.0f)), {}};
     for (const ToneCurve curve : {ToneCurve::srgb, ToneCurve::aces, ToneCurve::agx, ToneCurve::reinhard}) {
         const ToneMapping mapping{curve, 0.3};
-        const std::vector<std::uint8_t> rgb = tone_map(film, mapping), rgba = tone_map_opaque(film.mean, mapping);
+        const std::vector<std::uint8_t> rgb = tone_map(film, mapping),
+                                        rgba = tone_map_opaque(film.mean, mapping, film.mean);
         std::vector<std::uint8_t> expected;
         for (std::size_t i = 0; i < rgb.size(); i += 3)
             expected.insert(expected.end(), {rgb[i], rgb[i + 1], rgb[i + 2], 255});
@@ -106,6 +107,22 @@ TEST_CASE("screens, files and what is opaque get the same bytes", "[cpu][image_i
         CHECK(rgba == expected);
         CHECK(tone_map(film, mapping, opaque) == expected);
     }
+}
+
+TEST_CASE("the curve that has its white of the picture has it of what alpha leaves", "[cpu][image_io]") {
+    // Colours of 1, 0.5 and 0.25, of which a tenth is there.
+    const Film film = row({0.1f, 0.05f, 0.025f});
+    const FilmLayer thin{"alpha", std::vector<glm::vec3>(3, glm::vec3(0.1f)), {}};
+    const std::vector<std::uint8_t> bytes = tone_map(film, {ToneCurve::reinhard, 0.0}, thin),
+                                    whole = tone_map(row({1.0f, 0.5f, 0.25f}), {ToneCurve::reinhard, 0.0});
+    for (int i = 0; i < 3; ++i)
+        CHECK(std::abs(bytes[4 * i] - whole[3 * i]) <= 1);
+    CHECK(bytes[0] == 255);
+    CHECK(bytes[4] < 250);
+    // A part of a picture has the whole's.
+    const std::vector<std::uint8_t> part =
+        tone_map_opaque(row({0.25f}).mean, {ToneCurve::reinhard, 0.0}, row({1.0f, 0.25f}).mean);
+    CHECK(part[0] == whole[6]);
 }
 
 TEST_CASE("an exposure that suits puts what is bright just below white", "[cpu][image_io]") {

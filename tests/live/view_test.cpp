@@ -390,6 +390,34 @@ TEST_CASE("what was wrong is no longer told once it is not", "[gpu][live]") {
     });
 }
 
+TEST_CASE("values of a grid within a pbrt scene are followed", "[gpu][live]") {
+    const Folder folder("");
+    const auto scene = [](const std::string& density) {
+        return "LookAt 0 0 5 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 30 Film \"rgb\" \"integer xresolution\" "
+               "16 "
+               "\"integer yresolution\" 16 WorldBegin LightSource \"infinite\" \"rgb L\" [ 1 1 1 ] MakeNamedMedium "
+               "\"g\" "
+               "\"string type\" \"uniformgrid\" \"rgb sigma_a\" [ 2 2 2 ] \"integer nx\" 1 \"integer ny\" 1 "
+               "\"integer nz\" 1 \"point3 p0\" [ -1 -1 -1 ] \"point3 p1\" [ 1 1 1 ] \"float density\" [ " +
+               density + " ] MediumInterface \"g\" \"\" Material \"interface\" Shape \"sphere\" \"float radius\" 2\n";
+    };
+    folder.write("s.pbrt", scene("1"));
+    Watched watched(folder, "s.pbrt --spp 8");
+    const auto [root, key, port] = watched.address();
+    httplib::Client client(root);
+    const auto mean = [&, &key = key] {
+        const auto answer = client.Get(("/picture.exr?key=" + key).c_str());
+        REQUIRE(answer->status == 200);
+        folder.write("kept.exr", answer->body);
+        return read_exr(folder.file("kept.exr")).mean;
+    };
+    until(client, key, [](const Json& state) { return state.value("done", false); });
+    const std::vector<glm::vec3> before = mean();
+    folder.write("s.pbrt", scene("0.25"));
+    until(client, key, [&](const Json& state) { return state.value("done", false) && mean() != before; });
+    CHECK(watched.end(SIGTERM) == exit_done);
+}
+
 TEST_CASE("a scene is viewed, changed and kept", "[gpu][live]") {
     const Folder folder("<light x=\"1\" y=\"1\" z=\"0\" r=\"3\" g=\"2\" b=\"1\"/>");
     Watched watched(folder, "ball.xml --spp 8");

@@ -38,6 +38,12 @@ TEST_CASE("black bodies at the edges", "[cpu][emission]") {
     }
 }
 
+TEST_CASE("beside what is too cold to be seen any glow is endless", "[cpu][emission]") {
+    CHECK(std::isinf(blackbody_rgb(2000.0, 1.0).x)); // which is refused where a scene asks for it, and no black picture
+    CHECK(blackbody_rgb(2.0, 1.0) == Rgb(0.0));
+    CHECK(blackbody_rgb(2.0, 0.0) == Rgb(0.0));
+}
+
 TEST_CASE("the black-body table is as exact as it says", "[cpu][emission]") {
     const int count = 4096;
     const double low = 0.0, high = 3000.0, step = (high - low) / (count - 1);

@@ -85,6 +85,11 @@ TEST_CASE("fluxes over mu0 F0, radiances pi times", "[gpu][xml]") {
     CHECK(std::get<DirectionalLight>(red.lights.front()).irradiance == Rgb(std::numbers::pi, 0.0, 0.0));
 }
 
+TEST_CASE("units beside an emission without effect", "[cpu][xml]") {
+    const std::string scene = std::string("<sigma_s>1</sigma_s><sigma_a>1</sigma_a><emission r=\"1\"/>") + light;
+    CHECK(slab(scene + "<units>reflectance</units>").units == "reflectance");
+}
+
 TEST_CASE("units that readings cannot have are refused", "[cpu][xml]") {
     const std::string units = "<units>reflectance</units>";
     CHECK_THAT(unit_complaint("<units>brightness</units>"),

@@ -44,7 +44,8 @@ class Session:
         raises ends the render. It cannot use sessions of the device that renders: RenderError.
 
     Sessions of one device take turns, in whatever threads they are. Python runs on while one renders, and Ctrl-C ends it;
-    a session goes on after that as if nothing had been. (After os.fork() a session, and its
+    a session goes on after that as if nothing had been, but where paths under way took more than five seconds to end:
+    they are abandoned then, and render() raises RenderError. (After os.fork() a session, and its
     device, are the parent's: in the other process both raise RenderError. Take multiprocessing's "spawn".)
     """
 
