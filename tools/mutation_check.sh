@@ -530,10 +530,14 @@ first_failure() {
         "$work/tests.log"
 }
 
-# The test that caught an error the last time, as a specification: that one is asked first.
+# A specification of one test; long names were cut off.
+as_specification() { # NAME
+    sed 's/[][,\\"*]/\\&/g; s/.$/&*/' <<<"$1"
+}
+
+# The test that caught an error the last time: that one is asked first. Nothing if there is none.
 last_caught_by() { # NAME
-    awk -F ' *[|] *' -v name="$1" '$1 == name && $2 !~ /^(NOTHING|NOT |NO TEST)/ { print $2 }' "$results" |
-        sed 's/[][,\\"*]/\\&/g; s/$/*/'
+    as_specification "$(awk -F ' *[|] *' -v name="$1" '$1 == name && $2 !~ /^(NOTHING|NOT |NO TEST)/ { print $2 }' "$results")"
 }
 
 # One row's verdict: the test that caught it, or, in capitals, why none did.
@@ -591,13 +595,13 @@ commit=$(git -C "$root" rev-parse --short HEAD)$([ "$changed" = 0 ] || echo "+")
 cmake -S "$copy" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DVKVOL_UNITY=OFF \
     -DCMAKE_CXX_FLAGS="-Wno-unused-parameter -Wno-unused-variable -Wno-unused-function" >"$work/build.log"
 
-# Whether tests fail by themselves is asked once of a commit.
-check_sound() { # TESTS
+# Whether a test fails by itself is asked once of a commit.
+check_sound() { # NAME
     ! grep -qxF "$commit $1" "$work/sound" || return 0
     build_tests
-    if ! run_tests "$1"; then
+    if ! run_tests "$(as_specification "$1")"; then
         tail -30 "$work/tests.log" >&2
-        echo "$1 fails without any error made: $work/tests.log" >&2
+        echo "'$1' fails without any error made: $work/tests.log" >&2
         exit 1
     fi
     [[ "$commit" == *+ ]] || echo "$commit $1" >>"$work/sound"
@@ -612,7 +616,7 @@ for line in "${selected[@]}"; do
     # A test that would fail anyway has caught nothing; a build and its tests are dear, so that is asked of failures alone.
     case $verdict in
     NO[T\ ]*) ;;
-    *) check_sound "$tests" ;;
+    *) check_sound "$verdict" ;;
     esac
     keep "$name" "$verdict" "$(python3 "$source/tools/mutation_keys.py" "$source" --key "$line" "$verdict")"
     printf '%-56s %s\n' "$name" "$verdict"
