@@ -11,7 +11,8 @@ bool looks_ahead() {
     bool walks = NULL_FLIGHT && !CONTROLLED_FLIGHT;
     bool shadows_walk = NULL_TRANSMITTANCE && !CONTROLLED_TRANSMITTANCE;
     bool gathers = EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS;
-    return FIELD == FIELD_GRID && SHAPE != SHAPE_NONE && walks && NEE != NEE_TENTATIVE && !gathers && (!SHADOW_RAYS_WALK || shadows_walk);
+    bool has_voxels = FIELD == FIELD_GRID && SHAPE != SHAPE_NONE;
+    return has_voxels && walks && NEE != NEE_TENTATIVE && !gathers && (!SHADOW_RAYS_WALK || shadows_walk);
 }
 
 void look_up(MediumParams v, Walk w, float t[STEPS], vec3 tap[STEPS], out float sigma_t[STEPS]) {

@@ -7,8 +7,8 @@
 #   FARM_LINES=openjd  progress and failures in the words of Open Job Description
 # A part that is there was rendered to its end and is not rendered again, nor taken for one of another scene or other arguments;
 # with --strict it fails again if limits cut some of its light off. Of one that was killed what its last checkpoint has is gone
-# on from, if the same arguments, a device of the same bits and the same vkvol began it. Windows of a picture have the bits that they have in the whole (but for particles): ranges of samples would
-# not, to the last.
+# on from, if the same arguments, a device of the same bits and the same vkvol began it. Windows of a picture have the bits that
+# they have in the whole (but for particles): ranges of samples would not, to the last.
 set -euo pipefail
 export LC_ALL=C # numbers have points
 
