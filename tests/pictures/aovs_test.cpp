@@ -60,8 +60,8 @@ void check_sum(const Film& film, const std::vector<std::string>& names) {
         for (int channel = 0; channel < 3; ++channel) {
             double sum = 0.0, magnitude = 0.0;
             for (const std::string& name : names) {
-                sum += double(layer_of(film, name).mean[i][channel]);
-                magnitude += std::abs(double(layer_of(film, name).mean[i][channel]));
+                sum += double(layer_of(film, name.c_str()).mean[i][channel]);
+                magnitude += std::abs(double(layer_of(film, name.c_str()).mean[i][channel]));
             }
             CAPTURE(i, channel);
             REQUIRE(std::abs(sum - film.mean[i][channel]) <= 2.0 * 1000.0 * 0x1p-24 * magnitude);

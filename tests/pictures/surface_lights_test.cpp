@@ -301,6 +301,28 @@ TEST_CASE("surfaces that shine are lamps with bodies", "[gpu][image][surfaces]")
     }
 }
 
+TEST_CASE("lamps do not hide themselves, however flat they are seen", "[gpu][image][surfaces]") {
+    // A wall of light that stands a thousandth aside of the floor that it shines on, from 1 to 3 above it: where rays
+    // meet it single precision knows to some 1e-4 of a way that shadow rays leave out less than half of.
+    Scene scene = from_above(1e-4);
+    Surface floor;
+    floor.shape = PlaneSurface{};
+    floor.material = matte(0.6);
+    scene.surfaces = {floor};
+    scene.settings.max_depth = 1;
+    scene.settings.spp = 1024;
+    const glm::dvec3 middle{-1e-3, 2.0, 0.0}, edge_u{0.0, 1.0, 0.0}, edge_v{0.0, 0.0, 1.0};
+    scene.lights = {RectangleLight{middle, edge_u, edge_v, Rgb(1.0)}};
+    const Film without = render_here(scene, 1).film;
+    REQUIRE(image_mean(without).value.x > 0.0);
+    scene.lights.clear();
+    Surface& lamp = scene.surfaces.emplace_back();
+    lamp.shape = RectangleSurface{middle, edge_u, edge_v};
+    lamp.material = matte(0.0);
+    lamp.emission = Rgb(1.0);
+    CHECK_AGREEMENT(agree(render_here(scene, 2).film, without, "a body"));
+}
+
 TEST_CASE("lamps in a face of rough glass do not shine through it", "[gpu][image][surfaces]") {
     Scene scene = empty_scene();
     scene.surfaces = {ball_surface(frosted(MaterialKind::dielectric, 0.4), {0.0, 0.0, 0.0}, 1.0)};

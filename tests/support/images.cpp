@@ -220,7 +220,7 @@ Agreement agree_with_escapes(const Film& film, const std::vector<double>& p, con
     return judge.judge(name, film, &expected);
 }
 
-const FilmLayer& layer_of(const Film& film, const std::string& name) {
+const FilmLayer& layer_of(const Film& film, const char* name) {
     const FilmLayer* layer = film.layer(name);
     INFO(name);
     REQUIRE(layer);
@@ -228,7 +228,7 @@ const FilmLayer& layer_of(const Film& film, const std::string& name) {
 }
 
 Film as_film(Film film, const std::string& name) {
-    const FilmLayer& layer = layer_of(film, name);
+    const FilmLayer& layer = layer_of(film, name.c_str());
     film.mean = layer.mean;
     film.variance = layer.variance;
     return film;

@@ -51,8 +51,9 @@ void check_means(const Scene& scene, double expected, const std::string& name);
 Agreement agree_with_escapes(const Film& film, const std::vector<double>& p, const Rgb& if_escaped,
                              const Rgb& otherwise, const std::string& name);
 
-// The layer of this name, which has to be there; and a film of its means and variances.
-const FilmLayer& layer_of(const Film& film, const std::string& name);
+// The layer of this name (no string: compilers would take the layer for a part of it), which has to be there; and a
+// film of its means and variances.
+const FilmLayer& layer_of(const Film& film, const char* name);
 Film as_film(Film film, const std::string& name);
 
 // Every mean, variance and count has the same bits, those of layers too.
