@@ -136,6 +136,15 @@ def pixels_of(exr):
     return exr[at + 1 :]
 
 
+def is_pending(process, number):
+    """Whether such a signal was sent to a process that has not taken it yet: another is lost."""
+    try:
+        status = dict(line.split(":", 1) for line in pathlib.Path(f"/proc/{process}/status").read_text().splitlines())
+    except OSError:
+        return False
+    return status["State"].strip()[0] != "Z" and bool(int(status["ShdPnd"], 16) >> (number - 1) & 1)
+
+
 class Run:
     """One start of the program. `losses` collects what should not have happened."""
 
@@ -146,6 +155,7 @@ class Run:
         self.env, self.signals, self.wrap = env or {}, signals, list(wrap)
         self.stdout, self.stderr = stdout, stderr
         self.code, self.text, self.seconds, self.losses = None, "", 0.0, []
+        self.signalled = 0.0  # when the last signal was sent
 
     def go(self):
         env = {**os.environ, "XDG_CACHE_HOME": str(self.lab.work / "cache"), "TMPDIR": str(self.lab.work / "rescued"),
@@ -156,7 +166,9 @@ class Run:
                                    stdout=self.stdout, stderr=self.stderr)
         for moment, number in self.signals:
             self.wait_for(moment, start)
+            self.wait_for(lambda n=number: not is_pending(process.pid, n), start)
             process.send_signal(number)  # none is sent to a process that has ended
+            self.signalled = time.monotonic() - start
         try:
             _, errors = process.communicate(timeout=MOST_SECONDS)
             self.text = (errors or b"").decode(errors="replace").strip()
