@@ -66,8 +66,8 @@ install_packages() {
         command -v sudo >/dev/null || die "packages are missing (${missing[*]}); run this script as root, or install them yourself"
         as_root=(sudo)
     fi
-    "${as_root[@]}" apt-get update -qq || die "apt-get update failed: is there a network? Missing: ${missing[*]}"
-    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" \
+    "${as_root[@]}" apt-get -o DPkg::Lock::Timeout=300 update -qq || die "apt-get update failed: is there a network? Missing: ${missing[*]}"
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 install -y -qq --no-install-recommends "${missing[@]}" \
         >/dev/null || die_unsupported "apt-get could not install: ${missing[*]}"
 }
 

@@ -16,9 +16,12 @@ namespace {
 
 constexpr std::size_t largest_scene = 256u << 20u; // bytes, as scene files may have
 
-std::filesystem::file_time_type time_of(const std::filesystem::path& file) {
+// When it was written, and its size: a clock's ticks are long, and what is written in two goes may be read between
+// them.
+std::pair<std::filesystem::file_time_type, std::uintmax_t> state_of(const std::filesystem::path& file) {
     std::error_code error;
-    return std::filesystem::last_write_time(file, error);
+    const std::filesystem::file_time_type time = std::filesystem::last_write_time(file, error);
+    return {time, std::filesystem::file_size(file, error)};
 }
 
 } // namespace
@@ -31,7 +34,7 @@ WatchedScene::WatchedScene(const ViewOptions& options)
 
 void WatchedScene::load() {
     const std::filesystem::path& file = options_.request.scene;
-    time_ = time_of(file);
+    state_ = state_of(file);
     if (is_grid_file(file)) {
         FileSceneOptions made;
         made.picture = file_picture();
@@ -55,8 +58,9 @@ void WatchedScene::load() {
 }
 
 bool WatchedScene::refresh() {
-    const std::filesystem::file_time_type now = time_of(options_.request.scene);
-    if (now == time_ || now == std::filesystem::file_time_type::min()) // a file that is replaced is away for a moment
+    const auto now = state_of(options_.request.scene);
+    if (now == state_ ||
+        now.first == std::filesystem::file_time_type::min()) // one that is replaced is away for a moment
         return false;
     load();
     return true;

@@ -1,7 +1,9 @@
 // The scene of a viewer: read from its file again and again, with what the viewer changes.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <utility>
 
 #include "field_cache.h"
 #include "options.h"
@@ -40,7 +42,7 @@ private:
     NamedGrids grids_;               // of a scene that was translated
     std::vector<std::string> notes_; // of what of it was not
     bool has_view_ = false;
-    std::filesystem::file_time_type time_{};
+    std::pair<std::filesystem::file_time_type, std::uintmax_t> state_{};
 };
 
 } // namespace vkvol

@@ -13,6 +13,8 @@
 
 namespace vkvol {
 
+static_assert(sizeof(shared::LightRow) == LIGHT_ROW_TEXELS * 16, "texels, as row.glsl reads them");
+
 namespace {
 
 using std::numbers::pi;

@@ -12,6 +12,7 @@
 namespace vkvol {
 
 static_assert(SMOOTH_FACES > MATERIAL_THIN_DIELECTRIC, "bits of one number");
+static_assert(sizeof(shared::SurfaceRow) == 4 * 16, "texels, as surface_point.glsl reads them");
 
 namespace {
 

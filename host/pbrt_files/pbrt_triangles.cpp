@@ -83,7 +83,7 @@ PbrtTriangles with_usual_places(const PbrtTriangles& mesh, bool is_patches) {
             apart.points.push_back(mesh.points[t[k]]);
             if (!mesh.normals.empty())
                 apart.normals.push_back(mesh.normals[t[k]]);
-            apart.places.push_back((is_second ? second : first)[k]);
+            apart.places.push_back(is_second ? second[k] : first[k]);
         }
         apart.triangles.emplace_back(corner, corner + 1, corner + 2);
     }

@@ -30,7 +30,7 @@ inline constexpr double hottest_kelvin = 1e9;
 // How directions become places in the picture. Equirectangular: longitude across it, latitude down it, the middle of
 // the reference frame straight ahead. Kernels tell more of them apart, SENSOR_... of shaders/shared/constants.h: a
 // perspective one with a lens is one of its own there.
-// The last three read flux in place of radiance. Irradiance: what arrives through a rectangle from the side that the
+// Three read flux in place of radiance. Irradiance: what arrives through a rectangle from the side that the
 // camera looks to, a pixel being a patch of it: the integral of radiance times cosine over that hemisphere. Fluence:
 // what arrives at points from everywhere, a pixel each: the integral of radiance over all directions. Both include
 // light that comes straight from its source. Absorption: the power that media absorb in the cells of a box, a pixel

@@ -130,7 +130,7 @@
 #define SENSOR_LENS 1
 #define SENSOR_ORTHOGRAPHIC 2
 #define SENSOR_EQUIRECTANGULAR 3
-#define SENSOR_IRRADIANCE 4 // this and what follows read flux: see flux.glsl
+#define SENSOR_IRRADIANCE 4 // these three read flux: see flux.glsl
 #define SENSOR_FLUENCE 5
 #define SENSOR_ABSORPTION 6
 

@@ -72,13 +72,13 @@ TEST_CASE("a scene of any name renders, and its report is JSON", "[gpu][command]
 
 TEST_CASE("the first signal ends the wait for a pipe", "[gpu][command]") {
     const Folder folder("");
-    const std::string interrupted = "timeout --preserve-status -s INT 2 ";
+    const std::string interrupted = "timeout --preserve-status -s INT 10 ";
     for (const char* name : {"p.xml", "p.nvdb", "p.exr", "p.png"})
         REQUIRE(mkfifo(folder.file(name).c_str(), 0600) == 0);
     const Run scene = folder.vkvol("p.xml", interrupted);
     CHECK(scene.code == exit_interrupted);
     CHECK_THAT(scene.text, Contains("p.xml: interrupted while waiting"));
-    const Run slow = folder.script("{ echo '<options>'; sleep 9; } >p.xml & " + interrupted + "\"$vkvol\" p.xml");
+    const Run slow = folder.script("{ echo '<options>'; sleep 30; } >p.xml & " + interrupted + "\"$vkvol\" p.xml");
     CHECK(slow.code == exit_interrupted);
     CHECK_THAT(slow.text, Contains("p.xml: interrupted while waiting"));
     const Run grid = folder.vkvol("ball.xml --grid p.nvdb", interrupted);

@@ -109,7 +109,7 @@ TEST_CASE("the step cloud's columns", "[gpu][image][published][hard]") {
         read_flux(scene, down ? 0.0 : .25, down, {.5, 1.0}, 32, rows);
         std::vector<Rgb> means;
         for (int i = 0; i < 32 * rows; ++i)
-            means.emplace_back((down ? transmitted : reflected)[i % 32]);
+            means.emplace_back(down ? transmitted[i % 32] : reflected[i % 32]);
         CHECK_AGREEMENT(agree_with_means(render_here(scene, 7).film, means, down ? "step, down" : "step, up"));
     }
 }

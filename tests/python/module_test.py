@@ -284,6 +284,7 @@ class Running(unittest.TestCase):
     def test_interrupted_and_gone_on_with(self):
         scene = vkvol.Scene.from_dict(smoke(placed()))
         session = vkvol.Session(scene, width=96, seed=9)
+        session.render(1)  # its kernels are there
         before = signal.signal(signal.SIGINT, signal.default_int_handler)  # which shells' background jobs ignore
         self.addCleanup(signal.signal, signal.SIGINT, before)
         timer = threading.Timer(0.5, lambda: os.kill(os.getpid(), 2))
@@ -333,7 +334,7 @@ class Running(unittest.TestCase):
         while long.is_alive():
             ticks.append(time.monotonic())
             time.sleep(0.01)
-        self.assertLess(max(np.diff(ticks)), 0.5)
+        self.assertGreater(len(ticks), 10)  # of some 100; without its turn this thread has one or two
 
     def test_every_device_is_listed(self):
         self.assertTrue(any(device["usable"] for device in vkvol.devices()))

@@ -3,7 +3,9 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
+#include <unistd.h>
 
 #include "checkpoint.h"
 #include "error.h"
@@ -17,7 +19,7 @@ using namespace vkvol;
 namespace {
 
 std::filesystem::path temporary(const char* name) {
-    return std::filesystem::temp_directory_path() / name;
+    return std::filesystem::temp_directory_path() / fmt::format("{}-{}", name, getpid());
 }
 
 RenderResult render_part(const Scene& scene, const RenderJob& job) {

@@ -90,9 +90,9 @@ TEST_CASE("a shared render is looked at, stopped and gone on with", "[gpu][devic
     job.plan.slots = 64;
     job.plan.submit_seconds = 0.0; // a round each, however fast the device
     const Film whole = render(test_device(), scene, alone(job)).film;
-    int asked = 0, looks = 0;
+    int looks = 0;
     std::vector<Checkpoint> kept;
-    job.interrupted = [&] { return ++asked > 9; };
+    job.interrupted = [&] { return kept.size() > 2; };
     job.checkpoint = [&](const Checkpoint& checkpoint) { kept.push_back(checkpoint); };
     job.preview = [&](const RenderResult& result) {
         const std::vector<std::uint32_t>& samples = result.film.samples;
@@ -103,7 +103,6 @@ TEST_CASE("a shared render is looked at, stopped and gone on with", "[gpu][devic
     const RenderResult begun = render(test_device(), scene, job);
     REQUIRE(begun.interrupted);
     CHECK(looks > 0);
-    REQUIRE(kept.size() > 2);
     CHECK(kept.back().pixels.has_value());
     for (const std::size_t i : {kept.size() / 2, kept.size() - 1}) {
         RenderJob rest = shared_job(scene, job.plan.schedule, second);

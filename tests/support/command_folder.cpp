@@ -38,7 +38,8 @@ std::string Folder::text(const std::string& name) const {
 }
 
 void Folder::write(const std::string& name, const std::string& text) const {
-    std::ofstream(file(name), std::ios::binary) << text;
+    std::ofstream(file(name + ".new"), std::ios::binary) << text;
+    std::filesystem::rename(file(name + ".new"), file(name)); // so that nobody reads a part of it
 }
 
 } // namespace vkvol
