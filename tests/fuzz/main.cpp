@@ -43,7 +43,8 @@ std::string description() {
         "Reads inputs made by seeded mutation. Each must be read, or refused with one line of at most 4000 bytes, by "
         "an "
         "InputError; what is read is then used as the renderer would. A crash, a report of a sanitizer, another "
-        "exception, more than 5 seconds of processor time or more memory than this is a finding, and exit code 1:\n";
+        "exception, more than 5 seconds of processor time (30 under sanitizers) or more memory than this is a finding, "
+        "and exit code 1:\n";
     for (const Target* target : targets())
         text += fmt::format("  {:8} at most {} MiB + {} times the input's size\n", target->name, target->mebibytes,
                             target->times);

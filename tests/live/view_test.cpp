@@ -122,8 +122,9 @@ private:
     Address address_;
 };
 
-// Frames until one is as wanted, or a minute is over.
-Json until(httplib::Client& client, const std::string& key, const std::function<bool(const Json&)>& wanted) {
+// Frames until one is as wanted, or a minute is over. A copy of each is asked, where what is missing is null; of a
+// const one nobody may ask.
+Json until(httplib::Client& client, const std::string& key, const std::function<bool(Json)>& wanted) {
     Json state;
     for (int i = 0; i < 600; ++i) {
         const auto answer = client.Get(("/frame?since=0&key=" + key).c_str());
@@ -352,15 +353,15 @@ TEST_CASE("what a viewer asks for in vain does not stay asked for", "[gpu][live]
         return Json::parse(answer->body)["wish"].get<std::uint64_t>();
     };
     const auto done = [&, &key = key](std::uint64_t number) {
-        return until(client, key, [&](const Json& state) {
+        return until(client, key, [&](Json state) {
             return state.value("done", false) && state["wish"] == number && state["sceneWish"] == number &&
                    state["message"] == "";
         });
     };
-    const Json first = until(client, key, [](const Json& state) { return state.value("done", false); });
+    const Json first = until(client, key, [](Json state) { return state.value("done", false); });
     done(wish({{"layer", "position"}}));
     write("<motionBlur/>"); // of what moves there is none
-    until(client, key, [](const Json& state) { return state["message"] != ""; });
+    until(client, key, [](Json state) { return state["message"] != ""; });
     done(wish({{"layer", "depth"}}));
     // A camera that takes the place of the keys that stood there.
     Json camera = first["camera"];
@@ -382,9 +383,9 @@ TEST_CASE("what was wrong is no longer told once it is not", "[gpu][live]") {
         return Json::parse(client.Post(("/wish?key=" + key).c_str(), text, "application/json")->body)["wish"];
     };
     wish("position");
-    until(client, key, [](const Json& state) { return state["message"] != ""; });
+    until(client, key, [](Json state) { return state["message"] != ""; });
     const Json number = wish("depth");
-    until(client, key, [&](const Json& state) {
+    until(client, key, [&](Json state) {
         return state["sceneWish"] == number && state["samples"] > 0 && !state.value("done", false) &&
                state["message"] == "";
     });
@@ -411,10 +412,10 @@ TEST_CASE("values of a grid within a pbrt scene are followed", "[gpu][live]") {
         folder.write("kept.exr", answer->body);
         return read_exr(folder.file("kept.exr")).mean;
     };
-    until(client, key, [](const Json& state) { return state.value("done", false); });
+    until(client, key, [](Json state) { return state.value("done", false); });
     const std::vector<glm::vec3> before = mean();
     folder.write("s.pbrt", scene("0.25"));
-    until(client, key, [&](const Json& state) { return state.value("done", false) && mean() != before; });
+    until(client, key, [&](Json state) { return state.value("done", false) && mean() != before; });
     CHECK(watched.end(SIGTERM) == exit_done);
 }
 
@@ -423,7 +424,7 @@ TEST_CASE("a scene is viewed, changed and kept", "[gpu][live]") {
     Watched watched(folder, "ball.xml --spp 8");
     const auto [root, key, port] = watched.address();
     httplib::Client client(root);
-    const auto done = [](const Json& state) {
+    const auto done = [](Json state) {
         return state.value("done", false) && state["wish"] == state["sceneWish"] && state["message"] == "";
     };
     const auto wish_only = [&, &key = key](const Json& json) {
@@ -433,7 +434,7 @@ TEST_CASE("a scene is viewed, changed and kept", "[gpu][live]") {
     };
     const auto wish = [&, &key = key](const Json& json) {
         const std::uint64_t number = wish_only(json);
-        return until(client, key, [&](const Json& state) { return done(state) && state["wish"] == number; });
+        return until(client, key, [&](Json state) { return done(state) && state["wish"] == number; });
     };
     const auto kept = [&, &key = key](const std::string& name) {
         const auto answer = client.Get(("/" + name + "?key=" + key).c_str());
@@ -474,13 +475,13 @@ TEST_CASE("a scene is viewed, changed and kept", "[gpu][live]") {
         folder.write("ball.xml", text);
     };
     with("<width>16</width>", "<width>20</width>");
-    until(client, key, [&](const Json& now) { return done(now) && now["width"] == 20; });
+    until(client, key, [&](Json now) { return done(now) && now["width"] == 20; });
     with("</options>", "");
     until(client, key,
-          [](const Json& now) { return now["message"].get<std::string>().find("ball.xml:1") != std::string::npos; });
+          [](Json now) { return now["message"].get<std::string>().find("ball.xml:1") != std::string::npos; });
     // The word stays when what could be read is rendered anew.
     wish_only({{"density", 0.25}});
-    until(client, key, [](const Json& now) {
+    until(client, key, [](Json now) {
         return now.value("done", false) && now["density"] == 0.25 && now["wish"] == now["sceneWish"];
     });
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
@@ -488,7 +489,7 @@ TEST_CASE("a scene is viewed, changed and kept", "[gpu][live]") {
                Contains("ball.xml:1"));
     wish_only(Json::object());
     with("<width>16</width>", "<width>24</width>");
-    until(client, key, [&](const Json& now) { return done(now) && now["width"] == 24; });
+    until(client, key, [&](Json now) { return done(now) && now["width"] == 24; });
     CHECK(watched.end(SIGTERM) == exit_done);
     CHECK(folder.vkvol("view").code == exit_bad_input);
     CHECK(folder.vkvol("view nothing.xml").code == exit_bad_input);
