@@ -40,7 +40,6 @@ class Lab:
         while report["seconds"]["render"] < least_render:
             spp *= 2
             run, report = self.undisturbed(spp)
-        self.spp = spp
         self.render += ["--spp", str(spp)]
         # Two at a time, as most runs are: it is they whose phases are to be hit.
         twins = concurrent.futures.ThreadPoolExecutor(2)
@@ -165,8 +164,8 @@ class Run:
         process = subprocess.Popen([*self.wrap, str(self.lab.vkvol), *self.arguments], env=env, stdin=subprocess.DEVNULL,
                                    stdout=self.stdout, stderr=self.stderr)
         for moment, number in self.signals:
-            self.wait_for(moment, start)
-            self.wait_for(lambda n=number: not is_pending(process.pid, n), start)
+            self.wait_for(moment, start, process)
+            self.wait_for(lambda n=number: not is_pending(process.pid, n), start, process)
             process.send_signal(number)  # none is sent to a process that has ended
             self.signalled = time.monotonic() - start
         try:
@@ -180,10 +179,10 @@ class Run:
         return self
 
     @staticmethod
-    def wait_for(moment, start):
-        """Seconds after the start, or a condition."""
+    def wait_for(moment, start, process):
+        """Seconds after the start, or a condition, while the process lasts."""
         if callable(moment):
-            while not moment() and time.monotonic() < start + MOST_SECONDS:
+            while not moment() and process.poll() is None and time.monotonic() < start + MOST_SECONDS:
                 time.sleep(0.01)
         else:
             time.sleep(max(0.0, start + moment - time.monotonic()))

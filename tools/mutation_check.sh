@@ -253,7 +253,6 @@ surfaces throw no shadow ~ shaders/stages/seek.glsl ~ if (over && looks && lane.
 flights collide behind surfaces ~ shaders/stages/lane.glsl ~ return lane.reach; ~ return FAR; ~ [surfaces]
 mirrors show no lamps ~ shaders/stages/depart.glsl ~ bool sees = is_shown && seen.distance < FAR; ~ bool sees = false; ~ [surfaces]
 the sky twice on surfaces ~ shaders/stages/depart.glsl ~ lane.phase_pdf = drawn.pdf; ~ lane.phase_pdf = 0.0; ~ [surfaces]
-lamps shadowed by their own bodies ~ shaders/surfaces/nearest.glsl ~ p.surface != body ? meet ^ <= 0.125 * at.apart; ~ true ? meet ^ < -1.0; ~ [surfaces]
 lamps seen through bodies ~ shaders/surfaces/nearest.glsl ~ p.surface != body ? meet ~ body == NO_SURFACE ? meet ~ [surfaces]
 lamps drawn among those that are hidden ~ shaders/lights/lamp.glsl ~ if ((t < hidden || i == front) && bright > 0.0) { ~ if (i != front) { ~ [surfaces]
 lamps and their surfaces both shine ~ host/methods/surface_lamps.cpp ~ scene.surfaces[i].emission = Rgb(0.0); ~ ; ~ [surfaces]

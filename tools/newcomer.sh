@@ -54,8 +54,8 @@ bare() {
         rm -rf --one-file-system "$system"
         debootstrap --variant=minbase "$1" "$system" "$mirror" >"$cache/debootstrap.log" ||
             die "debootstrap $1 failed: $(tail -n 3 "$cache/debootstrap.log")"
-        tar -C "$system" --numeric-owner -cf "$archive.$$" .
-        mv "$archive.$$" "$archive"
+        tar -C "$system" --numeric-owner -cf "$archive.partial" .
+        mv "$archive.partial" "$archive"
     fi
 }
 
@@ -202,8 +202,8 @@ keep() {
         echo
         printf '%-9s %-5s %-14s %-7s %5s  %s\n' release user command result secs on
         { grep -E '^(bookworm|trixie) ' "$results" | grep -vF -- "$key" || true; echo "$1"; } | sort
-    } >"$results.$$"
-    mv "$results.$$" "$results"
+    } >"$results.partial"
+    mv "$results.partial" "$results"
 }
 
 failed=0

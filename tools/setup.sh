@@ -66,7 +66,13 @@ install_packages() {
         command -v sudo >/dev/null || die "packages are missing (${missing[*]}); run this script as root, or install them yourself"
         as_root=(sudo)
     fi
-    "${as_root[@]}" apt-get -o DPkg::Lock::Timeout=300 update -qq || die "apt-get update failed: is there a network? Missing: ${missing[*]}"
+    # A new system may be updating itself, and the lock of the lists is not waited for.
+    local try
+    for try in 1 2 3 4 5 last; do
+        "${as_root[@]}" apt-get update -qq && break
+        [ "$try" != last ] || die "apt-get update failed: is there a network? Missing: ${missing[*]}"
+        sleep 10
+    done
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 install -y -qq --no-install-recommends "${missing[@]}" \
         >/dev/null || die_unsupported "apt-get could not install: ${missing[*]}"
 }

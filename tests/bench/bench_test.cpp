@@ -274,7 +274,8 @@ TEST_CASE("an interrupted bench writes what there is", "[gpu][bench]") {
     // After ten measured renders of many.
     const Run run =
         folder.shell(folder.command("bench ball.xml --time 10m --reference reference.exr") + " >log 2>&1 &\n" +
-                     "for i in $(seq 6000); do [ $(grep -c ' of 600 s' log) -ge 10 ] && break; sleep 0.1; done\n"
+                     "for i in $(seq 6000); do [ $(grep -c ' of 600 s' log) -ge 10 ] && break; kill -0 $! || break; "
+                     "sleep 0.1; done\n"
                      "kill -TERM $!; wait $!");
     CAPTURE(run.text);
     CHECK(run.code == exit_interrupted);

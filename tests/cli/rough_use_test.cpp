@@ -78,7 +78,7 @@ TEST_CASE("the first signal ends the wait for a pipe", "[gpu][command]") {
     const Run scene = folder.vkvol("p.xml", interrupted);
     CHECK(scene.code == exit_interrupted);
     CHECK_THAT(scene.text, Contains("p.xml: interrupted while waiting"));
-    const Run slow = folder.script("{ echo '<options>'; sleep 30; } >p.xml & " + interrupted + "\"$vkvol\" p.xml");
+    const Run slow = folder.script("{ echo '<options>'; sleep 30; } >p.xml 2>&1 & " + interrupted + "\"$vkvol\" p.xml");
     CHECK(slow.code == exit_interrupted);
     CHECK_THAT(slow.text, Contains("p.xml: interrupted while waiting"));
     const Run grid = folder.vkvol("ball.xml --grid p.nvdb", interrupted);

@@ -293,7 +293,7 @@ class Running(unittest.TestCase):
             session.render(2**30)
         timer.join()
         done = session.samples
-        self.assertGreater(done, 0)
+        self.assertGreater(done, 1)
         self.assertGreaterEqual(int(session.picture().samples.min()), done)
         whole = session.render(done + 20)
         np.testing.assert_array_equal(session.picture().mean, vkvol.render(scene, width=96, seed=9, spp=whole).mean)
@@ -328,13 +328,13 @@ class Running(unittest.TestCase):
         for a, b in zip(expected, pictures):
             np.testing.assert_array_equal(a, b)
 
-        ticks = []
+        ticks = 0
         long = threading.Thread(target=lambda: vkvol.render(scene, time=1.0))
         long.start()
         while long.is_alive():
-            ticks.append(time.monotonic())
+            ticks += 1
             time.sleep(0.01)
-        self.assertGreater(len(ticks), 10)  # of some 100; without its turn this thread has one or two
+        self.assertGreater(ticks, 30)  # of some 100; without its turn this thread has one or two
 
     def test_every_device_is_listed(self):
         self.assertTrue(any(device["usable"] for device in vkvol.devices()))
