@@ -14,6 +14,7 @@
 #include "support/images.h"
 #include "support/scene_text.h"
 #include "support/scenes.h"
+#include "tests/reference/camera.h"
 #include "tests/reference/medium.h"
 #include "upload_layout.h"
 
@@ -271,6 +272,28 @@ TEST_CASE("small clouds in a wide haze equal the reference", "[gpu][image][sever
     scene.volumes.push_back(medium(Sphere{{14.0, 13.0, -15.0}, 3.0}, 0.5, 0.5));
     scene.settings.integrator = "";
     CHECK_AGREEMENT(agree(render_here(scene, 7).film, render_reference(scene, 8), "far apart"));
+}
+
+// Seen upward along all axes, through haze of hardly any matter, whose coarse cells are entered amid their sides. A
+// walk that took them to end as far from there as they are long would pass over the first cells of bricks: there the
+// solid has its faces, a tenth of a unit beyond the coarse cells'.
+TEST_CASE("coarse cells end where bricks begin, wherever they are entered", "[gpu][image][several]") {
+    GridRecipe solid = cloud_grid();
+    solid.value = [](glm::ivec3) { return 1.0f; };
+    std::vector<Volume> volumes{instance(write_grid(solid), placed({-0.33, -0.51, -0.42}, 0.0, glm::dvec3(0.3)), 1.0)};
+    volumes.push_back(medium(Box{{0.0, 0.0, 0.0}, {60.0, 60.0, 60.0}}, 1e-3, 0.0));
+    Scene scene = scene_of(volumes.front(), 4.0, 16, 20.0, glm::dvec3(0.0), {35.0, 225.0, 0.0});
+    scene.volumes = volumes;
+    scene.background = Rgb(1.0);
+    scene.settings.spp = 128;
+    scene.settings.majorant_cell = 4;
+    const glm::dvec3 along = reference::camera_ray(scene.camera, scene.picture, 8.0, 8.0).direction;
+    REQUIRE(glm::all(glm::greaterThan(along, glm::dvec3(0.5))));
+    const Assets assets = load_assets(scene, choose_method(scene));
+    const double coarse = assets.superposition->edge * assets.superposition->cells.cell;
+    REQUIRE(assets.superposition->bits > 0);
+    REQUIRE(std::abs(coarse - 0.9375) < 1e-6); // two of them to the solid's faces, but for the tenth
+    CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_reference(scene, 2), "from below"));
 }
 
 TEST_CASE("volumes of another shape leave what is of another kind of density", "[cpu][xml][several]") {
