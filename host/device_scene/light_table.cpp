@@ -226,6 +226,7 @@ int lights_kind(const Scene& scene) {
     const auto any = [&](bool (*is)(const Light&)) { return std::any_of(lights.begin(), lights.end(), is); };
     if (lights.empty() || lone_directional(scene))
         return LIGHTS_LONE;
+    const auto is_map = [](const Light& light) { return std::holds_alternative<SkyLight>(light); };
     const auto is_square = [](const Light& light) {
         const auto* sky = std::get_if<SkyLight>(&light);
         return sky && sky->mapping == SkyMapping::equal_area;
@@ -238,7 +239,7 @@ int lights_kind(const Scene& scene) {
     const bool asks_where = !scene.surfaces.empty() && any(is_aimed);
     const int tree = somewhere > 1 ? LIGHTS_TREE | (asks_where ? LIGHTS_AIMED : 0) : 0;
     return LIGHTS_TABLE | (any(is_met_by_chance) ? LIGHTS_SKY : 0) | (any(is_lamp) ? LIGHTS_LAMPS : 0) | tree |
-           (any(is_square) ? LIGHTS_EQUAL_AREA : 0);
+           (any(is_map) ? LIGHTS_MAP : 0) | (any(is_square) ? LIGHTS_EQUAL_AREA : 0);
 }
 
 std::uint32_t loop_iterations(const Scene& scene) {

@@ -92,7 +92,7 @@ void SceneBuffers::find_texels(std::uint64_t most_bytes) {
 
 bool SceneBuffers::find_table_texels(std::uint64_t most_bytes) {
     table_texels_ = true;
-    for (const auto* buffer : {&bvh_, &primitives_, &surfaces_, &lights_, &blackbody_, &sky_})
+    for (const auto* buffer : {&bvh_, &primitives_, &surfaces_, &lights_, &blackbody_, &sky_, &sky_alias_})
         table_texels_ = table_texels_ && (!*buffer || (*buffer)->bytes() <= most_bytes);
     return table_texels_;
 }
@@ -224,6 +224,7 @@ BoundBuffers SceneBuffers::bound() const {
         buffers[BINDING_LIGHT_TEXELS] = place(lights_);
         buffers[BINDING_BLACKBODY_TEXELS] = place(blackbody_);
         buffers[BINDING_SKY_TEXELS] = place(sky_);
+        buffers[BINDING_SKY_ALIAS_TEXELS] = place(sky_alias_);
     }
     buffers[BINDING_CONTROLS] = place(overlaps_ ? overlaps_ : controls_);
     buffers[BINDING_BLACKBODY] = place(blackbody_);

@@ -16,6 +16,7 @@ VkDescriptorType descriptor_type(std::uint32_t binding) {
 
 VkFormat texel_format(std::uint32_t binding) {
     return binding == BINDING_LATTICE_TEXELS                                    ? VK_FORMAT_R32G32B32A32_SFLOAT
+           : binding == BINDING_SKY_ALIAS_TEXELS                                ? VK_FORMAT_R32G32_UINT
            : binding == BINDING_MAJORANT_TEXELS                                 ? VK_FORMAT_R32_SFLOAT
            : binding == BINDING_MEMBER_TEXELS || binding >= BINDING_NODE_TEXELS ? VK_FORMAT_R32G32B32A32_UINT
                                                                                 : VK_FORMAT_R32_UINT;

@@ -54,6 +54,7 @@ layout(scalar, binding = BINDING_LIGHTS) readonly buffer LightBlock { LightRow l
 layout(scalar, binding = BINDING_SKY) readonly buffer SkyBlock { vec4 sky_storage[]; };
 layout(binding = BINDING_SKY_TEXELS) uniform utextureBuffer sky_texels;
 layout(scalar, binding = BINDING_SKY_ALIAS) readonly buffer SkyAliasBlock { AliasEntry sky_alias[]; };
+layout(binding = BINDING_SKY_ALIAS_TEXELS) uniform utextureBuffer sky_alias_texels;
 layout(scalar, binding = BINDING_SURFACES) readonly buffer SurfaceBlock { SurfaceRow surfaces[]; };
 layout(scalar, binding = BINDING_PRIMITIVES) readonly buffer PrimitiveBlock { SurfacePrimitive primitives[]; };
 #ifdef SURFACES
@@ -87,6 +88,13 @@ layout(scalar, binding = BINDING_COUNTERS) buffer CounterWordBlock { uint counte
 
 vec4 sky_texel(uint i) {
     return TABLE_TEXELS != 0 ? uintBitsToFloat(texelFetch(sky_texels, int(i))) : sky_storage[i];
+}
+
+AliasEntry sky_alias_entry(uint i) {
+    if (TABLE_TEXELS == 0)
+        return sky_alias[i];
+    uvec2 entry = texelFetch(sky_alias_texels, int(i)).xy;
+    return AliasEntry(entry.x, entry.y);
 }
 
 #endif

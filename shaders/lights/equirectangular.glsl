@@ -21,10 +21,12 @@ vec3 equirectangular_direction(vec2 place, out float sine) {
     return normalize(vec3(sine * sin(longitude), cos(latitude), -sine * cos(longitude)));
 }
 
-// Around the horizon, and no further than the poles: beyond the outermost rows' middles their values hold.
+// Of one next to the map at most. Around the horizon, and no further than the poles: beyond the outermost rows' middles their
+// values hold.
 ivec2 equirectangular_texel(ivec2 texel) {
     ivec2 size = ivec2(frame.sky.width, frame.sky.height);
-    return ivec2((texel.x + size.x) % size.x, clamp(texel.y, 0, size.y - 1));
+    int around = texel.x < 0 ? size.x : texel.x < size.x ? 0 : -size.x; // a remainder is dear
+    return ivec2(texel.x + around, clamp(texel.y, 0, size.y - 1));
 }
 
 #endif

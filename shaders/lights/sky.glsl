@@ -33,33 +33,39 @@ vec3 sky_direction(vec2 place, out float breadth) {
     return direction;
 }
 
-vec4 sky_entry(uvec2 texel) {
-    return sky_texel(texel.y * frame.sky.width + texel.x);
-}
+// What the map has at a place. `pdf`: of the texel that it lies in, per steradian, where texels take most, as equirectangular ones
+// do at the horizon.
+struct SkyValue {
+    vec3 radiance;
+    float pdf;
+};
 
-// Radiance of a texel, or of what is next to one over the map's edge.
-vec3 sky_near(ivec2 texel) {
+// A texel's entry, or that of what is next to one over the map's edge.
+vec4 sky_entry(ivec2 texel) {
     if (EQUAL_AREA)
         texel = equal_area_texel(texel);
     else
         texel = equirectangular_texel(texel);
-    return sky_entry(uvec2(texel)).rgb;
+    return sky_texel(uint(texel.y) * frame.sky.width + uint(texel.x));
 }
 
-vec3 sky_radiance(vec2 place) {
+// `texel`: that the place lies in, which is one of the four that are interpolated.
+SkyValue sky_value(vec2 place, uvec2 texel) {
     vec2 corner = floor(place - 0.5);
     vec2 f = place - 0.5 - corner;
     ivec2 at = ivec2(corner);
-    return mix(mix(sky_near(at), sky_near(at + ivec2(1, 0)), f.x),
-               mix(sky_near(at + ivec2(0, 1)), sky_near(at + ivec2(1, 1)), f.x), f.y);
+    vec4 a = sky_entry(at), b = sky_entry(at + ivec2(1, 0)), c = sky_entry(at + ivec2(0, 1)), d = sky_entry(at + ivec2(1, 1));
+    bvec2 beyond = notEqual(ivec2(texel), at);
+    float upper = beyond.x ? b.a : a.a, lower = beyond.x ? d.a : c.a;
+    return SkyValue(mix(mix(a.rgb, b.rgb, f.x), mix(c.rgb, d.rgb, f.x), f.y), beyond.y ? lower : upper);
 }
 
-// Per steradian. A texel's entry has it for where texels take most, as equirectangular ones do at the horizon.
-float sky_pdf(vec2 place, vec3 direction) {
-    float pdf = sky_entry(min(uvec2(place), uvec2(frame.sky.width, frame.sky.height) - 1u)).a;
+// At a direction's place.
+SkyValue sky_toward(vec3 direction, vec2 place) {
+    SkyValue value = sky_value(place, min(uvec2(place), uvec2(frame.sky.width, frame.sky.height) - 1u));
     if (!EQUAL_AREA)
-        pdf /= max(length(direction.xz), 1.0e-12);
-    return pdf;
+        value.pdf /= max(length(direction.xz), 1.0e-12);
+    return value;
 }
 
 // `u`: of the place within a texel.
@@ -67,13 +73,14 @@ LightSample sample_sky(vec2 u, inout Rng rng) {
     SkyParams sky = frame.sky;
     uvec4 words = next_words(rng);
     uint row = below(sky.height, words.x);
-    row = choose(sky_alias[row], row, words.y);
+    row = choose(sky_alias_entry(row), row, words.y);
     uint column = below(sky.width, words.z);
-    column = choose(sky_alias[sky.height + row * sky.width + column], column, words.w);
+    column = choose(sky_alias_entry(sky.height + row * sky.width + column), column, words.w);
     vec2 place = vec2(column, row) + u;
     float breadth;
     vec3 direction = sky_direction(place, breadth);
-    return LightSample(direction, FAR, sky_radiance(place), sky_entry(uvec2(column, row)).a / max(breadth, 1.0e-12));
+    SkyValue value = sky_value(place, uvec2(column, row));
+    return LightSample(direction, FAR, value.radiance, value.pdf / max(breadth, 1.0e-12));
 }
 
 #endif

@@ -39,7 +39,7 @@ uint choose_light(vec3 from, bool on_surface, uvec4 words, inout Rng rng, out fl
 // A look toward a light that is no lamp.
 LightSample sample_shapeless(LightRow light, vec3 from, vec2 u, inout Rng rng) {
     LightSample drawn;
-    if (SEES_SKY && light.kind == LIGHT_MAP)
+    if (HAS_SKY_MAP && light.kind == LIGHT_MAP)
         drawn = sample_sky(u, rng);
     else if (light.kind == LIGHT_SUN)
         drawn = sample_disc(light, u);
@@ -81,8 +81,8 @@ LightSample look_for_light(Scatterer s, vec3 from, vec3 travel, inout Rng rng, o
 // Per steradian, with which such a light's direction is drawn.
 float pdf_from_beyond(LightRow light, vec3 direction) {
     float pdf;
-    if (light.kind == LIGHT_MAP)
-        pdf = sky_pdf(sky_place(direction), direction);
+    if (HAS_SKY_MAP && light.kind == LIGHT_MAP)
+        pdf = sky_toward(direction, sky_place(direction)).pdf;
     else
         pdf = disc_pdf(light);
     return pdf;
@@ -93,10 +93,10 @@ float pdf_from_beyond(LightRow light, vec3 direction) {
 vec3 light_from_one(LightRow light, vec3 direction, float phase_pdf) {
     vec3 shown = vec3(0.0);
     float pdf = light.chance;
-    if (light.kind == LIGHT_MAP) {
-        vec2 place = sky_place(direction);
-        shown = sky_radiance(place);
-        pdf *= sky_pdf(place, direction);
+    if (HAS_SKY_MAP && light.kind == LIGHT_MAP) {
+        SkyValue value = sky_toward(direction, sky_place(direction));
+        shown = value.radiance;
+        pdf *= value.pdf;
     } else {
         float place = disc_place(light, direction);
         shown = place < light.extent ? disc_radiance(light, place) : vec3(0.0);

@@ -53,7 +53,8 @@
 #define BINDING_LIGHT_TEXELS 39 // LIGHT_ROW_TEXELS to a row
 #define BINDING_BLACKBODY_TEXELS 40
 #define BINDING_SKY_TEXELS 41 // one to a texel of the sky, then of textures
-#define BINDING_COUNT 42
+#define BINDING_SKY_ALIAS_TEXELS 42 // one to an entry
+#define BINDING_COUNT 43
 
 #define WORKGROUP_SIZE 64
 
@@ -196,7 +197,8 @@
 
 #define LIGHTS_LONE 0   // one without place or extent, or none, besides an even background
 #define LIGHTS_TABLE 1 // any, of which every look chooses one; and sums with
-#define LIGHTS_SKY 2   // some that flights meet by themselves when they leave
+#define LIGHTS_SKY 2   // some that flights meet by themselves when they leave: suns or, with the next, a map too
+#define LIGHTS_MAP 64  // a map of the sky
 #define LIGHTS_LAMPS 4 // some that have a shape and a place
 #define LIGHTS_TREE 8  // several that have a place
 #define LIGHTS_AIMED 32 // of those that have a place, some that do not shine into all directions

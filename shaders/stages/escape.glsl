@@ -6,20 +6,20 @@
 #include "stages/show.glsl"
 
 // Each light in its group's layer, and what of a sensor's ray has come through.
-void note_escape(Spectrum beta, uint label, Lane lane) {
+void note_escape(Spectrum beta, uint label, vec3 direction, Lane lane) {
     note_light(lane.record, label | group_label(frame.lights[FRAME_BACKGROUND].group),
                beta * frame.lights[FRAME_BACKGROUND].radiance);
     if (SEES_SKY)
         for (uint i = 0u; i < frame.sky_count; ++i)
             note_light(lane.record, label | group_label(light_at(i).group),
-                       beta * light_from_one(light_at(i), lane.path.direction, lane.phase_pdf));
+                       beta * light_from_one(light_at(i), direction, lane.phase_pdf));
     if (lane.path.depth == 0u)
         note_transmittance(lane.record, vec3(beta));
 }
 
 // The path's part of the light of all that a flight meets when it leaves.
-vec3 light_left_to_path(Lane lane) {
-    vec3 direction = lane.path.direction, radiance = vec3(0.0);
+vec3 light_left_to_path(vec3 direction, Lane lane) {
+    vec3 radiance = vec3(0.0);
     for (uint i = 0u; i < frame.sky_count; ++i) {
         LightRow light = light_at(i);
         vec2 shares = shares_of_found(light, lane.path.position, direction, FAR, pdf_from_beyond(light, direction));
@@ -28,7 +28,8 @@ vec3 light_left_to_path(Lane lane) {
     return radiance;
 }
 
-void escape(MediumParams v, inout Lane lane) {
+// `direction`: the path's.
+void escape(MediumParams v, vec3 direction, inout Lane lane) {
     if (is_particle(lane)) {
         lane.todo = TODO_END;
         return;
@@ -38,12 +39,12 @@ void escape(MediumParams v, inout Lane lane) {
         beta *= depth_weight(v, beta, lane.walk.depth, false);
     uint label = kind_label(lane.path.depth) | lane.first_label;
     if (HAS_LAYERS)
-        note_escape(beta, label, lane);
+        note_escape(beta, label, direction, lane);
     lane.path.radiance += held_out(beta * frame.lights[FRAME_BACKGROUND].radiance, label);
     if (SEES_SKY && WEIGHS)
-        lane.path.radiance += beta * light_left_to_path(lane);
+        lane.path.radiance += beta * light_left_to_path(direction, lane);
     else if (SEES_SKY)
-        lane.path.radiance += held_out(beta * light_from_beyond(lane.path.direction, lane.phase_pdf), label);
+        lane.path.radiance += held_out(beta * light_from_beyond(direction, lane.phase_pdf), label);
     trace(TRACE_ESCAPE, lane, lane.path.position, lane.path.direction);
     lane.todo = TODO_END;
 }

@@ -11,6 +11,20 @@
 #include "stages/surface.glsl"
 #include "stages/track.glsl"
 
+// llvmpipe carries out both sides of an `if`: what lanes that have nothing to do there look up is not used, but where it is random, in
+// a map of the sky say, it empties caches. So they have the same numbers, whatever theirs are, and the same direction. Chosen before
+// the `if`, within which the compiler would know better.
+Rng numbers_of(bool is_needed, Rng rng) {
+    Rng numbers = rng;
+    if (LIGHTS != LIGHTS_LONE)
+        if (!is_needed)
+            numbers = Rng(0u, 0u, 0u, 0u);
+    return numbers;
+}
+vec3 direction_of(bool is_needed, vec3 direction) {
+    return SEES_SKY && !is_needed ? vec3(0.0, 1.0, 0.0) : direction;
+}
+
 // What the present segment met, if anything, and what follows.
 void arrive(MediumParams v, uint event, Spectrum deposit, inout Lane lane, inout Rng rng, inout Tally tally) {
     bool seeing = at_shadow_ray(lane.todo == TODO_SEE);
@@ -18,6 +32,10 @@ void arrive(MediumParams v, uint event, Spectrum deposit, inout Lane lane, inout
     if (REPEATS)
         if (event == EVENT_LEFT)
             goes_on = passes_seam(seeing, event, lane, tally);
+    bool leaves = !seeing && event == EVENT_LEFT;
+    bool meets = !seeing && (event == EVENT_COLLIDED || event == EVENT_TOUCHED || (HAS_SURFACES && leaves));
+    Rng numbers = numbers_of(meets, rng);
+    vec3 leaving = direction_of(leaves, lane.path.direction);
     if (goes_on)
         go_on_across(v, seeing, lane);
     else if (seeing && event != EVENT_MOVING)
@@ -26,14 +44,15 @@ void arrive(MediumParams v, uint event, Spectrum deposit, inout Lane lane, inout
         lane.todo = TODO_END;
 #ifdef SURFACES
     else if (event == EVENT_LEFT && lane.reach < FAR)
-        arrive_at_surface(v, lane, rng, tally);
+        arrive_at_surface(v, lane, numbers, tally);
 #endif
     else if (event == EVENT_LEFT)
-        escape(v, lane);
+        escape(v, leaving, lane);
     else if (event == EVENT_COLLIDED)
-        collide(v, deposit, lane, rng, tally);
+        collide(v, deposit, lane, numbers, tally);
     else if (event == EVENT_TOUCHED)
-        touch(v, deposit, lane, rng);
+        touch(v, deposit, lane, numbers);
+    rng.draw = meets ? numbers.draw : rng.draw;
 }
 
 void turn(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {

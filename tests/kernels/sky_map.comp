@@ -17,6 +17,6 @@ void main() {
     vec2 place = sky_place(drawn.direction), given = sky_place(inputs[i].direction);
     float breadth;
     vec3 again = sky_direction(given, breadth);
-    outputs[i] = SkyOutput(drawn.direction, drawn.light, drawn.pdf, sky_radiance(place), sky_pdf(place, drawn.direction),
-                           sky_radiance(given), sky_pdf(given, inputs[i].direction), again);
+    SkyValue there = sky_toward(drawn.direction, place), seen = sky_toward(inputs[i].direction, given);
+    outputs[i] = SkyOutput(drawn.direction, drawn.light, drawn.pdf, there.radiance, there.pdf, seen.radiance, seen.pdf, again);
 }

@@ -156,13 +156,15 @@ TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "
     lights_touch(LIGHTS_TABLE, {BINDING_LIGHTS});
     lights_touch(LIGHTS_TABLE | LIGHTS_TREE, {BINDING_LIGHTS, BINDING_LIGHT_TREE});
     lights_touch(LIGHTS_TABLE | LIGHTS_TREE | LIGHTS_AIMED, {BINDING_LIGHTS, BINDING_LIGHT_TREE});
-    lights_touch(LIGHTS_TABLE | LIGHTS_SKY, {BINDING_LIGHTS, BINDING_SKY, BINDING_SKY_ALIAS});
-    lights_touch(LIGHTS_TABLE | LIGHTS_SKY | LIGHTS_EQUAL_AREA, {BINDING_LIGHTS, BINDING_SKY, BINDING_SKY_ALIAS});
-    std::set<int> texels = {BINDING_LIGHT_TEXELS, BINDING_SKY_TEXELS, BINDING_SKY_ALIAS};
+    const int map = LIGHTS_TABLE | LIGHTS_SKY | LIGHTS_MAP;
+    lights_touch(LIGHTS_TABLE | LIGHTS_SKY, {BINDING_LIGHTS}); // suns alone
+    lights_touch(map, {BINDING_LIGHTS, BINDING_SKY, BINDING_SKY_ALIAS});
+    lights_touch(map | LIGHTS_EQUAL_AREA, {BINDING_LIGHTS, BINDING_SKY, BINDING_SKY_ALIAS});
+    std::set<int> texels = {BINDING_LIGHT_TEXELS, BINDING_SKY_TEXELS, BINDING_SKY_ALIAS_TEXELS};
     texels.insert(always.begin(), always.end());
     texels.insert(grid.begin(), grid.end());
     const Specialization sky =
-        with({{SPEC_NEE, NEE_COLLISIONS}, {SPEC_LIGHTS, LIGHTS_TABLE | LIGHTS_SKY}, {SPEC_TABLE_TEXELS, 1}});
+        with({{SPEC_NEE, NEE_COLLISIONS}, {SPEC_LIGHTS, map}, {SPEC_TABLE_TEXELS, 1}});
     CHECK(specialise(fused_full_spv, sky).bindings == texels);
 }
 
