@@ -199,7 +199,7 @@ Specialization specialize(const Scene& scene, Media media, const Method& method,
     // Without looks only what flights meet by themselves is seen.
     const int lights = lights_kind(scene);
     const int seen = method.nee == NEE_NONE && method.paths == PATHS_CAMERA ? lights & ~LIGHTS_LAMPS : lights;
-    constants[SPEC_LIGHTS] = seen == LIGHTS_TABLE && method.nee == NEE_NONE ? LIGHTS_LONE : seen;
+    constants[SPEC_LIGHTS] = (seen & ~LIGHTS_SOLE) == LIGHTS_TABLE && method.nee == NEE_NONE ? LIGHTS_LONE : seen;
     constants[SPEC_PATHS] = method.paths;
     if (method.paths != PATHS_CAMERA) // whose looks go toward the sensor
         constants[SPEC_LIGHTS] |= LIGHTS_TABLE;

@@ -239,7 +239,8 @@ int lights_kind(const Scene& scene) {
     const bool asks_where = !scene.surfaces.empty() && any(is_aimed);
     const int tree = somewhere > 1 ? LIGHTS_TREE | (asks_where ? LIGHTS_AIMED : 0) : 0;
     return LIGHTS_TABLE | (any(is_met_by_chance) ? LIGHTS_SKY : 0) | (any(is_lamp) ? LIGHTS_LAMPS : 0) | tree |
-           (any(is_map) ? LIGHTS_MAP : 0) | (any(is_square) ? LIGHTS_EQUAL_AREA : 0);
+           (any(is_map) ? LIGHTS_MAP : 0) | (lights.size() == 1 ? LIGHTS_SOLE : 0) |
+           (any(is_square) ? LIGHTS_EQUAL_AREA : 0);
 }
 
 std::uint32_t loop_iterations(const Scene& scene) {

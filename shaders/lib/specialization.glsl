@@ -103,6 +103,7 @@ const bool HAS_CELLS = (int(SHAPE != SHAPE_NONE) & (int(FIELD == FIELD_GRID) | i
 
 const bool SEES_SKY = (LIGHTS & LIGHTS_SKY) != 0;
 const bool HAS_SKY_MAP = (LIGHTS & LIGHTS_MAP) != 0;
+const bool SOLE_LIGHT = (LIGHTS & LIGHTS_SOLE) != 0;
 const bool EQUAL_AREA = (LIGHTS & LIGHTS_EQUAL_AREA) != 0;
 const bool SEES_LAMPS = (LIGHTS & LIGHTS_LAMPS) != 0;
 const bool HAS_TREE = (LIGHTS & LIGHTS_TREE) != 0;

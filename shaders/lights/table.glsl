@@ -23,11 +23,19 @@ float weight_of_flight(float phase_pdf, float pdf) {
     return MIS == MIS_PHASE || NEE == NEE_NONE ? 1.0 : MIS == MIS_LIGHT ? 0.0 : mis_weight(phase_pdf, pdf);
 }
 
+bool is_map(LightRow light) {
+    return HAS_SKY_MAP && (SOLE_LIGHT || light.kind == LIGHT_MAP);
+}
+
 // The row of a light, and the chance with which it was chosen.
 uint choose_light(vec3 from, bool on_surface, uvec4 words, inout Rng rng, out float chance) {
-    uint i = below(frame.choices, words.x);
-    i = choose(light_at(i).alias, i, words.y);
-    chance = light_at(i).chance;
+    uint i = 0u;
+    chance = 1.0;
+    if (!SOLE_LIGHT) {
+        i = below(frame.choices, words.x);
+        i = choose(light_at(i).alias, i, words.y);
+        chance = light_at(i).chance;
+    }
     if (HAS_TREE && i == frame.choices - 1u) {
         float of_leaf;
         i = descend(from, on_surface, rng, of_leaf);
@@ -39,7 +47,7 @@ uint choose_light(vec3 from, bool on_surface, uvec4 words, inout Rng rng, out fl
 // A look toward a light that is no lamp.
 LightSample sample_shapeless(LightRow light, vec3 from, vec2 u, inout Rng rng) {
     LightSample drawn;
-    if (HAS_SKY_MAP && light.kind == LIGHT_MAP)
+    if (is_map(light))
         drawn = sample_sky(u, rng);
     else if (light.kind == LIGHT_SUN)
         drawn = sample_disc(light, u);
@@ -81,7 +89,7 @@ LightSample look_for_light(Scatterer s, vec3 from, vec3 travel, inout Rng rng, o
 // Per steradian, with which such a light's direction is drawn.
 float pdf_from_beyond(LightRow light, vec3 direction) {
     float pdf;
-    if (HAS_SKY_MAP && light.kind == LIGHT_MAP)
+    if (is_map(light))
         pdf = sky_toward(direction, sky_place(direction)).pdf;
     else
         pdf = disc_pdf(light);
@@ -92,8 +100,8 @@ float pdf_from_beyond(LightRow light, vec3 direction) {
 // `phase_pdf`; 0 of a camera ray, which sees all there is.
 vec3 light_from_one(LightRow light, vec3 direction, float phase_pdf) {
     vec3 shown = vec3(0.0);
-    float pdf = light.chance;
-    if (HAS_SKY_MAP && light.kind == LIGHT_MAP) {
+    float pdf = SOLE_LIGHT ? 1.0 : light.chance;
+    if (is_map(light)) {
         SkyValue value = sky_toward(direction, sky_place(direction));
         shown = value.radiance;
         pdf *= value.pdf;

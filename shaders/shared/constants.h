@@ -199,6 +199,7 @@
 #define LIGHTS_TABLE 1 // any, of which every look chooses one; and sums with
 #define LIGHTS_SKY 2   // some that flights meet by themselves when they leave: suns or, with the next, a map too
 #define LIGHTS_MAP 64  // a map of the sky
+#define LIGHTS_SOLE 128 // no more than one
 #define LIGHTS_LAMPS 4 // some that have a shape and a place
 #define LIGHTS_TREE 8  // several that have a place
 #define LIGHTS_AIMED 32 // of those that have a place, some that do not shine into all directions
