@@ -16,13 +16,13 @@
 // the `if`, within which the compiler would know better.
 Rng numbers_of(bool is_needed, Rng rng) {
     Rng numbers = rng;
-    if (LIGHTS != LIGHTS_LONE)
+    if (HAS_SKY_MAP)
         if (!is_needed)
             numbers = Rng(0u, 0u, 0u, 0u);
     return numbers;
 }
 vec3 direction_of(bool is_needed, vec3 direction) {
-    return SEES_SKY && !is_needed ? vec3(0.0, 1.0, 0.0) : direction;
+    return HAS_SKY_MAP && !is_needed ? vec3(0.0, 1.0, 0.0) : direction;
 }
 
 // What the present segment met, if anything, and what follows.
