@@ -100,7 +100,7 @@
 #define SPEC_MAP_HALVINGS 30 // log2 of the knots in a map's table
 #define SPEC_UNBOUNDED 31    // 1: some medium is everywhere
 #define SPEC_LAYERS 32       // LAYERS_..., a sum
-#define SPEC_TABLE_TEXELS 33 // 1: lights, surfaces, their pieces, the hierarchy of those, black bodies, the sky and textures are read as texels
+#define SPEC_TABLE_TEXELS 33 // 1: lights, surfaces, their pieces, the hierarchy of those, black bodies, the sky, its choices and textures are read as texels
 #define SPEC_PATHS 34        // PATHS_...
 #define SPEC_PERIODIC 35     // 1: a domain repeats
 #define SPEC_COPIES 36       // 1: a path's words are copied in loops, see laid_aside.glsl

@@ -163,8 +163,7 @@ TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "
     std::set<int> texels = {BINDING_LIGHT_TEXELS, BINDING_SKY_TEXELS, BINDING_SKY_ALIAS_TEXELS};
     texels.insert(always.begin(), always.end());
     texels.insert(grid.begin(), grid.end());
-    const Specialization sky =
-        with({{SPEC_NEE, NEE_COLLISIONS}, {SPEC_LIGHTS, map}, {SPEC_TABLE_TEXELS, 1}});
+    const Specialization sky = with({{SPEC_NEE, NEE_COLLISIONS}, {SPEC_LIGHTS, map}, {SPEC_TABLE_TEXELS, 1}});
     CHECK(specialise(fused_full_spv, sky).bindings == texels);
 }
 
