@@ -33,8 +33,8 @@ vec3 sky_direction(vec2 place, out float breadth) {
     return direction;
 }
 
-// What the map has at a place. `pdf`: with which directions in its texel are drawn, per steradian; of sky_value, as if the texel took
-// as much of all directions as any does, as equirectangular ones do at the horizon.
+// What the map has at a place. `pdf`: with which directions in its texel are drawn, per steradian; of sky_value, as if the texel
+// took as much of all directions as any does, as equirectangular ones do at the horizon.
 struct SkyValue {
     vec3 radiance;
     float pdf;
