@@ -281,6 +281,7 @@ pbrt's maps never mirrored ~ host/assets/sky_map.cpp ~ if (light.mirror) ~ if (f
 roughness of pbrt's facets as it is ~ host/pbrt_files/pbrt_surfaces.cpp ~ u = std::sqrt(std::max(u, 0.0)); ~ ; ~ [pbrt]
 fronts of reversed triangles in front ~ host/pbrt_files/pbrt_triangles.cpp ~ ? mirrors != is_reversed ~ ? mirrors && is_reversed ~ [pbrt]
 fronts away from normals ~ host/pbrt_files/pbrt_triangles.cpp ~ mesh.normals[t.z]) < 0.0 ~ mesh.normals[t.z]) > 0.0 ~ [pbrt]
+loops written out against the plea ~ host/vulkan/specialization.cpp ~ spirv[i + 3] == unroll) ~ spirv[i + 3] == dont_unroll) ~ [specialization]
 kernels shared whatever their constants ~ host/vulkan/pipelines.cpp ~ declared_of(spirv, specialization)} ~ Specialization{}} ~ [specialization]
 rows of lights one texel off ~ shaders/lights/row.glsl ~ LIGHT_ROW_TEXELS * i + which ~ LIGHT_ROW_TEXELS * i ~ [lights]
 textures upside down ~ shaders/surfaces/texture.glsl ~ vec2(within.x, 1.0 - within.y) ~ within ~ [surfaces]

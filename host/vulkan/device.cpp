@@ -112,6 +112,7 @@ DeviceInfo describe(VkPhysicalDevice physical, int index) {
     info.driver = fmt::format("{} {}", properties12.driverName, properties12.driverInfo);
     if (properties12.driverID == VK_DRIVER_ID_MESA_LLVMPIPE)
         std::sscanf(properties12.driverInfo, "Mesa %u", &info.lavapipe);
+    info.swiftshader = properties12.driverID == VK_DRIVER_ID_GOOGLE_SWIFTSHADER;
     const VkConformanceVersion& tests = properties12.conformanceVersion;
     info.conformant = tests.major != 0 || tests.minor != 0;
     info.storage_range = properties.properties.limits.maxStorageBufferRange;
@@ -343,7 +344,7 @@ void Device::create_device(const DeviceOptions& options) {
                                       "another (`vkvol devices` lists them)",
                                       info_.name, result_name(result)));
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
-    pipelines_ = std::make_unique<Pipelines>(device_);
+    pipelines_ = std::make_unique<Pipelines>(device_, info_.swiftshader);
 }
 
 Device::~Device() {

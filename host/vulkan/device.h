@@ -32,6 +32,7 @@ struct DeviceInfo {
     std::uint64_t memory = 0;        // bytes, device-local heaps
     std::uint64_t storage_range = 0; // bytes one storage buffer may span
     unsigned lavapipe = 0;           // Mesa's major version, of its software driver
+    bool swiftshader = false;        // it is Google's
     bool conformant = true;          // has passed Khronos' tests, by its own word
     bool addresses = false;          // kernels may reach buffers by address, and so larger grids
     std::string rejection;

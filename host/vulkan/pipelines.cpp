@@ -38,7 +38,8 @@ SharedPipeline Pipelines::get(std::span<const std::uint32_t> spirv, const Specia
     std::shared_future<SharedPipeline> pipeline;
     if (enter(key, promise, pipeline))
         try {
-            promise.set_value(compile(device_, specialized(spirv, specialization), layout, cache));
+            const std::vector<std::uint32_t> code = specialized(spirv, specialization);
+            promise.set_value(compile(device_, keep_loops_ ? loops_kept(code) : code, layout, cache));
         } catch (...) {
             forget(key); // who waits for it hears of this failure, who comes later tries again
             promise.set_exception(std::current_exception());

@@ -33,8 +33,9 @@ using SharedPipeline = std::shared_ptr<const Pipeline>;
 // memory.
 class Pipelines {
 public:
-    // Kernels take 2 to 5 MB each on llvmpipe.
-    explicit Pipelines(VkDevice device, std::size_t most_kept = 128) : device_(device), most_kept_(most_kept) {}
+    // Kernels take 2 to 5 MB each on llvmpipe. `keep_loops`: see loops_kept().
+    explicit Pipelines(VkDevice device, bool keep_loops = false, std::size_t most_kept = 128)
+        : device_(device), keep_loops_(keep_loops), most_kept_(most_kept) {}
 
     // `spirv`, one of the kernels within this program, with these constants; compiled unless it is here. `layout` is
     // that of any Bindings: theirs are all alike. `cache` may be null. Throws RenderError.
@@ -55,6 +56,7 @@ private:
     void drop_oldest();
 
     VkDevice device_;
+    bool keep_loops_;
     std::size_t most_kept_;
     std::mutex mutex_;
     std::uint64_t uses_ = 0;

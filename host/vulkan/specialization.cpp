@@ -8,12 +8,17 @@
 
 namespace vkvol {
 
+namespace {
+// SPIR-V 1.5, sections 2.3 and 3: five words of header, then instructions with their length in the upper half of the
+// first word, and what they are in the lower one.
+constexpr std::uint32_t spirv_header = 5;
+} // namespace
+
 Specialization declared_of(std::span<const std::uint32_t> spirv, const Specialization& specialization) {
-    // SPIR-V 1.5, sections 2.3 and 3: five words of header, then instructions with their length in the upper half of
-    // the first word. Decorations come before the first function.
-    constexpr std::uint32_t header = 5, op_function = 54, op_decorate = 71, decoration_spec_id = 1;
+    // Decorations come before the first function.
+    constexpr std::uint32_t op_function = 54, op_decorate = 71, decoration_spec_id = 1;
     Specialization declared{};
-    for (std::size_t i = header; i < spirv.size() && (spirv[i] & 0xffff) != op_function; i += spirv[i] >> 16)
+    for (std::size_t i = spirv_header; i < spirv.size() && (spirv[i] & 0xffff) != op_function; i += spirv[i] >> 16)
         if ((spirv[i] & 0xffff) == op_decorate && spirv[i + 2] == decoration_spec_id)
             declared[spirv[i + 3]] = specialization[spirv[i + 3]];
     return declared;
@@ -47,6 +52,14 @@ std::vector<std::uint32_t> specialized(std::span<const std::uint32_t> spirv, con
         throw RenderError(
             fmt::format("a kernel could not be specialised: {}; please report this with the scene", trouble));
     return result;
+}
+
+std::vector<std::uint32_t> loops_kept(std::vector<std::uint32_t> spirv) {
+    constexpr std::uint32_t op_loop_merge = 246, unroll = 1, dont_unroll = 2;
+    for (std::size_t i = spirv_header; i < spirv.size(); i += spirv[i] >> 16)
+        if ((spirv[i] & 0xffff) == op_loop_merge && spirv[i + 3] == unroll)
+            spirv[i + 3] = dont_unroll;
+    return spirv;
 }
 
 } // namespace vkvol

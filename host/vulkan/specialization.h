@@ -25,4 +25,9 @@ Specialization declared_of(std::span<const std::uint32_t> spirv, const Specializ
 // SwiftShader.
 std::vector<std::uint32_t> specialized(std::span<const std::uint32_t> spirv, const Specialization& specialization);
 
+// The kernel with a plea to keep the loops that it asks to have written out. SwiftShader's compiler needs minutes and
+// tens of gigabytes for some kernels with them written out (walks of four steps through voxels between their centres,
+// and whatever looks from along flights), and 1 to 2 s as loops.
+std::vector<std::uint32_t> loops_kept(std::vector<std::uint32_t> spirv);
+
 } // namespace vkvol

@@ -31,7 +31,7 @@ TEST_CASE("a kernel is compiled once, however many ask for it", "[gpu][specializ
 }
 
 TEST_CASE("kernels that were not asked for in a long time are given up", "[gpu][specialization]") {
-    Pipelines pipelines(test_device().handle(), 3);
+    Pipelines pipelines(test_device().handle(), false, 3);
     const Bindings bindings(test_device(), {});
     const auto get = [&](int steps) {
         Specialization constants{};
@@ -47,4 +47,27 @@ TEST_CASE("kernels that were not asked for in a long time are given up", "[gpu][
     CHECK_FALSE(second.expired());
     CHECK(third.expired());
     CHECK_FALSE(fourth.expired());
+}
+
+TEST_CASE("loops that a kernel asks to have written out are kept where that is pleaded for", "[cpu][specialization]") {
+    Specialization constants{};
+    constants[SPEC_SHAPE] = SHAPE_BOX;
+    constants[SPEC_FIELD] = FIELD_GRID;
+    constants[SPEC_FREE_FLIGHT] = FREE_FLIGHT_DELTA;
+    constants[SPEC_SCATTERING] = SCATTERING_MULTIPLE;
+    constants[SPEC_FILTER] = FILTER_TRILINEAR;
+    constants[SPEC_STEPS] = 4;
+    const std::vector<std::uint32_t> before = specialized(fused_spv, constants), after = loops_kept(before);
+    REQUIRE(after.size() == before.size());
+    constexpr std::uint32_t loop_merge = 246, unroll = 1, keep = 2;
+    int kept = 0;
+    std::size_t others = 0;
+    for (std::size_t at = 5; at < before.size(); at += before[at] >> 16) {
+        const bool asks = (before[at] & 0xffffu) == loop_merge && before[at + 3] == unroll;
+        kept += asks && after[at + 3] == keep;
+        for (std::size_t i = at; i < at + (before[at] >> 16); ++i)
+            others += before[i] != after[i];
+    }
+    CHECK(kept > 0);
+    CHECK(std::size_t(kept) == others);
 }
