@@ -4,16 +4,11 @@
 #include <cstdlib>
 
 #include "software_lanes.h"
-#include "support/apart.h"
 #include "support/test_device.h"
 
 // By eight lanes, for which drivers that write out what each lane does have half as much to compile; VKVOL_ALL_LANES=1:
-// by as many as the program takes. VKVOL_APART=1: each test in a process of its own.
+// by as many as the program takes.
 int main(int argc, char** argv) {
-    if (std::getenv("VKVOL_APART")) {
-        unsetenv("VKVOL_APART");
-        return vkvol::run_apart(argv[0], {argv + 1, argv + argc}) != 0;
-    }
     if (std::getenv("VKVOL_ALL_LANES"))
         vkvol::take_all_lanes();
     const int failures = Catch::Session().run(argc, argv);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a row of tools/mutation_check.sh rests on, as a key, and which rows were not made since it changed.
+"""What a row of tools/mutation_table.txt rests on, as a key, and which rows were not made since it changed.
 
 A row rests on itself, on the code around the error (of its file, what stands between two lines that begin with a closing
 brace: a function, a struct), and on the test that caught it, but for comments and line breaks. What else is in those files does not count, as other files

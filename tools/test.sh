@@ -26,10 +26,6 @@ install_packages
 [ -z "$driver" ] || use_driver "$driver"
 limit=1500 # seconds, of a group
 [ "$preset" = release ] || limit=4500
-if [ "$driver" = swiftshader ]; then # it keeps what it compiles as long as a process lasts, and is slow
-    export VKVOL_APART=1
-    limit=7200
-fi
 build "$preset" -DVKVOL_WERROR=ON
 
 say "Scene files against their schema"

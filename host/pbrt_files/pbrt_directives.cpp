@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <iterator>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "error.h"
@@ -19,6 +20,10 @@ namespace {
 
 constexpr std::size_t most_shapes = 5'000'000, most_triangles = 20'000'000;
 constexpr std::size_t deepest_state = 10'000;
+const std::set<std::string> of_the_world = {
+    "AreaLightSource", "AttributeBegin", "AttributeEnd",   "Import",      "LightSource",    "MakeNamedMaterial",
+    "Material",        "NamedMaterial",  "ObjectBegin",    "ObjectEnd",   "ObjectInstance", "ReverseOrientation",
+    "Shape",           "Texture",        "TransformBegin", "TransformEnd"};
 
 using Kind = PbrtToken::Kind;
 
@@ -45,6 +50,8 @@ void PbrtDirectives::read() {
     PbrtToken token = tokens_.next();
     for (; !token.is(Kind::end); token = tokens_.next()) {
         end_imports();
+        if (!in_world_ && token.is(Kind::word) && of_the_world.count(token.value) > 0)
+            fail_at(token.place, fmt::format("{} belongs behind WorldBegin", token.value));
         const auto handler = token.is(Kind::word) ? handlers_.find(token.value) : handlers_.end();
         if (handler == handlers_.end()) {
             std::vector<std::string> known;
@@ -57,13 +64,19 @@ void PbrtDirectives::read() {
         }
         handler->second(token);
     }
-    if (object_)
-        fail_at(state_.begun, fmt::format("ObjectBegin \"{}\" lacks its ObjectEnd; is the file whole?", *object_));
-    if (states_.size() > imports_.size()) // each of which has kept one
-        fail_at(state_.begun, "an AttributeBegin lacks its AttributeEnd; is the file whole?");
+    end_imports();
+    check_ended(0);
     if (!in_world_)
         fail_at(token.place, "the scene lacks its WorldBegin, behind which it is; is the file whole?");
     place_objects();
+}
+
+// Whether all that was begun after so many states were kept has its end.
+void PbrtDirectives::check_ended(std::size_t states) const {
+    if (states_.size() > states && state_.is_object)
+        fail_at(state_.begun, fmt::format("ObjectBegin \"{}\" lacks its ObjectEnd; is the file whole?", *object_));
+    if (states_.size() > states)
+        fail_at(state_.begun, "an AttributeBegin lacks its AttributeEnd; is the file whole?");
 }
 
 std::string PbrtDirectives::name(const char* expected) {
@@ -244,7 +257,7 @@ void PbrtDirectives::add_world() {
             push(token.place);
         };
     for (const char* end : {"AttributeEnd", "TransformEnd"}) // which are the same in version 4
-        handlers_[end] = [this](const PbrtToken& token) { pop(token); };
+        handlers_[end] = [this](const PbrtToken& token) { pop(token, false); };
     handlers_["Attribute"] = [this](const PbrtToken& token) { read_attribute(token); };
     handlers_["ReverseOrientation"] = [this](const PbrtToken&) { state_.is_reversed = !state_.is_reversed; };
     handlers_["Include"] = [this](const PbrtToken& token) {
@@ -269,13 +282,15 @@ void PbrtDirectives::add_things() {
         made.type = made.parameters->text("type");
         if (!made.parameters->has("type"))
             fail_at(token.place, fmt::format("MakeNamedMaterial \"{}\" lacks its \"string type\"", called));
-        scene_.materials[called] = std::move(made);
+        if (!scene_.materials.try_emplace(called, std::move(made)).second)
+            fail_at(token.place, fmt::format("a second material \"{}\"; give it another name", called));
     };
     handlers_["MakeNamedMedium"] = [this](const PbrtToken& token) {
         PbrtThing made = thing(token, "medium");
         const std::string called = made.type;
         made.type = made.parameters->text("type");
-        scene_.media[called] = std::move(made);
+        if (!scene_.media.try_emplace(called, std::move(made)).second)
+            fail_at(token.place, fmt::format("a second medium \"{}\"; give it another name", called));
     };
     handlers_["Texture"] = [this](const PbrtToken& token) { read_texture(token); };
     handlers_["LightSource"] = [this](const PbrtToken& token) { scene_.lights.push_back(thing(token, "light")); };
@@ -303,16 +318,19 @@ void PbrtDirectives::import(const PbrtToken& directive) {
 // Where a directive begins, those whose file has ended before it.
 void PbrtDirectives::end_imports() {
     for (; !imports_.empty() && tokens_.depth() <= imports_.back().files; imports_.pop_back()) {
-        states_.resize(imports_.back().states);
+        check_ended(imports_.back().states);
         state_ = std::move(states_.back());
         states_.pop_back();
         coordinate_systems_ = std::move(imports_.back().coordinate_systems);
     }
 }
 
-void PbrtDirectives::pop(const PbrtToken& directive) {
+void PbrtDirectives::pop(const PbrtToken& directive, bool ends_object) {
     if (states_.size() == (imports_.empty() ? 0 : imports_.back().states))
         fail_at(directive.place, fmt::format("{} without what it ends", directive.value));
+    if (state_.is_object != ends_object)
+        fail_at(directive.place,
+                fmt::format("{}, but what {} begins is to be ended before", directive.value, state_.begun.text()));
     state_ = std::move(states_.back());
     states_.pop_back();
 }
@@ -344,8 +362,9 @@ void PbrtDirectives::read_texture(const PbrtToken& directive) {
     if (kind.value != "spectrum" && kind.value != "float")
         fail_at(kind.place, fmt::format("Texture of \"{}\"; expected \"spectrum\" or \"float\"", kind.value));
     PbrtThing made = thing(directive, "texture");
-    if (kind.value == "spectrum") // the others have names of their own, and nothing here has them
-        scene_.textures[called] = std::move(made);
+    // The others have names of their own, and nothing here has them.
+    if (kind.value == "spectrum" && !scene_.textures.try_emplace(called, std::move(made)).second)
+        fail_at(directive.place, fmt::format("a second texture \"{}\"; give it another name", called));
 }
 
 void PbrtDirectives::read_shape(const PbrtToken& directive) {
@@ -368,6 +387,7 @@ void PbrtDirectives::begin_object(const PbrtToken& directive) {
     if (object_)
         fail_at(directive.place, "ObjectBegin within another one; end that first");
     push(directive.place);
+    state_.is_object = true;
     object_ = name("a name in quotes");
     if (!objects_.try_emplace(*object_).second)
         fail_at(directive.place, fmt::format("a second object \"{}\"; give it another name", *object_));
@@ -376,8 +396,8 @@ void PbrtDirectives::begin_object(const PbrtToken& directive) {
 void PbrtDirectives::end_object(const PbrtToken& directive) {
     if (!object_)
         fail_at(directive.place, "ObjectEnd without ObjectBegin");
+    pop(directive, true);
     object_.reset();
-    pop(directive);
 }
 
 void PbrtDirectives::read_instance() {

@@ -20,7 +20,8 @@ struct PbrtState {
     std::string color_space = "srgb";
     std::map<std::string, std::vector<SharedParameter>> defaults; // by what they are for
     bool is_moving = false;                                       // transforms count at the shutter's end alone
-    PbrtPlace begun;                                              // the AttributeBegin or the like that it is within
+    PbrtPlace begun;                                              // the AttributeBegin or the like that it is within,
+    bool is_object = false;                                       // which is an ObjectBegin
 };
 
 class PbrtDirectives {
@@ -55,8 +56,10 @@ private:
     void push(const PbrtPlace& place) {
         states_.push_back(state_);
         state_.begun = place;
+        state_.is_object = false;
     }
-    void pop(const PbrtToken& directive);
+    void pop(const PbrtToken& directive, bool ends_object);
+    void check_ended(std::size_t states) const;
     void import(const PbrtToken& directive);
     void end_imports();
     void note(const PbrtPlace& place, const std::string& message);

@@ -1,9 +1,12 @@
 // The part of PbrtTranslator that writes media.
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <glm/gtc/constants.hpp>
 
 #include "density_field.h"
 #include "error.h"
+#include "mesh.h"
 #include "nearest_name.h"
 #include "pbrt_presets.h"
 #include "pbrt_quadrics.h"
@@ -19,6 +22,25 @@ bool has_grid(const std::filesystem::path& file, const std::string& grid) {
         const std::vector<std::string> names = grid_names(file);
         return std::find(names.begin(), names.end(), grid) != names.end();
     } catch (const InputError&) { // whoever loads it says so
+        return false;
+    }
+}
+
+// Whether a closed mesh has the point within, by the solid angle that it takes up there (van Oosterom and Strackee
+// 1983).
+bool has_within(const std::filesystem::path& file, const glm::dmat4& transform, const glm::dvec3& point) {
+    try {
+        const Mesh mesh = load_mesh({{file}}, transform);
+        double angle = 0.0;
+        for (const glm::uvec3& t : mesh.triangles) {
+            const glm::dvec3 a = mesh.vertices[t.x] - point, b = mesh.vertices[t.y] - point,
+                             c = mesh.vertices[t.z] - point;
+            const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+            angle += 2.0 * std::atan2(glm::dot(a, glm::cross(b, c)),
+                                      la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
+        }
+        return angle > glm::two_pi<double>();
+    } catch (const InputError&) { // whoever renders it says so
         return false;
     }
 }
@@ -60,7 +82,7 @@ void PbrtTranslator::write_coefficients(const PbrtThing& medium) {
         sigma_a = colors_.share(medium, "sigma_a").value_or(sigma_a);
         sigma_s = colors_.share(medium, "sigma_s").value_or(sigma_s);
     }
-    const double scale = p.number("scale", 1.0);
+    const double scale = medium.type == "cloud" ? 1.0 : p.number("scale", 1.0); // pbrt's clouds have none
     write_coefficients(scale * sigma_a, scale * sigma_s, p.number("g", 0.0));
 }
 
@@ -85,9 +107,9 @@ void PbrtTranslator::write_matrix(const glm::dmat4& matrix) {
 
 void PbrtTranslator::write_medium(const std::string& name, const PbrtThing& medium, const Region& region,
                                   const PbrtPlace& place) {
-    xml_.open("volume", {{"name", name}}, place.text());
+    xml_.open("volume", {{"name", name}}, medium.place.text());
     if (region.element.empty()) {
-        xml_.open("models");
+        xml_.open("models", {}, place.text());
         xml_.element("model", {}, region.model);
         xml_.close();
     } else {
@@ -171,15 +193,16 @@ std::optional<PbrtTranslator::Region> PbrtTranslator::region_within(const PbrtSh
     return region;
 }
 
-// As far as that can be told here: what a file's mesh holds is taken to have it.
 bool PbrtTranslator::has_camera(const Region& region) const {
     if (!scene_.camera)
         return false;
     const glm::dmat4 camera = world_ * glm::inverse(scene_.camera->transform);
+    if (region.element.empty())
+        return has_within(scene_.folder / region.model, region.transform, glm::dvec3(camera[3]));
     const glm::dvec3 p(glm::inverse(region.transform) * camera[3]);
     if (region.element == "sphere")
         return glm::length(p) < 1.0;
-    return region.element.empty() || std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < 0.5;
+    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < 0.5;
 }
 
 bool PbrtTranslator::ends_camera_medium() {
@@ -328,8 +351,15 @@ void PbrtTranslator::write_media_of(const PbrtShape& shape) {
         return;
     if (write_grid_once(sides.within, *within))
         note_what_is_not_cut(shape, sides.within, *within);
-    else if (const std::optional<Region> region = region_within(shape, sides.within))
+    else if (const std::optional<Region> region = region_within(shape, sides.within)) {
         write_medium(sides.within, *within, *region, shape.thing.place);
+        if (sides.within != scene_.camera_medium && has_camera(*region))
+            note(shape.thing.place,
+                 fmt::format(
+                     "the camera is within medium \"{}\", and so are its rays; pbrt's begin in {}, as there is no "
+                     "MediumInterface before Camera that says otherwise",
+                     sides.within, scene_.camera_medium.empty() ? "none" : '"' + scene_.camera_medium + '"'));
+    }
 }
 
 void PbrtTranslator::write_media() {

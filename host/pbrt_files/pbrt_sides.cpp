@@ -21,7 +21,14 @@ bool faces_inwards(const PbrtShape& shape) {
     return volume < 0.0;
 }
 
+bool is_never_met(const PbrtShape& shape) {
+    const PbrtParameters& p = *shape.thing.parameters;
+    return p.texture("alpha").empty() && p.number("alpha", 1.0) <= 0.0;
+}
+
 PbrtSides sides_of(const PbrtShape& shape) {
+    if (is_never_met(shape))
+        return {};
     if (shape.inside == shape.outside || !faces_inwards(shape))
         return {shape.inside, shape.outside};
     return {shape.outside, shape.inside};

@@ -10,7 +10,10 @@ namespace vkvol {
 // read_triangles does.
 bool faces_inwards(const PbrtShape& shape);
 
-// Names of media, empty: vacuum.
+// By an "alpha" of 0: rays go on as if it were not there.
+bool is_never_met(const PbrtShape& shape);
+
+// Names of media, empty: vacuum, or nothing that anything meets.
 struct PbrtSides {
     std::string within, beyond;
 };

@@ -303,15 +303,14 @@ bool is_glass(const XmlAttributes& material) {
 
 } // namespace
 
-// By an "alpha" of 0: nothing ever meets it.
 bool PbrtTranslator::is_unseen(const PbrtShape& shape) {
     const PbrtParameters& p = *shape.thing.parameters;
-    const double alpha = p.texture("alpha").empty() ? p.number("alpha", 1.0) : 0.5;
-    if (alpha >= 1.0 || (alpha <= 0.0 && !shape.light))
-        return alpha <= 0.0;
-    note(shape.thing.place, alpha <= 0.0
-                                ? "\"alpha\" is left out; the light that pbrt does not show is seen, and opaque"
-                                : "\"alpha\" is left out; it is opaque");
+    if (is_never_met(shape) && !shape.light)
+        return true;
+    if (is_never_met(shape))
+        note(shape.thing.place, "\"alpha\" is left out; the light that pbrt does not show is seen, and opaque");
+    else if (!p.texture("alpha").empty() || p.number("alpha", 1.0) < 1.0)
+        note(shape.thing.place, "\"alpha\" is left out; it is opaque");
     return false;
 }
 
@@ -337,7 +336,7 @@ void PbrtTranslator::write_surface(const PbrtShape& shape) {
             note(shape.thing.place,
                  "shines, but is an interface between media: pbrt leaves that light out, and so does "
                  "this");
-        if (shape.thing.parameters->has("alpha"))
+        if (shape.thing.parameters->has("alpha") && !is_never_met(shape))
             note(shape.thing.place, "\"alpha\" is left out; it bounds its media everywhere");
         return;
     }

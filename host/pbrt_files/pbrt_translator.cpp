@@ -125,11 +125,14 @@ void write_window(const Pixels& pixels, const Screen& screen, const PbrtPlace& p
 PbrtTranslator::PbrtTranslator(const PbrtScene& scene, PbrtTranslationOptions options)
     : scene_(scene), options_(std::move(options)), colors_(scene.folder) {
     const PbrtThing& film = thing_or(scene.film, usual_film);
-    const PbrtParameters& camera = *thing_or(scene.camera, usual_camera).parameters;
-    const double open = camera.number("shutteropen", 0.0), close = camera.number("shutterclose", 1.0);
+    const PbrtThing& camera = thing_or(scene.camera, usual_camera);
+    const double open = camera.parameters->number("shutteropen", 0.0),
+                 close = camera.parameters->number("shutterclose", 1.0);
+    if (!(close > open))
+        fail_at(camera.place, "an exposure of 0; expected a shutter that opens before it closes");
     exposure_ = (close - open) * film.parameters->number("iso", 100.0) / 100.0;
     if (!(exposure_ > 0.0))
-        fail_at(film.place, "an exposure of 0; expected an iso > 0 and a shutter that opens before it closes");
+        fail_at(film.place, "an exposure of 0; expected an iso > 0");
 }
 
 void PbrtTranslator::note(const PbrtPlace& place, const std::string& message) {

@@ -118,8 +118,8 @@ TEST_CASE("pbrt's media that are not rendered as in pbrt are named", "[cpu][pbrt
         "MakeNamedMaterial \"g\" \"string type\" \"dielectric\" NamedMaterial \"g\" MediumInterface \"b\" \"a\"" +
             sided_ball + "Material \"interface\" MediumInterface \"a\" \"\" Scale 3 3 3" + sided_ball,
         "medium \"a\" goes on within");
-    CHECK(scene_of("Integrator \"path\" Camera \"perspective\" WorldBegin " + media + "MediumInterface \"a\" \"\"" +
-                   sided_ball)
+    CHECK(scene_of("Integrator \"path\" Translate 3 0 0 Camera \"perspective\" WorldBegin " + media +
+                   "MediumInterface \"a\" \"\"" + sided_ball)
               .warnings.size() == 1);
     check_noted("MediumInterface \"a\" \"\" Shape \"sphere\" \"float zmax\" 0",
                 "\"sphere\" encloses medium \"a\", which is left out");
@@ -193,7 +193,7 @@ TEST_CASE("blocks and imported files leave pbrt's state as they find it", "[cpu]
     };
     CHECK(near(colors("TransformBegin " + green + "TransformEnd").back(), {.8, .1, .1}));
     const TestDirectory directory;
-    directory.write("green.inc", green + "AttributeBegin" + sided_ball);
+    directory.write("green.inc", green + sided_ball);
     directory.write("nothing.inc", "# nothing");
     directory.write("nested.inc", "Import \"green.inc\"" + sided_ball);
     directory.write("ends.inc", "AttributeEnd");
@@ -207,7 +207,8 @@ TEST_CASE("blocks and imported files leave pbrt's state as they find it", "[cpu]
     CHECK(near(seen[3], {.8, .1, .1}));
     directory.write("plain.inc", green);
     CHECK(near(colors("Include \"plain.inc\"", file).back(), {.1, .8, .1}));
-    CHECK_THROWS_WITH(colors("Include \"green.inc\"", file), Contains("an AttributeBegin lacks its AttributeEnd"));
+    directory.write("open.inc", "AttributeBegin");
+    CHECK_THROWS_WITH(colors("Include \"open.inc\"", file), Contains("an AttributeBegin lacks its AttributeEnd"));
     // Coordinate systems are a file's own.
     directory.write("system.inc", "CoordSysTransform \"far\"" + sided_ball);
     const std::string whole =

@@ -77,14 +77,14 @@ TEST_CASE("pbrt's lights shine as pbrt's do", "[cpu][pbrt]") {
 
 TEST_CASE("pbrt's media", "[cpu][pbrt]") {
     const std::string fog = R"(MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [ 1 2 3 ]
-        "rgb sigma_s" [ .5 .5 .5 ] "float scale" 10 "float g" .7 "rgb Le" [ 1 0 0 ] "float Lescale" 3
-        Material "interface" )";
+        "rgb sigma_s" [ .5 .5 .5 ] "float scale" 10 "float g" .7 "rgb Le" [ 1 0 0 ] "float Lescale" 3 )",
+                      in_world = fog + R"(Material "interface" )";
     const auto medium = [](const Scene& scene) {
         REQUIRE(scene.volumes.size() == 1);
         return scene.volumes[0];
     };
     const Volume ball =
-        medium(world_of(fog + R"(MediumInterface "fog" "" Translate 1 0 2 Shape "sphere" "float radius" 3)"));
+        medium(world_of(in_world + R"(MediumInterface "fog" "" Translate 1 0 2 Shape "sphere" "float radius" 3)"));
     CHECK(near(ball.sigma_a, {10, 20, 30}));
     CHECK(near(ball.sigma_s, glm::dvec3(5)));
     CHECK(ball.g == 0.7);
@@ -93,14 +93,14 @@ TEST_CASE("pbrt's media", "[cpu][pbrt]") {
     CHECK(std::cbrt(std::abs(glm::determinant(glm::dmat3(ball.transform)))) * std::get<Sphere>(ball.shape).radius ==
           Approx(3.0));
 
-    const Volume box = medium(world_of(fog + R"(MediumInterface "fog" "" Rotate 20 0 1 0
+    const Volume box = medium(world_of(in_world + R"(MediumInterface "fog" "" Rotate 20 0 1 0
         Shape "trianglemesh" "point3 P" [ 0 0 0  2 0 0  0 3 0  2 3 0  0 0 4  2 0 4  0 3 4  2 3 4 ] "integer indices"
         [ 0 2 3 0 3 1 4 5 7 4 7 6 0 1 5 0 5 4 2 6 7 2 7 3 0 4 6 0 6 2 1 3 7 1 7 5 ])"));
     CHECK(std::get<Box>(box.shape).size == glm::dvec3(1.0));
     CHECK(std::abs(glm::determinant(glm::dmat3(box.transform))) == Approx(24.0));
 
     const Volume model =
-        medium(world_of(fog + R"(MediumInterface "fog" "" Shape "plymesh" "string filename" "a b.PLY")"));
+        medium(world_of(in_world + R"(MediumInterface "fog" "" Shape "plymesh" "string filename" "a b.PLY")"));
     CHECK(std::get<MeshFiles>(model.shape).paths.at(0).filename() == "a b.PLY");
 
     // Around the camera it has no end.
@@ -114,7 +114,7 @@ TEST_CASE("pbrt's media", "[cpu][pbrt]") {
     CHECK(scene_of(before + ball_of_fog + "2").volumes.size() == 2);
     CHECK(scene_of(before + "Translate 3 0 0 " + ball_of_fog + "2").volumes.size() == 1);
     // Neither side differs: it bounds nothing.
-    CHECK(world_of(fog + R"(MediumInterface "fog" "fog" Shape "sphere")").volumes.empty());
+    CHECK(world_of(in_world + R"(MediumInterface "fog" "fog" Shape "sphere")").volumes.empty());
 
     const Scene grid = world_of(R"(Scale 2 2 2 MakeNamedMedium "c" "string type" "nanovdb" "string filename" "c.nvdb"
         "string gridname" "smoke" Identity Material "interface" MediumInterface "c" "" Shape "sphere" "float radius" 9
