@@ -251,7 +251,9 @@ std::uint32_t loop_iterations(const Scene& scene) {
     const auto levels = std::bit_width(lights.size()) + 1;
     // The tree is gone down from a collision, from along a flight, and from a sensor of flux.
     const int places = reads_flux(scene.camera) ? 3 : 2;
-    const int for_lamps = scene.surfaces.empty() ? 1 : 2; // among surfaces lamps may hide each other
+    // Where a path begins. Among surfaces lamps may hide each other, and paths that leave one look, too: in another
+    // lane, but loops count for all of a group.
+    const int for_lamps = scene.surfaces.empty() ? 1 : 2 * 2;
     return static_cast<std::uint32_t>(for_lamps * (count(is_lamp) + 1) + count(is_met_by_chance) + 1 +
                                       places * (levels + 1));
 }

@@ -28,6 +28,19 @@ TEST_CASE("what shines is seen where no scattering is left", "[gpu][surfaces]") 
     CHECK_AGREEMENT(agree(render_here(scene, 2).film, none, "single scattering, of depth 0"));
 }
 
+// llvmpipe ends all loops of an invocation after 65535 iterations, and one that works for a turn only comes to no end.
+TEST_CASE("no lamp of two thousand above a floor is lost, however long a lane works", "[gpu][surfaces]") {
+    Scene scene = empty_scene(24);
+    for (int i = 0; i < 2000; ++i)
+        scene.lights.push_back(
+            SphereLight{{0.05 * (i % 50) - 1.2, 0.5 + 0.02 * (i % 7), 0.05 * (i / 50) - 1.0}, 0.02, Rgb(20.0)});
+    scene.surfaces = {surface_of(floor_piece, MaterialKind::diffuse), ball_surface(white(MaterialKind::mirror))};
+    scene.settings.spp = 32;
+    RenderJob briefly;
+    briefly.plan.budget = 1;
+    CHECK(same_bits(render_here(scene, 1).film, render_here(scene, 1, briefly).film));
+}
+
 TEST_CASE("looks and flights share a map of the sky on surfaces as in matter", "[gpu][image][surfaces]") {
     Scene scene = empty_scene();
     scene.lights = {write_sky(make_map(8, 4, [](int, int) { return Rgb(1.0); }))};
