@@ -27,7 +27,7 @@ std::vector<std::uint32_t> specialized(std::span<const std::uint32_t> spirv, con
 
 // The kernel with a plea to keep the loops that it asks to have written out. SwiftShader's compiler needs minutes and
 // tens of gigabytes for some kernels with them written out (walks of four steps through voxels between their centres,
-// and whatever looks from along flights), and 1 to 2 s as loops.
+// looks from along such flights), and 1 to 3 s as loops.
 std::vector<std::uint32_t> loops_kept(std::vector<std::uint32_t> spirv);
 
 } // namespace vkvol
