@@ -50,8 +50,12 @@ class Bench:
         """A copy of the scene, with what it names found where the scene would find it."""
         tree = xml.parse(self.scene)
         for node in tree.iter():
-            if node.tag in ("densityField", "model"):
-                node.set("baseDir", str(self.scene.parent / node.get("baseDir", ".").replace("\\", "/")))
+            folder = self.scene.parent / node.attrib.pop("baseDir", ".").replace("\\", "/")
+            if node.tag in ("densityField", "model", "sky") and (node.text or "").strip():
+                node.text = str(folder / node.text.strip().replace("\\", "/"))
+            for attribute in ("file", "texture"):
+                if node.get(attribute):
+                    node.set(attribute, str(folder / node.get(attribute).replace("\\", "/")))
         change(tree.getroot())
         path = self.folder / f"{name}.xml"
         tree.write(path)
@@ -162,6 +166,12 @@ def command(chosen, name):
                        str(chosen.width), "--spp", str(chosen.spp)])
 
 
+def write(output, series):
+    temporary = Path(output + ".partial")
+    temporary.write_text(json.dumps({"format": "vkvol-scaling", "version": 1, "series": series}, indent=1) + "\n")
+    os.replace(temporary, output)
+
+
 def options():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scene", nargs="?", default=os.path.relpath(ROOT / "scenes" / "cumulus.xml"), help="default: %(default)s")
@@ -184,12 +194,11 @@ def options():
 def main():
     chosen = options()
     try:
-        with tempfile.TemporaryDirectory() as folder:
-            bench = Bench(chosen, folder)
-            series = [measure(name, bench) for name in chosen.series or SERIES]
-        temporary = Path(chosen.output + ".partial")
-        temporary.write_text(json.dumps({"format": "vkvol-scaling", "version": 1, "series": series}, indent=1) + "\n")
-        os.replace(temporary, chosen.output)
+        series = []
+        for name in chosen.series or SERIES:
+            with tempfile.TemporaryDirectory() as folder:
+                series.append(measure(name, Bench(chosen, folder)))
+            write(chosen.output, series)  # what is measured is kept, whatever the next brings
     except Failure as error:
         print(f"scaling: {error}", file=sys.stderr)
         return 1

@@ -412,6 +412,7 @@ Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
         }
     }
     check_everywhere(scene, assets.media);
+    check_way_out(scene, assets.media);
     if (is_superposition(scene))
         assets.superposition = superpose(scene, assets.media, method);
     for (const Light& light : scene.lights)

@@ -237,6 +237,19 @@ void check_limits(const Scene& scene, const Volume& volume, const LoadedMedium& 
     check_glow(volume, loaded);
 }
 
+// What is lost of light per world unit where the density is 1 and the albedo's map at its most; as world_sigma_t.
+Rgb lost_in(const Volume& volume, const DensityField* field) {
+    Volume losses = volume;
+    losses.sigma_a += (Rgb(1.0) - most_map_albedo(volume)) * volume.sigma_s;
+    losses.sigma_s = Rgb(0.0);
+    return world_sigma_t(losses, field);
+}
+
+// Compared to what collides.
+bool is_lossless(const Rgb& lost, const Rgb& sigma_t) {
+    return largest(sigma_t) > 0.0 && std::min({lost.x, lost.y, lost.z}) < 1e-6 * largest(sigma_t);
+}
+
 // A path that never comes to an end would be followed for ever. Of several media what they lose together counts.
 void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media) {
     constexpr double thinnest = 1e-15; // whose mean free path is a hundred thousandth of the way to where it ends
@@ -254,18 +267,39 @@ void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media
             continue;
         endless_place = endless_place.empty() ? here : endless_place;
         endless += sigma_t;
-        lost += volume.density_scale * (volume.sigma_a + (Rgb(1.0) - most_map_albedo(volume)) * volume.sigma_s);
+        lost += lost_in(volume, nullptr);
     }
     if (largest(all) > 0.0 && largest(all) < thinnest)
         throw InputError(
             fmt::format("{}the extinction, {:.3g} per world unit, is too thin to be <everywhere>; expected "
                         "at least {:g}, or a <box>",
                         place, largest(all), thinnest));
-    if (largest(endless) > 0.0 && std::min({lost.x, lost.y, lost.z}) < 1e-6 * largest(endless) &&
-        !scene.settings.max_depth)
+    if (is_lossless(lost, endless) && !scene.settings.max_depth)
         throw InputError(endless_place +
                          "a medium that is <everywhere> and absorbs nothing keeps its paths for ever; raise "
                          "sigma_a, or give a <maxDepth>");
+}
+
+void check_way_out(const Scene& scene, const std::vector<LoadedMedium>& media) {
+    const bool has_way_out = !scene.periodic || glm::any(glm::equal(scene.periodic->size(), glm::dvec3(0.0)));
+    const auto absorbs = [](const Surface& surface) {
+        const Rgb& color = surface.material.color;
+        return is_textured(surface.material) || std::max({color.x, color.y, color.z}) < 1.0;
+    };
+    const auto is_coloured = [](const LoadedMedium& medium) { return medium.mesh && medium.mesh->diffuse; };
+    if (has_way_out || scene.settings.max_depth || std::any_of(media.begin(), media.end(), is_coloured) ||
+        std::any_of(scene.surfaces.begin(), scene.surfaces.end(), absorbs))
+        return;
+    Rgb sigma_t(0.0), lost(0.0);
+    for (std::size_t i = 0; i < media.size(); ++i) {
+        const DensityField* field = media[i].field ? &*media[i].field : nullptr;
+        sigma_t += world_sigma_t(scene.volumes[i], field);
+        lost += lost_in(scene.volumes[i], field);
+    }
+    if (is_lossless(lost, sigma_t))
+        throw InputError(
+            "<periodic>: a domain that repeats along all axes and in which nothing absorbs keeps its paths "
+            "for ever; leave out an axis, raise sigma_a, or give a <maxDepth>");
 }
 
 } // namespace vkvol

@@ -17,6 +17,9 @@ void check_limits(const Scene& scene, const Volume& volume, const LoadedMedium& 
 // path.
 void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media);
 
+// Throws InputError for a domain that repeats along all axes and loses too little ever to end a path.
+void check_way_out(const Scene& scene, const std::vector<LoadedMedium>& media);
+
 // What is rendered, but not well: mean free paths that are hardly more than places are known to. Empty: none.
 std::string too_short_paths(const Scene& scene, const Volume& volume, const LoadedMedium& loaded);
 

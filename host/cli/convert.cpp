@@ -64,6 +64,7 @@ int run_convert(const ConvertOptions& options) {
     for (const auto& [name, grids] : translation.grids)
         uses.writes("densities of the new scene", beside / name, "-o");
     uses.check();
+    check_directory_writable(options.output);
     std::map<std::filesystem::path, std::string> densities;
     for (const auto& [name, grids] : translation.grids)
         check_unnamed(beside / name, densities[beside / name] = nvdb_file_of(*grids));

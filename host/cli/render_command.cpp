@@ -10,7 +10,6 @@
 #include "error.h"
 #include "explain.h"
 #include "file_ending.h"
-#include "file_uses.h"
 #include "image_io.h"
 #include "interrupt.h"
 #include "live_pictures.h"
@@ -35,7 +34,7 @@ namespace {
 
 // Before any work is done: a render that cannot be written, or would be written over its own files, is not worth its
 // time.
-void check_files(const RenderOptions& options, const RenderScene& loaded, const CheckpointFile& checkpoint) {
+FileUses check_files(const RenderOptions& options, const RenderScene& loaded, const CheckpointFile& checkpoint) {
     FileUses uses;
     uses.reads("the scene", options.scene);
     uses.reads_files_of(loaded.scene);
@@ -56,6 +55,7 @@ void check_files(const RenderOptions& options, const RenderScene& loaded, const 
     if (options.report)
         check_directory_writable(*options.report, "--report");
     checkpoint.check();
+    return uses;
 }
 
 // None: all layers that are asked for are kept, or shown.
@@ -81,6 +81,7 @@ RenderResult render_what_can_be(const Device& device, const Scene& scene, const 
     Session session(device, scene, job);
     if (codec.valid())
         codec.get();
+    session.check_resume(scene.settings.spp);
     std::exception_ptr failure;
     try {
         if (!job.dry_run)
@@ -204,11 +205,10 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
 
 } // namespace
 
-std::vector<GridFile> check_picture(const RenderOptions& options, Workshop& workshop) {
+CheckedPicture check_picture(const RenderOptions& options, Workshop& workshop) {
     const RenderScene loaded = load_render_scene(options, workshop.fields(), false);
     resolve_crop(options.crop, loaded.scene.picture);
-    check_files(options, loaded, CheckpointFile(options));
-    return grid_files(loaded.scene);
+    return {grid_files(loaded.scene), check_files(options, loaded, CheckpointFile(options))};
 }
 
 int render_picture(const RenderOptions& options, Workshop& workshop) {

@@ -39,28 +39,44 @@ template <class Work> auto of_frame(int frame, const std::vector<int>& done, con
     }
 }
 
-// No frame may write what another one has written. Each frame's own names are checked with the frame.
+// No frame may write what another one writes or reads. Each frame's own names are checked with the frame.
 class FrameFiles {
 public:
-    void add(int frame, const RenderOptions& options) {
-        std::vector<std::filesystem::path> files = options.outputs;
-        if (options.report)
-            files.push_back(*options.report);
-        if (options.checkpoint || options.resume)
-            files.push_back(std::filesystem::path(options.outputs.front()).replace_extension(".checkpoint"));
-        for (const std::filesystem::path& file : files) {
-            if (is_special(file))
+    void add(int frame, const FileUses& uses) {
+        for (const InputFile& input : uses.inputs()) {
+            if (is_special(input.file))
                 continue;
-            const auto [known, is_new] = writer_.emplace(real_name(file), frame);
-            if (!is_new && known->second != frame)
+            const auto reader = readers_.try_emplace(real_name(input.file), Use{frame, input.what}).first;
+            if (const auto writer = writers_.find(reader->first); writer != writers_.end())
+                fail_lost(input.file, {frame, input.what}, writer->second);
+        }
+        for (const FileUses::Output& output : uses.outputs()) {
+            if (is_special(output.file))
+                continue;
+            const auto [writer, is_new] = writers_.try_emplace(real_name(output.file), Use{frame, output.what});
+            if (!is_new && writer->second.frame != frame)
                 throw InputError(fmt::format("{} is frame {}'s too, and one would be lost; let the names hold the "
                                              "frame in as many digits as the longest has, as #### does",
-                                             file.string(), known->second));
+                                             output.file.string(), writer->second.frame));
+            if (const auto reader = readers_.find(writer->first); reader != readers_.end())
+                fail_lost(output.file, reader->second, {frame, output.what});
         }
     }
 
 private:
-    std::map<std::filesystem::path, int> writer_;
+    struct Use {
+        int frame;
+        std::string what;
+    };
+    using Uses = std::map<std::filesystem::path, Use>; // the first of each file
+
+    [[noreturn]] static void fail_lost(const std::filesystem::path& file, const Use& reader, const Use& writer) {
+        throw InputError(fmt::format("{} is {} in frame {}, and would be lost to {} of frame {}; give that another "
+                                     "name",
+                                     file.string(), reader.what, reader.frame, writer.what, writer.frame));
+    }
+
+    Uses writers_, readers_;
 };
 
 // For machines, which see the progress of each frame begin anew.
@@ -138,8 +154,9 @@ int run_sequence(const RenderOptions& options) {
             break;
         of_frame(frame, done, [&] {
             const RenderOptions one = frame_options(options, frame);
-            files.add(frame, one);
-            grids.push_back(check_picture(one, workshop));
+            CheckedPicture checked = check_picture(one, workshop);
+            files.add(frame, checked.uses);
+            grids.push_back(std::move(checked.grids));
         });
     }
     int code = exit_done;

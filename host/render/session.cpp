@@ -154,11 +154,15 @@ std::uint32_t Session::next_batch(std::uint32_t batch, double seconds) const {
     return std::min(batch * (seconds < 0.1 ? 8 : seconds < 1.0 ? 2 : 1), most_batch_);
 }
 
-void Session::resume(const Checkpoint& from) {
-    if (from.done + from.batch > wanted_)
+void Session::check_resume(std::uint32_t samples) const {
+    if (job_.resume && job_.resume->done + job_.resume->batch > samples)
         throw InputError(fmt::format("--resume: the checkpoint has {} samples per pixel already, more than the {} "
                                      "asked for; ask for more with --spp",
-                                     from.done + from.batch, wanted_));
+                                     job_.resume->done + job_.resume->batch, samples));
+}
+
+void Session::resume(const Checkpoint& from) {
+    check_resume(wanted_);
     write_bands(commands_, bands_, width(), from.film);
     write_sums(commands_, bands_, width(), from.sums);
     write_layers(commands_, bands_, width(), film_layers_, from.layers);

@@ -107,6 +107,9 @@ public:
     // count from each call. A scene that moves is made ready for each moment, in the time of rendering; if that fails
     // what was rendered is whole, and can be had.
     void render(std::uint32_t samples);
+
+    // Throws InputError if what the job resumes has more samples than that.
+    void check_resume(std::uint32_t samples) const;
     std::uint32_t samples() const { return done_; } // per pixel, finished for every pixel
     // Not after paths were abandoned, a device failed, or a moment could not be made ready.
     bool can_go_on() const { return !gave_up_ && device_scene_ && wavefront_; }

@@ -6,6 +6,7 @@
 
 #include "error.h"
 #include "estimator_traits.h"
+#include "frame_params.h"
 #include "kernel_constants.h"
 #include "phase_params.h"
 #include "pilot_paths.h"
@@ -15,6 +16,7 @@
 #include "schedule_memory.h"
 #include "session.h"
 #include "software_lanes.h"
+#include "surface_gaps.h"
 #include "surface_mesh.h"
 #include "workshop.h"
 
@@ -133,6 +135,9 @@ void Session::take_warnings(const Assets& assets) {
     result_.warnings.insert(result_.warnings.end(), assets.warnings.begin(), assets.warnings.end());
     for (const LoadedMedium& medium : assets.media)
         result_.warnings.insert(result_.warnings.end(), medium.warnings.begin(), medium.warnings.end());
+    const glm::dvec3 origin = render_origin(scene_, assets.media, whole_of(assets));
+    if (const std::string gap = surface_gap_warning(scene_, assets, origin); !gap.empty())
+        result_.warnings.push_back(gap);
     for (const DensityField* grid : distinct_grids(assets.media))
         result_.counts.cleaned_voxels += grid->cleaned;
 }

@@ -5,7 +5,6 @@
 
 #include "atomic_file.h"
 #include "error.h"
-#include "input_files.h"
 #include "one_line.h"
 
 namespace vkvol {
@@ -45,15 +44,15 @@ bool is_same_file(const path& a, const path& b) {
 }
 
 void FileUses::reads(const std::string& what, const path& file) {
-    const auto is_this = [&](const Use& use) { return use.what == what && use.file == file; };
+    const auto is_this = [&](const InputFile& input) { return input.what == what && input.file == file; };
     if (std::none_of(inputs_.begin(), inputs_.end(), is_this)) // volumes may have it in common
-        inputs_.push_back({what, file, ""});
+        inputs_.push_back({what, file});
 }
 
 bool FileUses::is_newer_than_inputs(const path& file) const {
     std::error_code error;
     const auto written = std::filesystem::last_write_time(file, error);
-    return !error && std::all_of(inputs_.begin(), inputs_.end(), [&](const Use& input) {
+    return !error && std::all_of(inputs_.begin(), inputs_.end(), [&](const InputFile& input) {
         return std::filesystem::last_write_time(input.file, error) < written && !error;
     });
 }
@@ -69,13 +68,13 @@ void FileUses::writes(const std::string& what, const path& file, const std::stri
 
 void FileUses::check() const {
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
-        const Use& output = outputs_[i];
-        for (const Use& input : inputs_)
+        const Output& output = outputs_[i];
+        for (const InputFile& input : inputs_)
             if (is_same_file(output.file, input.file))
                 fail(fmt::format("{} {}, and would be lost to {}; give that another name with {}",
                                  both_names(output.file, input.file), input.what, output.what, output.option));
         for (std::size_t j = 0; j < i; ++j)
-            if (const Use& other = outputs_[j]; is_same_file(output.file, other.file)) {
+            if (const Output& other = outputs_[j]; is_same_file(output.file, other.file)) {
                 const std::string names = both_names(output.file, other.file);
                 if (output.what == other.what)
                     fail(fmt::format("{} named twice, as {}; once is enough", names, output.what));

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "input_files.h"
 #include "scene.h"
 
 namespace vkvol {
@@ -22,17 +23,21 @@ public:
     // have as before. False if that cannot be told.
     bool is_newer_than_inputs(const std::filesystem::path& file) const;
 
+    struct Output {
+        std::string what; // "the report"
+        std::filesystem::path file;
+        std::string option;
+    };
+    const std::vector<InputFile>& inputs() const { return inputs_; }
+    const std::vector<Output>& outputs() const { return outputs_; }
+
     // Throws InputError that names both uses and the remedy. Other spellings and links are the same file; devices and
     // pipes may be used more than once.
     void check() const;
 
 private:
-    struct Use {
-        std::string what;
-        std::filesystem::path file;
-        std::string option; // of outputs
-    };
-    std::vector<Use> inputs_, outputs_;
+    std::vector<InputFile> inputs_;
+    std::vector<Output> outputs_;
 };
 
 // Absolute, without links in the part that is there: two spellings of a file have one.

@@ -236,7 +236,7 @@ std::vector<DeviceOptions> each_device(const DeviceOptions& options) {
     for (std::size_t begin = 0; begin <= list.size();) {
         const std::size_t end = std::min(list.find(',', begin), list.size());
         if (begin == end)
-            throw DeviceError(fmt::format("--device {}: a number is missing; two devices are 0,1", list));
+            throw InputError(fmt::format("--device {}: a number is missing; two devices are 0,1", list));
         each.push_back({list.substr(begin, end - begin), options.validate, options.robust});
         begin = end + 1;
     }
@@ -245,7 +245,7 @@ std::vector<DeviceOptions> each_device(const DeviceOptions& options) {
 
 Device::Device(const DeviceOptions& options) {
     if (each_device(options).size() > 1)
-        throw DeviceError(
+        throw InputError(
             fmt::format("--device {}: several devices share renders to files alone; name one", options.choice));
     forgo_driver_cache_on_full_disk();
     try {

@@ -145,6 +145,17 @@ TEST_CASE("--checkpoint without --resume spares what is there", "[gpu][command][
     CHECK(folder.text("ball.checkpoint") == kept);
 }
 
+TEST_CASE("--dry-run says that a checkpoint has more samples than are asked for", "[gpu][command][checkpoint]") {
+    const Folder folder("");
+    leave_checkpoint(folder);
+    for (const char* dry : {"", " --dry-run"}) {
+        const Run run = folder.vkvol(fmt::format("ball.xml -o ball.exr --spp 1 --resume{}", dry));
+        CHECK(run.code == exit_bad_input);
+        CHECK_THAT(run.text, Contains("samples per pixel already, more than the 1 asked for"));
+    }
+    CHECK(folder.vkvol("ball.xml -o ball.exr --spp 1000000000 --resume --dry-run").code == exit_done);
+}
+
 // Machines of a farm differ in how many lanes Mesa's software driver has, which changes no bit.
 TEST_CASE("by eight lanes goes on what was begun by sixteen", "[gpu][command][checkpoint]") {
     const Folder folder("");
@@ -253,6 +264,27 @@ TEST_CASE("no frame of a sequence takes another's picture", "[gpu][command]") {
     CHECK_FALSE(fs::exists(folder.file("a.1.png")));
     CHECK(folder.vkvol("turn.xml -f 1,11 -q -o 'a.##.png'").code == exit_done);
     CHECK((fs::exists(folder.file("a.01.png")) && fs::exists(folder.file("a.11.png"))));
+}
+
+TEST_CASE("no frame of a sequence writes over what another one reads", "[gpu][command]") {
+    const Folder folder("");
+    std::string scene = folder.text("ball.xml");
+    scene.replace(scene.find("<options>"), 9,
+                  "<options><surfaces><rectangle y=\"-2\" lookAt=\"0 1 0\" texture=\"tex.${= 4-F}.png\"/></surfaces>");
+    REQUIRE(folder.vkvol("ball.xml -q -o tex.3.png").code == exit_done);
+    fs::copy_file(folder.file("tex.3.png"), folder.file("tex.1.png"));
+    folder.write("turn.xml", scene);
+    const std::string kept = folder.text("tex.1.png");
+    for (const char* frames : {"1,3", "3,1"}) // where the reader is first, and the writer
+        for (const char* dry : {"", " --dry-run"}) {
+            const Run run = folder.vkvol(fmt::format("turn.xml -f {} -q -o 'tex.%d.png'{}", frames, dry));
+            INFO(run.text);
+            CHECK(run.code == exit_bad_input);
+            CHECK_THAT(run.text, Contains("is a texture of the scene in frame") &&
+                                     Contains("would be lost to a picture of frame"));
+        }
+    CHECK(folder.text("tex.1.png") == kept);
+    CHECK(folder.vkvol("turn.xml -f 1,3 -q -o 'a.%d.png'").code == exit_done);
 }
 
 TEST_CASE("one picture that cannot be developed takes no other with it", "[gpu][command]") {

@@ -189,3 +189,15 @@ TEST_CASE("pbrt scenes on the command line", "[gpu][pbrt]") {
     CHECK(folder.vkvol("convert g.pbrt -q -o ' odd name.xml'").code == exit_done);
     CHECK(folder.vkvol("' odd name.xml' --width 4 --height 4 -q -o odd.exr").code == exit_done);
 }
+
+TEST_CASE("where a converted scene cannot be is said", "[gpu][pbrt]") {
+    const Folder folder("");
+    folder.write("a.pbrt", ball);
+    for (const char* place : {"none/b.xml", "folder.xml"}) {
+        std::filesystem::create_directories(folder.file("folder.xml"));
+        const Run run = folder.vkvol(std::string("convert a.pbrt -o ") + place);
+        INFO(run.text);
+        CHECK(run.code == exit_bad_input);
+        CHECK_THAT(run.text, Contains("directory"));
+    }
+}

@@ -436,3 +436,22 @@ TEST_CASE("what a domain that repeats cannot have is said", "[cpu][method][perio
     scene.surfaces.emplace_back().shape = PlaneSurface{{0.0, -3.0, 0.0}, glm::normalize(glm::dvec3(0.1, 1.0, 0.0))};
     CHECK_THROWS_WITH(load_assets(scene, choose_method(scene)), Contains("has to lie along all axes"));
 }
+
+TEST_CASE("paths of a domain that repeats come to an end", "[cpu][method][periodic]") {
+    Scene scene = above(medium(Sphere{{0.0, 0.0, 0.0}, 2.0}, 1.0, 1.0));
+    const auto loads = [&] { load_assets(scene, choose_method(scene)); };
+    CHECK_NOTHROW(loads()); // upwards and downwards
+    scene.periodic->low.y = -5.0;
+    scene.periodic->high.y = 5.0;
+    CHECK_THROWS_WITH(loads(), Contains("keeps its paths for ever"));
+    scene.settings.max_depth = 10;
+    CHECK_NOTHROW(loads());
+    scene.settings.max_depth.reset();
+    scene.surfaces.emplace_back().shape = BallSurface{{3.0, 3.0, 3.0}, 1.0};
+    scene.surfaces.back().material.color = Rgb(0.9);
+    CHECK_NOTHROW(loads());
+    scene.surfaces.back().material.color = {0.9, 0.9, 1.0};
+    CHECK_THROWS_WITH(loads(), Contains("keeps its paths for ever"));
+    scene.volumes.push_back(medium(Sphere{{4.0, 0.0, 0.0}, 1.0}, 0.01, 0.5));
+    CHECK_NOTHROW(loads());
+}

@@ -6,14 +6,17 @@
 #include <fmt/format.h>
 #include <random>
 
+#include "frame_params.h"
 #include "kernels/test_items.h"
 #include "support/images.h"
 #include "support/numbers.h"
 #include "support/scenes.h"
 #include "support/test_scene.h"
+#include "surface_gaps.h"
 #include "walk.spv.h"
 
 using namespace vkvol;
+using Catch::Contains;
 using shared::RayInput;
 using shared::WalkStep;
 using test_numbers::u;
@@ -220,4 +223,44 @@ TEST_CASE("far from the origin walks take the same steps", "[gpu][precision][har
         CHECK(std::abs(double(far.lookups) - double(near.lookups)) <= 16.0);
         CHECK(std::abs(double(far.real_collisions) - double(near.real_collisions)) <= 8.0);
     }
+}
+
+// A rectangle below a ball of radius 1 and extinction 3, and something small far off, so that the origin is half way.
+TEST_CASE("surfaces off which rays are kept too far are told of", "[cpu][precision]") {
+    Scene scene = scene_of(medium(Sphere{{0.0, 0.0, 0.0}, 1.0}, 3.0, 0.9), 10.0, 8);
+    scene.surfaces.emplace_back().shape = RectangleSurface{{0.0, -1.0, 0.0}, {4.0, 0.0, 0.0}, {0.0, 0.0, -4.0}};
+    scene.surfaces.back().place = "a.xml:1:2";
+    scene.volumes.push_back(scene.volumes.front());
+    const auto said = [&](double far) {
+        std::get<Sphere>(scene.volumes.back().shape).center = {far, 0.0, 0.0};
+        const Assets assets = load_assets(scene, choose_method(scene));
+        return surface_gap_warning(scene, assets, render_origin(scene, assets.media, &*assets.superposition));
+    };
+    CHECK(said(10.0).empty());
+    CHECK(said(1600.0).empty()); // a gap of 64 u (800 + 4), times 3: 0.0092
+    CHECK_THAT(said(1800.0),
+               Contains("a.xml:1:2: rays that leave this surface begin 0.0034 world units off it, 0.01 mean "
+                        "free paths"));
+    CHECK_THAT(said(1e5), Contains("begin 0.19 world units off it, 0.57 mean free paths"));
+    scene.surfaces.back().shape = PlaneSurface{{0.0, -1.0, 0.0}, {0.0, 1.0, 0.0}};
+    CHECK_THAT(said(1e5), Contains("0.57 mean free paths"));
+    scene.surfaces.back().shape = PlaneSurface{{0.0, -1.1, 0.0}, {0.0, 1.0, 0.0}}; // beside the medium
+    CHECK(said(1e5).empty());
+    scene.surfaces.back().shape = BallSurface{{0.0, -3.0, 0.0}, 1.0}; // 0.19 of the diagonal of its box
+    CHECK_THAT(said(1e5), Contains("5.5 % of its size"));
+    scene.surfaces.back().shape = BallSurface{{0.0, -33.0, 0.0}, 30.0};
+    CHECK(said(1e5).empty());
+    // Of a large mesh those triangles count that are in the medium.
+    TriangleSurface mesh{{{-2.0, -1.0, 2.0}, {2.0, -1.0, 2.0}, {0.0, -1.0, -2.0}}, {{0, 1, 2}}};
+    scene.surfaces.back().shape = mesh;
+    CHECK(said(10.0).empty());
+    for (const double out : {0.0, 1e5}) {
+        mesh.vertices.insert(mesh.vertices.end(), {{out, -9.0, -2.0}, {1e5, -9.0, 2.0}, {1e5, -9.0, 1e5}});
+        mesh.triangles.emplace_back(mesh.vertices.size() - 3, mesh.vertices.size() - 2, mesh.vertices.size() - 1);
+    }
+    scene.surfaces.back().shape = mesh;
+    CHECK(said(10.0).empty());
+    mesh.vertices[3].y = 9.0;
+    scene.surfaces.back().shape = mesh;
+    CHECK_THAT(said(10.0), Contains("begin 0.38 world units off it, 1.1 mean free paths"));
 }

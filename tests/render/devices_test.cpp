@@ -159,3 +159,10 @@ TEST_CASE("the command line names several devices", "[gpu][devices][command]") {
     CHECK_THAT(vkvol("ball.xml", number + ",99").text, Contains("99"));
     CHECK_THAT(vkvol("bench ball.xml", both).text, Contains("name one"));
 }
+
+TEST_CASE("a list of devices with a gap is a wrong command line", "[gpu][devices][command]") {
+    const Folder folder("");
+    const std::string number = std::to_string(test_device().info().index);
+    CHECK(folder.script("\"$vkvol\" ball.xml -o a.exr --device " + number + ",").code == exit_bad_input);
+    CHECK(folder.script("\"$vkvol\" bench ball.xml --device " + number + "," + number).code == exit_bad_input);
+}

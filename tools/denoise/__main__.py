@@ -59,8 +59,12 @@ def outputs_of(chosen):
     for file in [*images, *drawings]:
         if not file.parent.is_dir():
             raise Refusal(f"{file}: the directory {file.parent} does not exist; make it first")
-        if chosen.reference and file.exists() and chosen.reference.exists() and file.samefile(chosen.reference):
-            raise Refusal(f"{file}: is the reference, and would be lost; name another place with -o")
+        for what, read in (("noisy picture", chosen.noisy), ("reference", chosen.reference)):
+            if read and file.exists() and read.exists() and file.samefile(read):
+                raise Refusal(f"{file}: is the {what}, and would be lost; name another place with -o")
+    real = [file.resolve() for file in [*images, *drawings]]
+    if twice := [file for file in real if real.count(file) > 1]:
+        raise Refusal(f"{twice[0]}: is named twice with -o; once is enough")
     if drawings and not chosen.vkvol.is_file():
         raise Refusal(f"{drawings[0]}: {chosen.vkvol} draws PNG and is not there; build it, or name it with --vkvol")
     return images, drawings

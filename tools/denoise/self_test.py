@@ -225,6 +225,11 @@ class BrokenInputs(Case):
         picture_file.write(self.noisy, noisy_ramp())
         self.refused("does not exist", self.noisy, "-o", self.folder / "no" / "a.exr")
         self.refused("unknown kind of picture", self.noisy, "-o", self.folder / "a.jpg")
+        self.refused("is the noisy picture", self.noisy, "-o", self.noisy)
+        link = self.folder / "link.exr"
+        link.symlink_to(self.noisy)
+        self.refused("is the noisy picture", self.noisy, "-o", link)
+        self.refused("is named twice", self.noisy, "-o", self.folder / "a.exr", "-o", self.folder / "b.exr", "-o", self.folder / ".." / self.folder.name / "a.exr")
         self.refused("draws PNG", self.noisy, "-o", self.folder / "a.png", "--vkvol", self.folder / "vkvol")
 
     @denoises
