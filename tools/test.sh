@@ -25,7 +25,7 @@ start=$SECONDS
 install_packages
 [ -z "$driver" ] || use_driver "$driver"
 limit=1500 # seconds, of a group
-[ "$preset" = release ] || limit=4500
+[ "$preset" = release ] && [ "$driver" != swiftshader ] || limit=4500
 build "$preset" -DVKVOL_WERROR=ON
 
 say "Scene files against their schema"
