@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <exception>
 #include <fmt/format.h>
+#include <stdexcept>
 #include <utility>
 
 #include "bench_render.h"
@@ -41,6 +43,8 @@ public:
 
     BenchResult run(const std::vector<Estimator>& estimators);
     const Device& device() const { return device_; }
+    // What ended it before its time, if anything did.
+    const std::exception_ptr& failure() const { return failure_; }
 
 private:
     void warm_up(const std::vector<Estimator>& estimators);
@@ -48,6 +52,7 @@ private:
     void leave_out_slow();
     void announce(double reference_seconds) const;
     std::uint32_t next_seed() { return seed_of_run(request_.render.seed, ++renders_); }
+    void run_rounds_to_failure();
     bool get_reference(const std::vector<Estimator>& estimators);
     std::optional<double> measure(std::size_t index, std::uint32_t samples, double time_limit);
 
@@ -59,6 +64,7 @@ private:
     std::vector<double> seconds_per_sample_, setup_seconds_; // of a render
     std::uint32_t renders_ = 0;                              // number of the next seed; 0 is the reference's
     double spent_ = 0.0;
+    std::exception_ptr failure_;
 };
 
 // One sample that is not measured, for kernels to be compiled and files to be in memory, and then one for the speed.
@@ -83,7 +89,7 @@ void Bench::warm_up(const std::vector<Estimator>& estimators) {
             return;
         try {
             result_.measurements.push_back(warm_up(estimator));
-        } catch (const InputError& error) {
+        } catch (const std::runtime_error& error) { // input, or memory
             if (!request_.integrators.empty() || estimator.is_default)
                 throw;
             if (!request_.quiet)
@@ -174,6 +180,18 @@ std::optional<double> Bench::measure(std::size_t index, std::uint32_t samples, d
     return run.seconds;
 }
 
+// What was measured outlives a render that fails.
+void Bench::run_rounds_to_failure() {
+    try {
+        run_rounds(
+            seconds_per_sample_, request_.seconds,
+            [this](std::size_t index, std::uint32_t samples, double limit) { return measure(index, samples, limit); },
+            interrupted);
+    } catch (const std::exception&) {
+        failure_ = std::current_exception();
+    }
+}
+
 BenchResult Bench::run(const std::vector<Estimator>& estimators) {
     if (request_.reference)
         result_.reference = read_reference(*request_.reference, estimators);
@@ -181,12 +199,9 @@ BenchResult Bench::run(const std::vector<Estimator>& estimators) {
     warm_up(estimators);
     leave_out_slow();
     if (!interrupted() && get_reference(estimators))
-        run_rounds(
-            seconds_per_sample_, request_.seconds,
-            [this](std::size_t index, std::uint32_t samples, double limit) { return measure(index, samples, limit); },
-            interrupted);
+        run_rounds_to_failure();
     result_.load_after = load_average();
-    result_.interrupted = interrupted();
+    result_.interrupted = interrupted() || failure_;
     for (const Measurement& measurement : result_.measurements)
         if (measurement.runs.empty() && !result_.interrupted)
             tell(stderr, "vkvol: warning: {}: no render fitted in --time; raise it\n",
@@ -272,6 +287,8 @@ int run_bench(const BenchRequest& request) {
     check_request(request, estimators);
     Bench bench(request);
     const BenchResult result = bench.run(estimators);
+    if (result.measurements.empty() && bench.failure())
+        std::rethrow_exception(bench.failure());
     if (result.measurements.empty()) {
         tell(stderr, "vkvol: {}: nothing is written\n",
              result.interrupted ? "interrupted before the first measured render"
@@ -281,6 +298,10 @@ int run_bench(const BenchRequest& request) {
     write_bench(request, bench.device(), result);
     print_bench(request, result);
     print_notes(request, result);
+    if (bench.failure()) {
+        tell(stderr, "vkvol: note: a render failed; what was measured before is written\n");
+        std::rethrow_exception(bench.failure());
+    }
     return result.interrupted ? exit_interrupted : exit_done;
 }
 

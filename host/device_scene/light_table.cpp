@@ -249,8 +249,9 @@ std::uint32_t loop_iterations(const Scene& scene) {
     const std::vector<Light>& lights = scene.lights;
     const auto count = [&](bool (*is)(const Light&)) { return std::count_if(lights.begin(), lights.end(), is); };
     const auto levels = std::bit_width(lights.size()) + 1;
-    // The tree is gone down from a collision, from along a flight, and from a sensor of flux.
-    const int places = reads_flux(scene.camera) ? 3 : 2;
+    // The tree is gone down from a collision, a tentative one too, from along a flight, from a surface, and from a
+    // sensor of flux.
+    const int places = 3 + (scene.surfaces.empty() ? 0 : 1) + (reads_flux(scene.camera) ? 1 : 0);
     // Where a path begins. Among surfaces lamps may hide each other, and paths that leave one look, too: in another
     // lane, but loops count for all of a group.
     const int for_lamps = scene.surfaces.empty() ? 1 : 2 * 2;

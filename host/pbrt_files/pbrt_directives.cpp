@@ -7,7 +7,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <iterator>
 #include <map>
-#include <set>
 #include <utility>
 
 #include "error.h"
@@ -24,6 +23,8 @@ const std::set<std::string> of_the_world = {
     "AreaLightSource", "AttributeBegin", "AttributeEnd",   "Import",      "LightSource",    "MakeNamedMaterial",
     "Material",        "NamedMaterial",  "ObjectBegin",    "ObjectEnd",   "ObjectInstance", "ReverseOrientation",
     "Shape",           "Texture",        "TransformBegin", "TransformEnd"};
+const std::set<std::string> of_the_options = {"Accelerator", "Camera",  "Film",          "Integrator",
+                                              "PixelFilter", "Sampler", "TransformTimes"};
 
 using Kind = PbrtToken::Kind;
 
@@ -52,6 +53,8 @@ void PbrtDirectives::read() {
         end_imports();
         if (!in_world_ && token.is(Kind::word) && of_the_world.count(token.value) > 0)
             fail_at(token.place, fmt::format("{} belongs behind WorldBegin", token.value));
+        if (in_world_ && token.is(Kind::word) && of_the_options.count(token.value) > 0)
+            fail_at(token.place, fmt::format("{} belongs before WorldBegin", token.value));
         const auto handler = token.is(Kind::word) ? handlers_.find(token.value) : handlers_.end();
         if (handler == handlers_.end()) {
             std::vector<std::string> known;
@@ -198,11 +201,7 @@ void PbrtDirectives::read_active_transform(const PbrtToken& directive) {
 
 void PbrtDirectives::add_settings() {
     const auto keeps = [this](std::optional<PbrtThing>& where) {
-        return [this, &where](const PbrtToken& directive) {
-            if (in_world_)
-                fail_at(directive.place, fmt::format("{} belongs before WorldBegin", directive.value));
-            where = thing(directive);
-        };
+        return [this, &where](const PbrtToken& directive) { where = thing(directive); };
     };
     handlers_["Film"] = keeps(scene_.film);
     handlers_["PixelFilter"] = keeps(scene_.filter);
@@ -362,8 +361,10 @@ void PbrtDirectives::read_texture(const PbrtToken& directive) {
     if (kind.value != "spectrum" && kind.value != "float")
         fail_at(kind.place, fmt::format("Texture of \"{}\"; expected \"spectrum\" or \"float\"", kind.value));
     PbrtThing made = thing(directive, "texture");
-    // The others have names of their own, and nothing here has them.
-    if (kind.value == "spectrum" && !scene_.textures.try_emplace(called, std::move(made)).second)
+    // Those of numbers have names of their own, and nothing here has them.
+    const bool is_new = kind.value == "float" ? numbers_.insert(called).second
+                                              : scene_.textures.try_emplace(called, std::move(made)).second;
+    if (!is_new)
         fail_at(directive.place, fmt::format("a second texture \"{}\"; give it another name", called));
 }
 

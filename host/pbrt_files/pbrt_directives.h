@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -87,6 +88,7 @@ private:
     std::vector<Instance> instances_;
     std::map<std::string, Handler> handlers_;
     bool in_world_ = false;
+    std::set<std::string> numbers_; // textures of "float"
 };
 
 } // namespace vkvol

@@ -29,8 +29,8 @@ bool is_forked() {
 }
 
 [[noreturn]] void refuse_fork() {
-    throw RenderError("this process was forked from one that has used a device, whose driver works there alone; start "
-                      "workers anew: multiprocessing.get_context(\"spawn\")");
+    throw RenderError("this process was forked from one that has used a device, and what works beside it does so there "
+                      "alone; start workers anew: multiprocessing.get_context(\"spawn\")");
 }
 
 } // namespace
@@ -83,9 +83,13 @@ void DeviceShop::clear_retired_if_idle() {
         clear_retired();
 }
 
-std::shared_ptr<DeviceShop> device_shop(const DeviceOptions& options) {
+void check_not_forked() {
     if (is_forked())
         refuse_fork();
+}
+
+std::shared_ptr<DeviceShop> device_shop(const DeviceOptions& options) {
+    check_not_forked();
     process_of_shops = ::getpid();
     const std::lock_guard lock(mutex);
     std::shared_ptr<DeviceShop>& shop = shops()[{options.choice, options.validate, options.robust}];

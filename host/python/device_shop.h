@@ -53,6 +53,9 @@ private:
 // whoever lets go of a session may hold what that turn waits for. In another process it is left where it is.
 void retire(const std::shared_ptr<DeviceShop>& shop, std::shared_ptr<void> things);
 
+// Throws RenderError in a process forked from one that had any shop.
+void check_not_forked();
+
 // The same for the same options. Throws DeviceError, or RenderError in a process forked from one that had some.
 std::shared_ptr<DeviceShop> device_shop(const DeviceOptions& options);
 

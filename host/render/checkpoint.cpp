@@ -223,7 +223,9 @@ void check_identity(const RenderIdentity& saved, const RenderIdentity& here) {
         refuse(fmt::format("vkvol {}, not {}", saved.program, here.program));
     if (saved.kernel != here.kernel)
         refuse("another render: another scene, density field, picture, seed, sample offset or integrator");
-    if (saved.device != here.device || saved.band_rows != here.band_rows)
+    if (saved.device == here.device && saved.band_rows != here.band_rows)
+        refuse("a film in other bands of rows, as another --schedule has them");
+    if (saved.device != here.device)
         refuse(fmt::format("another device, {}, whose bits differ from those of {}", saved.device, here.device));
 }
 

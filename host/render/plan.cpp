@@ -25,9 +25,11 @@ std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
     std::uint32_t iterations = 2 + (steps + 1);
     if (loops.mesh)
         iterations += 2 + 1 + MESH_NODES_PER_TURN * node;
-    if (loops.surfaces) // planes when a segment begins, then a search, in which what is met is asked whether the light
-                        // lies in it
-        iterations += MOST_PLANES + 1 + 1 + SURFACE_NODES_PER_TURN * node + 2;
+    if (loops.surfaces) // planes when a segment begins, also beyond a seam, then a search, in which what is met is
+                        // asked whether the light lies in it
+        iterations += 2 * (MOST_PLANES + 1) + 1 + SURFACE_NODES_PER_TURN * node + 2;
+    if (loops.facets) // a way on, and what leaves toward a light and toward a sensor
+        iterations += 3 * (MOST_FACETS + 1);
     const std::uint32_t octaves = loops.octaves > 0 ? loops.octaves + 1 : 0;
     const std::uint32_t search = loops.halvings > 0 ? loops.halvings + 1 : 0;
     const std::uint32_t of_one = octaves + search;
@@ -92,9 +94,10 @@ Plan make_plan(const Device& device, const LoopSizes& loops, std::uint64_t pixel
         plan.copies = device.writes_out_lanes() ? PathCopies::in_loops : PathCopies::by_word;
     plan.lanes = pick(wish.lanes, device.is_cpu() ? 512u : wide ? 1u << 16 : 1u << 17);
     plan.steps = pick(wish.steps, 4u);
-    if (turn_iterations(loops, plan.steps) > most_iterations)
+    constexpr std::uint32_t most = most_iterations - 2 * copy_iterations; // of one turn, beside what is about it
+    if (turn_iterations(loops, plan.steps) > most)
         plan.steps = 1;
-    if (device.is_cpu() && turn_iterations(loops, plan.steps) > most_iterations)
+    if (device.is_cpu() && turn_iterations(loops, plan.steps) > most)
         throw InputError(
             fmt::format("{} volumes overlap somewhere, and software drivers end sums over so many, and the "
                         "octaves of their noise, before they are done; leave some out, or render on a GPU",

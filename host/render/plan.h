@@ -50,6 +50,7 @@ constexpr std::uint32_t most_slots = 1u << 19;
 struct LoopSizes {
     bool mesh = false;
     bool surfaces = false;
+    bool facets = false;        // of rough surfaces
     std::uint32_t octaves = 0;  // of noise; 0 without it
     std::uint32_t halvings = 0; // of a search in a map of values; 0 without one
     std::uint32_t media = 0;    // that a look-up asks, at most; 0 where there is but one

@@ -72,6 +72,8 @@ void Session::render(std::uint32_t samples) {
                 run_band(bands_[band_]);
         } catch (...) { // of this batch the film has some, and nobody knows what
             gave_up_ = true;
+            end_rendering();
+            result_.interrupted = true;
             throw;
         }
         if (band_ == bands_.size()) {

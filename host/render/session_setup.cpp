@@ -192,6 +192,8 @@ void Session::find_wish(const Assets& assets, const Specialization& specializati
     loops_ = {};
     loops_.lights = loop_iterations(scene_);
     loops_.surfaces = !scene_.surfaces.empty();
+    loops_.facets = std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(),
+                                [](const Surface& surface) { return surface.material.roughness > 0.0; });
     loops_.halvings = static_cast<std::uint32_t>(specialization[SPEC_MAP_HALVINGS]);
     loops_.layers = plan_layers(scene_).params.count;
     for (std::size_t i = 0; i < assets.media.size(); ++i) {
@@ -350,7 +352,9 @@ void Session::make_film() {
     shared::AovParams layers = device_scene_->frame().layers;
     const auto may_be = [&](Schedule schedule) {
         const bool is_tried = schedule == Schedule::fused || !device_.is_cpu() || job_.plan.tries;
-        return wish_.schedule == schedule || (wish_.schedule == Schedule::automatic && is_tried);
+        // Not what the wish has since: what is resumed needs the same bands.
+        const Schedule asked = job_.plan.schedule;
+        return asked == schedule || (asked == Schedule::automatic && is_tried);
     };
     for (const Schedule schedule : {Schedule::fused, Schedule::staged})
         if (layers.count > 0 && may_be(schedule)) {

@@ -17,8 +17,8 @@ float filter_density(float aside) {
     if (PIXEL_FILTER == PIXEL_BOX)
         return aside < reach ? 0.5 / reach : 0.0;
     uint i = 0u;
-    [[unroll]] for (uint step = FILTER_QUANTILES / 2u; step > 0u; step /= 2u)
-        i += frame_block.filter_quantiles[i + step] <= aside ? step : 0u;
+    [[unroll]] for (int bit = FILTER_QUANTILE_BITS - 1; bit >= 0; --bit)
+        i += frame_block.filter_quantiles[i + (1u << bit)] <= aside ? 1u << bit : 0u;
     float low = frame_block.filter_quantiles[i], between = frame_block.filter_quantiles[i + 1u] - low;
     float x = float(i) + (aside - low) / between;
     return between > 0.0 && aside < reach ? (1.0 - x / count) / (count * between) : 0.0;

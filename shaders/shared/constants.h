@@ -140,7 +140,8 @@
 #define PIXEL_EVEN 0
 #define PIXEL_BOX 1
 #define PIXEL_QUANTILES 2
-#define FILTER_QUANTILES 64
+#define FILTER_QUANTILE_BITS 6
+#define FILTER_QUANTILES (1 << FILTER_QUANTILE_BITS)
 
 // Images of more than radiance; see aovs.glsl.
 #define LAYERS_KINDS 1     // of light: SCATTERED_NEVER and so on
@@ -225,6 +226,7 @@
 #define SURFACE_DISK 2
 #define SURFACE_PLANE 3
 #define MOST_PLANES 8
+#define MOST_FACETS 16 // of one walk among a rough surface's
 
 // How it scatters.
 #define MATERIAL_DIFFUSE 0

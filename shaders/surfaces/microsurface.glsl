@@ -13,8 +13,6 @@
 #include "lib/rng.glsl"
 #include "surfaces/fresnel.glsl"
 
-const int MOST_FACETS = 16;
-
 struct Facets {
     float alpha;
     bool conducts;

@@ -107,3 +107,11 @@ TEST_CASE("what is wrong with pbrt's media and shutters has their places", "[cpu
     is_refused("Film \"rgb\"\nCamera \"perspective\" \"float shutteropen\" 2 \"float shutterclose\" 1 WorldBegin",
                "s.pbrt:2:1: an exposure of 0; expected a shutter");
 }
+
+TEST_CASE("what is pbrt's options comes before WorldBegin, and numbers' textures are of one name, too", "[cpu][pbrt]") {
+    is_refused("WorldBegin\nTransformTimes 0 1", "s.pbrt:2:1: TransformTimes belongs before WorldBegin");
+    is_refused("WorldBegin\nAccelerator \"bvh\"", "s.pbrt:2:1: Accelerator belongs before WorldBegin");
+    const std::string number = "Texture \"t\" \"float\" \"constant\" ";
+    is_refused("WorldBegin " + number + number, "a second texture \"t\"");
+    CHECK(world_of(number + "Texture \"t\" \"spectrum\" \"constant\"" + whole_ball).surfaces.size() == 1);
+}

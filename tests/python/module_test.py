@@ -357,6 +357,26 @@ class Running(unittest.TestCase):
             done = subprocess.run([sys.executable, "-c", code, *sys.path], capture_output=True, text=True, timeout=120)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
 
+    def test_a_forked_process_writes_no_exr(self):
+        code = ("import sys; sys.path[:] = sys.argv[1:]; import os, tempfile, vkvol\n"
+                "scene = vkvol.Scene.from_xml('<options><sphere/><camera z=\"4\"/></options>')\n"
+                "picture = vkvol.render(scene, width=64, height=64, spp=1)\n"
+                "with tempfile.TemporaryDirectory() as folder:\n"
+                "    picture.write(folder + '/a.exr')  # from here on its library has threads\n"
+                "    if not os.fork():\n"
+                "        picture.write(folder + '/b.png')\n"
+                "        try:\n"
+                "            picture.write(folder + '/b.exr')\n"
+                "        except vkvol.RenderError as error:\n"
+                "            print(error, flush=True)\n"
+                "        os._exit(7)\n"
+                "    print(os.waitstatus_to_exitcode(os.wait()[1]), sorted(os.listdir(folder)))")
+        done = subprocess.run([sys.executable, "-W", "ignore::DeprecationWarning", "-c", code, *sys.path], capture_output=True,
+                              text=True, timeout=60)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("was forked from one that has used a device", done.stdout)
+        self.assertTrue(done.stdout.endswith("7 ['a.exr', 'b.png']\n"), done.stdout)
+
     def test_a_forked_process_is_told(self):
         code = ("import sys; sys.path[:] = sys.argv[1:]; import os, vkvol\n"
                 "scene = vkvol.Scene.from_xml('<options><sphere/><camera z=\"4\"/></options>')\n"

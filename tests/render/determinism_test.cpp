@@ -150,6 +150,29 @@ TEST_CASE("no search in a phase function is cut short, however long a lane works
     CHECK(same_bits(longest.film, render_here(scene, 45, with_tuning(0, 0, 16, 0)).film));
 }
 
+// The same by looks from along flights and at tentative collisions besides: 19 searches a turn, in lanes of their own.
+TEST_CASE("no search in a phase function is cut short, wherever light is looked for", "[gpu][determinism][phase]") {
+    std::string table;
+    for (int i = 0; i < 1801; ++i)
+        table += fmt::format("{:.6f} {:.6f}\n", 0.1 * i, 1.0 + 50.0 * std::exp(-i / 60.0));
+    Volume volume = medium(Box{{0, 0, 0}, glm::dvec3(2.0)}, 8.0, 1.0);
+    volume.phase = PhaseFunction::table;
+    volume.phase_details.file = write_text(table);
+    Scene scene = scene_of(volume, 2.0, 8);
+    scene.lights = {SphereLight{{0.0, 1.5, 0.0}, 0.5, Rgb(5.0)}, SunLight{{1.0, 0.0, 0.0}, Rgb(1.0), 20.0}};
+    scene.settings.integrator = "ratioNEE";
+    scene.settings.choices.free_flight = FREE_FLIGHT_DELTA;
+    scene.settings.choices.distance = DISTANCE_MIXED;
+    scene.settings.majorant_scale = 2.0;
+    scene.settings.spp = 256;
+    RenderJob patient; // submits are as long as they may be
+    patient.plan.submit_seconds = 1e3;
+    const RenderResult longest = render_here(scene, 45, patient);
+    CAPTURE(longest.plan.budget);
+    CHECK(longest.plan.budget * 19 * 12 <= 65535);
+    CHECK(same_bits(longest.film, render_here(scene, 45, with_tuning(0, 0, 16, 0)).film));
+}
+
 TEST_CASE("samples wanted in several goes are those of one", "[gpu][determinism]") {
     const Scene scene = glowing_cloud(11);
     const Film whole = render_here(scene, 40).film;
