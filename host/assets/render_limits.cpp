@@ -237,10 +237,18 @@ void check_limits(const Scene& scene, const Volume& volume, const LoadedMedium& 
     check_glow(volume, loaded);
 }
 
-// What is lost of light per world unit where the density is 1 and the albedo's map at its most; as world_sigma_t.
-Rgb lost_in(const Volume& volume, const DensityField* field) {
+// What multiplies the albedo where it is least, as far as the scene tells: a grid's values may be 0.
+Rgb least_map_albedo(const Volume& volume) {
+    Rgb least(volume.albedo_grid.empty() ? 1.0 : 0.0);
+    for (const MapPoint& point : volume.map.points)
+        least = volume.map.is_transfer ? glm::min(least, point.albedo) : least;
+    return least;
+}
+
+// What is lost of light per world unit where the density is 1 and what multiplies the albedo is that; as world_sigma_t.
+Rgb lost_in(const Volume& volume, const Rgb& albedo, const DensityField* field) {
     Volume losses = volume;
-    losses.sigma_a += (Rgb(1.0) - most_map_albedo(volume)) * volume.sigma_s;
+    losses.sigma_a += (Rgb(1.0) - albedo) * volume.sigma_s;
     losses.sigma_s = Rgb(0.0);
     return world_sigma_t(losses, field);
 }
@@ -267,7 +275,7 @@ void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media
             continue;
         endless_place = endless_place.empty() ? here : endless_place;
         endless += sigma_t;
-        lost += lost_in(volume, nullptr);
+        lost += lost_in(volume, most_map_albedo(volume), nullptr);
     }
     if (largest(all) > 0.0 && largest(all) < thinnest)
         throw InputError(
@@ -294,7 +302,7 @@ void check_way_out(const Scene& scene, const std::vector<LoadedMedium>& media) {
     for (std::size_t i = 0; i < media.size(); ++i) {
         const DensityField* field = media[i].field ? &*media[i].field : nullptr;
         sigma_t += world_sigma_t(scene.volumes[i], field);
-        lost += lost_in(scene.volumes[i], field);
+        lost += lost_in(scene.volumes[i], least_map_albedo(scene.volumes[i]), field);
     }
     if (is_lossless(lost, sigma_t))
         throw InputError(

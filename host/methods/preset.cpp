@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <set>
 
+#include "estimator_traits.h"
 #include "scene_facts.h"
 #include "shared/constants.h"
 #include "surface_lamps.h"
@@ -60,10 +61,13 @@ Scene with_preset(Scene scene) {
     }
     if (adjusts(adjust_no_emission) && glows)
         warn("leaves emission out; nanoVDBEmission renders it");
-    const bool looks = scene.settings.choices.nee.value_or(integrator.nee) != NEE_NONE;
-    return looks && scattering_of(scene.settings, integrator) != SCATTERING_NONE
-               ? with_lamps_of_surfaces(std::move(scene))
-               : scene;
+    // A march with single scattering looks for light unless told not to: see choose_nee.
+    const AxisChoices& choices = scene.settings.choices;
+    const int scatters = scattering_of(scene.settings, integrator);
+    const bool marches =
+        scatters == SCATTERING_SINGLE && flight_has(choices.free_flight.value_or(integrator.free_flight), TRAIT_MARCH);
+    const bool looks = choices.nee ? *choices.nee != NEE_NONE : integrator.nee != NEE_NONE || marches;
+    return looks && scatters != SCATTERING_NONE ? with_lamps_of_surfaces(std::move(scene)) : scene;
 }
 
 } // namespace vkvol

@@ -84,8 +84,11 @@ void SceneReader::read_layers(Volume& volume) const {
     }
     if (!may_have)
         element.fail("<layers> are for a <box>, or <everywhere>; remove them, or take one of these");
-    if (volume.noise)
+    if (volume.noise && scope_of("noise") == scope_of("layers"))
         element.fail("<layers> beside <noise>; a volume has one density: remove one");
+    if (volume.noise && scope_of("noise") < scope_of("layers")) // the nearer one counts
+        return;
+    volume.noise.reset();
     const bool has_table = !find({"layers"}).child("layer").empty();
     volume.layers = has_table ? layer_table(element, volume) : exponential_layers(element, volume);
     if (!(layer_box(volume).size[volume.layers->axis] > 0.0))

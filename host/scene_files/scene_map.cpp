@@ -118,24 +118,25 @@ void SceneReader::read_map(Volume& volume) const {
     const XmlElement density = one("densityMap"), transfer = one("transferFunction");
     if (!density.exists() && !transfer.exists())
         return;
-    if (density.exists() && transfer.exists())
+    if (density.exists() && transfer.exists() && scope_of("densityMap") == scope_of("transferFunction"))
         transfer.fail(
             fmt::format("a <transferFunction> beside the <densityMap> at {}; a grid's values are mapped once: "
                         "remove one",
                         density.place()));
-    const XmlElement& element = density.exists() ? density : transfer;
+    const bool by_density = scope_of("densityMap") < scope_of("transferFunction"); // the nearer one counts
+    const XmlElement& element = by_density ? density : transfer;
     const bool has_grid = std::holds_alternative<GridFile>(volume.shape);
-    if (!has_grid && is_behind_shape(density.exists() ? "densityMap" : "transferFunction"))
+    if (!has_grid && is_behind_shape(by_density ? "densityMap" : "transferFunction"))
         return;
     if (!has_grid)
         element.fail(fmt::format("<{}> maps the values of a <densityField>, and this volume has none; remove it",
                                  element.name()));
-    if (transfer.exists())
-        take_transfer(volume, transfer_function(transfer));
-    else
+    if (by_density) {
         volume.map = density_map(density);
-    if (transfer.exists())
-        volume.unit = unit(transfer, transfer, true);
+        return;
+    }
+    take_transfer(volume, transfer_function(transfer));
+    volume.unit = unit(transfer, transfer, true);
 }
 
 void SceneReader::take_transfer(Volume& volume, ValueMap map) const {

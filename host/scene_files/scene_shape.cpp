@@ -57,15 +57,23 @@ std::optional<Shape> SceneReader::shape(const std::string& integrator, std::stri
 // The one densityField, sphere, box or models; missing if there is none, or one that asks for nothing. Between models
 // and a density field the original's integrators decided by what they could read, and so do they here.
 XmlElement SceneReader::shape_element(const std::string& integrator) const {
-    for (const pugi::xml_node scope : scopes_)
-        if (const XmlElement element = shape_element(scope, integrator); element.exists())
-            return element;
     // One that names a grid and no file is --grid's, or forgot it.
-    for (const pugi::xml_node scope : scopes_)
-        if (const XmlElement element(document_, find_one(document_, scope, {"densityField"}));
-            !element.attribute("grid").empty() || !element.attribute("velocity").empty())
+    XmlElement without_file(document_, {});
+    for (const pugi::xml_node scope : scopes_) {
+        const pugi::xml_node node = find_one(document_, scope, {"densityField"});
+        if (const XmlElement element(document_, node);
+            !without_file.exists() && !asks_for_shape(element, node) &&
+            (!element.attribute("grid").empty() || !element.attribute("velocity").empty()))
+            without_file = element;
+        if (const XmlElement element = shape_element(scope, integrator); element.exists()) {
+            if (without_file.exists() && !overrides_.grid)
+                without_file.fail(fmt::format("<densityField> names a grid and no file, and the volume is that of the "
+                                              "<{}> at {}; write the file between the tags, or remove one",
+                                              element.name(), element.place()));
             return element;
-    return {document_, {}};
+        }
+    }
+    return without_file;
 }
 
 std::size_t SceneReader::scope_of(const char* name) const {

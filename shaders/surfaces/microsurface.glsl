@@ -57,12 +57,16 @@ vec3 refracted(vec3 wi, vec3 m, float cosine, float eta) {
     return normalize((cosine / eta - beyond) * m - wi / eta);
 }
 
-// What facets mirror from -wi to wo, per steradian.
-vec3 facets_mirror(Facets f, float eta, vec3 wi, vec3 wo) {
+// What facets would mirror from -wi to wo, per steradian, if they mirrored all.
+float facets_mirror_all(float alpha, vec3 wi, vec3 wo) {
     vec3 m = normalize(wi + wo);
-    float cosine = dot(wi, m);
+    return m.z > 0.0 && dot(wi, m) > 0.0 ? 0.25 * ggx(m, alpha) / projected_area(wi, alpha) : 0.0;
+}
+
+vec3 facets_mirror(Facets f, float eta, vec3 wi, vec3 wo) {
+    float cosine = dot(wi, normalize(wi + wo));
     vec3 F = f.conducts ? fresnel_conductor(cosine, f.eta, f.k) : vec3(fresnel_dielectric(cosine, eta));
-    return m.z > 0.0 && cosine > 0.0 ? 0.25 * ggx(m, f.alpha) / projected_area(wi, f.alpha) * F : vec3(0.0);
+    return facets_mirror_all(f.alpha, wi, wo) * F;
 }
 
 // What they let through (Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007).
@@ -172,11 +176,9 @@ vec3 facets_guess(Facets f, vec3 wo, vec2 u, vec2 choice) {
 }
 
 float facets_guess_pdf(Facets f, vec3 wo, vec3 wi) {
-    Facets clear = f; // of a metal that mirrors all
-    clear.eta = f.conducts ? vec3(0.0) : f.eta;
-    clear.k = f.conducts ? vec3(1.0) : f.k;
     float otherwise = (f.conducts ? max(wi.z, 0.0) : 0.5 * abs(wi.z)) / PI;
-    float by_facet = facets_mirror(clear, f.eta.x, wo, wi).x + (f.conducts ? 0.0 : facets_pass(f.alpha, f.eta.x, wo, wi));
+    float by_facet = f.conducts ? facets_mirror_all(f.alpha, wo, wi)
+                                : facets_mirror(f, f.eta.x, wo, wi).x + facets_pass(f.alpha, f.eta.x, wo, wi);
     return mix(otherwise, by_facet, BY_FACET);
 }
 

@@ -388,6 +388,21 @@ TEST_CASE("the hash tells expectations apart, not estimators", "[cpu][method]") 
     CHECK(scene_hash(noise) != scene_hash(other));
 }
 
+// Of single scattering by marches shadow rays are all there is: preset by preset.
+TEST_CASE("what shines lights the marches that look for light", "[cpu][method]") {
+    Scene scene = scene_of("deltaTracking", FIELD_CONSTANT);
+    scene.settings.choices.scattering = SCATTERING_SINGLE;
+    scene.surfaces.emplace_back().shape = BallSurface{{3.0, 0.0, 0.0}, 0.5};
+    scene.surfaces.back().emission = Rgb(1.0);
+    const auto lamps = [&] { return with_preset(scene).lights.size() - 1; };
+    CHECK(lamps() == 0); // flights meet it
+    scene.settings.choices.free_flight = FREE_FLIGHT_MARCH;
+    CHECK(choose_method(with_preset(scene)).nee == NEE_TENTATIVE);
+    CHECK(lamps() == 1);
+    scene.settings.choices.nee = NEE_NONE;
+    CHECK(lamps() == 0);
+}
+
 TEST_CASE("a scene's hash has the colours of models where they show", "[cpu][method]") {
     const TestDirectory directory;
     const std::filesystem::path model = directory.write("a.obj", "mtllib a.mtl\n");

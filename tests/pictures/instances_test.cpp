@@ -315,6 +315,30 @@ TEST_CASE("volumes of another shape leave what is of another kind of density", "
     CHECK_THROWS_AS(parse_volumes(map + "<volume like='a'><sphere/><densityMap gain='3'/></volume>"), InputError);
 }
 
+TEST_CASE("of what excludes each other the nearer counts", "[cpu][xml][several]") {
+    const auto like = [](const std::string& first, const std::string& second) {
+        return parse_volumes("<volume name='a'>" + first + "</volume><volume like='a'>" + second + "</volume>")
+            .volumes.at(1);
+    };
+    const std::string grid = "<densityField>c.nvdb</densityField>", map = "<densityMap gain='2'/>",
+                      transfer = "<transferFunction><point value='1' sigma_t='3'/></transferFunction>",
+                      layers = "<layers scaleHeight='1'/>";
+    CHECK(like(grid + map, transfer).map.is_transfer);
+    CHECK_FALSE(like(grid + transfer, map).map.is_transfer);
+    CHECK(like(grid + transfer, map).map.exists());
+    CHECK_THROWS_AS(like(grid, map + transfer), InputError);
+    CHECK(like("<box/><noise/>", layers).layers);
+    CHECK_FALSE(like("<box/><noise/>", layers).noise);
+    CHECK(like("<box/>" + layers, "<noise/>").noise);
+    CHECK_FALSE(like("<box/>" + layers, "<noise/>").layers);
+    CHECK_THROWS_AS(like("<box/>", "<noise/>" + layers), InputError);
+    // A grid without a file would be of none.
+    for (const char* nameless : {"<densityField grid='d'/>", "<densityField velocity='v'/>"}) {
+        CHECK_THROWS_WITH(like(grid, nameless), Contains("names a grid and no file"));
+        CHECK_THROWS_WITH(like("<sphere/>" + std::string(nameless), ""), Contains("names a grid and no file"));
+    }
+}
+
 TEST_CASE("volumes that are like another", "[cpu][xml][several]") {
     const std::string cloud = R"(<volume name="a"><sphere radius="2"/><noise/><sigma_s>3</sigma_s>
         <transform><scale y="2"/></transform></volume>)";

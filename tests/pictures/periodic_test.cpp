@@ -454,4 +454,11 @@ TEST_CASE("paths of a domain that repeats come to an end", "[cpu][method][period
     CHECK_THROWS_WITH(loads(), Contains("keeps its paths for ever"));
     scene.volumes.push_back(medium(Sphere{{4.0, 0.0, 0.0}, 1.0}, 0.01, 0.5));
     CHECK_NOTHROW(loads());
+    scene.volumes = {medium(write_grid(cloud_grid()), 1.0, 1.0)};
+    CHECK_THROWS_WITH(loads(), Contains("keeps its paths for ever"));
+    scene.volumes.back().map.is_transfer = true;
+    scene.volumes.back().map.points = {{0.0, 0.0, Rgb(1.0)}, {1.0, 1.0, Rgb(1.0)}};
+    CHECK_THROWS_WITH(loads(), Contains("keeps its paths for ever"));
+    scene.volumes.back().map.points.back().albedo = Rgb(0.3);
+    CHECK_NOTHROW(loads());
 }
