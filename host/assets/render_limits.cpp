@@ -292,7 +292,8 @@ void check_way_out(const Scene& scene, const std::vector<LoadedMedium>& media) {
     const bool has_way_out = !scene.periodic || glm::any(glm::equal(scene.periodic->size(), glm::dvec3(0.0)));
     const auto absorbs = [](const Surface& surface) {
         const Rgb& color = surface.material.color;
-        return is_textured(surface.material) || std::max({color.x, color.y, color.z}) < 1.0;
+        return surface.material.kind == MaterialKind::conductor || is_textured(surface.material) ||
+               std::max({color.x, color.y, color.z}) < 1.0;
     };
     const auto is_coloured = [](const LoadedMedium& medium) { return medium.mesh && medium.mesh->diffuse; };
     if (has_way_out || scene.settings.max_depth || std::any_of(media.begin(), media.end(), is_coloured) ||

@@ -36,7 +36,7 @@ Estimator with_request(const Estimator& of, const IntegratorRequest& request) {
         MotionBlur blur = *of.scene.motion_blur;
         blur.scene_at = [scene_at = blur.scene_at, settings = of.scene.settings](double time) {
             Scene then = scene_at(time);
-            then.settings = settings;
+            then.settings = asked_of(then.settings, settings);
             return with_preset(then);
         };
         estimator.scene.motion_blur = std::make_shared<const MotionBlur>(std::move(blur));

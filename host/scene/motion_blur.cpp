@@ -52,12 +52,40 @@ double time_of(const MotionBlur& blur, const Moment& moment, std::uint32_t seed)
     return blur.open + (blur.close - blur.open) * (part - std::floor(part));
 }
 
+namespace {
+
+// By where in its frame the picture is, in units of its own size, which a command line may have changed since.
+Picture with_window_of(const Picture& then, const Picture& picture) {
+    const auto window = [](const Picture& p) {
+        return glm::dvec4(p.start_x / p.width, p.start_y / p.height, p.reference_width / p.width,
+                          p.reference_height / p.height);
+    };
+    const glm::dvec4 moved = window(then);
+    if (glm::all(glm::lessThan(glm::abs(moved - window(picture)), glm::dvec4(1e-9)))) // rounding
+        return picture;
+    Picture placed = picture;
+    placed.start_x = moved.x * picture.width;
+    placed.start_y = moved.y * picture.height;
+    placed.reference_width = moved.z * picture.width;
+    placed.reference_height = moved.w * picture.height;
+    return placed;
+}
+
+} // namespace
+
 // Its ends, its middle, and two that no simple motion goes through like these.
 std::vector<double> telling_times(const MotionBlur& blur) {
     std::vector<double> times;
     for (const double part : {0.0, 0.2360679775, 0.5, 0.7360679775, 1.0})
         times.push_back(blur.open + (blur.close - blur.open) * part);
     return times;
+}
+
+RenderSettings asked_of(RenderSettings then, const RenderSettings& settings) {
+    then.spp = settings.spp;
+    then.integrator = settings.integrator;
+    then.choices = settings.choices;
+    return then;
 }
 
 Scene scene_of_time(const Scene& scene, double time) {
@@ -79,8 +107,8 @@ Scene scene_of_time(const Scene& scene, double time) {
         (scene.layers & layer_media && medium_names(then) != medium_names(scene)))
         fail("lights or media have other names or groups, or some are not there; let their brightness be small rather "
              "than 0");
-    then.picture = scene.picture;
-    then.settings = scene.settings;
+    then.picture = with_window_of(then.picture, scene.picture);
+    then.settings = asked_of(then.settings, scene.settings);
     then.layers = scene.layers;
     then.holds_out = scene.holds_out;
     then.has_camera = scene.has_camera;

@@ -9,6 +9,7 @@
 
 namespace vkvol {
 
+struct RenderSettings;
 struct Scene;
 
 // Times are in frames, from the scene's own.
@@ -33,8 +34,11 @@ double time_of(const MotionBlur& blur, const Moment& moment, std::uint32_t seed)
 // By which two scenes that move are told apart, and what is wrong with one is found before it is rendered.
 std::vector<double> telling_times(const MotionBlur& blur);
 
-// As it is then: the camera, media, lights and surfaces of that time; samples, size, layers and how light is found are
-// the scene's. Throws InputError, with the time, for what cannot be, and where sensors would have other pixels then.
+// With the samples and the integrator of `settings`, which a command line may have asked for.
+RenderSettings asked_of(RenderSettings then, const RenderSettings& settings);
+
+// As it is then: but for samples, size, layers and the integrator, which are the scene's. Throws InputError, with the
+// time, for what cannot be, and where sensors would have other pixels then.
 Scene scene_of_time(const Scene& scene, double time);
 
 } // namespace vkvol

@@ -97,7 +97,8 @@ Projection projection_of(const XmlElement& element) {
     return projection;
 }
 
-Lens lens_of(const XmlElement& element, const Camera& camera) {
+// `moves`: at other times an attribute may have another value.
+Lens lens_of(const XmlElement& element, const Camera& camera, bool moves) {
     Lens lens;
     lens.radius = element.attribute_number("lensRadius", 0.0, {0.0, largest_length, true, true, "a number from 0"});
     const double focus = element.attribute_number("focus", 0.0, length);
@@ -108,7 +109,8 @@ Lens lens_of(const XmlElement& element, const Camera& camera) {
                                "a round one");
     lens.rotation = element.attribute_number("bladeRotation", 0.0, any_number);
     if (lens.radius == 0.0) {
-        if (const char* name = first_of(element, {"focus", "blades", "bladeRotation"}))
+        const bool may_open = moves && element.has("lensRadius");
+        if (const char* name = first_of(element, {"focus", "blades", "bladeRotation"}); name && !may_open)
             element.warn(fmt::format("{} is without effect on a pinhole; add lensRadius, in world units", name));
         return {};
     }
@@ -201,7 +203,7 @@ Camera SceneReader::camera() const {
     check_combination(element);
     if (element.has("lookAt"))
         look_at(element, camera);
-    camera.lens = lens_of(element, camera);
+    camera.lens = lens_of(element, camera, document_.moves());
     camera.exposure = exposure_of(element);
     return camera;
 }

@@ -39,7 +39,8 @@ Layers SceneReader::exponential_layers(const XmlElement& element, const Volume& 
     layers.bottom = element.attribute_number("bottom", low, coordinate);
     const double high = box ? low + box->size[layers.axis] : layers.bottom + usual_scale_heights * layers.scale_height;
     layers.top = element.attribute_number("top", high, coordinate);
-    if ((layers.reference - layers.bottom) / layers.scale_height > std::log(no_limit))
+    const double lowest = box ? std::max(layers.bottom, low) : layers.bottom;
+    if ((layers.reference - lowest) / layers.scale_height > std::log(no_limit))
         element.fail("<layers> are denser at the bottom than single precision has numbers for; raise bottom or "
                      "scaleHeight, or lower height");
     return layers;

@@ -200,6 +200,8 @@ Material SceneReader::material(const XmlElement& element) const {
     if (material.kind == MaterialKind::conductor)
         read_metal(element, material);
     material.roughness = element.attribute_number("roughness", 0.0, rough);
+    if (document_.later() != 0.0 && material.roughness < least_roughness) // on its way from 0, or to it
+        material.roughness = material.roughness < 0.5 * least_roughness ? 0.0 : least_roughness;
     if (material.roughness > 0.0 && material.roughness < least_roughness)
         element.fail_attribute("roughness", fmt::format("<{}> roughness: {:g} is too little to tell from 0, which is "
                                                         "smooth; {:g} at least",

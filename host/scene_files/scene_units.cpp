@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "nearest_name.h"
+#include "scene_facts.h"
 #include "scene_reader.h"
 
 namespace vkvol {
@@ -28,10 +29,6 @@ Rgb& irradiance_of(Light& light) {
     return std::get<SunLight>(light).irradiance;
 }
 
-bool glows(const Volume& volume) {
-    return volume.Le != Rgb(0.0) || volume.temperature.color != Rgb(0.0) || most_map_emission(volume) != Rgb(0.0);
-}
-
 } // namespace
 
 // Relative to the one light there is: that has then the irradiance that makes readings what is asked for, in each
@@ -47,7 +44,7 @@ void SceneReader::read_units(Scene& scene) const {
             fmt::format("unknown units '{}'{}", name, name_hint(name, {"radiance", "reflectance", "transmittance"})));
     if (scene.camera.projection == Projection::fluence)
         units.fail(fmt::format("<fluence> comes from all around, and is no {}; leave <units> out", name));
-    const bool shines_otherwise = scene.background != Rgb(0.0) || any_medium(scene, glows) ||
+    const bool shines_otherwise = scene.background != Rgb(0.0) || emits(scene) ||
                                   std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
                                               [](const Surface& surface) { return surface.emission != Rgb(0.0); });
     const glm::dvec3* const direction = scene.lights.size() == 1 ? direction_of(scene.lights.front()) : nullptr;

@@ -32,7 +32,7 @@ float march_density(MediumParams v, float t, vec3 tap, float u, inout Walk w, in
 uint march_step(MediumParams v, float rho, float dt, inout Walk w, inout Spectrum beta, out Spectrum deposit) {
     deposit = to_spectrum(vec3(0.0));
     if (goes_through()) {
-        Spectrum tau = v.sigma_t * rho * dt * to_spectrum(v.sigma_ratio);
+        Spectrum tau = v.sigma_t * to_spectrum(v.sigma_ratio) * rho * dt;
         deposit = beta * one_minus_exp(tau);
         beta *= exp(-tau);
         return rho > 0.0 ? EVENT_TOUCHED : EVENT_MOVING;

@@ -25,6 +25,7 @@ vec3 grid_emission(MediumParams v, vec3 position) {
         return e.constant;
     vec4 p = vec4(position, 1.0);
     vec3 index = vec3(dot(e.to_index[0], p), dot(e.to_index[1], p), dot(e.to_index[2], p));
+    index = clamp(index, vec3(e.grid.voxel_min - 2), vec3(e.grid.voxel_max + 2)); // beyond which there is nothing
     if (HAS_COLORS && type == GRID_COLOR)
         return e.constant + e.color * lookup_color(e.grid, GRID_COLOR, index);
     float value = lookup_trilinear(e.grid, type, index);

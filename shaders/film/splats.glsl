@@ -22,7 +22,7 @@ void add_whole(uint at, float x) {
     if (x == 0.0)
         return;
     float size = abs(x);
-    uint high = uint(size / WORD);
+    uint high = uint(size * (1.0 / WORD)); // whole: a power of 2
     uint low = uint(size - WORD * float(high));
     if (x < 0.0) { // of two's complement
         low = ~low + 1u;

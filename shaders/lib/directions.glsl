@@ -27,6 +27,19 @@ vec3 turned(vec3 peak, float from_peak, float u) {
     return normalize(peak * (1.0 - from_peak) + (tangent * around.x + bitangent * around.y) * sine);
 }
 
+// The sine of an angle from 0 to pi / 2, with all digits where it is small, which Vulkan does not ask of sin: its series, whose
+// next term is 6e-8 at the most.
+float sine_of_quarter(float x) {
+    float y = x * x;
+    return x * (1.0 + y * (-1.0 / 6.0 + y * (1.0 / 120.0 + y * (-1.0 / 5040.0 + y * (1.0 / 362880.0 - y / 39916800.0)))));
+}
+
+// So many turns around, from x towards y; see turned().
+vec2 on_circle(float turns) {
+    float phi = 6.283185307179586 * (fract(turns) - 0.5);
+    return -normalize(vec2(cos(phi), sin(phi)));
+}
+
 // Any direction alike.
 vec3 in_any_direction(vec2 u) {
     return turned(vec3(0.0, 1.0, 0.0), 2.0 * u.x, u.y);

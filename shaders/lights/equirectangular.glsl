@@ -15,10 +15,11 @@ vec2 equirectangular_place(vec3 direction) {
 // `sine`: of the angle to the zenith, by which an interval of longitude is narrower than at the horizon.
 vec3 equirectangular_direction(vec2 place, out float sine) {
     SkyParams sky = frame.sky;
-    float longitude = (fract(place.x / float(sky.width) - sky.turn) - 0.5) * (2.0 * PI);
-    float latitude = place.y * (PI / float(sky.height));
-    sine = sin(latitude);
-    return normalize(vec3(sine * sin(longitude), cos(latitude), -sine * cos(longitude)));
+    vec2 around = on_circle(place.x / float(sky.width) - sky.turn - 0.5);
+    float upper = place.y <= 0.5 * float(sky.height) ? 1.0 : -1.0;
+    float from_pole = (upper > 0.0 ? place.y : float(sky.height) - place.y) * (PI / float(sky.height));
+    sine = sine_of_quarter(from_pole); // of which the density is as good as this
+    return normalize(vec3(sine * around.y, upper * sine_of_quarter(0.5 * PI - from_pole), -sine * around.x));
 }
 
 // Of one next to the map at most. Around the horizon, and no further than the poles: beyond the outermost rows' middles their

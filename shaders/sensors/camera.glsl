@@ -50,9 +50,8 @@ vec2 aperture_point(SensorParams s, vec2 u) {
     if (s.blades > 0u) { // in one of the triangles between the middle and an edge
         float triangle = floor(u.x * float(s.blades));
         float along = u.x * float(s.blades) - triangle;
-        float first = s.blade_rotation + 2.0 * PI * triangle / float(s.blades);
-        float second = first + 2.0 * PI / float(s.blades);
-        p = sqrt(u.y) * mix(vec2(cos(first), sin(first)), vec2(cos(second), sin(second)), along);
+        float first = s.blade_rotation / (2.0 * PI) + triangle / float(s.blades);
+        p = sqrt(u.y) * mix(on_circle(first), on_circle(first + 1.0 / float(s.blades)), along);
     }
     return p;
 }
@@ -85,6 +84,7 @@ CameraRay camera_ray(uint place, uint sample_index) {
         ray = CameraRay(camera.position + aside, camera.corner);
     if (SENSOR == SENSOR_EQUIRECTANGULAR) {
         vec2 angle = camera.first_angle + p * camera.angle_step;
+        angle.x -= 2.0 * PI * round(angle.x / (2.0 * PI)); // beyond half a turn Vulkan asks nothing of cos and sin
         ray.origin = camera.position;
         ray.direction = normalize(cos(angle.y) * (cos(angle.x) * camera.corner + sin(angle.x) * camera.right) -
                                   sin(angle.y) * camera.down);

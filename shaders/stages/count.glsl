@@ -63,7 +63,7 @@ void count_flight(MediumParams v, vec3 from, uint event, Lane lane) {
 // Counts the power that a collision absorbs, per volume.
 void count_absorbed(vec3 position, vec3 power, Lane lane) {
     SensorParams s = frame.sensors[0];
-    ivec3 cell = ivec3(floor((at_sensor(position) - s.position) / s.corner));
+    ivec3 cell = ivec3(clamp(floor((at_sensor(position) - s.position) / s.corner), vec3(-1.0), vec3(s.cells)));
     if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, s.cells)))
         return;
     float unused;

@@ -310,13 +310,3 @@ TEST_CASE("layers of a crop, of a resumed and of a merged render are those of th
     halves[1].film.layers.pop_back();
     CHECK_THROWS_WITH(merge_films(halves), Contains("their layers are"));
 }
-
-TEST_CASE("a medium without a name has a layer of its own", "[cpu][aovs]") {
-    Scene scene;
-    scene.volumes.resize(4);
-    scene.volumes[0].name = "volume2";
-    scene.volumes[2].name = "volume4";
-    scene.volumes[3].name = "a.b";
-    CHECK(medium_names(scene) == std::vector<std::string>{"volume2", "volume2_", "volume4", "a_b"});
-    CHECK(medium_name(scene, 1) == "volume2_");
-}

@@ -375,6 +375,11 @@ TEST_CASE("what has no end in the way of an integrator is said", "[cpu][method][
     CHECK_THROWS_WITH(load_assets(scene, choose_method(scene)), Contains("leave the tilt out"));
 }
 
+TEST_CASE("how dense layers would be below their box is of no concern", "[cpu][xml][layers]") {
+    CHECK_NOTHROW(parse("<box y='5' width='10' height='10' depth='10'/><layers scaleHeight='1' bottom='-100'/>"));
+    CHECK_THROWS_AS(parse("<box y='-95' height='10'/><layers scaleHeight='1' bottom='-100'/>"), InputError);
+}
+
 TEST_CASE("layers in scene files", "[cpu][xml][layers]") {
     const Volume air = parse(R"(<everywhere/><layers scaleHeight="8" height="2"/>)").volumes.front();
     CHECK(is_everywhere(air));

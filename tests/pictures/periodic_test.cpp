@@ -452,6 +452,9 @@ TEST_CASE("paths of a domain that repeats come to an end", "[cpu][method][period
     CHECK_NOTHROW(loads());
     scene.surfaces.back().material.color = {0.9, 0.9, 1.0};
     CHECK_THROWS_WITH(loads(), Contains("keeps its paths for ever"));
+    scene.surfaces.back().material = {MaterialKind::conductor, Rgb(1.0)};
+    CHECK_NOTHROW(loads());
+    scene.surfaces.clear();
     scene.volumes.push_back(medium(Sphere{{4.0, 0.0, 0.0}, 1.0}, 0.01, 0.5));
     CHECK_NOTHROW(loads());
     scene.volumes = {medium(write_grid(cloud_grid()), 1.0, 1.0)};

@@ -90,6 +90,14 @@ TEST_CASE("units beside an emission without effect", "[cpu][xml]") {
     CHECK(slab(scene + "<units>reflectance</units>").units == "reflectance");
 }
 
+TEST_CASE("what would glow if it absorbed does not", "[cpu][xml]") {
+    const std::string light =
+        "<light y=\"1\" r=\"1\" g=\"1\" b=\"1\"/><units>reflectance</units><medium r=\"1\"/>"
+        "<irradiance y=\"2\" lookAt=\"0 0 0\"/><sigma_s>1</sigma_s>";
+    CHECK_NOTHROW(slab(light + "<sigma_a>0</sigma_a>"));
+    CHECK_THROWS_AS(slab(light + "<sigma_a>0.1</sigma_a>"), InputError);
+}
+
 TEST_CASE("units that readings cannot have are refused", "[cpu][xml]") {
     const std::string units = "<units>reflectance</units>";
     CHECK_THAT(unit_complaint("<units>brightness</units>"),

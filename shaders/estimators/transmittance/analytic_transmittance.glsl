@@ -1,6 +1,6 @@
 // Homogeneous: known at once. `distance` within the medium.
 Spectrum analytic_transmittance(MediumParams v, float distance) {
-    return exp(-v.sigma_t * distance * to_spectrum(v.sigma_ratio));
+    return exp(-(v.sigma_t * to_spectrum(v.sigma_ratio)) * distance);
 }
 
 // Where the medium has several parts, a step passes one. Of an exponential the depth is a closed form as well.
