@@ -56,8 +56,9 @@ bool meet(const PlaneSurface& plane, const WorldBox& box) {
     return std::abs(glm::dot(plane.normal, middle - plane.point)) <= glm::dot(glm::abs(plane.normal), half);
 }
 
-// The largest of the pieces of a surface that are in the medium: each triangle has its own.
-double gap_in(const Surface& surface, const WorldBox& box, const glm::dvec3& origin) {
+// The largest of the pieces of a surface that are in the medium: each triangle has its own. Of no more of them in all
+// than `patience`, which is of some tenths of a second.
+double gap_in(const Surface& surface, const WorldBox& box, const glm::dvec3& origin, std::size_t& patience) {
     if (const auto* plane = std::get_if<PlaneSurface>(&surface.shape)) // by the distance of where rays leave it
         return meet(*plane, box) && std::isfinite(box.low.x) ? gap_at({box.low, box.high}, origin) : 0.0;
     const SurfaceBounds bounds = *bounds_of(std::span(&surface, 1));
@@ -65,6 +66,9 @@ double gap_in(const Surface& surface, const WorldBox& box, const glm::dvec3& ori
     if (!mesh || !meet(bounds, box))
         return meet(bounds, box) ? gap_at(bounds, origin) : 0.0;
     double apart = 0.0;
+    if (mesh->triangles.size() > patience)
+        return apart;
+    patience -= mesh->triangles.size();
     for (const glm::uvec3& t : mesh->triangles) {
         const glm::dvec3 &a = mesh->vertices[t.x], &b = mesh->vertices[t.y], &c = mesh->vertices[t.z];
         const SurfaceBounds piece{glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
@@ -73,7 +77,7 @@ double gap_in(const Surface& surface, const WorldBox& box, const glm::dvec3& ori
     return apart;
 }
 
-Gap gap_of(const Surface& surface, std::span<const Extinction> media, const glm::dvec3& origin) {
+Gap gap_of(const Surface& surface, std::span<const Extinction> media, const glm::dvec3& origin, std::size_t& patience) {
     Gap worst;
     double most = std::numeric_limits<double>::infinity(); // of a plane
     if (const std::optional<SurfaceBounds> bounds = bounds_of(std::span(&surface, 1))) {
@@ -83,7 +87,7 @@ Gap gap_of(const Surface& surface, std::span<const Extinction> media, const glm:
     for (const Extinction& medium : media) {
         if (most * medium.most <= seen * std::max(1.0, worst.times))
             continue;
-        const double apart = gap_in(surface, medium.box, origin), times = apart * medium.most / seen;
+        const double apart = gap_in(surface, medium.box, origin, patience), times = apart * medium.most / seen;
         worst = times > worst.times ? Gap{apart, times, true} : worst;
     }
     return worst;
@@ -94,10 +98,11 @@ Gap gap_of(const Surface& surface, std::span<const Extinction> media, const glm:
 std::string surface_gap_warning(const Scene& scene, const Assets& assets, const glm::dvec3& origin) {
     const std::vector<Extinction> media = extinctions(scene, assets);
     Gap worst;
+    std::size_t patience = 20'000'000;
     std::string place;
     std::size_t count = 0;
     for (const Surface& surface : scene.surfaces) {
-        const Gap gap = gap_of(surface, media, origin);
+        const Gap gap = gap_of(surface, media, origin, patience);
         count += gap.times > 1.0 ? 1 : 0;
         if (gap.times <= std::max(1.0, worst.times))
             continue;
