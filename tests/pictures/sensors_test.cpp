@@ -187,6 +187,36 @@ TEST_CASE("angles that go around many times are those of the last turn", "[cpu][
     CHECK(sensor(scene).first_angle.y == Approx(std::numbers::pi / 4.0).epsilon(1e-6));
 }
 
+// What is twice as far as what is sharp is seen as far from the axis as its ray's point of the lens, on the other side.
+// Of a triangle whose corner is along an axis ((1 - x) / 1.5)^2 is beyond x, and 1 - that is before.
+TEST_CASE("light comes through the whole aperture, and no more", "[gpu][sensors]") {
+    const auto lit = [](double rotation, glm::dvec3 along, double edge, int blades) { // part of the lens
+        Scene scene;
+        scene.camera.position = {0.0, 0.0, 10.0};
+        scene.camera.fov = 0.001;
+        scene.camera.lens = lens(1.0, 5.0, blades, rotation);
+        scene.picture = {8, 8, 0.0, 0.0, 8.0, 8.0};
+        scene.surfaces.emplace_back().shape =
+            RectangleSurface{(edge + 50.0) * along, 50.0 * along, 50.0 * glm::cross({0.0, 0.0, 1.0}, along)};
+        scene.surfaces.back().emission = Rgb(1.0);
+        scene.settings.spp = 4096;
+        return double(mean_of(render_here(scene, 1).film));
+    };
+    const glm::dvec3 right(1.0, 0.0, 0.0), up(0.0, 1.0, 0.0);
+    const double samples = 64.0 * 4096.0, error = 5.0 * 0.5 / std::sqrt(samples);
+    const auto beyond = [](double x) { return (1.0 - x) * (1.0 - x) / 2.25; };
+    CHECK(lit(0.0, right, 0.25, 3) == Approx(1.0 - beyond(-0.25)).margin(error));
+    CHECK(lit(0.0, right, -0.25, 3) == Approx(1.0 - beyond(0.25)).margin(error));
+    CHECK(lit(0.0, right, 0.51, 3) == 0.0);
+    CHECK(lit(180.0, right, 0.25, 3) == Approx(beyond(0.25)).margin(error));
+    CHECK(lit(300.0, right, 0.25, 3) == Approx(beyond(0.25)).margin(error)); // a third of a turn on
+    CHECK(lit(90.0, up, -0.25, 3) == Approx(1.0 - beyond(0.25)).margin(error));
+    CHECK(lit(0.0, up, 0.0, 4) == Approx(0.5).margin(error));
+    CHECK(lit(45.0, right, 0.70, 4) == Approx(0.5 - 0.7 * std::sqrt(0.5)).margin(error)); // a square's side is at 0.707
+    CHECK(lit(0.0, right, 0.5, 0) ==
+          Approx(0.1955011).margin(error)); // the circle's cap: (acos x - x sqrt(1 - x^2)) / pi
+}
+
 TEST_CASE("rays of the host are the reference's", "[cpu][sensors]") {
     const Picture picture{120, 80, 13.0, -7.0, 200.0, 100.0};
     Camera camera;
