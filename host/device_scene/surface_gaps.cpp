@@ -22,6 +22,7 @@ struct Extinction {
     double most;
 };
 
+// The densest first.
 std::vector<Extinction> extinctions(const Scene& scene, const Assets& assets) {
     std::vector<Extinction> found;
     for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
@@ -33,6 +34,7 @@ std::vector<Extinction> extinctions(const Scene& scene, const Assets& assets) {
         found.push_back({is_endless ? WorldBox{glm::dvec3(-endless), glm::dvec3(endless)} : world_box(outline),
                          outline.sigma_t * outline.densest});
     }
+    std::sort(found.begin(), found.end(), [](const Extinction& a, const Extinction& b) { return a.most > b.most; });
     return found;
 }
 
@@ -86,7 +88,7 @@ Gap gap_of(const Surface& surface, std::span<const Extinction> media, const glm:
     }
     for (const Extinction& medium : media) {
         if (most * medium.most <= seen * std::max(1.0, worst.times))
-            continue;
+            break;
         const double apart = gap_in(surface, medium.box, origin, patience), times = apart * medium.most / seen;
         worst = times > worst.times ? Gap{apart, times, true} : worst;
     }
