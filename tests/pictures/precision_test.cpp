@@ -246,7 +246,7 @@ TEST_CASE("surfaces off which rays are kept too far are told of", "[cpu][precisi
     CHECK_THAT(said(1e5), Contains("0.57 mean free paths"));
     scene.surfaces.back().shape = PlaneSurface{{0.0, -1.1, 0.0}, {0.0, 1.0, 0.0}}; // beside the medium
     CHECK(said(1e5).empty());
-    scene.surfaces.back().shape = BallSurface{{0.0, -3.0, 0.0}, 1.0}; // 0.19 of the diagonal of its box
+    scene.surfaces.back().shape = BallSurface{{0.0, -3.0, 0.0}, 1.0}; // 0.19 of 3.46, its box's diagonal
     CHECK_THAT(said(1e5), Contains("5.5 % of its size"));
     scene.surfaces.back().shape = BallSurface{{0.0, -33.0, 0.0}, 30.0};
     CHECK(said(1e5).empty());
