@@ -137,6 +137,30 @@ void frame_flat(Camera& camera, const Picture& picture, const Corners& corners) 
 
 } // namespace
 
+namespace {
+
+// What was sharp before the medium may lie behind the eye that sees all of the medium.
+void check_focus(const Lens& lens) {
+    if (lens.radius <= widest_lens * lens.focus)
+        return;
+    const std::string where =
+        lens.focus > 0.0 ? fmt::format("{:.3g} before it, too near for a lens of radius {:g}", lens.focus, lens.radius)
+                         : fmt::format("{:.3g} behind it", -lens.focus);
+    throw InputError(fmt::format("--frame: what is sharp stays where it is, and where the camera sees all of the "
+                                 "medium that is {}; raise <camera> focus, or give lookAt, a point of the medium, in "
+                                 "its place",
+                                 where));
+}
+
+} // namespace
+
+void keep_focus(Camera& camera, const glm::dvec3& moved) {
+    if (camera.lens.radius == 0.0)
+        return;
+    camera.lens.focus += glm::dot(moved, camera_rotation(camera)[2]);
+    check_focus(camera.lens);
+}
+
 void frame(Camera& camera, const Picture& picture, const Corners& corners) {
     if (camera.projection == Projection::orthographic)
         return frame_flat(camera, picture, corners);
@@ -160,26 +184,8 @@ void frame(Camera& camera, const Picture& picture, const Corners& corners) {
     const double depth = std::max({across.depth(), upwards.depth(), towards_eye + nearest * diagonal_of(corners)});
     const glm::dvec3 before = camera.position;
     camera.position = middle + rotation * glm::dvec3(across.place(depth), upwards.place(depth), depth);
-    if (camera.lens.radius > 0.0) // what was sharp stays so
-        camera.lens.focus += glm::dot(camera.position - before, rotation[2]);
+    keep_focus(camera, camera.position - before);
 }
-
-namespace {
-
-// What was sharp before the medium may lie behind the eye that sees all of the medium.
-void check_focus(const Lens& lens) {
-    if (lens.radius <= widest_lens * lens.focus)
-        return;
-    const std::string where =
-        lens.focus > 0.0 ? fmt::format("{:.3g} before it, too near for a lens of radius {:g}", lens.focus, lens.radius)
-                         : fmt::format("{:.3g} behind it", -lens.focus);
-    throw InputError(fmt::format("--frame: what is sharp stays where it is, and where the camera sees all of the "
-                                 "medium that is {}; raise <camera> focus, or give lookAt, a point of the medium, in "
-                                 "its place",
-                                 where));
-}
-
-} // namespace
 
 void frame_medium(Scene& scene, FieldCache& fields) {
     if (reads_flux(scene.camera))
@@ -197,8 +203,6 @@ void frame_medium(Scene& scene, FieldCache& fields) {
     if (scene.camera.projection == Projection::equirectangular)
         throw InputError("--frame: an equirectangular camera sees all around it, wherever it is; leave --frame out");
     frame(scene.camera, scene.picture, *corners);
-    if (scene.camera.lens.radius > 0.0)
-        check_focus(scene.camera.lens);
 }
 
 std::string give_camera(Scene& scene, FieldCache& fields) {

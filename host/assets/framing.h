@@ -22,12 +22,14 @@ std::optional<Corners> medium_corners(const Scene& scene, FieldCache& fields);
 glm::dvec3 middle_of(const Corners& corners);
 double diagonal_of(const Corners& corners);
 
+// What a lens has sharp stays where it is, after the camera has moved by that; throws InputError where it cannot.
+void keep_focus(Camera& camera, const glm::dvec3& moved);
+
 // Moves the camera, without turning it, to the nearest place from which the picture shows all corners with some air
-// around them, but not up to the box itself; the box is in its middle. What a lens has sharp stays where it is, even if
-// that comes to be behind the eye: its focus is below 0 then.
+// around them, but not up to the box itself; the box is in its middle. Focus is kept, and what that throws thrown.
 void frame(Camera& camera, const Picture& picture, const Corners& corners);
 
-// The same for the scene's medium. Throws InputError if there is none, and where a lens cannot have sharp what it had.
+// The same for the scene's medium. Throws InputError if there is none, too.
 void frame_medium(Scene& scene, FieldCache& fields);
 
 // Gives a scene without a camera the usual view of all its media, framed likewise. Returns one line that says which;

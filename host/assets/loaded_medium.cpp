@@ -411,8 +411,8 @@ Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
             throw InputError(fmt::format("{}: {}", volume.place, error.what()));
         }
     }
-    check_everywhere(scene, assets.media);
-    check_way_out(scene, assets.media);
+    check_everywhere(scene, assets.media, method.scattering);
+    check_way_out(scene, assets.media, method.scattering);
     if (is_superposition(scene))
         assets.superposition = superpose(scene, assets.media, method);
     for (const Light& light : scene.lights)

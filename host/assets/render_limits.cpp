@@ -259,7 +259,7 @@ bool is_lossless(const Rgb& lost, const Rgb& sigma_t) {
 }
 
 // A path that never comes to an end would be followed for ever. Of several media what they lose together counts.
-void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media) {
+void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media, int scattering) {
     constexpr double thinnest = 1e-15; // whose mean free path is a hundred thousandth of the way to where it ends
     std::string place, endless_place;  // of the first
     Rgb all(0.0), endless(0.0), lost(0.0);
@@ -282,13 +282,13 @@ void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media
             fmt::format("{}the extinction, {:.3g} per world unit, is too thin to be <everywhere>; expected "
                         "at least {:g}, or a <box>",
                         place, largest(all), thinnest));
-    if (is_lossless(lost, endless) && !scene.settings.max_depth)
+    if (is_lossless(lost, endless) && !scene.settings.max_depth && scattering != SCATTERING_SINGLE)
         throw InputError(endless_place +
                          "a medium that is <everywhere> and absorbs nothing keeps its paths for ever; raise "
                          "sigma_a, or give a <maxDepth>");
 }
 
-void check_way_out(const Scene& scene, const std::vector<LoadedMedium>& media) {
+void check_way_out(const Scene& scene, const std::vector<LoadedMedium>& media, int scattering) {
     const bool has_way_out = !scene.periodic || glm::any(glm::equal(scene.periodic->size(), glm::dvec3(0.0)));
     const auto absorbs = [](const Surface& surface) {
         const Rgb& color = surface.material.color;
@@ -296,7 +296,8 @@ void check_way_out(const Scene& scene, const std::vector<LoadedMedium>& media) {
                std::max({color.x, color.y, color.z}) < 1.0;
     };
     const auto is_coloured = [](const LoadedMedium& medium) { return medium.mesh && medium.mesh->diffuse; };
-    if (has_way_out || scene.settings.max_depth || std::any_of(media.begin(), media.end(), is_coloured) ||
+    if (has_way_out || scene.settings.max_depth || scattering == SCATTERING_SINGLE ||
+        std::any_of(media.begin(), media.end(), is_coloured) ||
         std::any_of(scene.surfaces.begin(), scene.surfaces.end(), absorbs))
         return;
     Rgb sigma_t(0.0), lost(0.0);

@@ -14,11 +14,11 @@ void check_scene_limits(const Scene& scene);
 void check_limits(const Scene& scene, const Volume& volume, const LoadedMedium& loaded, const Method& method);
 
 // Throws InputError for media that are everywhere and together too thin to be met, or lose too little ever to end a
-// path.
-void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media);
+// path. `scattering`: SCATTERING_*; the first collision of a single one ends it.
+void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media, int scattering);
 
-// Throws InputError for a domain that repeats along all axes and loses too little ever to end a path.
-void check_way_out(const Scene& scene, const std::vector<LoadedMedium>& media);
+// Throws InputError for a domain that repeats along all axes and loses too little ever to end a path; likewise.
+void check_way_out(const Scene& scene, const std::vector<LoadedMedium>& media, int scattering);
 
 // What is rendered, but not well: mean free paths that are hardly more than places are known to. Empty: none.
 std::string too_short_paths(const Scene& scene, const Volume& volume, const LoadedMedium& loaded);

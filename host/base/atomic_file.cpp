@@ -75,8 +75,13 @@ path name_of(int descriptor) {
 path behind_links(path name) {
     constexpr int most = 40; // as many as Linux follows
     std::error_code error;
-    for (int i = 0; i < most && !stream_of(name) && std::filesystem::is_symlink(name, error); ++i)
-        name = name.parent_path() / std::filesystem::read_symlink(name, error);
+    for (int i = 0; i < most && !stream_of(name) && std::filesystem::is_symlink(name, error); ++i) {
+        const path next = name.parent_path() / std::filesystem::read_symlink(name, error);
+        if (!std::filesystem::exists(std::filesystem::symlink_status(next, error)) &&
+            std::filesystem::exists(name, error))
+            break; // a pipe that another process has open: what its link says is no name
+        name = next;
+    }
     return name;
 }
 

@@ -103,7 +103,7 @@ const Estimator& most_efficient(const BenchRequest& request, const std::vector<E
                 least = cost;
                 best = &candidate;
             }
-        } catch (const InputError&) {
+        } catch (const std::runtime_error&) { // input, or memory
         }
     }
     return *best;

@@ -198,6 +198,19 @@ void write(const MeasureOptions& options, const std::vector<Values>& rows) {
     }
 }
 
+// From reading to reading, so that none is lost. Whether it is written: a disk may be full for a moment.
+bool keep(const MeasureOptions& options, const std::vector<Values>& rows) {
+    if (!options.output || is_special(*options.output) || rows.empty())
+        return false;
+    try {
+        write_text(*options.output, as_csv(rows));
+        return true;
+    } catch (const RenderError& error) {
+        tell(stderr, "vkvol: warning: {}; tried again after the next reading\n", error.what());
+        return false;
+    }
+}
+
 // Before any time is spent: what is wrong with the last of many values is wrong now.
 void check_all(const MeasureOptions& options, const std::vector<SpectralBand>& bands, Workshop& workshop) {
     for (const Values& values : combinations(options.sweeps))
@@ -282,21 +295,20 @@ int run_measure(const MeasureOptions& options) {
         if (added == bands.size()) // of some bands alone it would be another reading
             add(options.sweeps, values, options.means ? mean_table(sum) : film_table(sum), rows);
     };
-    const bool is_kept = options.output && !is_special(*options.output); // from reading to reading
+    bool is_written = false;
     try {
         for (const Values& values : combinations(options.sweeps)) {
             if (was_interrupted)
                 break;
             measure_one(values);
-            if (is_kept)
-                write(options, rows);
+            is_written = keep(options, rows);
         }
     } catch (const std::exception&) { // what was measured is not lost
-        if (!is_kept)
+        if (!is_written)
             write(options, rows);
         throw;
     }
-    if (!is_kept)
+    if (!is_written)
         write(options, rows);
     if (!options.quiet)
         print_caps(options.request, told);

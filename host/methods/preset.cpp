@@ -64,8 +64,9 @@ Scene with_preset(Scene scene) {
     // A march with single scattering looks for light unless told not to: see choose_nee.
     const AxisChoices& choices = scene.settings.choices;
     const int scatters = scattering_of(scene.settings, integrator);
-    const bool marches =
-        scatters == SCATTERING_SINGLE && flight_has(choices.free_flight.value_or(integrator.free_flight), TRAIT_MARCH);
+    const bool marches = scatters == SCATTERING_SINGLE &&
+                         flight_has(choices.free_flight.value_or(integrator.free_flight), TRAIT_MARCH) &&
+                         !any_medium(scene, is_everywhere); // in which flights do not march
     const bool looks = choices.nee ? *choices.nee != NEE_NONE : integrator.nee != NEE_NONE || marches;
     return looks && scatters != SCATTERING_NONE ? with_lamps_of_surfaces(std::move(scene)) : scene;
 }

@@ -193,12 +193,14 @@ std::optional<PbrtTranslator::Region> PbrtTranslator::region_within(const PbrtSh
     return region;
 }
 
-bool PbrtTranslator::has_camera(const Region& region) const {
+bool PbrtTranslator::has_camera(const PbrtShape& shape, const Region& region) const {
     if (!scene_.camera)
         return false;
     const glm::dmat4 camera = world_ * glm::inverse(scene_.camera->transform);
-    if (region.element.empty())
-        return has_within(scene_.folder / region.model, region.transform, glm::dvec3(camera[3]));
+    if (region.element.empty()) { // whose name is, for `vkvol convert`, that beside the new scene
+        const std::string file = shape.thing.parameters->text("filename");
+        return has_within(scene_.folder / file, region.transform, glm::dvec3(camera[3]));
+    }
     const glm::dvec3 p(glm::inverse(region.transform) * camera[3]);
     if (region.element == "sphere")
         return glm::length(p) < 1.0;
@@ -211,7 +213,7 @@ bool PbrtTranslator::ends_camera_medium() {
         if (sides.within != scene_.camera_medium || sides.beyond == sides.within)
             return false;
         const std::optional<Region> region = region_within(shape, sides.within);
-        return region && has_camera(*region);
+        return region && has_camera(shape, *region);
     });
 }
 
@@ -353,7 +355,7 @@ void PbrtTranslator::write_media_of(const PbrtShape& shape) {
         note_what_is_not_cut(shape, sides.within, *within);
     else if (const std::optional<Region> region = region_within(shape, sides.within)) {
         write_medium(sides.within, *within, *region, shape.thing.place);
-        if (sides.within != scene_.camera_medium && has_camera(*region))
+        if (sides.within != scene_.camera_medium && has_camera(shape, *region))
             note(shape.thing.place,
                  fmt::format(
                      "the camera is within medium \"{}\", and so are its rays; pbrt's begin in {}, as there is no "

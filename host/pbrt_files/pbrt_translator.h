@@ -55,7 +55,7 @@ private:
     void write_coefficients(const glm::dvec3& sigma_a, const glm::dvec3& sigma_s, double g); // per length
     std::optional<Region> region_of(const PbrtShape& shape) const;
     std::optional<Region> region_within(const PbrtShape& shape, const std::string& medium);
-    bool has_camera(const Region& region) const;
+    bool has_camera(const PbrtShape& shape, const Region& region) const;
     bool ends_camera_medium();
     void write_camera_medium();
     void write_media_of(const PbrtShape& shape);

@@ -352,9 +352,9 @@ void Session::make_film() {
     shared::AovParams layers = device_scene_->frame().layers;
     const auto may_be = [&](Schedule schedule) {
         const bool is_tried = schedule == Schedule::fused || !device_.is_cpu() || job_.plan.tries;
-        // Not what the wish has since: what is resumed needs the same bands.
+        // Beside what the wish has since: what is resumed needs the same bands, and records for what goes on.
         const Schedule asked = job_.plan.schedule;
-        return asked == schedule || (asked == Schedule::automatic && is_tried);
+        return asked == schedule || wish_.schedule == schedule || (asked == Schedule::automatic && is_tried);
     };
     for (const Schedule schedule : {Schedule::fused, Schedule::staged})
         if (layers.count > 0 && may_be(schedule)) {

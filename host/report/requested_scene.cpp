@@ -27,8 +27,9 @@ void keep_camera(Scene& scene, const std::optional<Camera>& authored) {
             then.camera = camera;
             return then;
         }
-        then.camera.position += camera.position - authored->position;
-        then.camera.lens.focus += camera.lens.focus - authored->lens.focus;
+        const glm::dvec3 moved = camera.position - authored->position;
+        then.camera.position += moved;
+        keep_focus(then.camera, moved);
         then.camera.view_height *= camera.view_height / authored->view_height;
         return then;
     };

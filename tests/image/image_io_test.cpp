@@ -220,6 +220,22 @@ TEST_CASE("links that lead to what is not there yet", "[cpu][image_io]") {
     CHECK_NOTHROW(behind_links(scratch.path / "round.json"));
 }
 
+TEST_CASE("links that lead to a pipe somebody has open", "[cpu][image_io]") {
+    const Scratch scratch;
+    int ends[2];
+    REQUIRE(pipe(ends) == 0);
+    const fs::path link = scratch.path / "table.csv";
+    fs::create_symlink("/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(ends[1]), link);
+    CHECK(is_special(link));
+    CHECK_NOTHROW(check_directory_writable(link));
+    write_text(link, "22");
+    char text[2] = {};
+    CHECK(read(ends[0], text, sizeof text) == 2);
+    CHECK(text[1] == '2');
+    close(ends[0]);
+    close(ends[1]);
+}
+
 TEST_CASE("who may see a file still may, and nobody else", "[cpu][image_io]") {
     const Scratch scratch;
     const fs::path name = scratch.path / "a.json";

@@ -403,6 +403,19 @@ TEST_CASE("what shines lights the marches that look for light", "[cpu][method]")
     CHECK(lamps() == 0);
 }
 
+TEST_CASE("what shines is met where there is no end to march to", "[cpu][method]") {
+    Scene scene = scene_of("deltaTracking", FIELD_CONSTANT);
+    scene.volumes.front().shape = Everywhere{};
+    scene.settings.choices.scattering = SCATTERING_SINGLE;
+    scene.settings.choices.free_flight = FREE_FLIGHT_MARCH;
+    scene.surfaces.emplace_back().shape = BallSurface{{3.0, 0.0, 0.0}, 0.5};
+    scene.surfaces.back().emission = Rgb(1.0);
+    const Scene taken = with_preset(scene);
+    CHECK(choose_method(taken).nee == NEE_NONE);
+    CHECK(taken.lights.size() == 1);
+    CHECK(taken.surfaces.back().emission == Rgb(1.0));
+}
+
 TEST_CASE("a scene's hash has the colours of models where they show", "[cpu][method]") {
     const TestDirectory directory;
     const std::filesystem::path model = directory.write("a.obj", "mtllib a.mtl\n");

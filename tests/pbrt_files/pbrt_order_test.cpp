@@ -99,6 +99,18 @@ TEST_CASE("the fog that pbrt's camera is in ends where a shape about the camera 
     CHECK(!notes(seen(around, inside), "the camera is within"));
 }
 
+TEST_CASE("the mesh about pbrt's camera is found wherever the converted scene is", "[cpu][pbrt]") {
+    const TestDirectory directory;
+    directory.write("about.ply", cube(0.2));
+    const PbrtScene pbrt = read_pbrt(own_fog + "MediumInterface \"\" \"fog\" Camera \"perspective\" WorldBegin "
+                                               "ReverseOrientation Shape \"plymesh\" \"string filename\" \"about.ply\"",
+                                     directory.path / "s.pbrt");
+    PbrtTranslationOptions beside_another;
+    beside_another.name_of_file = [](const std::string& name) { return "elsewhere/" + name; };
+    const std::string xml = translate_pbrt(pbrt, beside_another).xml;
+    CHECK_THAT(xml, Contains("elsewhere/about.ply") && !Contains("<everywhere"));
+}
+
 TEST_CASE("what is wrong with pbrt's media and shutters has their places", "[cpu][pbrt]") {
     is_refused(
         "WorldBegin\nMakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float g\" 1.5\nMaterial \"interface\" "

@@ -250,6 +250,31 @@ TEST_CASE("layers of flux: the beam, and what was scattered", "[gpu][image][aovs
     CHECK_THAT(trouble_with_layers(scene), Contains("depth: is a layer of a camera's rays"));
 }
 
+TEST_CASE("layers go on by the schedule they began with, where none is asked for", "[gpu][image][aovs]") {
+    Scene scene = busy("cachedRatioTracking", 64); // more paths at a time than fused lanes have
+    scene.layers = everything;
+    RenderJob job;
+    job.plan.schedule = GENERATE(Schedule::fused, Schedule::staged);
+    job.plan.slots = 64; // few, so that pixels are left
+    job.plan.submit_seconds = 0.0;
+    int asked = 0;
+    std::optional<Checkpoint> last;
+    job.interrupted = [&] { return ++asked > 5; };
+    job.checkpoint_seconds = 1e9;
+    job.checkpoint = [&](const Checkpoint& checkpoint) { last = checkpoint; };
+    render_here(scene, 7, job);
+    REQUIRE(last);
+    RenderJob rest;
+    rest.crop = {0, scene.picture.width, 0, scene.picture.height};
+    rest.seed = 7;
+    rest.resume = &*last;
+    const RenderResult resumed = render(test_device(), scene, rest);
+    CHECK(resumed.plan.schedule == job.plan.schedule);
+    rest.plan.schedule = job.plan.schedule;
+    rest.resume = nullptr;
+    CHECK(same_bits(resumed.film, render(test_device(), scene, rest).film));
+}
+
 TEST_CASE("layers of a crop, of a resumed and of a merged render are those of the whole", "[gpu][image][aovs]") {
     Scene scene = busy("cachedRatioTracking", 8);
     scene.layers = everything;

@@ -397,6 +397,24 @@ TEST_CASE("a camera that --frame has moved goes on to move", "[motion]") {
     CHECK(later.position.z == Approx(scene.camera.position.z));
 }
 
+TEST_CASE("a lens that opens has sharp what it had before --frame moved its camera", "[motion]") {
+    const auto framed = [](const std::string& camera) {
+        Scene scene = parse_at("<width>8</width><height>8</height><sphere/>" + camera, 0);
+        RenderRequest request;
+        request.frame = true;
+        FieldCache fields;
+        apply_request(request, false, scene, fields);
+        return scene;
+    };
+    const Scene scene = framed(R"(<camera z="50" focus="50" lensRadius="${= 0.1*F}"/>)");
+    const Camera later = scene_of_time(scene, 0.5).camera;
+    CHECK(later.position.z < 10.0);
+    CHECK(later.lens.radius == 0.05);
+    CHECK(later.lens.focus == Approx(later.position.z));
+    const Scene lost = framed(R"(<camera z="50" focus="4" lensRadius="${= 0.1*F}"/>)");
+    CHECK_THROWS_WITH(scene_of_time(lost, 0.5), Catch::Contains("behind it; raise <camera> focus"));
+}
+
 // The reference at times that are drawn one by one.
 TEST_CASE("what moves agrees with the reference", "[motion]") {
     const Scene scene = parse_at(all_that_moves, 0);

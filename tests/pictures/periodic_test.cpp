@@ -465,3 +465,16 @@ TEST_CASE("paths of a domain that repeats come to an end", "[cpu][method][period
     scene.volumes.back().map.points.back().albedo = Rgb(0.3);
     CHECK_NOTHROW(loads());
 }
+
+TEST_CASE("paths of a single scattering end where nothing absorbs, too", "[cpu][method][periodic]") {
+    Scene scene = above(medium(Sphere{{0.0, 0.0, 0.0}, 2.0}, 1.0, 1.0));
+    scene.periodic->low.y = -5.0;
+    scene.periodic->high.y = 5.0;
+    Scene fog = above(medium(Everywhere{}, 1.0, 1.0));
+    fog.periodic.reset();
+    for (Scene* endless : {&scene, &fog}) {
+        CHECK_THROWS_WITH(load_assets(*endless, choose_method(*endless)), Contains("keeps its paths for ever"));
+        endless->settings.choices.scattering = SCATTERING_SINGLE;
+        CHECK_NOTHROW(load_assets(*endless, choose_method(*endless)));
+    }
+}
