@@ -19,6 +19,7 @@
 #include "requested_scene.h"
 #include "session.h"
 #include "spectral_bands.h"
+#include "stopwatch.h"
 #include "workshop.h"
 
 namespace vkvol {
@@ -295,13 +296,21 @@ int run_measure(const MeasureOptions& options) {
         if (added == bands.size()) // of some bands alone it would be another reading
             add(options.sweeps, values, options.means ? mean_table(sum) : film_table(sum), rows);
     };
+    constexpr double pause = 20.0; // times what writing takes: of many readings the table is long
     bool is_written = false;
+    double writing = 0.0; // seconds
+    Stopwatch unwritten;
     try {
         for (const Values& values : combinations(options.sweeps)) {
             if (was_interrupted)
                 break;
             measure_one(values);
+            is_written = false;
+            if (unwritten.seconds() < pause * writing)
+                continue;
+            unwritten.lap();
             is_written = keep(options, rows);
+            writing = unwritten.lap();
         }
     } catch (const std::exception&) { // what was measured is not lost
         if (!is_written)

@@ -15,11 +15,15 @@ bool is_reading_grid(const std::filesystem::path& target) {
     return file_ending(target) == ".nvdb";
 }
 
-void check_grid_file(const std::filesystem::path& target, const Camera& camera) {
+void check_grid_file(const std::filesystem::path& target, const Camera& camera, bool is_cropped) {
     if (camera.projection != Projection::absorption)
         throw InputError(fmt::format("{}: a grid is what <absorption> reads, and this scene's sensor is {}; take .exr, "
                                      ".png or .csv",
                                      target.string(), projection_name(camera.projection)));
+    if (is_cropped)
+        throw InputError(fmt::format("{}: a grid has all cells, and those that --crop leaves out would absorb nothing; "
+                                     "leave --crop out, or take .exr, which vkvol merge joins",
+                                     target.string()));
     check_directory_writable(target);
 }
 

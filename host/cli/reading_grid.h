@@ -11,11 +11,11 @@ namespace vkvol {
 
 bool is_reading_grid(const std::filesystem::path& target); // by its ending
 
-// Throws InputError unless the sensor has cells.
-void check_grid_file(const std::filesystem::path& target, const Camera& camera);
+// Throws InputError unless the sensor has cells, of which none is left out.
+void check_grid_file(const std::filesystem::path& target, const Camera& camera, bool is_cropped);
 
 // As the bytes of an .nvdb file: a grid "absorbed" of numbers, or of colours where the channels differ, each cell a
-// voxel where it stands in the world; 0 beyond the crop.
+// voxel where it stands in the world.
 std::string reading_grid(const Film& film, const Camera& camera);
 
 } // namespace vkvol

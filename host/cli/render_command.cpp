@@ -49,7 +49,7 @@ FileUses check_files(const RenderOptions& options, const RenderScene& loaded, co
     uses.check();
     for (const std::filesystem::path& output : options.outputs)
         if (is_reading_grid(output))
-            check_grid_file(output, loaded.scene.camera);
+            check_grid_file(output, loaded.scene.camera, options.crop.has_value());
         else
             check_writable(output);
     if (options.report)

@@ -313,6 +313,7 @@ void add_classes(py::module_& module) {
                                [](const PythonPicture& p) { return layers_of(p.film, &FilmLayer::variance); })
         .def_property_readonly("noise", [](const PythonPicture& p) { return relative_noise(p.film); })
         .def_readonly("report_json", &PythonPicture::report)
+        .def_readonly("notes", &PythonPicture::notes)
         .def("develop", &develop, py::arg("tonemap"), py::arg("exposure"))
         .def(
             "write",

@@ -12,7 +12,8 @@ namespace vkvol::python {
 struct PythonPicture {
     Film film;
     Metadata metadata;
-    std::string report; // JSON, as of --report
+    std::string report;             // JSON, as of --report
+    std::vector<std::string> notes; // what makes it less than it claims to be
 };
 
 // By its ending; see write_image. Throws RenderError.

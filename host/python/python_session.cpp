@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "explain.h"
+#include "render_notes.h"
 #include "report.h"
 #include "requested_scene.h"
 #include "vulkan_error.h"
@@ -67,7 +68,7 @@ PythonPicture PythonSession::picture() {
     const Film& film = result.film;
     if (std::none_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n > 0; }))
         throw RenderError("there is no picture: nothing was rendered yet");
-    PythonPicture picture{film, make_metadata(request_, scene, shop_->device, result), {}};
+    PythonPicture picture{film, make_metadata(request_, scene, shop_->device, result), {}, caps_text(result.counts)};
     Shown shown;
     shown.tone = choose_tone(request_.tone, film, picture.metadata);
     shown.explanation = foresee(scene);

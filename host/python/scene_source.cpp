@@ -16,6 +16,10 @@ FileScene scene_for_grids(const SceneSource& source, const std::filesystem::path
     if (!source.defines.empty())
         throw InputError(
             fmt::format("{}: defines fill in the $keys of a scene, and a grid file has none", source.file.string()));
+    if (request.grid)
+        throw InputError(fmt::format("{}: grid replaces the density field of a scene, and is in place of one here; "
+                                     "render {} without it",
+                                     request.grid->string(), source.file.string()));
     FileSceneOptions options;
     options.picture = file_picture();
     resize_picture(options.picture, request.width, request.height);
@@ -30,6 +34,8 @@ FileScene scene_for_grids(const SceneSource& source, const std::filesystem::path
 ReadScene read_scene(const SceneSource& source, const RenderRequest& request, bool strict, FieldCache& fields) {
     const SceneOverrides overrides{request.grid, request.integrator, strict, source.grids};
     const bool is_made = !source.xml && is_grid_file(source.file);
+    if (!is_made && source.up != Up::y)
+        throw InputError("up: is for density files rendered without a scene; a scene's <camera> has lookAt and up");
     ReadScene read;
     if (is_made) {
         const std::filesystem::path folder = source.file.parent_path();

@@ -51,11 +51,11 @@ void print_explanation(const Explanation& explanation) {
     tell(stderr, "vkvol: note: {}\n", explanation.text);
 }
 
-void print_caps(const RenderRequest& request, const RenderResult& result) {
-    const RenderCounts& c = result.counts;
-    const auto line = [](std::uint64_t count, const char* what) {
+std::vector<std::string> caps_text(const RenderCounts& c) {
+    std::vector<std::string> lines;
+    const auto line = [&](std::uint64_t count, const char* what) {
         if (count > 0)
-            tell(stderr, "vkvol: note: {} {}\n", count, what);
+            lines.push_back(fmt::format("{} {}", count, what));
     };
     line(c.cleaned_voxels, "voxels were NaN, infinite or negative and count as 0");
     line(c.depth_caps, "paths ended at maxDepth: the light of further scatterings is missing (raise maxDepth; without "
@@ -66,6 +66,12 @@ void print_caps(const RenderRequest& request, const RenderResult& result) {
          "collisions met a density above its majorant: delta estimators lose light there, ratio and weighted ones "
          "stay unbiased with more noise");
     line(c.non_finite, "samples were not finite, or brighter than the film has room for, and were dropped");
+    return lines;
+}
+
+void print_caps(const RenderRequest& request, const RenderResult& result) {
+    for (const std::string& line : caps_text(result.counts))
+        tell(stderr, "vkvol: note: {}\n", line);
     for (const NonFiniteSample& s : result.non_finite)
         tell(stderr, "vkvol: note: not finite: pixel {},{} sample {} seed {}; its path: {}\n", s.x, s.y, s.sample,
              request.seed, replay_command(request, s));

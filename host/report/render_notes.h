@@ -12,8 +12,10 @@ void print_warnings(const std::vector<std::string>& warnings);
 // Why the picture shows nothing.
 void print_explanation(const Explanation& explanation);
 
-// One line for each kind of thing that makes the picture less than it claims to be; for samples that were not finite
-// also the command that follows their path.
+// One line for each kind of thing that makes the picture less than it claims to be.
+std::vector<std::string> caps_text(const RenderCounts& counts);
+
+// These, and for samples that were not finite the command that follows their path.
 void print_caps(const RenderRequest& request, const RenderResult& result);
 
 // What is said of devices, where several rendered: "A + B".

@@ -28,6 +28,9 @@ std::vector<std::string> light_groups(const Scene& scene) {
     for (const Light& light : scene.lights)
         if (!group_of(light).empty())
             groups.add(group_of(light));
+    for (const BlackElement& element : scene.black)
+        if (!element.group.empty())
+            groups.add(element.group);
     if (!scene.background_group.empty())
         groups.add(scene.background_group);
     return groups.take();

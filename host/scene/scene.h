@@ -337,7 +337,8 @@ struct Expected {
 // An element that could give light and is black: what it lacks, nobody may have meant to leave out.
 struct BlackElement {
     std::string name;
-    std::string place; // "file:line:column"
+    std::string place;      // "file:line:column"
+    std::string group = {}; // of a light: it has its layer also in frames in which it is out
 };
 
 struct Scene {
@@ -366,8 +367,8 @@ inline const DirectionalLight* lone_directional(const Scene& scene) {
     return reads_flux(scene.camera) ? nullptr : only_directional(scene.lights);
 }
 
-// Names of the groups that lights are in, and the background, in the order of the lights. Their layers follow that of
-// what is in none.
+// Names of the groups that lights are in, black ones too, and the background, in the order of the lights. Their layers
+// follow that of what is in none.
 std::vector<std::string> light_groups(const Scene& scene);
 
 // Names of the layers of media: those of volumes, or "volume1", "volume2", ... by their order. Volumes of one name

@@ -181,5 +181,13 @@ TEST_CASE("boxes in which absorption is read, in scene files", "[cpu][counted]")
     CHECK_THROWS_WITH(parse(R"(<absorption/><camera/>)"), Contains("<absorption> beside the <camera>"));
     Scene resized = scene;
     CHECK_THROWS_WITH(resize_picture(resized, 9, std::nullopt), Contains("each of its cells"));
-    CHECK_THROWS_WITH(check_grid_file("a.nvdb", Camera{}), Contains("take .exr"));
+    CHECK_THROWS_WITH(check_grid_file("a.nvdb", Camera{}, false), Contains("take .exr"));
+}
+
+TEST_CASE("a grid of what is absorbed has all its cells", "[cpu][counted]") {
+    Camera camera;
+    camera.projection = Projection::absorption;
+    const std::filesystem::path file = std::filesystem::temp_directory_path() / "absorbed.nvdb";
+    CHECK_NOTHROW(check_grid_file(file, camera, false));
+    CHECK_THROWS_WITH(check_grid_file(file, camera, true), Contains("leave --crop out"));
 }

@@ -8,11 +8,13 @@
 #include <unistd.h>
 
 #include "checkpoint.h"
+#include "layer_plan.h"
 #include "merge.h"
 #include "scene_hash.h"
 #include "session.h"
 #include "shared/constants.h"
 #include "support/images.h"
+#include "support/scene_text.h"
 #include "support/scenes.h"
 #include "support/test_device.h"
 #include "support/thorough.h"
@@ -248,6 +250,18 @@ TEST_CASE("layers of flux: the beam, and what was scattered", "[gpu][image][aovs
         CHECK(pixel.x == Approx(2.0 * std::exp(-tau)).epsilon(3e-6));
     scene.layers = layer_depth;
     CHECK_THAT(trouble_with_layers(scene), Contains("depth: is a layer of a camera's rays"));
+}
+
+TEST_CASE("a light that is out has a layer, as in the frames in which it shines", "[cpu][xml][aovs]") {
+    for (const std::string light :
+         {"<light y='1' r='$F' group='key'/>", "<lights><point x='3' r='$F' group='key'/></lights>",
+          "<lights><daylight y='1' multiplier='$F' group='key'/></lights>"})
+        for (const char* frame : {"0", "1"}) {
+            const Scene scene =
+                parse("<film aov='groups'/><sphere/><backgroundColor r='.1' group='sky'/>" + light, {{"F", frame}});
+            CHECK(light_groups(scene) == std::vector<std::string>{"key", "sky"});
+            CHECK(plan_layers(scene).groups == light_groups(scene));
+        }
 }
 
 TEST_CASE("layers go on by the schedule they began with, where none is asked for", "[gpu][image][aovs]") {

@@ -99,6 +99,14 @@ class Rendering(unittest.TestCase):
         red, green, blue = picture.mean.mean(axis=(0, 1)) / np.array([0.3 + 0.1, 0.27 + 0.2, 0.24 + 0.4])
         self.assertTrue(red > green > blue)
 
+    def test_what_a_density_file_cannot_have_is_refused(self):
+        placed().write(self.path / "a.nvdb")
+        with self.assertRaisesRegex(vkvol.InputError, "grid replaces the density field of a scene"):
+            vkvol.render(self.path / "a.nvdb", grid=self.path / "a.nvdb", spp=1)
+        (self.path / "s.xml").write_text("<options><sphere/></options>")
+        with self.assertRaisesRegex(vkvol.InputError, "up: is for density files"):
+            vkvol.render(vkvol.Scene.from_file(self.path / "s.xml", up="z"), spp=1)
+
     def test_samples_as_wanted(self):
         scene = vkvol.Scene.from_dict(smoke(placed()))
         session = vkvol.Session(scene, seed=7)
@@ -194,6 +202,27 @@ class Scenes(unittest.TestCase):
             vkvol.Session(scene, width=4, height=4, integrator="ratioTracking:mis=power")
         self.assertEqual([w.category for w in caught], [vkvol.SceneWarning])
         self.assertIn("mis is without effect", str(caught[0].message))
+
+    def test_what_is_less_than_it_claims_is_a_warning(self):
+        density = ball()
+        density[3, 4, 5] = -1
+        density[4, 4, 5] = np.nan
+        session = vkvol.Session(vkvol.Scene.from_dict(smoke(vkvol.Grids(density=density))))
+        session.render(2)
+        with self.assertWarnsRegex(vkvol.SceneWarning, "^2 voxels were NaN, infinite or negative and count as 0"):
+            picture = session.picture()
+        self.assertEqual(len(picture.notes), 1)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            session.picture()  # said once
+
+    def test_one_grid_of_many_volumes_is_uploaded_once(self):
+        once, other = placed(), placed()
+        shared = [("volume", {"densityField": grids, "sigma_s": 1, "transform": [("translate", {"x": 3.0 * i})]})
+                  for i, grids in enumerate((once, once, other, once))]
+        scene = vkvol.Scene.from_dict({"volumes": shared, "camera": {"z": 9}, "width": 8, "height": 6, "backgroundColor": {"r": 1}})
+        picture = vkvol.render(scene, spp=1)
+        self.assertEqual(picture.report["media"]["distinctGrids"], 2)
 
     def test_warnings_are_of_the_line_that_asked(self):
         scene = vkvol.Scene.from_xml("<options><sphere/><camera z='4'/><light x='1' r='1'/></options>")

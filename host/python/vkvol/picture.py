@@ -57,6 +57,11 @@ class Picture:
         report: dict[str, Any] = json.loads(self._picture.report_json)
         return report
 
+    @property
+    def notes(self) -> list[str]:
+        """What makes it less than it claims to be: voxels that count as 0, paths that were cut short, samples dropped."""
+        return self._picture.notes
+
     def develop(self, tonemap: Optional[str] = None, exposure: Union[float, str, None] = None) -> npt.NDArray[np.uint8]:
         """For looking at: (height, width, 3).
 

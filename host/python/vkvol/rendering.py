@@ -80,6 +80,7 @@ class Session:
             options["grid"] = Path(grid)
         self._strict = strict
         self._progress = progress
+        self._told: set[str] = set()
         self._session = _vkvol.Session(source._source, options, strict)
         for warning in self._session.warnings:
             warnings.warn(warning, SceneWarning, stacklevel=_frames_here())
@@ -101,11 +102,17 @@ class Session:
         return self._session.assumed
 
     def picture(self) -> Picture:
-        """As it is now, whole and its own: further samples do not change it. Raises RenderError before there are any."""
+        """As it is now, whole and its own: further samples do not change it. Raises RenderError before there are any.
+        SceneWarnings, each kind once in a session, say what makes it less than it claims to be."""
         picture = Picture(self._session.picture())
         cut = {name: n for name, n in picture.report["caps"].items() if isinstance(n, int) and n}
         if self._strict and cut:
             raise _vkvol.RenderError("under strict: " + ", ".join(f"{n} {name}" for name, n in cut.items()))
+        for note in picture.notes:
+            _, kind = note.split(" ", 1)  # behind how many
+            if kind not in self._told:
+                self._told.add(kind)
+                warnings.warn(note, SceneWarning, stacklevel=_frames_here())
         return picture
 
 

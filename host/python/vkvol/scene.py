@@ -135,7 +135,8 @@ def _element(name: str, value: Any, grids: dict[str, Grids]) -> ElementTree.Elem
         return element
     for key, part in value.items() if isinstance(value, Mapping) else value:
         if key == "text" and isinstance(part, Grids):
-            element.text = MEMORY.format(len(grids) + 1)
+            known = next((name for name, grid in grids.items() if grid is part), None)
+            element.text = known or MEMORY.format(len(grids) + 1)  # one of many uses is read and uploaded once
             grids[element.text] = part
         elif key == "text":
             element.text = _text(part)
