@@ -253,9 +253,12 @@ Rgb lost_in(const Volume& volume, const Rgb& albedo, const DensityField* field) 
     return world_sigma_t(losses, field);
 }
 
-// Compared to what collides.
+// In a channel that collides, compared to that.
 bool is_lossless(const Rgb& lost, const Rgb& sigma_t) {
-    return largest(sigma_t) > 0.0 && std::min({lost.x, lost.y, lost.z}) < 1e-6 * largest(sigma_t);
+    for (int channel = 0; channel < 3; ++channel)
+        if (sigma_t[channel] > 0.0 && lost[channel] < 1e-6 * sigma_t[channel])
+            return true;
+    return false;
 }
 
 // A path that never comes to an end would be followed for ever. Of several media what they lose together counts.

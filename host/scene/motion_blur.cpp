@@ -103,10 +103,6 @@ Scene scene_of_time(const Scene& scene, double time) {
         fail("the sensor has other pixels; let it keep them");
     if (then.camera.projection != scene.camera.projection)
         fail("the camera has another projection; let it keep its own");
-    if ((scene.layers & layer_groups && light_groups(then) != light_groups(scene)) ||
-        (scene.layers & layer_media && medium_names(then) != medium_names(scene)))
-        fail("lights or media have other names or groups, or some are not there; let their brightness be small rather "
-             "than 0");
     then.picture = with_window_of(then.picture, scene.picture);
     then.settings = asked_of(then.settings, scene.settings);
     then.layers = scene.layers;

@@ -1,7 +1,9 @@
 #include "scene.h"
 
+#include <algorithm>
 #include <cctype>
 #include <unordered_set>
+#include <utility>
 
 namespace vkvol {
 
@@ -24,13 +26,17 @@ private:
 } // namespace
 
 std::vector<std::string> light_groups(const Scene& scene) {
-    Names groups;
-    for (const Light& light : scene.lights)
-        if (!group_of(light).empty())
-            groups.add(group_of(light));
+    std::vector<std::pair<std::size_t, std::string>> of_lights; // by what comes before
     for (const BlackElement& element : scene.black)
-        if (!element.group.empty())
-            groups.add(element.group);
+        of_lights.emplace_back(element.before, element.group);
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        of_lights.emplace_back(i, group_of(scene.lights[i]));
+    std::stable_sort(of_lights.begin(), of_lights.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    Names groups;
+    for (const auto& [before, group] : of_lights)
+        if (!group.empty())
+            groups.add(group);
     if (!scene.background_group.empty())
         groups.add(scene.background_group);
     return groups.take();

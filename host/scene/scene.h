@@ -339,6 +339,7 @@ struct BlackElement {
     std::string name;
     std::string place;      // "file:line:column"
     std::string group = {}; // of a light: it has its layer also in frames in which it is out
+    std::size_t before = 0; // how many of the scene's lights come before it
 };
 
 struct Scene {

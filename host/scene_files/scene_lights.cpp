@@ -162,7 +162,7 @@ void SceneReader::read_daylight(const XmlElement& element, Scene& scene) const {
     sky.daylight = daylight;
     sky.scale = Rgb(element.attribute_number("multiplier", 1.0, {0.0, 1e5, true, true, "a number from 0 to 1e5"}));
     if (sky.scale == Rgb(0.0)) {
-        scene.black.push_back({element.name(), element.place(), group_name(element)});
+        scene.black.push_back({element.name(), element.place(), group_name(element), scene.lights.size()});
         return;
     }
     SunLight sun;
@@ -203,7 +203,7 @@ void SceneReader::read_lights(Scene& scene) const {
                 return kind.scale;
         };
         if (std::visit(color_of, read) == Rgb(0.0))
-            scene.black.push_back({element.name(), element.place(), group_name(element)});
+            scene.black.push_back({element.name(), element.place(), group_name(element), scene.lights.size()});
         else
             scene.lights.push_back(read);
     }

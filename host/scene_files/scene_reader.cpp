@@ -55,7 +55,7 @@ Scene SceneReader::read() {
     read_bookkeeping();
     for (const char* name : {"light", "backgroundColor", "medium", "emission"})
         if (const XmlElement element = one(name); element.exists() && color(element) == Rgb(0.0))
-            scene.black.push_back({name, element.place(), group_name(element)});
+            scene.black.push_back({name, element.place(), group_name(element)}); // <light> is the first of lights
     for (const char* name : {"light", "backgroundColor", "medium", "emission"})
         warn_of_forgotten_color(one(name));
     scene.warnings = document_.warnings();

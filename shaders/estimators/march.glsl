@@ -23,7 +23,7 @@ bool march_is_over(Walk w) {
 float march_density(MediumParams v, float t, vec3 tap, float u, inout Walk w, inout Tally tally) {
     w.at = t;
     tally.lookups += 1u;
-    Matter met = matter_at(v, w.origin + t * w.direction, tap, u);
+    Matter met = matter_at(v, w.origin + t * w.direction, tap, u, to_spectrum(vec3(1.0)));
     w.met = met.medium;
     return met.density;
 }

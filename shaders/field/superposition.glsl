@@ -67,10 +67,17 @@ float extinction_of(MediumParams v, uint row, vec3 position, vec3 tap) {
 }
 
 // In a cell of that entry, at a point of the superposition's space, which is that of render space in units of a cell. `u` in
-// [0, 1), for the draw; `tap`: see density.glsl.
-Matter matter_in(MediumParams v, uint entry, vec3 p, vec3 tap, float u) {
+// [0, 1), for the draw; `tap`: see density.glsl. Media are drawn as they extinguish throughput `beta`, as spectral flights
+// choose what happens: drawn by the channel that is extinguished most, a path of one colour would gain weight at each collision
+// that media of other colours could have had, and its variance would have no bound.
+Matter matter_in(MediumParams v, uint entry, vec3 p, vec3 tap, float u, Spectrum beta) {
     Matter found = Matter(0.0, 0u, to_spectrum(vec3(1.0)), to_spectrum(vec3(1.0)));
-    Spectrum sum = to_spectrum(vec3(0.0));
+    float sum = 0.0; // of what is drawn by
+#ifdef CHROMATIC
+    float all = total(abs(beta)), drawn_by = 0.0;
+    vec3 parts = all > 0.0 ? abs(beta) / all : vec3(1.0);
+    vec3 channels = vec3(0.0), own = vec3(0.0);
+#endif
     uint k = overlap_word(frame.overlaps.lists + entry);
     for (bool more = k != 0u; more; ++k) {
         uint word = overlap_word(k);
@@ -78,40 +85,48 @@ Matter matter_in(MediumParams v, uint entry, vec3 p, vec3 tap, float u) {
         more = row == word;
         float sigma_t = extinction_of(v, row, v.extent * p, tap);
         found.density += sigma_t;
-        float share = sigma_t > 0.0 ? sigma_t / found.density : 0.0;
+        float part = sigma_t;
+#ifdef CHROMATIC
+        vec3 extinguished = sigma_t * media[row].sigma_ratio;
+        part = total(parts * extinguished);
+#endif
+        sum += part;
+        float share = part > 0.0 ? part / sum : 0.0;
         bool drawn = u < share;
         found.medium = drawn ? row : found.medium;
         u = drawn ? u / share : (u - share) / (1.0 - share); // uniform again
 #ifdef CHROMATIC
-        sum += sigma_t * media[row].sigma_ratio;
+        channels += extinguished;
+        own = drawn ? extinguished : own;
+        drawn_by = drawn ? part : drawn_by;
 #endif
     }
 #ifdef CHROMATIC
-    found.ratio = found.density > 0.0 ? sum / found.density : found.ratio;
-    vec3 own = media[found.medium].sigma_ratio;
-    found.share = mix(own / found.ratio, vec3(1.0), equal(found.ratio, vec3(0.0)));
+    found.ratio = found.density > 0.0 ? channels / found.density : found.ratio;
+    found.share = mix(own / channels * (sum / drawn_by), vec3(1.0), equal(channels, vec3(0.0)));
+    found.share = drawn_by > 0.0 ? found.share : vec3(1.0);
 #endif
     return found;
 }
 
-Matter matter_at(MediumParams v, vec3 p, vec3 tap, float u) {
+Matter matter_at(MediumParams v, vec3 p, vec3 tap, float u, Spectrum beta) {
     int edge;
     ivec3 cell = ivec3(clamp(floor(p - v.cells_min), vec3(0.0), vec3(v.cell_dims - 1)));
-    return matter_in(v, cell_entry(v, cell, edge), p, tap, u);
+    return matter_in(v, cell_entry(v, cell, edge), p, tap, u, beta);
 }
 
 float density(MediumParams v, vec3 p, vec3 tap) {
-    return matter_at(v, p, tap, 0.0).density;
+    return matter_at(v, p, tap, 0.0, to_spectrum(vec3(1.0))).density;
 }
 float to_choice(uvec4 words) {
     return to_uniform(pcg4d(words)).x;
 }
 #else
-Matter matter_at(MediumParams v, vec3 p, vec3 tap, float u) {
+Matter matter_at(MediumParams v, vec3 p, vec3 tap, float u, Spectrum beta) {
     return Matter(density(v, p, tap), 0u, to_spectrum(v.sigma_ratio), to_spectrum(vec3(1.0)));
 }
-Matter matter_in(MediumParams v, uint entry, vec3 p, vec3 tap, float u) {
-    return matter_at(v, p, tap, u);
+Matter matter_in(MediumParams v, uint entry, vec3 p, vec3 tap, float u, Spectrum beta) {
+    return matter_at(v, p, tap, u, beta);
 }
 float to_choice(uvec4 words) {
     return 0.0;

@@ -117,7 +117,7 @@ Particle from_glow(MediumParams v, vec2 where, vec2 u, uvec4 words, inout Rng rn
                     to_uniform(words).z * all.glow_edges[2];
     vec3 at = to_medium(v, position, vec3(0.0)).origin;
     uvec4 more = next_words(rng);
-    Matter met = matter_at(v, at, to_tap(more), to_choice(more));
+    Matter met = matter_at(v, at, to_tap(more), to_choice(more), to_spectrum(vec3(1.0)));
     bool inside = SHAPE != SHAPE_SPHERE || dot(at, at) < 1.0;
     vec3 light = inside ? vec3((v.sigma_t * met.density) * (met.ratio * met.share)) * emitted_radiance(medium_of(v, met.medium), position)
                         : vec3(0.0);

@@ -22,8 +22,8 @@ Collision no_collision(MediumParams v) {
 }
 
 // One step of the walk. EVENT_COLLIDED: a tentative collision, described in `c`; the distance to the next one is drawn.
-// `seeing`: the walk is a shadow ray's.
-uint next_collision(MediumParams v, bool seeing, inout Walk w, inout Rng rng, inout Tally tally, out Collision c) {
+// `seeing`: the walk is a shadow ray's. `beta`: the throughput that collides.
+uint next_collision(MediumParams v, bool seeing, Spectrum beta, inout Walk w, inout Rng rng, inout Tally tally, out Collision c) {
     bool residual = CONTROLLED_TRANSMITTANCE && seeing;
     c.sigma_maj = w.sigma_maj;
     c.sigma_c = v.sigma_t * w.control;
@@ -44,7 +44,7 @@ uint next_collision(MediumParams v, bool seeing, inout Walk w, inout Rng rng, in
     // Below the control density a collision is real, whatever the density.
     bool certain = CONTROLLED_FLIGHT && !seeing && c.u * c.sigma_maj < c.sigma_c;
     if (!certain) {
-        Matter met = matter_in(v, w.cell_row, w.origin + w.t * w.direction, to_tap(words), to_choice(words));
+        Matter met = matter_in(v, w.cell_row, w.origin + w.t * w.direction, to_tap(words), to_choice(words), beta);
         c.sigma_t = v.sigma_t * met.density;
         c.ratio = met.ratio;
         c.share = met.share;

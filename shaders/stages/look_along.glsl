@@ -33,7 +33,7 @@ bool look_along(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tall
     float t = distance_in(s, u.y);
     vec3 position = lane.path.position + t * lane.path.direction;
     tally.lookups += 1u;
-    Matter matter = matter_at(v, to_medium(v, position, lane.path.direction).origin, to_tap(words), to_choice(words));
+    Matter matter = matter_at(v, to_medium(v, position, lane.path.direction).origin, to_tap(words), to_choice(words), lane.beta);
     MediumParams met = medium_of(v, matter.medium);
     LightSample drawn = sample_light(matter_of(met), light, position, lane.path.direction, next_words(rng), rng);
     // Over the density t was drawn with, times its weight.

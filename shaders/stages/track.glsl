@@ -12,7 +12,7 @@ vec3 emission_along(MediumParams v, Spectrum beta, float from, Walk w, PathState
     uvec4 words = next_words(rng);
     float t = mix(from, w.t, to_uniform(words).x);
     tally.lookups += 1u;
-    Matter met = matter_at(v, w.origin + t * w.direction, to_tap(words), to_choice(words));
+    Matter met = matter_at(v, w.origin + t * w.direction, to_tap(words), to_choice(words), beta);
     medium = met.medium;
     vec3 Le = emitted_radiance(medium_of(v, met.medium), path.position + (w.start + t) * path.direction);
     return beta * (w.t - from) * (v.sigma_t * met.density) * (met.ratio * met.share) * Le;
@@ -25,7 +25,7 @@ uint step_segment(MediumParams v, inout Lane lane, inout Rng rng, out Spectrum d
     deposit = to_spectrum(vec3(0.0));
     Collision c = no_collision(v);
     if ((NULL_FLIGHT && NULL_TRANSMITTANCE) || (seeing ? NULL_TRANSMITTANCE : NULL_FLIGHT))
-        event = next_collision(v, seeing, lane.walk, rng, tally, c);
+        event = next_collision(v, seeing, lane.beta, lane.walk, rng, tally, c);
     if (seeing) {
         bool opaque;
         event = see(v, c, event, lane.walk, rng, lane.T, opaque, tally);

@@ -31,7 +31,7 @@ void main() {
             event = step_ahead(v, seeing, w, rng, beta, T, tally);
         } else {
             Collision c = no_collision(v);
-            event = next_collision(v, seeing, w, rng, tally, c);
+            event = next_collision(v, seeing, beta, w, rng, tally, c);
             tally.steps += 1u;
             if (seeing) {
                 bool opaque;

@@ -28,7 +28,7 @@ void main() {
             continue;
         }
         Collision c = no_collision(v);
-        event = NULL_FLIGHT ? next_collision(v, false, w, rng, tally, c) : EVENT_MOVING;
+        event = NULL_FLIGHT ? next_collision(v, false, beta, w, rng, tally, c) : EVENT_MOVING;
         event = fly(v, c, event, w, rng, beta, deposit, tally);
         event = after_step(event, w, FAR, search);
     }

@@ -38,7 +38,7 @@ void main() {
         }
         Collision c = no_collision(v);
         if (NULL_TRANSMITTANCE)
-            event = next_collision(v, true, w, rng, tally, c);
+            event = next_collision(v, true, to_spectrum(vec3(1.0)), w, rng, tally, c);
         event = see(v, c, event, w, rng, T, opaque, tally);
         event = opaque ? EVENT_LEFT : after_step(event, w, FAR, search);
     }

@@ -259,9 +259,16 @@ TEST_CASE("a light that is out has a layer, as in the frames in which it shines"
         for (const char* frame : {"0", "1"}) {
             const Scene scene =
                 parse("<film aov='groups'/><sphere/><backgroundColor r='.1' group='sky'/>" + light, {{"F", frame}});
-            CHECK(light_groups(scene) == std::vector<std::string>{"key", "sky"});
+            CHECK(light_groups(scene) == std::vector<std::string>{"key", "sky"}); // in the same places
             CHECK(plan_layers(scene).groups == light_groups(scene));
         }
+}
+
+TEST_CASE("groups of lights that fade keep their places", "[cpu][xml][aovs]") {
+    for (const char* frame : {"0", "1", "2"})
+        CHECK(light_groups(parse("<sphere/><lights><point x='1' r='1' group='a'/><point x='2' r='$F' group='b'/>"
+                                 "<point x='3' r='${= 2-$F}' group='c'/><point x='4' r='1' group='d'/></lights>",
+                                 {{"F", frame}})) == std::vector<std::string>{"a", "b", "c", "d"});
 }
 
 TEST_CASE("layers go on by the schedule they began with, where none is asked for", "[gpu][image][aovs]") {

@@ -478,3 +478,12 @@ TEST_CASE("paths of a single scattering end where nothing absorbs, too", "[cpu][
         CHECK_NOTHROW(load_assets(*endless, choose_method(*endless)));
     }
 }
+
+TEST_CASE("a colour that nothing collides with keeps no path for ever", "[cpu][method][periodic]") {
+    Scene fog = above(medium(Everywhere{}, 1.0, 1.0));
+    fog.periodic.reset();
+    fog.volumes.front().sigma_a = {0.1, 0.1, 0.0};
+    CHECK_THROWS_WITH(load_assets(fog, choose_method(fog)), Contains("keeps its paths for ever"));
+    fog.volumes.front().sigma_s = {1.0, 1.0, 0.0};
+    CHECK_NOTHROW(load_assets(fog, choose_method(fog)));
+}

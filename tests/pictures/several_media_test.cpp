@@ -83,6 +83,29 @@ Scene mixture() {
     return scene;
 }
 
+// In an even sky, where nothing absorbs green and blue, these are 1. Of throughput the sum over the channels is kept,
+// 3: no sample is above that, so that of mean m they vary by m (3 - m) at most, 2 as expected, and 2.25 whatever m is.
+void keep_green_and_blue(std::vector<Volume> volumes, const std::string& name) {
+    Scene scene = lit_scene(volumes.front());
+    scene.volumes = std::move(volumes);
+    scene.lights.clear();
+    scene.background = Rgb(1.0);
+    scene.settings.integrator = "ratioTracking";
+    scene.settings.spp = 64;
+    const Film film = render_here(scene, 3).film;
+    glm::dvec3 mean(0.0);
+    double most = 0.0;
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        mean += glm::dvec3(film.mean[i]) / double(film.pixel_count());
+        most = std::max({most, double(film.variance[i].y), double(film.variance[i].z)});
+    }
+    CAPTURE(name, mean.x, mean.y, mean.z, most);
+    CHECK(most * (scene.settings.spp - 1) <= 2.25 * (1.0 + 1e-4));
+    const double error = std::sqrt(2.0 / (double(scene.settings.spp) * double(film.pixel_count())));
+    CHECK(std::abs(mean.y - 1.0) < 5.0 * error);
+    CHECK(std::abs(mean.z - 1.0) < 5.0 * error);
+}
+
 } // namespace
 
 TEST_CASE("halves of a medium on top of each other are the whole, in every way to render them",
@@ -208,6 +231,19 @@ TEST_CASE("colours that are taken away differently in several media", "[gpu][ima
     CHECK_AGREEMENT(agree(render_here(apart, 1).film, render_here(together, 2).film, "red and blue"));
     apart.settings.integrator = "rayMarching";
     CHECK_THROWS_WITH(render_here(apart, 1), Contains("spectralTracking"));
+}
+
+TEST_CASE("media of other colours give a path no weight", "[gpu][image][several]") {
+    const auto box = [](const Rgb& sigma_s, const Rgb& sigma_a) {
+        Volume volume = medium(Box{{0.0, 0.0, 0.0}, glm::dvec3(4.0)}, 1.0, 1.0);
+        volume.sigma_s = sigma_s;
+        volume.sigma_a = sigma_a;
+        return volume;
+    };
+    const Rgb none(0.0);
+    keep_green_and_blue({box({2.0, 0.0, 0.0}, none), box({0.0, 2.0, 0.0}, none), box({0.0, 0.0, 2.0}, none)},
+                        "a medium for each colour");
+    keep_green_and_blue({box(Rgb(2.0), none), box(none, {6.0, 0.0, 0.0})}, "a fog with a dye");
 }
 
 TEST_CASE("what is nothing beside a medium changes nothing", "[gpu][image][several]") {
