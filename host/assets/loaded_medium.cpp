@@ -331,6 +331,10 @@ void Loader::load_grid(const Volume& volume, const GridFile& file, LoadedMedium&
         throw InputError(fmt::format("{}: \"{}\" moves the medium, which its map leaves no end: it gives density where "
                                      "the grid has 0; let it give none there, or leave velocity out",
                                      file.path.string(), volume.drift.grid));
+    if (volume.drift.exists() && scene_.periodic)
+        warn(loaded, fmt::format("{}: what \"{}\" carries out of a domain that repeats does not come in on the other "
+                                 "side: the medium thins out along its borders by as much",
+                                 file.path.string(), volume.drift.grid));
     DensityField field = field_of(volume, file);
     if (field.active_voxels == 0)
         return;
@@ -415,6 +419,8 @@ Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
     check_way_out(scene, assets.media, method.scattering);
     if (is_superposition(scene))
         assets.superposition = superpose(scene, assets.media, method);
+    if (assets.superposition)
+        check_limits(scene, *assets.superposition, method);
     for (const Light& light : scene.lights)
         if (const auto* sky = std::get_if<SkyLight>(&light))
             load_sky(*sky, assets);

@@ -237,6 +237,17 @@ void check_limits(const Scene& scene, const Volume& volume, const LoadedMedium& 
     check_glow(volume, loaded);
 }
 
+void check_limits(const Scene& scene, const Superposition& whole, const Method& method) {
+    const double coarse = whole.edge * std::exp2(whole.bits);
+    double most = 0.0; // collisions across a cell
+    for (std::size_t i = 0; i < whole.cells.bounds.size(); ++i)
+        if (whole.bricks.empty() || whole.bricks[i] == 0) // else finer ones are walked through
+            most = std::max(most, coarse * whole.cells.bounds[i]);
+    for (const float bound : whole.brick_bounds)
+        most = std::max(most, whole.edge * bound);
+    check_patience(scene, method, whole.mean_bound() * whole.diagonal() + std::sqrt(3.0) * most);
+}
+
 // What multiplies the albedo where it is least, as far as the scene tells: a grid's values may be 0.
 Rgb least_map_albedo(const Volume& volume) {
     Rgb least(volume.albedo_grid.empty() ? 1.0 : 0.0);

@@ -13,6 +13,9 @@ void check_scene_limits(const Scene& scene);
 // Throws InputError with the figure and the remedy.
 void check_limits(const Scene& scene, const Volume& volume, const LoadedMedium& loaded, const Method& method);
 
+// The same for several media, among which cells may be coarse for a small one.
+void check_limits(const Scene& scene, const Superposition& whole, const Method& method);
+
 // Throws InputError for media that are everywhere and together too thin to be met, or lose too little ever to end a
 // path. `scattering`: SCATTERING_*; the first collision of a single one ends it.
 void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media, int scattering);

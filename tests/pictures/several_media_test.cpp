@@ -382,3 +382,13 @@ TEST_CASE("groups of volumes in scene files", "[cpu][xml][several]") {
           hash("<volume><sphere/><transform><translate x='1'/></transform></volume>"));
     CHECK(hash("<volume><sphere/></volume>") != hash("<volume><sphere/></volume><volume><sphere/></volume>"));
 }
+
+TEST_CASE("what is small and dense amid what is large is refused where rays beside it would not get on",
+          "[cpu][method][several]") {
+    Scene scene = lit_scene(medium(Box{{0.0, 0.0, 0.0}, glm::dvec3(1000.0)}, 1e-4, 1.0));
+    scene.volumes.push_back(medium(Sphere{{1.0, 1.0, 1.0}, 0.01}, 4e8, 0.0));
+    const auto loads = [&] { load_assets(scene, choose_method(scene)); };
+    CHECK_THROWS_WITH(loads(), Contains("tentative collisions"));
+    scene.volumes.front().shape = Box{{0.0, 0.0, 0.0}, glm::dvec3(10.0)};
+    CHECK_NOTHROW(loads());
+}
