@@ -106,7 +106,8 @@ void add_sampling_options(CLI::App& app, RenderOptions& render, RenderTexts& tex
 
 void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
     add_device_options(app, render, true);
-    app.add_flag("--no-cache", render.no_cache, "Neither read nor write the pipeline cache")->group("Device");
+    app.add_flag("--no-cache", render.no_cache, "Neither read nor write compiled kernels in the user's cache")
+        ->group("Device");
     app.add_option("--schedule", texts.schedule,
                    "fused: one pass takes pixels through all stages; staged: passes of their own over queues of paths; "
                    "auto: what is faster on the device. slots: pixels, or paths, in work; lanes: that work on them; "

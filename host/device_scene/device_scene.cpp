@@ -139,7 +139,7 @@ void DeviceScene::make_light_cache() {
                          specialization_[SPEC_TEXELS] != 0);
 }
 
-void DeviceScene::compile_light_cache(VkPipelineCache cache) {
+void DeviceScene::compile_light_cache(const PipelineCache* cache) {
     if (light_cache_)
         light_cache_->compile(specialization_, form_, cache);
 }

@@ -24,7 +24,7 @@ public:
 
     // The cache of light, if the method has one: its place, its kernels, and what is in it.
     void make_light_cache();
-    void compile_light_cache(VkPipelineCache cache);
+    void compile_light_cache(const PipelineCache* cache);
     void fill_light_cache();
     void set_queues(std::uint32_t slots, std::uint32_t queue_capacity);
     // Paths that have a record of layers at a time.

@@ -64,7 +64,7 @@ LightCache::LightCache(const Device& device, const BoundBuffers& scene, const sh
       bindings_(device, with_lattice(scene, buffer_, texels)), directions_(std::move(directions)),
       nodes_(static_cast<std::uint32_t>(count(lattice))) {}
 
-void LightCache::compile(const Specialization& specialization, unsigned form, VkPipelineCache cache) {
+void LightCache::compile(const Specialization& specialization, unsigned form, const PipelineCache* cache) {
     for (const EmbeddedKernel& spirv : {average_forms[form], shade_spv})
         passes_.push_back(std::make_unique<ComputePass>(device_, bindings_, spirv, specialization, cache));
 }

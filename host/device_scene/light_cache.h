@@ -32,7 +32,7 @@ public:
     LightCache(const Device& device, const BoundBuffers& scene, const shared::LatticeParams& lattice,
                std::vector<glm::vec3> directions, bool texels);
 
-    void compile(const Specialization& specialization, unsigned form, VkPipelineCache cache);
+    void compile(const Specialization& specialization, unsigned form, const PipelineCache* cache);
     // Once compiled, and before it is read. The kernels go.
     void fill(Commands& commands);
 

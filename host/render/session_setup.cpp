@@ -260,7 +260,7 @@ void Session::compile() {
     wavefront_ = make_wavefront(result_.plan, cache, [&] {
         if (job_.compiling)
             job_.compiling();
-        device_scene_->compile_light_cache(cache.handle());
+        device_scene_->compile_light_cache(&cache);
     });
     device_scene_->fill_light_cache();
     // Software drivers are faster with one pass (schedules.txt in tools/results): no trial is worth its time.
@@ -289,7 +289,7 @@ std::unique_ptr<Wavefront> Session::make_wavefront(const Plan& plan, const Pipel
         bound[BINDING_TRACE] = &trace_->buffer();
     }
     return std::make_unique<Wavefront>(device_, bound, bands_.front().rows * width(), specialization,
-                                       device_scene_->form(), plan, cache.handle(), meanwhile);
+                                       device_scene_->form(), plan, &cache, meanwhile);
 }
 
 // Fused or staged, by a moment of each, unless that was done before with such a scene at such a size.

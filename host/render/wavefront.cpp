@@ -70,7 +70,7 @@ std::vector<PassRow> passes_of(const Plan& plan, unsigned form, bool has_shadow_
 } // namespace
 
 Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, std::uint32_t most_pixels,
-                     const Specialization& specialization, unsigned form, const Plan& plan, VkPipelineCache cache,
+                     const Specialization& specialization, unsigned form, const Plan& plan, const PipelineCache* cache,
                      const std::function<void()>& meanwhile)
     : device_(device), plan_(plan), commands_(device),
       readback_(device, "readback", queue_bytes + sizeof(shared::Counters), 0, BufferPlace::host) {
@@ -122,7 +122,7 @@ BoundBuffers Wavefront::bound(BoundBuffers all) const {
 
 // The large kernels compile beside the others, and these one after another: with as many threads as kernels the large
 // ones, which are waited for, would have their core to themselves less.
-void Wavefront::make_passes(const Specialization& specialization, unsigned form, VkPipelineCache cache,
+void Wavefront::make_passes(const Specialization& specialization, unsigned form, const PipelineCache* cache,
                             const std::function<void()>& meanwhile) {
     Specialization constants = specialization;
     constants[SPEC_STEPS] = static_cast<std::int32_t>(plan_.steps);

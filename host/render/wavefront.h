@@ -23,7 +23,7 @@ public:
     // `most_pixels`: of any film that will be bound. `form`: of the kernels, see specialization.h. `meanwhile`: called
     // while the large kernels compile.
     Wavefront(const Device& device, const BoundBuffers& scene_buffers, std::uint32_t most_pixels,
-              const Specialization& specialization, unsigned form, const Plan& plan, VkPipelineCache cache,
+              const Specialization& specialization, unsigned form, const Plan& plan, const PipelineCache* cache,
               const std::function<void()>& meanwhile);
     ~Wavefront();
     Wavefront(const Wavefront&) = delete;
@@ -63,7 +63,7 @@ private:
         std::uint32_t lanes, queue, before;
     };
 
-    void make_passes(const Specialization& specialization, unsigned form, VkPipelineCache cache,
+    void make_passes(const Specialization& specialization, unsigned form, const PipelineCache* cache,
                      const std::function<void()>& meanwhile);
     void add_buffer(std::uint32_t binding, const char* name, std::uint64_t bytes, VkBufferUsageFlags more_usage = 0);
     BoundBuffers bound(BoundBuffers scene_buffers) const;

@@ -5,7 +5,7 @@
 namespace vkvol {
 
 ComputePass::ComputePass(const Device& device, const Bindings& bindings, std::span<const std::uint32_t> spirv,
-                         const Specialization& specialization, VkPipelineCache cache)
+                         const Specialization& specialization, const PipelineCache* cache)
     : bindings_(bindings), pipeline_(device.pipelines().get(spirv, specialization, bindings.layout(), cache)) {}
 
 void ComputePass::bind(VkCommandBuffer commands, const shared::PassPush& push) const {

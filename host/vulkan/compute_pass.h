@@ -11,11 +11,12 @@
 namespace vkvol {
 
 class Pipeline;
+class PipelineCache;
 
 class ComputePass {
 public:
     ComputePass(const Device& device, const Bindings& bindings, std::span<const std::uint32_t> spirv,
-                const Specialization& specialization, VkPipelineCache cache);
+                const Specialization& specialization, const PipelineCache* cache);
 
     // At least `threads` invocations, in whole groups.
     void record(VkCommandBuffer commands, const shared::PassPush& push, std::uint32_t threads) const;

@@ -28,7 +28,7 @@ std::vector<char> read_if_possible(const std::filesystem::path& path) {
 }
 
 // The file name holds all that makes a cache valid; the header inside is checked too, since files get copied.
-std::string file_name(const VkPhysicalDeviceProperties& p) {
+std::string pipeline_file_name(const VkPhysicalDeviceProperties& p) {
     std::string uuid;
     for (std::uint8_t byte : p.pipelineCacheUUID)
         uuid += fmt::format("{:02x}", byte);
@@ -56,12 +56,18 @@ bool header_fits(const std::vector<char>& data, const VkPhysicalDeviceProperties
            std::memcmp(header.pipelineCacheUUID, p.pipelineCacheUUID, VK_UUID_SIZE) == 0;
 }
 
+std::filesystem::path kernel_directory(bool use_disk) {
+    const std::filesystem::path directory = cache_directory();
+    return use_disk && !directory.empty() ? directory / "kernels" : std::filesystem::path();
+}
+
 } // namespace
 
-PipelineCache::PipelineCache(const Device& device, bool use_disk) : device_(device) {
+PipelineCache::PipelineCache(const Device& device, bool use_disk)
+    : device_(device), kernels_(kernel_directory(use_disk)) {
     std::vector<char> data;
     if (const std::filesystem::path directory = cache_directory(); use_disk && !directory.empty()) {
-        path_ = directory / file_name(device.properties());
+        path_ = directory / pipeline_file_name(device.properties());
         data = read_if_possible(path_);
         if (!take_digest(data) || !header_fits(data, device.properties()))
             data.clear();

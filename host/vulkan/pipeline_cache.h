@@ -1,11 +1,12 @@
-// What is kept of compiled kernels between runs: a VkPipelineCache in ${XDG_CACHE_HOME:-~/.cache}/vkvol, one
-// file per device and driver.
+// What is kept of compiled kernels between runs, in ${XDG_CACHE_HOME:-~/.cache}/vkvol: a VkPipelineCache, one file per
+// device and driver, and the kernels that were specialised.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
 #include "device.h"
+#include "kernel_store.h"
 
 namespace vkvol {
 
@@ -18,11 +19,13 @@ public:
     PipelineCache& operator=(const PipelineCache&) = delete;
 
     VkPipelineCache handle() const { return cache_; }
+    const KernelStore& kernels() const { return kernels_; }
     // Writes the file if it has changed; failure to write is no error, only a slower next start.
     void save() const;
 
 private:
     const Device& device_;
+    KernelStore kernels_;
     std::filesystem::path path_;  // empty: memory only
     mutable std::string on_disk_; // digest of what the file has
     VkPipelineCache cache_ = VK_NULL_HANDLE;

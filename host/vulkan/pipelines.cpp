@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pipeline_cache.h"
 #include "vulkan_error.h"
 
 namespace vkvol {
@@ -32,14 +33,16 @@ SharedPipeline compile(VkDevice device, const std::vector<std::uint32_t>& code, 
 } // namespace
 
 SharedPipeline Pipelines::get(std::span<const std::uint32_t> spirv, const Specialization& specialization,
-                              VkPipelineLayout layout, VkPipelineCache cache) {
+                              VkPipelineLayout layout, const PipelineCache* cache) {
     const Key key{spirv.data(), declared_of(spirv, specialization)};
     std::promise<SharedPipeline> promise;
     std::shared_future<SharedPipeline> pipeline;
     if (enter(key, promise, pipeline))
         try {
-            const std::vector<std::uint32_t> code = specialized(spirv, specialization);
-            promise.set_value(compile(device_, keep_loops_ ? loops_kept(code) : code, layout, cache));
+            const std::vector<std::uint32_t> code =
+                cache ? cache->kernels().get(spirv, specialization) : specialized(spirv, specialization);
+            promise.set_value(compile(device_, keep_loops_ ? loops_kept(code) : code, layout,
+                                      cache ? cache->handle() : VK_NULL_HANDLE));
         } catch (...) {
             forget(key); // who waits for it hears of this failure, who comes later tries again
             promise.set_exception(std::current_exception());

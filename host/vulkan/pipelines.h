@@ -12,6 +12,8 @@
 
 namespace vkvol {
 
+class PipelineCache;
+
 class Pipeline {
 public:
     // Takes over `handle`.
@@ -38,9 +40,10 @@ public:
         : device_(device), keep_loops_(keep_loops), most_kept_(most_kept) {}
 
     // `spirv`, one of the kernels within this program, with these constants; compiled unless it is here. `layout` is
-    // that of any Bindings: theirs are all alike. `cache` may be null. Throws RenderError.
+    // that of any Bindings: theirs are all alike. `cache` may be null, and nothing is kept between runs then. Throws
+    // RenderError.
     SharedPipeline get(std::span<const std::uint32_t> spirv, const Specialization& specialization,
-                       VkPipelineLayout layout, VkPipelineCache cache);
+                       VkPipelineLayout layout, const PipelineCache* cache);
 
 private:
     // Where the kernel lies, and the constants that it has.

@@ -24,6 +24,8 @@ Specialization declared_of(std::span<const std::uint32_t> spirv, const Specializ
     return declared;
 }
 
+const char* const specialization_method = "2";
+
 std::vector<std::uint32_t> specialized(std::span<const std::uint32_t> spirv, const Specialization& specialization) {
     std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> values;
     for (std::uint32_t id = 0; id < SPEC_COUNT; ++id)
@@ -32,19 +34,22 @@ std::vector<std::uint32_t> specialized(std::span<const std::uint32_t> spirv, con
     spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
     optimizer.SetMessageConsumer(
         [&](spv_message_level_t, const char*, const spv_position_t&, const char* message) { trouble += message; });
-    // First what whole functions can shed, then, with the few left in one, what follows from each other. More passes
-    // would spare drivers less time than they take themselves.
     optimizer.RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(values))
-        .RegisterPass(spvtools::CreateFreezeSpecConstantValuePass())
-        .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass())
-        .RegisterPass(spvtools::CreateDeadBranchElimPass())
-        .RegisterPass(spvtools::CreateAggressiveDCEPass())
-        .RegisterPass(spvtools::CreateInlineExhaustivePass())
-        .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
-        .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
-        .RegisterPass(spvtools::CreateCCPPass())
-        .RegisterPass(spvtools::CreateDeadBranchElimPass())
-        .RegisterPass(spvtools::CreateAggressiveDCEPass());
+        .RegisterPass(spvtools::CreateFreezeSpecConstantValuePass());
+    // First what whole functions can shed, so that less is inlined, then, with the few left in one, what follows from
+    // each other. More passes would spare drivers less time than they take themselves.
+    for (const bool inlined : {false, true}) {
+        if (inlined)
+            optimizer.RegisterPass(spvtools::CreateInlineExhaustivePass())
+                .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
+        else
+            optimizer.RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass())
+                .RegisterPass(spvtools::CreateDeadBranchElimPass());
+        optimizer.RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
+            .RegisterPass(spvtools::CreateCCPPass())
+            .RegisterPass(spvtools::CreateDeadBranchElimPass())
+            .RegisterPass(spvtools::CreateAggressiveDCEPass());
+    }
     spvtools::OptimizerOptions options;
     options.set_run_validator(false); // it was validated when built
     std::vector<std::uint32_t> result;

@@ -25,6 +25,9 @@ Specialization declared_of(std::span<const std::uint32_t> spirv, const Specializ
 // SwiftShader.
 std::vector<std::uint32_t> specialized(std::span<const std::uint32_t> spirv, const Specialization& specialization);
 
+// What specialized() does, by a name that changes with it, for who keeps what it returned.
+extern const char* const specialization_method;
+
 // The kernel with a plea to keep the loops that it asks to have written out. SwiftShader's compiler needs minutes and
 // tens of gigabytes for some kernels with them written out (walks of four steps through voxels between their centres,
 // looks from along such flights), and 1 to 3 s as loops.

@@ -52,7 +52,7 @@ LaidAside lay_aside(std::span<const std::uint32_t> kernel, const Specialization&
     bound[BINDING_TEST_INPUT] = &input;
     bound[BINDING_TEST_OUTPUT] = &output;
     const Bindings bindings(test_device(), bound);
-    const ComputePass pass(test_device(), bindings, kernel, constants, VK_NULL_HANDLE);
+    const ComputePass pass(test_device(), bindings, kernel, constants, nullptr);
     shared::PassPush push{};
     push.lanes = lanes;
     push.budget = most_words;

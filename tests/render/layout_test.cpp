@@ -112,7 +112,7 @@ TEST_CASE("shared structs have one layout on host and device", "[gpu][layout]") 
     bound[BINDING_FRAME] = &frame;
     bound[BINDING_TEST_OUTPUT] = &output;
     const Bindings bindings(test_device(), bound);
-    const ComputePass pass(test_device(), bindings, layout_spv, {}, VK_NULL_HANDLE);
+    const ComputePass pass(test_device(), bindings, layout_spv, {}, nullptr);
     commands.run([&](VkCommandBuffer c) {
         pass.record(c, all.push, 1);
         record_barrier(c);

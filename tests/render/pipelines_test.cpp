@@ -14,7 +14,7 @@ TEST_CASE("a kernel is compiled once, however many ask for it", "[gpu][specializ
     Pipelines pipelines(test_device().handle());
     const Bindings bindings(test_device(), {}), others(test_device(), {});
     const auto get = [&](std::span<const std::uint32_t> spirv, const Specialization& constants, const Bindings& by) {
-        return pipelines.get(spirv, constants, by.layout(), VK_NULL_HANDLE);
+        return pipelines.get(spirv, constants, by.layout(), nullptr);
     };
     Specialization constants{}, more_steps{};
     more_steps[SPEC_STEPS] = 7;
@@ -36,7 +36,7 @@ TEST_CASE("kernels that were not asked for in a long time are given up", "[gpu][
     const auto get = [&](int steps) {
         Specialization constants{};
         constants[SPEC_STEPS] = steps;
-        return std::weak_ptr(pipelines.get(fused_spv, constants, bindings.layout(), VK_NULL_HANDLE));
+        return std::weak_ptr(pipelines.get(fused_spv, constants, bindings.layout(), nullptr));
     };
     const auto first = get(1), second = get(2), third = get(3);
     get(2);
