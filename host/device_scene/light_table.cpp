@@ -31,7 +31,9 @@ struct Entry {
     enum class Place { sky, far, lamp, point } place = Place::far; // sky: met by flights that leave
     float reach = 0.0f;                                            // from its middle
     double power = 0.0;                                            // see LightTable
-    double cone = pi; // radians, the most that its light is off its direction
+    double cone = pi;         // radians, the most that its light is off its direction
+    double root_of_lit = 1.0; // of the share of the media that it shines on: who does with intensity I on a share s is
+                              // best chosen by I s^(1/2)
 };
 
 bool is_somewhere(const Entry& entry) {
@@ -79,7 +81,8 @@ public:
         entry.row.direction = light.direction;
         entry.row.full_within = static_cast<float>(versine(half * (1.0 - light.blend)));
         entry.row.none_beyond = static_cast<float>(versine(half));
-        entry.fluence = channel_mean(light.intensity) / square_distance(light.position);
+        entry.root_of_lit = std::sqrt(share_in_cone(light.position, light.direction, half));
+        entry.fluence = entry.root_of_lit * channel_mean(light.intensity) / square_distance(light.position);
         entry.place = Entry::Place::point;
         aim(entry, light.position, light.direction, half);
         return entry;
@@ -137,6 +140,20 @@ private:
         const double off = std::acos(std::clamp(glm::dot(apart, axis) / distance, -1.0, 1.0));
         if (off > half + std::asin(reach_ / distance))
             entry.fluence = 0.0;
+    }
+
+    // Share of the ball about the media that is in a cone, roughly: from without, of the directions under which it is
+    // seen.
+    double share_in_cone(const glm::dvec3& from, const glm::dvec3& axis, double half) const {
+        const glm::dvec3 apart = origin_ - from;
+        const double distance = glm::length(apart);
+        if (radius_ <= 0.0)
+            return 1.0;
+        const bool within = distance <= radius_;
+        const double seen = within ? pi : std::asin(radius_ / distance);
+        const double off = within ? 0.0 : std::acos(std::clamp(glm::dot(apart, axis) / distance, -1.0, 1.0));
+        const double overlap = std::clamp((half + seen - off) / (2.0 * std::min(half, seen)), 0.0, 1.0);
+        return std::max(overlap * versine(std::min(half, seen)) / versine(seen), 1e-9);
     }
 
     static Entry begin(int kind, const Rgb& radiance) {
@@ -211,7 +228,8 @@ PlacedLight placed(const Entry& entry, std::uint32_t row) {
     const float mean = (radiance.x + radiance.y + radiance.z) / 3.0f;
     const float power =
         mean * (entry.place == Entry::Place::lamp ? entry.row.area : 1.0f) * (entry.fluence > 0.0 ? 1.0f : 1e-6f);
-    PlacedLight light{entry.row.position - entry.reach, entry.row.position + entry.reach, std::max(power, 1e-30f), row};
+    PlacedLight light{entry.row.position - entry.reach, entry.row.position + entry.reach, std::max(power, 1e-30f),
+                      std::max(power * static_cast<float>(entry.root_of_lit), 1e-30f), row};
     if (entry.row.kind & LIGHT_AIMED) {
         light.axis = entry.row.direction;
         light.reach = entry.cone;
@@ -236,7 +254,7 @@ int lights_kind(const Scene& scene) {
         return std::holds_alternative<SpotLight>(light) || std::holds_alternative<DiskLight>(light) ||
                std::holds_alternative<RectangleLight>(light);
     };
-    const bool asks_where = !scene.surfaces.empty() && any(is_aimed);
+    const bool asks_where = (!scene.surfaces.empty() || reads_flux(scene.camera)) && any(is_aimed);
     const int tree = somewhere > 1 ? LIGHTS_TREE | (asks_where ? LIGHTS_AIMED : 0) : 0;
     return LIGHTS_TABLE | (any(is_met_by_chance) ? LIGHTS_SKY : 0) | (any(is_lamp) ? LIGHTS_LAMPS : 0) | tree |
            (any(is_map) ? LIGHTS_MAP : 0) | (lights.size() == 1 ? LIGHTS_SOLE : 0) |

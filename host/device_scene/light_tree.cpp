@@ -35,13 +35,14 @@ void set_cone(std::span<const PlacedLight> lights, shared::LightNode& node) {
 }
 
 void append(std::vector<shared::LightNode>& nodes, std::span<PlacedLight> lights) {
-    shared::LightNode node{lights[0].low, lights[0].high, 0.0f, NO_LIGHT, 0, {}, 0.0f, 0.0f};
+    shared::LightNode node{lights[0].low, lights[0].high, 0.0f, 0.0f, NO_LIGHT, 0, {}, 0.0f, 0.0f};
     set_cone(lights, node);
     glm::vec3 low(lights[0].low + lights[0].high), high(low); // of twice the middles
     for (const PlacedLight& light : lights) {
         node.low = glm::min(node.low, light.low);
         node.high = glm::max(node.high, light.high);
         node.power += light.power;
+        node.power_in_matter += light.power_in_matter;
         low = glm::min(low, light.low + light.high);
         high = glm::max(high, light.low + light.high);
     }

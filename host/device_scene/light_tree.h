@@ -11,6 +11,7 @@ namespace vkvol {
 struct PlacedLight {
     glm::vec3 low, high; // of the box around it
     float power = 0.0f;  // > 0, in any unit
+    float power_in_matter = 0.0f;
     std::uint32_t row = 0;
     glm::vec3 axis{0.0f, 0.0f, 1.0f}; // unit, about which it shines
     double reach = std::numbers::pi;  // radians, the most that its light is off that

@@ -15,6 +15,7 @@ namespace vkvol {
 namespace {
 
 constexpr double seen = 0.01; // of a surface's size, or of a mean free path
+constexpr double seen_of_thickness = 0.1;
 
 // Where a medium is, and its extinction where it is densest [1 / world unit].
 struct Extinction {
@@ -43,10 +44,12 @@ double gap_at(const SurfaceBounds& bounds, const glm::dvec3& origin) {
     return SURFACE_SPARE * std::max({reach.x, reach.y, reach.z});
 }
 
-// How far rays are kept off what they meet of a surface, and how often that is `seen`.
+// How far rays are kept off what they meet of a surface, and how many times what would be seen: of its size, of mean
+// free paths, or of glass' thickness, whose other side must not be missed.
 struct Gap {
+    enum class Of { size, free_path, thickness };
     double apart = 0.0, times = 0.0;
-    bool is_of_medium = false;
+    Of of = Of::size;
 };
 
 bool meet(const SurfaceBounds& piece, const WorldBox& box) {
@@ -84,13 +87,17 @@ Gap gap_of(const Surface& surface, std::span<const Extinction> media, const glm:
     double most = std::numeric_limits<double>::infinity(); // of a plane
     if (const std::optional<SurfaceBounds> bounds = bounds_of(std::span(&surface, 1))) {
         most = gap_at(*bounds, origin);
-        worst = {most, most / (seen * glm::length(bounds->high - bounds->low)), false};
+        const glm::dvec3 size = bounds->high - bounds->low;
+        worst = {most, most / (seen * glm::length(size)), Gap::Of::size};
+        const double thickness = std::min({size.x, size.y, size.z}), times = most / (seen_of_thickness * thickness);
+        if (surface.material.kind == MaterialKind::dielectric && thickness > 0.0 && times > worst.times)
+            worst = {most, times, Gap::Of::thickness};
     }
     for (const Extinction& medium : media) {
         if (most * medium.most <= seen * std::max(1.0, worst.times))
             break;
         const double apart = gap_in(surface, medium.box, origin, patience), times = apart * medium.most / seen;
-        worst = times > worst.times ? Gap{apart, times, true} : worst;
+        worst = times > worst.times ? Gap{apart, times, Gap::Of::free_path} : worst;
     }
     return worst;
 }
@@ -113,9 +120,14 @@ std::string surface_gap_warning(const Scene& scene, const Assets& assets, const 
     }
     if (count == 0)
         return "";
-    const std::string share = worst.is_of_medium
-                                  ? fmt::format("{:.2g} mean free paths of the medium there", seen * worst.times)
-                                  : fmt::format("{:.2g} % of its size", 100.0 * seen * worst.times);
+    const std::string share =
+        worst.of == Gap::Of::free_path ? fmt::format("{:.2g} mean free paths of the medium there", seen * worst.times)
+        : worst.of == Gap::Of::thickness
+            ? fmt::format(
+                  "{:.2g} times its glass' thickness (from 1 on, or less of rough glass, light misses the other "
+                  "side, and the glass is dark)",
+                  seen_of_thickness * worst.times)
+            : fmt::format("{:.2g} % of its size", 100.0 * seen * worst.times);
     return fmt::format("{}{}rays that leave this surface begin {:.2g} world units off it, {}, since it reaches {:.2g} "
                        "from the middle of the scene, where single precision knows places no better; move together "
                        "what is far apart, leave it out, or take a <plane> for an endless ground",

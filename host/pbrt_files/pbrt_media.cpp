@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
+#include <numbers>
 
 #include "density_field.h"
 #include "error.h"
@@ -264,6 +265,7 @@ void PbrtTranslator::write_camera_medium() {
     if (!medium || write_grid_once(scene_.camera_medium, *medium) || ends_camera_medium())
         return;
     ++media_count_;
+    camera_medium_is_endless_ = true;
     write_medium(scene_.camera_medium, *medium, {"everywhere", "", glm::dmat4(1.0)}, place);
     if (std::any_of(scene_.lights.begin(), scene_.lights.end(),
                     [](const PbrtThing& light) { return light.type == "distant" || light.type == "infinite"; }))
@@ -287,25 +289,30 @@ void PbrtTranslator::note_beyond(const PbrtShape& shape, const std::string& medi
 
 namespace {
 
-// Whether triangles reach about the grid's box, or are but a rectangle, one of several.
+// How often a closed mesh winds about p, by the solid angles of its triangles (van Oosterom and Strackee 1983).
+double winding(const PbrtTriangles& mesh, const glm::dvec3& p) {
+    double angle = 0.0;
+    for (const glm::uvec3& t : mesh.triangles) {
+        const glm::dvec3 a = mesh.points[t.x] - p, b = mesh.points[t.y] - p, c = mesh.points[t.z] - p;
+        const double u = glm::length(a), v = glm::length(b), w = glm::length(c);
+        angle += 2.0 * std::atan2(glm::dot(a, glm::cross(b, c)),
+                                  u * v * w + glm::dot(a, b) * w + glm::dot(b, c) * u + glm::dot(c, a) * v);
+    }
+    return angle / (4.0 * std::numbers::pi);
+}
+
+// Whether the grid's box is within these triangles, by its corners, or they are but a rectangle, one of several.
 bool is_about(const PbrtShape& shape, const PbrtThing& medium) {
     if (shape.thing.type != "trianglemesh" && shape.thing.type != "bilinearmesh")
         return false;
     const PbrtTriangles mesh = moved(shape.thing.transform, read_triangles(shape.thing), false);
     if (as_rectangle(mesh))
         return true;
-    glm::dvec3 low = mesh.points[mesh.triangles[0].x], high = low;
-    for (const glm::uvec3& t : mesh.triangles)
-        for (int corner = 0; corner < 3; ++corner) {
-            low = glm::min(low, mesh.points[t[corner]]);
-            high = glm::max(high, mesh.points[t[corner]]);
-        }
     const PbrtBounds bounds = bounds_of(medium);
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 own = bounds.low + bounds.size * glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2);
-        const glm::dvec3 p(medium.transform * glm::dvec4(own, 1.0));
-        const glm::dvec3 spare = 1e-5 * (high - low);
-        if (glm::any(glm::lessThan(p, low - spare)) || glm::any(glm::greaterThan(p, high + spare)))
+        const glm::dvec3 along = 1e-4 + (1.0 - 2e-4) * glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2);
+        const glm::dvec3 p(medium.transform * glm::dvec4(bounds.low + bounds.size * along, 1.0));
+        if (std::abs(winding(mesh, p)) < 0.5)
             return false;
     }
     return true;
@@ -349,6 +356,10 @@ void PbrtTranslator::write_media_of(const PbrtShape& shape) {
     else if (beyond && is_dense(*beyond) && lets_light_in(shape))
         note(shape.thing.place,
              fmt::format("the grid of medium \"{}\" goes on within: shapes do not cut grids here", sides.beyond));
+    if (camera_medium_is_endless_ && sides.beyond.empty() && sides.within != scene_.camera_medium)
+        note(shape.thing.place, fmt::format("medium \"{}\" goes on beyond this; pbrt's rays leave it here, since the "
+                                            "MediumInterface has none outside",
+                                            scene_.camera_medium));
     if (!within)
         return;
     if (write_grid_once(sides.within, *within))

@@ -64,6 +64,8 @@ void PbrtTranslator::add_roughness(XmlAttributes& attributes, const PbrtThing& t
     }
     if (u != v)
         note(thing.place, "its roughness is the same along both axes, their mean");
+    if (u + v > 2.0)
+        note(thing.place, fmt::format("its roughness, alpha = {:.3g}, is 1 here, which is the most", 0.5 * (u + v)));
     const double alpha = std::min(0.5 * (u + v), 1.0);
     if (alpha >= least_alpha)
         attributes.emplace_back("roughness", xml_number(alpha));

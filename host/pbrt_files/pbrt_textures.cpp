@@ -97,6 +97,8 @@ void PbrtTranslator::add_image(XmlAttributes& attributes, const PbrtThing& textu
     if (const std::string mapping = p.text("mapping", "uv"); mapping != "uv")
         note(texture.place, fmt::format("mapping \"{}\" is left out; its places are the shape's", mapping));
     add_repeat(attributes, texture, 1.0);
+    if (const std::string filter = p.text("filter", "bilinear"); filter == "point")
+        note(texture.place, "filter \"point\" is left out; between the middles of texels images are linear here");
     note_unused(texture, {"filter", "maxanisotropy"});
 }
 
@@ -176,6 +178,8 @@ glm::dvec3 PbrtTranslator::mean_of_image(const PbrtThing& thing) {
     if (const auto known = means_.find(name); known != means_.end())
         return known->second;
     const RadianceMap map = read_radiance_map(scene_.folder / name);
+    for (const std::string& warning : map.warnings)
+        note(thing.place, warning);
     glm::dvec3 mean(0.0);
     for (const glm::vec3& texel : map.texels)
         mean += glm::dvec3(texel) / double(map.texels.size());

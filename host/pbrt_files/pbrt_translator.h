@@ -117,8 +117,9 @@ private:
     std::set<std::string> heard_;
     std::set<std::string> written_grids_; // media
     std::set<std::string> media_within_;  // of shapes
-    int media_count_ = 0;                 // of volumes, at most
-    glm::dmat4 world_{1.0};               // from pbrt's world to this renderer's
+    bool camera_medium_is_endless_ = false;
+    int media_count_ = 0;   // of volumes, at most
+    glm::dmat4 world_{1.0}; // from pbrt's world to this renderer's
     bool sky_is_mirrored_ = false;
     // Of the material that was written last: its texture, and which part of pbrt's places it repeats in one.
     std::optional<PbrtThing> texture_;

@@ -52,9 +52,15 @@ std::vector<Band> make_bands(const Device& device, Commands& commands, const Cro
     if (most_rows > 0)
         most = std::min<std::uint64_t>(most, most_rows);
     const auto height = static_cast<std::uint32_t>(crop.y1 - crop.y0);
+    // Of one height, but for a row, which the first has: each has as many particles as pixels, and all of them show the
+    // same noise then.
+    const std::uint64_t count = (height + most - 1) / most;
+    const auto first_row = [&](std::uint64_t i) {
+        return static_cast<std::uint32_t>((height * i + count - 1) / count);
+    };
     std::vector<Band> bands;
-    for (std::uint32_t row = 0; row < height;) {
-        const auto rows = static_cast<std::uint32_t>(std::min<std::uint64_t>(most, height - row));
+    for (std::uint64_t i = 0; i < count; ++i) {
+        const std::uint32_t row = first_row(i), rows = first_row(i + 1) - row;
         const auto make = [&](const char* name, std::uint64_t bytes) {
             return Buffer(device, name, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, BufferPlace::device);
         };
@@ -62,7 +68,6 @@ std::vector<Band> make_bands(const Device& device, Commands& commands, const Cro
         if (layers.count > 0)
             bands.back().layers.emplace(make("layers", records + rows * layer_row));
         clear(commands, bands.back());
-        row += rows;
     }
     return bands;
 }

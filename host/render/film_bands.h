@@ -25,9 +25,9 @@ struct Rows {
     bool empty() const { return begin >= end; }
 };
 
-// Bands without samples. `most_bytes`: of one buffer of them; `most_rows`: in one, or 0. `layers`: how many, and of how
-// many paths they have records. `films`: such as lie in this machine's memory, of all devices. Throws InputError if the
-// film is too large.
+// Bands without samples, none higher than the first. `most_bytes`: of one buffer of them; `most_rows`: in one, or 0.
+// `layers`: how many, and of how many paths they have records. `films`: such as lie in this machine's memory, of all
+// devices. Throws InputError if the film is too large.
 std::vector<Band> make_bands(const Device& device, Commands& commands, const Crop& crop, std::uint64_t most_bytes,
                              std::uint32_t most_rows, const shared::AovParams& layers, int films);
 void clear(Commands& commands, const Band& band);

@@ -338,7 +338,7 @@ struct Expected {
 struct BlackElement {
     std::string name;
     std::string place;      // "file:line:column"
-    std::string group = {}; // of a light: it has its layer also in frames in which it is out
+    std::string group = {}; // of a light, and not of the background: it has its layer also in frames in which it is out
     std::size_t before = 0; // how many of the scene's lights come before it
 };
 

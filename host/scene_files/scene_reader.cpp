@@ -53,9 +53,11 @@ Scene SceneReader::read() {
     check_method(scene);
     read_without_effect();
     read_bookkeeping();
-    for (const char* name : {"light", "backgroundColor", "medium", "emission"})
+    if (const XmlElement light = one("light"); light.exists() && color(light) == Rgb(0.0)) // the first of lights
+        scene.black.insert(scene.black.begin(), {"light", light.place(), group_name(light)});
+    for (const char* name : {"backgroundColor", "medium", "emission"})
         if (const XmlElement element = one(name); element.exists() && color(element) == Rgb(0.0))
-            scene.black.push_back({name, element.place(), group_name(element)}); // <light> is the first of lights
+            scene.black.push_back({name, element.place()});
     for (const char* name : {"light", "backgroundColor", "medium", "emission"})
         warn_of_forgotten_color(one(name));
     scene.warnings = document_.warnings();

@@ -57,11 +57,8 @@ Stretch stretch_of(MediumParams v, LightRow light, vec3 position, vec3 direction
     s.first = s.t.x;
     vec3 apart = light.position - position;
     s.foot = dot(apart, direction);
-    // Lamps are no points: nearer than half their size nothing grows any more. And no ray hits a point.
-    float size = s.t.y - s.t.x;
-    if (UNBOUNDED != 0)
-        size = min(size, 100.0 / v.usual_sigma_t);
-    float least = max(0.3 * sqrt((light.kind & LIGHT_SHAPED) != 0u ? light.area : 0.0), 1.0e-5 * size);
+    // Lamps are no points: nearer than half their size nothing grows any more. And no ray is known to hit a point, from afar.
+    float least = max(0.3 * sqrt((light.kind & LIGHT_SHAPED) != 0u ? light.area : 0.0), 1.0e-6 * length(apart));
     vec3 off = apart - s.foot * direction;
     s.off = max(length(off), max(least, 1.0e-30));
     vec2 lit = s.foot + lit_part(light, -off, direction);

@@ -31,7 +31,7 @@ vec2 light_shares(LightRow light, float cosine, float pdf) {
     if ((light.kind & LIGHT_SHAPED) != 0u)
         shares = light.kind == LIGHT_SPHERE ? vec2(0.5 / PI, 1.0 / light.area) : vec2(cosine / PI, 4.0 / light.area);
     else if ((light.kind & LIGHT_PLACED) != 0u)
-        shares = vec2(INV_4PI, CERTAIN);
+        shares = vec2(light.kind == LIGHT_SPOT ? 0.5 / (PI * max(light.none_beyond, 1.0e-12)) : INV_4PI, CERTAIN);
     else if (radius > 0.0)
         shares = vec2(-1.0, pdf > 0.0 ? 4.0 * PI * pdf : CERTAIN) / (PI * radius * radius);
     return shares;

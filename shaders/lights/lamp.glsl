@@ -20,7 +20,7 @@ float lamp_pdf(LightRow light, vec3 from, vec3 direction, float t) {
     return light.kind == LIGHT_SPHERE ? sphere_pdf(light, from) : flat_pdf(light, direction, t);
 }
 
-// c: next to nothing for what is small as seen from here, against the narrowest that the phase function draws; most for what is
+// c: next to nothing for what is small as seen from here, against the narrowest that the phase function draws toward it; most for what is
 // large, but never all. What 0.85 is worth: tools/results/README.md. Of what is flat it is the nearest of it that counts, which may
 // be long; of a ball directions are even anyway.
 float other_share(float peak, LightRow light, vec3 from) {
@@ -48,7 +48,10 @@ LightSample of_mixture(LightRow light, vec3 from, vec3 direction, float t, float
 }
 
 LightSample sample_lamp(Scatterer s, LightRow light, vec3 from, vec3 travel, vec2 u, float select) {
-    float share = other_share(scatter_peak(s), light, from);
+    vec3 apart = light.position - from;
+    float distance = max(length(apart), 1.0e-30);
+    float sine = (light.kind == LIGHT_SPHERE ? light.extent : length(light.edge_u + light.edge_v)) / distance;
+    float share = other_share(scatter_peak(s, travel, apart / distance, sine), light, from);
     bool by_phase = select < share;
     vec3 direction;
     if (by_phase)

@@ -38,7 +38,7 @@ uint choose_light(vec3 from, bool on_surface, uvec4 words, inout Rng rng, out fl
     }
     if (HAS_TREE && i == frame.choices - 1u) {
         float of_leaf;
-        i = descend(from, on_surface, rng, of_leaf);
+        i = descend(lit_point(from, on_surface), rng, of_leaf);
         chance *= of_leaf;
     }
     return i;

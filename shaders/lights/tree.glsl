@@ -1,6 +1,6 @@
 // Choosing among lights that are somewhere: by the power of each over the square of its distance, roughly, and by where it shines,
 // down a binary tree whose nodes bound the lights below them, and their cones (Conty Estevez and Kulla, "Importance Sampling of Many
-// Lights with Adaptive Tree Splitting", 2018, without the splitting). Every branch has a chance, so every light has.
+// Lights with Adaptive Tree Splitting", 2018, without the splitting). Every light has a chance.
 #ifndef LIGHT_TREE_GLSL
 #define LIGHT_TREE_GLSL
 #include "lib/buffers.glsl"
@@ -26,36 +26,75 @@ float aim(LightNode node, vec3 apart, float half_square) {
     return within > 0.0 ? mix(0.1, 1.0, within) : 0.0;
 }
 
-// `on_surface`: there it pays to ask where lights shine. In matter most noise is that of distances along flights, which may be lit
-// elsewhere than `from`, and looks at what does not shine there are cheap.
-//
+// Whom lights are to be chosen for: a point, or a stretch of a ray that begins there.
+struct Lit {
+    vec3 from;
+    bool on_surface; // there it pays to ask where lights shine: in matter most noise is that of distances along flights, which may be
+                     // lit elsewhere than `from`, and looks at what does not shine there are cheap
+    vec3 direction;
+    float extent;  // 0 of a point
+    float sigma_t; // roughly
+};
+
+Lit lit_point(vec3 from, bool on_surface) {
+    return Lit(from, on_surface, vec3(0.0), 0.0, 0.0);
+}
+
+// Integral of the density by which distances are drawn, see equiangular.glsl, from the foot to x times as far as that is off.
+float drawn_before(float x) {
+    float part = 1.0 - 1.0 / (1.0 + abs(x));
+    return x < 0.0 ? -part : part;
+}
+
+// What a ray gathers in matter from a light that it passes: of about the angle under which the light sees it over how far off it is, by
+// what is left of the ray there, and of where it begins. `least`: the square of how far off it counts at least.
+float gathered(Lit lit, vec3 apart, float half_square, float least) {
+    float foot = dot(apart, lit.direction);
+    vec3 aside = apart - foot * lit.direction;
+    float off = sqrt(max(dot(aside, aside), least));
+    float angle = drawn_before((lit.extent - foot) / off) - drawn_before(-foot / off);
+    float left = exp(-lit.sigma_t * clamp(foot - sqrt(half_square), 0.0, lit.extent));
+    return left * angle / off + min(lit.extent, 1.0 / lit.sigma_t) / max(dot(apart, apart), least);
+}
+
 // Near its middle a node counts as about a third of its reach away: an eighth of the square made the least noise of several,
 // see tools/results/README.md.
-float importance(LightNode node, vec3 from, bool on_surface) {
+float importance(LightNode node, Lit lit) {
     vec3 middle = 0.5 * (node.low + node.high);
     vec3 half_size = 0.5 * (node.high - node.low);
-    vec3 apart = middle - from;
-    float bright = node.power / max(dot(apart, apart), max(0.125 * dot(half_size, half_size), 1.0e-20));
-    return SOME_AIMED && on_surface ? bright * aim(node, -apart, dot(half_size, half_size)) : bright;
+    vec3 apart = middle - lit.from;
+    float half_square = dot(half_size, half_size), least = max(0.125 * half_square, 1.0e-20);
+    if (lit.extent > 0.0)
+        return node.power_in_matter * gathered(lit, apart, half_square, least);
+    float near = 1.0 / max(dot(apart, apart), least);
+    return lit.on_surface ? node.power * near * (SOME_AIMED ? aim(node, -apart, half_square) : 1.0) : node.power_in_matter * near;
 }
+
+// Of the choices this share is made without a look at the lights, by halves: what seems faint here is yet found, and counts no more
+// than that many times.
+const float EVENLY = 0.02;
 
 // The row of a light, and the chance that the tree gave it. Each branching takes a word of its own, so that no chance is
 // rounded more at the bottom than at the top.
-uint descend(vec3 from, bool on_surface, inout Rng rng, out float chance) {
+uint descend(Lit lit, inout Rng rng, out float chance) {
     uint at = 0u;
-    chance = 1.0;
+    float by_light = 1.0, by_halves = 1.0;
     uvec4 words = uvec4(0u);
+    bool evenly = false;
     for (uint level = 0u; light_nodes[at].light == NO_LIGHT; ++level) {
-        if (level % 4u == 0u)
+        if (level % 3u == 0u)
             words = next_words(rng);
+        evenly = level == 0u ? to_uniform(words).w < EVENLY : evenly;
         uint left = at + 1u, right = light_nodes[at].right;
-        float a = importance(light_nodes[left], from, on_surface), b = importance(light_nodes[right], from, on_surface);
+        float a = importance(light_nodes[left], lit), b = importance(light_nodes[right], lit);
         // A whole number of 2^-32, so that the chance is the branch's own to the last digit.
         uint share = uint(clamp(a + b > 0.0 ? a / (a + b) : 0.5, 1.0e-6, 1.0 - 1.0e-6) * 4294967296.0);
-        bool goes_left = words[level % 4u] < share;
+        bool goes_left = words[level % 3u] < (evenly ? 0x80000000u : share);
         at = goes_left ? left : right;
-        chance *= float(goes_left ? share : 0u - share) * 2.3283064365386963e-10;
+        by_light *= float(goes_left ? share : 0u - share) * 2.3283064365386963e-10;
+        by_halves *= 0.5;
     }
+    chance = mix(by_light, by_halves, EVENLY);
     return light_nodes[at].light;
 }
 

@@ -47,6 +47,18 @@ float phase_eval_twice(MediumParams v, vec3 before, vec3 after) {
     return p;
 }
 
+// Of the directions that are off `toward` by an angle of this sine, or less, those next to going straight on and next to going back: the
+// higher density of the two. A sine of 1 or more: of all directions.
+float phase_peak(MediumParams v, vec3 travel, vec3 toward, float sine) {
+    float mean = clamp(dot(travel, toward), -1.0, 1.0), cosine = sqrt(max(1.0 - sine * sine, 0.0));
+    float rise = sqrt(max(1.0 - mean * mean, 0.0));
+    float most = sine >= 1.0 || mean >= cosine ? 1.0 : mean * cosine + rise * sine;
+    float least = sine >= 1.0 || -mean >= cosine ? -1.0 : mean * cosine - rise * sine;
+    vec3 before = vec3(0.0, 1.0, 0.0);
+    return max(phase_eval(v, before, vec3(sqrt(max(1.0 - most * most, 0.0)), most, 0.0)),
+               phase_eval(v, before, vec3(sqrt(max(1.0 - least * least, 0.0)), least, 0.0)));
+}
+
 // A direction distributed as phase_eval; u in [0, 1)^2.
 vec3 phase_sample(MediumParams v, vec3 before, vec2 u) {
     vec3 after = before;

@@ -47,9 +47,11 @@ void scatter(MediumParams v, vec4 u, inout Lane lane) {
 
 #ifdef SURFACES
 // Within glass whose faces stand for something round light may go about for ever, and loses nothing; likewise between mirrors, or
-// white walls: roulette that does not ask for throughput, after so many vertices that it is seldom asked.
+// white walls: roulette that does not ask for throughput, after so many vertices that it is seldom asked. Chances that multiply to the
+// square of 1 / depth end every path; and whatever share of the light a vertex leaves, if not all, weights of no more than the square of
+// depth, where a fixed chance's grow as its power, have a bounded variance.
 bool goes_on_within(bool stays_within, uint depth, inout Spectrum beta, inout float u) {
-    float chance = stays_within ? 0.9 : 0.99;
+    float root = float(depth) / float(depth + 1u), chance = root * root;
     bool asked = depth >= (stays_within ? 32u : 256u) && frame.roulette_threshold > 0.0;
     bool goes_on = !asked || u < chance;
     beta *= !asked ? 1.0 : goes_on ? 1.0 / chance : 0.0;
@@ -69,7 +71,7 @@ void scatter_at_surface(uvec4 words, inout Lane lane, inout Rng rng) {
     if (HAS_SMOOTH_FACES && HAS_PARTICLES)
         if (chooses_normal)
             bsdf = particle_bsdf(bsdf, wo, u.w, draws);
-    BsdfSample drawn = bsdf_sample(bsdf, wo, u.yzx);
+    BsdfSample drawn = bsdf_sample(bsdf, wo, lane.beta, u.yzx);
     bool crosses = dot(drawn.direction, bsdf.face) < 0.0;
     lane.path.position = at.position + (crosses ? -at.apart : at.apart) * bsdf.face;
     lane.path.direction = drawn.direction;

@@ -6,17 +6,16 @@
 #include "lights/table.glsl"
 #include "stages/lane.glsl"
 
-// One of those that have a place. Where there are many, one that is bright where a free flight might end; which one that is is
-// the look's own chance, and weights do not depend on it.
-LightRow choose_placed(MediumParams v, vec3 position, vec3 direction, float reach, float u, inout Rng rng, out float chance) {
+// One of those that have a place. Where there are many, one that the whole flight is lit by: chosen for a point of it, a light would
+// be looked at from elsewhere with the chance that it had there. Weights do not depend on which one it is.
+LightRow choose_placed(MediumParams v, vec3 position, vec3 direction, float reach, inout Rng rng, out float chance) {
     uint i = frame.choices - 1u;
     chance = 1.0;
     if (HAS_TREE) {
         vec2 t;
         if (!medium_interval(v, to_medium(v, position, direction), t))
             t = vec2(0.0);
-        float flown = min(t.x - log(1.0 - u) / v.usual_sigma_t, min(t.y, reach));
-        i = descend(position + flown * direction, false, rng, chance);
+        i = descend(Lit(position + t.x * direction, false, direction, max(min(t.y, reach) - t.x, 1.0e-30), v.usual_sigma_t), rng, chance);
     }
     return light_at(i);
 }
@@ -28,7 +27,7 @@ bool look_along(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tall
     vec4 u = to_uniform(words);
     float chance;
     float reach = flying_as_far_as(lane);
-    LightRow light = choose_placed(v, lane.path.position, lane.path.direction, reach, u.x, rng, chance);
+    LightRow light = choose_placed(v, lane.path.position, lane.path.direction, reach, rng, chance);
     Stretch s = stretch_of(v, light, lane.path.position, lane.path.direction, reach);
     float t = distance_in(s, u.y);
     vec3 position = lane.path.position + t * lane.path.direction;

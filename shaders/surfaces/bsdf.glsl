@@ -179,15 +179,19 @@ BsdfSample sample_pane(Bsdf b, vec3 wo, float u) {
     return BsdfSample(reflects ? normalize(2.0 * cosine * b.normal - wo) : -wo, b.color, 0.0);
 }
 
-// The coat mirrors with chance F.
-BsdfSample sample_coated(Bsdf b, vec3 wo, vec3 u) {
+// The coat mirrors F of the light, and what is below it scatters its albedo of the rest: which of them the path takes is drawn by what
+// is left of it then, `carried` before.
+BsdfSample sample_coated(Bsdf b, vec3 wo, vec3 carried, vec3 u) {
     float cosine = min(dot(b.normal, wo), 1.0);
     float F = fresnel_dielectric(cosine, b.eta.x);
     vec3 direction = by_cosine(b.normal, u.xy);
     float out_cosine = max(dot(b.normal, direction), 0.0);
-    vec3 below = b.color * through_coat(b, out_cosine, cosine) / max(1.0 - F, 1.0e-7);
-    bool mirrors = u.z < F;
-    return BsdfSample(mirrors ? normalize(2.0 * cosine * b.normal - wo) : direction, mirrors ? vec3(1.0) : below,
+    float mirrored = F * dot(carried, vec3(1.0));
+    float scattered = (1.0 - F) * dot(carried, (1.0 - b.k.x) * b.color / max(1.0 - b.k.x * b.color, 1.0e-7));
+    float chance = mirrored > 0.0 ? mirrored / (mirrored + scattered) : 0.0;
+    vec3 below = b.color * through_coat(b, out_cosine, cosine) / max(1.0 - chance, 1.0e-7);
+    bool mirrors = u.z < chance;
+    return BsdfSample(mirrors ? normalize(2.0 * cosine * b.normal - wo) : direction, mirrors ? vec3(F / max(chance, 1.0e-30)) : below,
                       mirrors ? 0.0 : out_cosine / PI);
 }
 
@@ -200,7 +204,8 @@ BsdfSample sample_facets(Bsdf b, vec3 wo) {
     return drawn;
 }
 
-BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec3 u) {
+// `carried`: throughput of the path, which may decide what is drawn.
+BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec3 carried, vec3 u) {
     float cosine = min(dot(b.normal, wo), 1.0);
     BsdfSample drawn;
     drawn.direction = by_cosine(b.normal, u.xy);
@@ -222,7 +227,7 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec3 u) {
             drawn = sample_pane(b, wo, u.z);
     if (has_material(MATERIAL_COATED))
         if (b.material == MATERIAL_COATED)
-            drawn = sample_coated(b, wo, u);
+            drawn = sample_coated(b, wo, carried, u);
     if (has_facets(b))
         drawn = sample_facets(b, wo);
     drawn.weight *= is_barred(b, wo, drawn.direction) ? 0.0 : 1.0;

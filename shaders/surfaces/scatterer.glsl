@@ -64,11 +64,13 @@ Scatterer as_shown_along(Scatterer s, vec3 after) {
     return s;
 }
 
-// The most that scatter_pdf may be, roughly.
-float scatter_peak(Scatterer s) {
-    vec3 along = vec3(0.0, 1.0, 0.0);
-    float peak = max(phase_eval(s.medium, along, along), phase_eval(s.medium, along, -along));
-    return !s.is_surface ? peak : has_facets(s.bsdf) ? 0.25 / (PI * s.bsdf.alpha * s.bsdf.alpha) : 1.0 / PI;
+// The most that scatter_pdf may be, roughly: of a medium toward a lamp, of a surface at all. Glass refracts into fewer directions than
+// metal mirrors into, the nearer its index is to 1.
+float scatter_peak(Scatterer s, vec3 travel, vec3 toward, float sine) {
+    float index = max(s.bsdf.eta.x, 1.0 / max(s.bsdf.eta.x, 1.0e-6)), slower = max(index - 1.0, 1.0e-3);
+    float narrower = is_glass(s.bsdf.material) ? max(1.0, 4.0 * index * index / (slower * slower)) : 1.0;
+    float facets = 0.25 / (PI * s.bsdf.alpha * s.bsdf.alpha) * narrower;
+    return !s.is_surface ? phase_peak(s.medium, travel, toward, sine) : has_facets(s.bsdf) ? facets : 1.0 / PI;
 }
 #else
 #define Scatterer MediumParams
@@ -80,11 +82,7 @@ float scatter_peak(Scatterer s) {
 #define lit_position(s, position, to_light) (position)
 #define adjoint(s, before, after) 1.0
 #define as_shown_along(s, after) (s)
-
-float scatter_peak(MediumParams v) {
-    vec3 along = vec3(0.0, 1.0, 0.0);
-    return max(phase_eval(v, along, along), phase_eval(v, along, -along));
-}
+#define scatter_peak phase_peak
 #endif
 
 #endif

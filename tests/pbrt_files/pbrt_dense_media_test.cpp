@@ -183,6 +183,25 @@ TEST_CASE("grids of pbrt that cannot be quite as there are noted", "[cpu][pbrt]"
     CHECK_THAT(coarse.notes.front(), Contains("s.pbrt:1:") && Contains("finer than its grid of 31 x 31 x 31 voxels"));
 }
 
+TEST_CASE("a mesh that cuts a grid of pbrt is noted, and one about it is not", "[cpu][pbrt]") {
+    const auto is_noted = [](double radius, const std::string& more) {
+        const std::string r = fmt::format("{}", radius);
+        const Scene scene =
+            world_of("MakeNamedMedium \"g\" \"string type\" \"uniformgrid\" \"float density\" 1 \"point3 p0\" [ -1 -1 "
+                     "-1 ] \"point3 p1\" [ 1 1 1 ] MediumInterface \"g\" \"\" Material \"interface\" " +
+                     more + " Shape \"trianglemesh\" \"point3 P\" [ " + r + " 0 0 -" + r + " 0 0 0 " + r + " 0 0 -" +
+                     r + " 0 0 0 " + r + " 0 0 -" + r +
+                     " ] \"integer indices\" [ 0 2 4 2 1 4 1 3 4 3 0 4 2 0 5 1 2 5 3 1 5 "
+                     "0 3 5 ]");
+        return std::any_of(scene.warnings.begin(), scene.warnings.end(), [](const std::string& warning) {
+            return warning.find("shapes do not cut grids") != std::string::npos;
+        });
+    };
+    CHECK(is_noted(1.01, "")); // its corners are out, of an octahedron whose bounds are beyond the box
+    CHECK(is_noted(2.9, ""));
+    CHECK_FALSE(is_noted(3.1, ""));
+}
+
 TEST_CASE("wrong media of pbrt are refused with their place", "[cpu][pbrt]") {
     const auto refused = [](const std::string& parameters, const std::string& reason) {
         CHECK_THROWS_WITH(world_of(grid_medium(parameters)), Contains(reason) && Contains("s.pbrt:3:"));

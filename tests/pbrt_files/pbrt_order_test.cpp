@@ -97,6 +97,13 @@ TEST_CASE("the fog that pbrt's camera is in ends where a shape about the camera 
     CHECK(notes(seen("", inside), "the camera is within medium \"fog\", and so are its rays; pbrt's begin in none"));
     CHECK(!notes(seen("Translate 3 0 0 ", inside), "the camera is within"));
     CHECK(!notes(seen(around, inside), "the camera is within"));
+    // What ends it for pbrt's rays alone.
+    const std::string juice =
+        "MakeNamedMedium \"j\" \"string type\" \"homogeneous\" MediumInterface \"j\" \"\" Material "
+        "\"interface\" Translate 0 0 9 Shape \"sphere\"";
+    CHECK(notes(seen(around, juice), "medium \"fog\" goes on beyond this; pbrt's rays leave it here"));
+    CHECK(!notes(seen("", juice), "goes on beyond this"));
+    CHECK(!notes(seen(around, "ReverseOrientation " + mesh + "\"about.ply\" " + juice), "goes on beyond this"));
 }
 
 TEST_CASE("the mesh about pbrt's camera is found wherever the converted scene is", "[cpu][pbrt]") {

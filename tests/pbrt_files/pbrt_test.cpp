@@ -198,6 +198,11 @@ TEST_CASE("what of a pbrt scene cannot be rendered is said once, with its place"
     noted("Texture \"i\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" " +
               textured("\"checkerboard\" \"texture tex1\" \"i\""),
           "images in a Texture \"checkerboard\" are left out");
+    noted("Texture \"i\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" \"string filter\" \"point\" Material "
+          "\"diffuse\" "
+          "\"texture reflectance\" \"i\" Shape \"sphere\"",
+          "filter \"point\" is left out");
+    noted("Material \"conductor\" \"float roughness\" 4 Shape \"sphere\"", "alpha = 2, is 1 here");
     noted("ActiveTransform EndTime", "nothing moves");
     noted("ActiveTransform StartTime", "nothing moves");
     noted(

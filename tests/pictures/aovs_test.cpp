@@ -271,6 +271,18 @@ TEST_CASE("groups of lights that fade keep their places", "[cpu][xml][aovs]") {
                                  {{"F", frame}})) == std::vector<std::string>{"a", "b", "c", "d"});
 }
 
+TEST_CASE("groups keep their places when the background fades, and when several are out", "[cpu][xml][aovs]") {
+    for (const char* frame : {"0", "1"})
+        CHECK(light_groups(parse("<sphere/><backgroundColor r='$F' group='sky'/><light y='1' r='$F' group='key'/>"
+                                 "<lights><point x='1' r='$F' group='a'/><point x='2' r='$F' group='b'/></lights>",
+                                 {{"F", frame}})) == std::vector<std::string>{"key", "a", "b", "sky"});
+}
+
+TEST_CASE("a medium without a name shares no layer with one that is called as it would be", "[cpu][xml][aovs]") {
+    CHECK(medium_names(parse("<volumes><volume name='volume2'><sphere/></volume><volume><box/></volume></volumes>")) ==
+          std::vector<std::string>{"volume2", "volume2_"});
+}
+
 TEST_CASE("layers go on by the schedule they began with, where none is asked for", "[gpu][image][aovs]") {
     Scene scene = busy("cachedRatioTracking", 64); // more paths at a time than fused lanes have
     scene.layers = everything;

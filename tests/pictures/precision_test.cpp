@@ -250,6 +250,15 @@ TEST_CASE("surfaces off which rays are kept too far are told of", "[cpu][precisi
     CHECK_THAT(said(1e5), Contains("5.5 % of its size"));
     scene.surfaces.back().shape = BallSurface{{0.0, -33.0, 0.0}, 30.0};
     CHECK(said(1e5).empty());
+    // Panes whose other side rays would begin beyond: 0.0038 of 0.004.
+    scene.surfaces.back().material.kind = MaterialKind::dielectric;
+    scene.surfaces.back().shape = BallSurface{{0.0, -33.0, 0.0}, 30.0};
+    CHECK(said(1e5).empty());
+    const TriangleSurface pane{{{-1.0, -9.0, -1.0}, {1.0, -9.0, -1.0}, {0.0, -9.004, 1.0}}, {{0, 1, 2}}};
+    scene.surfaces.back().shape = pane;
+    CHECK(said(10.0).empty());
+    CHECK_THAT(said(2000.0), Contains("begin 0.0038 world units off it, 0.95 times its glass' thickness"));
+    scene.surfaces.back().material = {};
     // Of a large mesh those triangles count that are in the medium.
     TriangleSurface mesh{{{-2.0, -1.0, 2.0}, {2.0, -1.0, 2.0}, {0.0, -1.0, -2.0}}, {{0, 1, 2}}};
     scene.surfaces.back().shape = mesh;

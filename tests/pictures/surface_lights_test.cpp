@@ -231,8 +231,9 @@ TEST_CASE("a bright lamp at the camera shines over planes alone", "[gpu][image][
     scene.settings.spp = 1024;
     const double sum = 0.5 / pi * 1e9 * (1.0 / 4.0 + 1e-6);
     const Film film = render_here(scene, 1).film; // straight below but for a fortieth, whose square counts
+    // A hundredth of the looks goes to the other one: 5 standard deviations of 1024.
     for (const glm::vec3& pixel : film.mean)
-        CHECK(pixel.x == Approx(sum).epsilon(0.01));
+        CHECK(pixel.x == Approx(sum).epsilon(0.016));
 }
 
 // Flights that end at surfaces, from them and in the midst; mirrors and glass show lamps before these looks, lamps with
