@@ -32,7 +32,7 @@ double spread(const std::string& xml, double part) {
 
 } // namespace
 
-TEST_CASE("lamps along a ray are chosen by what it gathers of each", "[gpu][lights]") {
+TEST_CASE("lamps along a ray are chosen by what it gathers of each", "[gpu][variances][lights]") {
     // Chosen for one point of the ray, each is looked at with the chance that it had there: 5 to 9.
     std::string lamps;
     for (int i = 0; i < 20; ++i)
@@ -45,7 +45,7 @@ TEST_CASE("lamps along a ray are chosen by what it gathers of each", "[gpu][ligh
                    0.5) < 1.0);
 }
 
-TEST_CASE("a lamp beside a searchlight that passes by is found", "[gpu][lights]") {
+TEST_CASE("a lamp beside a searchlight that passes by is found", "[gpu][variances][lights]") {
     // Each of two is looked at by a hundredth of the looks or more. By intensity alone it is one of 160,000.
     CHECK(spread("<box width='10' height='10' "
                  "depth='10'/><sigma_a>0.01</sigma_a><sigma_s>0.1</sigma_s><maxDepth>1</maxDepth>"
@@ -54,7 +54,7 @@ TEST_CASE("a lamp beside a searchlight that passes by is found", "[gpu][lights]"
                  0.5) < 150.0);
 }
 
-TEST_CASE("distances are drawn about a lamp however long free paths are", "[gpu][lights]") {
+TEST_CASE("distances are drawn about a lamp however long free paths are", "[gpu][variances][lights]") {
     // With distances drawn evenly within a thousandth of a free path from it: 1 to 30, the nearer the more.
     CHECK(spread("<everywhere/><sigma_a>1e-4</sigma_a><sigma_s>9e-4</sigma_s><maxDepth>1</maxDepth><lights><point "
                  "z='-10'/></lights>"
@@ -62,7 +62,8 @@ TEST_CASE("distances are drawn about a lamp however long free paths are", "[gpu]
                  0.97) < 0.3);
 }
 
-TEST_CASE("a peak of the phase function is not looked along for a lamp that lies elsewhere", "[gpu][lights]") {
+TEST_CASE("a peak of the phase function is not looked along for a lamp that lies elsewhere",
+          "[gpu][variances][lights]") {
     // By the peak's height alone four of five looks go there: 4.
     CHECK(
         spread(
@@ -72,7 +73,7 @@ TEST_CASE("a peak of the phase function is not looked along for a lamp that lies
             0.5) < 2.0);
 }
 
-TEST_CASE("lamps behind frosted glass are looked for by how far it scatters", "[gpu][surfaces]") {
+TEST_CASE("lamps behind frosted glass are looked for by how far it scatters", "[gpu][variances][surfaces]") {
     // It scatters 22 times less far than metal of this roughness: 7.
     CHECK(spread("<surfaces><rectangle lookAt='0 0 1' width='4' height='4' material='dielectric' ior='1.1' "
                  "roughness='0.02'/></surfaces>"
@@ -80,7 +81,7 @@ TEST_CASE("lamps behind frosted glass are looked for by how far it scatters", "[
                  0.5) < 1.0);
 }
 
-TEST_CASE("of a coat that path is taken which has light left", "[gpu][surfaces]") {
+TEST_CASE("of a coat that path is taken which has light left", "[gpu][variances][surfaces]") {
     const std::string scene =
         "<surfaces><sphere material='coated' {}/></surfaces><backgroundColor {}/><camera z='4' fov='5'/>";
     // All paths are mirrored, F = 0.04 of each, of which roulette keeps 0.4 and makes them 0.1: 1.5. By F alone it is
@@ -90,7 +91,7 @@ TEST_CASE("of a coat that path is taken which has light left", "[gpu][surfaces]"
     CHECK(spread(fmt::format(fmt::runtime(scene), "r='1' g='1' b='1'", "r='1' g='1' b='1'"), 1.0) < 0.1);
 }
 
-TEST_CASE("light that glass holds for long has a bounded variance", "[gpu][surfaces]") {
+TEST_CASE("light that glass holds for long has a bounded variance", "[gpu][variances][surfaces]") {
     // Of diffuse light within, 0.04 leaves each time. After 32 vertices a sample's weight grows no faster than by the
     // square of their number: the mean of its square is the sum of 0.04 0.96^k (1 + k / 32)^2 over k or less, 3.65. By
     // a fixed chance of 0.9 it is that of 0.04 (0.96 / 0.9)^k, which has no bound.
@@ -100,7 +101,8 @@ TEST_CASE("light that glass holds for long has a bounded variance", "[gpu][surfa
                  0.9) < 2.65);
 }
 
-TEST_CASE("particles of a narrow spot have the weight of the light that it sends that way", "[gpu][particles]") {
+TEST_CASE("particles of a narrow spot have the weight of the light that it sends that way",
+          "[gpu][variances][particles]") {
     // Paths find what a spot of 5 degrees lights one time in a thousand. If it counts as a point, whose particles go
     // anywhere, they keep two thirds of the light, and a spread of 2000.
     CHECK(spread("<surfaces><rectangle lookAt='0 1 0' width='6' height='6'/><rectangle y='2' lookAt='0 0 0' width='6' "
@@ -111,7 +113,7 @@ TEST_CASE("particles of a narrow spot have the weight of the light that it sends
                  0.5) < 40.0);
 }
 
-TEST_CASE("films in several buffers have as many particles for each row", "[gpu][particles]") {
+TEST_CASE("films in several buffers have as many particles for each row", "[gpu][variances][particles]") {
     // Each buffer has as many particles as pixels, from all of the light: one of a single row, beside one of eight,
     // would have an eighth as many, and eight times the variance.
     Scene scene = parse("<periodic x='-4 4' z='-4 4'/><box y='0.5' width='8' height='1' "
