@@ -217,9 +217,14 @@ void check_all(const MeasureOptions& options, const std::vector<SpectralBand>& b
     for (const Values& values : combinations(options.sweeps))
         for (const SpectralBand& band : bands)
             of_values(options.sweeps, values, band, [&] {
+                if (interrupted())
+                    return;
                 const RenderScene loaded = load_render_scene(request_of(options, values, band), workshop.fields());
                 check_output(options, loaded.scene);
                 check_keys(options, loaded.scene);
+                FileUses uses;
+                uses.reads_files_of(loaded.scene);
+                uses.check_inputs();
             });
 }
 

@@ -208,7 +208,9 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
 CheckedPicture check_picture(const RenderOptions& options, Workshop& workshop) {
     const RenderScene loaded = load_render_scene(options, workshop.fields(), false);
     resolve_crop(options.crop, loaded.scene.picture);
-    return {grid_files(loaded.scene), check_files(options, loaded, CheckpointFile(options))};
+    CheckedPicture checked{grid_files(loaded.scene), check_files(options, loaded, CheckpointFile(options))};
+    checked.uses.check_inputs();
+    return checked;
 }
 
 int render_picture(const RenderOptions& options, Workshop& workshop) {

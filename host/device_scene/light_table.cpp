@@ -31,9 +31,11 @@ struct Entry {
     enum class Place { sky, far, lamp, point } place = Place::far; // sky: met by flights that leave
     float reach = 0.0f;                                            // from its middle
     double power = 0.0;                                            // see LightTable
-    double cone = pi;         // radians, the most that its light is off its direction
-    double root_of_lit = 1.0; // of the share of the media that it shines on: who does with intensity I on a share s is
-                              // best chosen by I s^(1/2)
+    double cone = pi; // radians, the most that its light is off its direction
+    // What counts of its intensity for the chance to be chosen, of spots: the fourth root of the share of the media
+    // that is in the cone. The square root would have the least noise if all places counted alike; what is lit counts
+    // for more.
+    double by_cone = 1.0;
 };
 
 bool is_somewhere(const Entry& entry) {
@@ -81,8 +83,8 @@ public:
         entry.row.direction = light.direction;
         entry.row.full_within = static_cast<float>(versine(half * (1.0 - light.blend)));
         entry.row.none_beyond = static_cast<float>(versine(half));
-        entry.root_of_lit = std::sqrt(share_in_cone(light.position, light.direction, half));
-        entry.fluence = entry.root_of_lit * channel_mean(light.intensity) / square_distance(light.position);
+        entry.by_cone = std::sqrt(std::sqrt(share_in_cone(light.position, light.direction, half)));
+        entry.fluence = entry.by_cone * channel_mean(light.intensity) / square_distance(light.position);
         entry.place = Entry::Place::point;
         aim(entry, light.position, light.direction, half);
         return entry;
@@ -229,7 +231,7 @@ PlacedLight placed(const Entry& entry, std::uint32_t row) {
     const float power =
         mean * (entry.place == Entry::Place::lamp ? entry.row.area : 1.0f) * (entry.fluence > 0.0 ? 1.0f : 1e-6f);
     PlacedLight light{entry.row.position - entry.reach, entry.row.position + entry.reach, std::max(power, 1e-30f),
-                      std::max(power * static_cast<float>(entry.root_of_lit), 1e-30f), row};
+                      std::max(power * static_cast<float>(entry.by_cone), 1e-30f), row};
     if (entry.row.kind & LIGHT_AIMED) {
         light.axis = entry.row.direction;
         light.reach = entry.cone;

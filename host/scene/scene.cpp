@@ -65,13 +65,7 @@ std::string medium_name(const Scene& scene, std::size_t volume) {
     std::replace_if(
         name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c) && c != '_' && c != '-' && c < 128; },
         '_');
-    if (!name.empty())
-        return name;
-    name = "volume" + std::to_string(volume + 1);
-    const auto has_it = [&](const Volume& other) { return other.name == name; };
-    while (std::any_of(scene.volumes.begin(), scene.volumes.end(), has_it))
-        name += '_'; // to share a layer is for those of one name that somebody gave them
-    return name;
+    return name.empty() ? "volume" + std::to_string(volume + 1) : name;
 }
 
 std::vector<std::string> medium_names(const Scene& scene) {

@@ -5,6 +5,7 @@
 
 #include "atomic_file.h"
 #include "error.h"
+#include "input_file.h"
 #include "one_line.h"
 
 namespace vkvol {
@@ -64,6 +65,11 @@ void FileUses::reads_files_of(const Scene& scene) {
 
 void FileUses::writes(const std::string& what, const path& file, const std::string& option) {
     outputs_.push_back({what, file, option});
+}
+
+void FileUses::check_inputs() const {
+    for (const InputFile& input : inputs_)
+        check_input_file(input.file, fmt::format("it is {}", input.what));
 }
 
 void FileUses::check() const {

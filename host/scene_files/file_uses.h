@@ -31,6 +31,9 @@ public:
     const std::vector<InputFile>& inputs() const { return inputs_; }
     const std::vector<Output>& outputs() const { return outputs_; }
 
+    // Throws InputError for the first file of a scene that cannot be read: where many scenes are to be rendered, that
+    // of a late one should not end it all after hours.
+    void check_inputs() const;
     // Throws InputError that names both uses and the remedy. Other spellings and links are the same file; devices and
     // pipes may be used more than once.
     void check() const;

@@ -266,7 +266,7 @@ struct LightNode {
     vec3 low; // bounds of all lights below, render space
     vec3 high;
     float power; // of all of them
-    float power_in_matter; // likewise, of each times the root of the share of the media that it shines on, roughly
+    float power_in_matter; // likewise; spots count for less, the fewer of the media they shine on
     uint light;  // its row; NO_LIGHT of a branch
     uint right;
     vec3 axis;    // unit, about which they shine

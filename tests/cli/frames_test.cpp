@@ -319,6 +319,20 @@ TEST_CASE("a sequence that is killed again and again has the bits of one that is
     }
 }
 
+TEST_CASE("a file that a late frame lacks is missed before the first one is rendered", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("s.xml",
+                 "<options><sphere/><sigma_s>1</sigma_s><surfaces><mesh file='m.${F}.obj'/></surfaces></options>");
+    folder.write("m.1.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const Run run = folder.vkvol("s.xml -f 1,2 -q --spp 1 -o 'a.#.png'");
+    CHECK(run.code == exit_bad_input);
+    CHECK_THAT(run.text, Contains("frame 2: ") && Contains("m.2.obj: no such file") && !Contains("is done"));
+    CHECK(folder.text("a.1.png").empty());
+    const Run measured = folder.vkvol("measure s.xml -D F=1,2 -q");
+    CHECK(measured.code == exit_bad_input);
+    CHECK_THAT(measured.text, Contains("m.2.obj: no such file"));
+}
+
 TEST_CASE("grids of a sequence go by its frames", "[gpu][command]") {
     const Folder folder("");
     folder.write("grid.xml", "<options><densityField>none.nvdb</densityField><sigma_a>0.1</sigma_a><width>8</width>"

@@ -278,11 +278,6 @@ TEST_CASE("groups keep their places when the background fades, and when several 
                                  {{"F", frame}})) == std::vector<std::string>{"key", "a", "b", "sky"});
 }
 
-TEST_CASE("a medium without a name shares no layer with one that is called as it would be", "[cpu][xml][aovs]") {
-    CHECK(medium_names(parse("<volumes><volume name='volume2'><sphere/></volume><volume><box/></volume></volumes>")) ==
-          std::vector<std::string>{"volume2", "volume2_"});
-}
-
 TEST_CASE("layers go on by the schedule they began with, where none is asked for", "[gpu][image][aovs]") {
     Scene scene = busy("cachedRatioTracking", 64); // more paths at a time than fused lanes have
     scene.layers = everything;
