@@ -84,10 +84,14 @@ shared::EmissionParams make_emission(const Volume& volume, const LoadedMedium& l
     return params;
 }
 
-// The density where there are no majorant cells: bounds of it, and a control density with what differs from it.
-void fill_density(const Volume& volume, double majorant_scale, bool decomposes, shared::MediumParams& params) {
+// The density where there are no majorant cells: bounds of it, and a control density with what differs from it. Of
+// noise half the bound where it may be, by the bound of a weight's mean square in make_controls(); else a lower bound,
+// which decomposition needs, too. `across`: the most optical depth at density 1.
+void fill_density(const Volume& volume, double majorant_scale, bool decomposes, double across,
+                  shared::MediumParams& params) {
     const double bound = volume.noise ? noise_bound(*volume.noise) : 1.0;
-    const double control = volume.noise ? (decomposes ? 0.0 : 0.5 * bound) : 1.0; // decomposition: a lower bound
+    const bool thin = across * 0.5 * bound < 1.0;
+    const double control = volume.noise ? (thin && !decomposes ? 0.5 * bound : 0.0) : 1.0;
     params.majorant = static_cast<float>(bound * majorant_scale);
     params.control = static_cast<float>(control);
     params.residual = static_cast<float>(volume.noise ? majorant_scale * std::max(bound - control, control)
@@ -142,11 +146,12 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
         params.cell_size = 1.0f;
         params.layers = make_layers(volume, *loaded.majorants);
     }
-    fill_density(volume, scene.settings.majorant_scale, method.flights_have(TRAIT_CONTROL), params);
+    const Rgb sigma_t = world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr);
+    fill_density(volume, scene.settings.majorant_scale, method.flights_have(TRAIT_CONTROL),
+                 volume.noise ? largest(sigma_t) * diagonal_of(volume, loaded) : 0.0, params);
     if (volume.noise)
         params.noise = make_noise(*volume.noise, shape.center);
     params.bvh_nodes = loaded.bvh ? static_cast<std::uint32_t>(loaded.bvh->nodes.size()) : 0;
-    const Rgb sigma_t = world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr);
     params.sigma_t = static_cast<float>(largest(sigma_t));
     params.sigma_ratio = is_chromatic && largest(sigma_t) > 0.0 ? sigma_t / largest(sigma_t) : Rgb(1.0);
     params.usual_sigma_t = static_cast<float>(std::max(largest(sigma_t) * usual_density(volume, loaded), 1e-30));

@@ -181,6 +181,7 @@ std::vector<shared::ControlCell> make_controls(const DensityField& field, const 
                                                const ValueMap& map) {
     constexpr double rounding = 1e-6; // of the bounds, so that single precision does not violate them
     std::vector<shared::ControlCell> controls(grid.bounds.size(), shared::ControlCell{0.0f, 0.0f});
+    const double across = sigma_t * grid.cell * glm::length(glm::dvec3(grid.dims));
     std::size_t i = 0;
     for (int x = 0; x < grid.dims.x; ++x)
         for (int y = 0; y < grid.dims.y; ++y)
@@ -190,7 +191,7 @@ std::vector<shared::ControlCell> make_controls(const DensityField& field, const 
                     continue;
                 const CellDensities values = cell_densities(field, map, grid, {x, y, z});
                 const double rest_of_mean = std::max(most - values.mean, values.mean - values.least);
-                const bool thin = sigma_t > 0.0 && sigma_t * rest_of_mean * grid.cell * std::sqrt(3.0) < 1.0;
+                const bool thin = sigma_t > 0.0 && across * rest_of_mean < 1.0;
                 const double control = thin ? values.mean : values.least * (1.0 - rounding);
                 const double rest = thin ? rest_of_mean : most - control;
                 controls[i] = {float(control), float(rest + rounding * most)};

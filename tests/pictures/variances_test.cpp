@@ -136,3 +136,19 @@ TEST_CASE("films in several buffers have as many particles for each row", "[gpu]
     CHECK(variance_of(8) < 2.0 * variance_of(0));
     CHECK(variance_of(0) < 2.0 * variance_of(8));
 }
+
+TEST_CASE("a control density above rough noise does not make weights that grow with the way",
+          "[gpu][variances][noise]") {
+    // Of 10 to 80 mean free paths with densities far below half of their bound: 50 times the variance of ratio
+    // tracking.
+    const auto by = [](const char* integrator) {
+        return spread(
+            fmt::format("<box width='4' height='4' depth='4'/><noise frequency='.25' octaves='8' gain='1'/>"
+                        "<sigma_a>0</sigma_a><sigma_s>20</sigma_s><maxDepth>1</maxDepth>"
+                        "<light y='1' z='0.2' r='1' g='1' b='1'/><camera y='6' z='7' lookAt='0 0 0' fov='20'/>"
+                        "<integrator>{}</integrator>",
+                        integrator),
+            0.9);
+    };
+    CHECK(by("residualRatioTracking") < 1.1 * by("ratioTracking"));
+}
