@@ -1,7 +1,6 @@
 #include "kernel_store.h"
 
 #include <algorithm>
-#include <cstring>
 #include <fstream>
 #include <mutex>
 #include <optional>
