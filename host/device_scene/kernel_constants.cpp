@@ -6,6 +6,7 @@
 
 #include "camera_view.h"
 #include "estimator_traits.h"
+#include "first_flights.h"
 #include "layer_plan.h"
 #include "light_table.h"
 #include "medium_pieces.h"
@@ -193,6 +194,8 @@ Specialization specialize(const Scene& scene, Media media, const Method& method,
     constants[SPEC_NEE] = method.nee;
     constants[SPEC_EMISSION_AT] = method.emission_at;
     constants[SPEC_FREE_FLIGHT] = method.free_flight;
+    constants[SPEC_FIRST_FLIGHT] =
+        method.first_flight.value_or(gains_by_split_flights(scene, media) ? FIRST_FLIGHT_SPLIT : FIRST_FLIGHT_DRAWN);
     // Without shadow rays the choice is to leave no trace in the kernel.
     constants[SPEC_TRANSMITTANCE] = method.nee != NEE_NONE ? method.transmittance : TRANSMITTANCE_ANALYTIC;
     constants[SPEC_STEPS] = 1;

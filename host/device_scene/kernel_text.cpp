@@ -47,6 +47,7 @@ std::string kernel_text(const Specialization& s, const Assets& assets, bool chro
     if (s[SPEC_MAP] != MAP_NONE)
         text += s[SPEC_MAP] >= MAP_ALBEDO ? ", transfer function" : ", mapped values";
     text += fmt::format("{}, {} flight", chromatic ? ", chromatic" : "", choice("flight", s[SPEC_FREE_FLIGHT]));
+    text += s[SPEC_FIRST_FLIGHT] == FIRST_FLIGHT_SPLIT ? ", the first split" : "";
     text += scatterings[s[SPEC_SCATTERING]];
     if (s[SPEC_NEE] != NEE_NONE)
         text += fmt::format(", light at {} by {} transmittance",

@@ -110,6 +110,7 @@ const std::vector<Axis>& axes() {
         {"mis", &AxisChoices::mis, {"balance", "power", "light", "phase"}},
         {"distance", &AxisChoices::distance, {"flights", "mixed"}},
         {"paths", &AxisChoices::paths, {"camera", "light", "both"}},
+        {"firstFlight", &AxisChoices::first_flight, {"drawn", "split"}},
     };
     return table;
 }

@@ -55,6 +55,7 @@ private:
     void choose_mis();
     void choose_distance();
     void choose_transmittance();
+    void choose_first_flight();
     void choose_emission();
     void choose_filter();
     void check_channels() const;
@@ -78,6 +79,7 @@ Method MethodChooser::choose() {
     choose_mis();
     choose_distance();
     choose_transmittance();
+    choose_first_flight();
     choose_emission();
     choose_filter();
     check_channels();
@@ -260,6 +262,18 @@ void MethodChooser::choose_transmittance() {
             : fmt::format("regular transmittance goes from voxel to voxel, and {}", without_voxels());
     throw InputError(
         fmt::format("{}: {}; use transmittance ratio, or march with marched flights", method_.integrator, why));
+}
+
+// A flight that is split goes through, past all tentative collisions: what tells the matter along it by these alone can
+// be.
+void MethodChooser::choose_first_flight() {
+    const bool from_camera = method_.paths != PATHS_LIGHT && !reads_flux(scene_.camera);
+    const bool could = from_camera && method_.nee != NEE_TENTATIVE && !scene_.periodic &&
+                       (method_.free_flight == FREE_FLIGHT_DELTA || method_.free_flight == FREE_FLIGHT_SPECTRAL);
+    if (choices_.first_flight == FIRST_FLIGHT_SPLIT && !could)
+        warn("first flights are drawn: split ones are of cameras, by flight delta or spectral, without shadow rays at "
+             "null collisions, and not in domains that repeat");
+    method_.first_flight = could ? choices_.first_flight : FIRST_FLIGHT_DRAWN;
 }
 
 void MethodChooser::choose_emission() {

@@ -35,7 +35,7 @@ void look_up(MediumParams v, Walk w, float t[STEPS], vec3 tap[STEPS], out float 
 
 // Up to STEPS steps of a flight or, `seeing`, of a shadow ray of transmittance T. The walk is left at the event.
 uint step_ahead(MediumParams v, bool seeing, inout Walk walk, inout Rng rng, inout Spectrum beta, inout Spectrum T,
-                inout Tally tally) {
+                inout Split split, inout Tally tally) {
     uint step[STEPS]; // what the walk met
     float t[STEPS];
     float sigma_maj[STEPS];
@@ -46,10 +46,11 @@ uint step_ahead(MediumParams v, bool seeing, inout Walk walk, inout Rng rng, ino
     uint last = EVENT_MOVING;
     [[unroll]] for (int k = 0; k < STEPS; ++k) {
         step[k] = EVENT_LEFT;
-        sigma_maj[k] = w.sigma_maj;
+        sigma_maj[k] = 0.0;
         if (last != EVENT_LEFT) {
             last = advance(v, false, w);
             step[k] = last;
+            sigma_maj[k] = w.rate;
         }
         t[k] = w.t;
         Rng drawn = ahead;
@@ -81,7 +82,7 @@ uint step_ahead(MediumParams v, bool seeing, inout Walk walk, inout Rng rng, ino
                     event = opaque ? EVENT_OPAQUE : event;
                 } else {
                     Spectrum deposit;
-                    event = fly(v, c, event, walk, rng, beta, deposit, tally);
+                    event = fly(v, c, event, walk, rng, beta, split, deposit, tally);
                 }
             }
         }

@@ -3,6 +3,7 @@
 #define FREE_FLIGHT_GLSL
 #include "majorants/collision.glsl"
 #include "estimators/march.glsl"
+#include "estimators/split.glsl"
 #include "field/voxels.glsl"
 
 #include "estimators/flight/adaptive_flight.glsl"
@@ -33,24 +34,28 @@ void begin_flight_part(MediumParams v, inout Walk w) {
 // `deposit`: at EVENT_TOUCHED and EVENT_COLLIDED, how much throughput meets matter at w.at: beta sigma_t / sigma_maj, or
 // what a march's step takes away.
 uint fly(MediumParams v, Collision c, uint event, inout Walk w, inout Rng rng, inout Spectrum beta,
-         out Spectrum deposit, inout Tally tally) {
+         inout Split split, out Spectrum deposit, inout Tally tally) {
     deposit = to_spectrum(vec3(0.0));
     if (NULL_FLIGHT && event == EVENT_COLLIDED) {
         float share = CONTROLLED_FLIGHT ? decomposition_share(c) : c.sigma_t / c.sigma_maj;
         deposit = beta * c.ratio * share * c.share;
-        switch (FREE_FLIGHT) {
-        case FREE_FLIGHT_DELTA:
-            event = delta_flight(c);
-            break;
-        case FREE_FLIGHT_WEIGHTED:
-            event = weighted_flight(c, beta);
-            break;
-        case FREE_FLIGHT_DECOMPOSITION:
-            event = decomposition_flight(c);
-            break;
-        case FREE_FLIGHT_SPECTRAL:
-            event = spectral_flight(c, beta);
-            break;
+        if (SPLITS && splits_here(w, beta)) {
+            event = split_flight(c, w, deposit, beta, split);
+        } else {
+            switch (FREE_FLIGHT) {
+            case FREE_FLIGHT_DELTA:
+                event = delta_flight(c);
+                break;
+            case FREE_FLIGHT_WEIGHTED:
+                event = weighted_flight(c, beta);
+                break;
+            case FREE_FLIGHT_DECOMPOSITION:
+                event = decomposition_flight(c);
+                break;
+            case FREE_FLIGHT_SPECTRAL:
+                event = spectral_flight(c, beta);
+                break;
+            }
         }
         tally.null_collisions += event == EVENT_TOUCHED ? 1u : 0u;
     }

@@ -33,6 +33,8 @@
 //                          numbers, which are hashes of (words_x, words_y, words_z + n, words_w)
 //   lamps shown            by a mirror, glass or a vertex before surfaces, behind the draw of the departure: w: which of them; taken
 //                          whether one is in the way or not
+//   split first flight     at tentative collisions, event: whether that one is picked. At its end a draw, event: whether the path goes
+//                          on from there, or, if what was left has collided, from which of the two
 //   scattering             e_x: next free flight; y, z: phase function; w: roulette; select
 //   scattering, a surface  y, z, x: the BSDF; w, in parts: which side's normal, and the roulettes
 // Where there are surfaces each flight and each shadow ray takes a draw of its own once its end is known: e_x and select. Those of

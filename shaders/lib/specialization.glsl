@@ -23,6 +23,7 @@ layout(constant_id = SPEC_SCATTERING) const int SCATTERING = SCATTERING_MULTIPLE
 layout(constant_id = SPEC_NEE) const int NEE = NEE_NONE;
 layout(constant_id = SPEC_EMISSION) const int EMISSION = EMISSION_NONE;
 layout(constant_id = SPEC_EMISSION_AT) const int EMISSION_AT = EMISSION_AT_COLLISIONS;
+layout(constant_id = SPEC_FIRST_FLIGHT) const int FIRST_FLIGHT = FIRST_FLIGHT_DRAWN;
 layout(constant_id = SPEC_FREE_FLIGHT) const int FREE_FLIGHT = FREE_FLIGHT_DELTA;
 layout(constant_id = SPEC_TRANSMITTANCE) const int TRANSMITTANCE = TRANSMITTANCE_RATIO;
 layout(constant_id = SPEC_TEMPERATURE_TYPE) const int TEMPERATURE_TYPE = GRID_FLOAT;
@@ -118,6 +119,7 @@ const bool COUNTS = (int(READS_FLUX) & int(HAS_PARTICLES)) != 0; // particles, w
 const bool COUNTS_PASSING = (int(COUNTS) & int(SENSOR == SENSOR_IRRADIANCE)) != 0;
 const bool COUNTS_ABSORBED = (int(COUNTS) & int(SENSOR == SENSOR_ABSORPTION)) != 0;
 const bool LOOKS_ALONG = DISTANCE == DISTANCE_MIXED;
+const bool SPLITS = FIRST_FLIGHT == FIRST_FLIGHT_SPLIT;
 const int FLIGHT_TRAITS = FREE_FLIGHT_TRAITS(FREE_FLIGHT);
 const int SHADOW_TRAITS = TRANSMITTANCE_TRAITS(TRANSMITTANCE);
 const bool NULL_FLIGHT = (FLIGHT_TRAITS & TRAIT_NULL) != 0;

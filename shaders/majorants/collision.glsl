@@ -9,7 +9,7 @@
 struct Collision {
     float sigma_t;   // filtered as the scene asks; with one stochastic tap only its expectation is the field's. Of the
                      // channel in which it is largest
-    float sigma_maj; // > 0 at a collision
+    float sigma_maj; // > 0 at a collision: the rate of tentative ones
     float u;         // [0, 1), for the estimator
     float sigma_c;   // of the control density
     float flown;     // in the cell, since the last step
@@ -25,12 +25,12 @@ Collision no_collision(MediumParams v) {
 // `seeing`: the walk is a shadow ray's. `beta`: the throughput that collides.
 uint next_collision(MediumParams v, bool seeing, Spectrum beta, inout Walk w, inout Rng rng, inout Tally tally, out Collision c) {
     bool residual = CONTROLLED_TRANSMITTANCE && seeing;
-    c.sigma_maj = w.sigma_maj;
     c.sigma_c = v.sigma_t * w.control;
     c.ratio = to_spectrum(v.sigma_ratio);
     c.share = to_spectrum(vec3(1.0));
     float from = w.t;
     uint event = advance(v, residual, w);
+    c.sigma_maj = w.rate;
     c.flown = w.t - from;
     w.at = w.t;
     if (event != EVENT_COLLIDED) {

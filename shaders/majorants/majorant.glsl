@@ -152,9 +152,12 @@ uint next_cell(MediumParams v, bool residual, float t_exit, vec3 t_face, inout W
 uint advance(MediumParams v, bool residual, inout Walk w) {
     vec3 t_face;
     float t_exit = cell_exit(v, w, t_face);
-    float tau_cell = (LEAPS != 0 ? max(w.sigma_maj, 0.0) : w.sigma_maj) * (t_exit - w.t);
+    w.rate = LEAPS != 0 ? max(w.sigma_maj, 0.0) : w.sigma_maj;
+    if (SPLITS)
+        w.rate = w.rate > 0.0 ? max(w.rate, w.least / max(t_exit - w.t, 1.0e-30)) : 0.0;
+    float tau_cell = w.rate * (t_exit - w.t);
     if (w.tau < tau_cell) {
-        w.t = min(w.t + w.tau / w.sigma_maj, t_exit);
+        w.t = min(w.t + w.tau / w.rate, t_exit);
         return EVENT_COLLIDED;
     }
     w.tau = max(w.tau - tau_cell, 0.0); // a driver may have rounded only one of the products

@@ -21,7 +21,7 @@ const bool SHADOW_RAYS_WALK =
     bool adds_depth = !NULL_FLIGHT || (SHADOW_RAYS_WALK && !NULL_TRANSMITTANCE);                                      \
     bool walks = (traits & TRAIT_CELLS) != 0;                                                                         \
     bool cells = (traits & TRAIT_VOXELS) != 0 || (walks && HAS_CELLS);                                                \
-    bool listed = SEVERAL_MEDIA, bricks = CELL_BITS != 0;                                                             \
+    bool listed = SEVERAL_MEDIA, bricks = CELL_BITS != 0, splits = SPLITS;                                            \
     bool controlled = (traits & TRAIT_CONTROL) != 0;                                                                  \
     bool sets = (traits & TRAIT_SETS) != 0;
 

@@ -104,7 +104,8 @@
 #define SPEC_PATHS 34        // PATHS_...
 #define SPEC_PERIODIC 35     // 1: a domain repeats
 #define SPEC_COPIES 36       // 1: a path's words are copied in loops, see laid_aside.glsl
-#define SPEC_COUNT 37
+#define SPEC_FIRST_FLIGHT 37  // FIRST_FLIGHT_...
+#define SPEC_COUNT 38
 
 // Value of a constant in which several media differ: each has its own, in its row.
 #define EACH -1
@@ -259,6 +260,10 @@
 // How the distances are found from which light is scattered that comes from near.
 #define DISTANCE_FLIGHTS 0 // by free flights alone
 #define DISTANCE_MIXED 1   // and by looks from along them; see equiangular.glsl
+
+// What becomes of a path's first flight.
+#define FIRST_FLIGHT_DRAWN 0 // as of all others, it collides or it goes through
+#define FIRST_FLIGHT_SPLIT 1 // both; see split.glsl
 
 // Where paths begin.
 #define PATHS_CAMERA 0

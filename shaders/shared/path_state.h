@@ -51,7 +51,7 @@
     ROW(Spectrum, cached, has_cache)   /* transmittance that the shadow ray corrects */                               \
     ROW(uint, first_label, has_layers) /* part of the label of what it brings that is the same for all that comes later: see aovs.glsl */ \
     ROW(uint, is_particle, has_particles)   /* 1: it comes from a light, and looks toward the sensor */               \
-    ROW(float, begun_with, has_particles)   /* its largest throughput at first, which roulette compares with */       \
+    ROW(float, begun_with, has_particles || splits) /* its largest throughput at first, which roulette compares with */ \
     ROW(vec2, shares, weighs_families) /* what its first segment has to say in its weights: see families.glsl */
 
 // Of one that looks, or has drawn a way that it does not go yet. (Nothing here hangs on several media, of which `generate` does
@@ -78,6 +78,7 @@
 // Of one that is amid a segment: a free flight, or a shadow ray. Of what `generate` lays aside nothing here is read.
 #define SEGMENT_STATE(ROW)                                                                                            \
     ROW(Walk, walk, true)                                                                                             \
+    ROW(Split, split, splits)                                                                                         \
     ROW(Walk, flight, flight_rests)   /* to come back to from a shadow ray that was sent amid it */                   \
     ROW(Spectrum, T, sees)            /* of the shadow ray so far */                                                  \
     ROW(uint, steps, true)            /* of the segment */                                                            \
@@ -98,6 +99,8 @@
     ROW(float, tau, true)       /* optical depth left: of the majorant, or, where no collision is null, of the medium */ \
     ROW(float, depth, adds_depth) /* density integrated so far, over all parts */                                     \
     ROW(float, sigma_maj, walks)  /* of the present cell [1 / world unit]; if it is empty, minus its reach, see majorant.glsl */ \
+    ROW(float, rate, false)       /* of tentative collisions in the last step [1 / world unit]: set by every step */ \
+    ROW(float, least, splits)     /* of them in each cell that is not empty, on average; 0: as sigma_maj has it */ \
     ROW(float, control, controlled) /* control density of the present cell */                                         \
     ROW(ivec3, cell, cells)       /* majorant cell; the voxel in regular tracking */                                  \
     ROW(uint, cell_row, listed) /* of several media: the cell's in their tables */ \
@@ -109,6 +112,13 @@
     ROW(float, offset, sets)      /* telescoping: of the samples in their steps */                                    \
     ROW(float, partial, sets)     /* telescoping: depth less what half of the samples say; jackknife: depth by the first of each two */ \
     ROW(float, base, sets)        /* telescoping: with the coarsest set of samples */
+
+// ROW(type, name): what of a flight that is split has collided so far; see split.glsl.
+#define SPLIT_STATE(ROW)                                                                                              \
+    ROW(float, collided)   /* of its throughput, the channels' sum; 0 of flights that are not split */                \
+    ROW(Spectrum, picked)  /* of the collision that was picked among them, over that */                               \
+    ROW(float, at)         /* where it was, from the vertex [world units] */                                          \
+    ROW(uint, met)         /* of several media, the row of that which it was with */
 
 // ROW(type, name): a search for the next part of a ray within meshes, as far as it has gone; see mesh.glsl.
 #define SEARCH_STATE(ROW)                                                                                             \
@@ -141,6 +151,7 @@
 const int WORDS_Walk = 0 WALK_STATE(WORDS_WHEN);
 const int WORDS_PartSearch = 0 SEARCH_STATE(WORDS);
 const int WORDS_SurfaceSearch = 0 SEEK_STATE(WORDS);
+const int WORDS_Split = 0 SPLIT_STATE(WORDS);
 const int WORDS_Path = 0 VERTEX_STATE(WORDS) PATH_STATE(WORDS_WHEN) LOOK_STATE(WORDS_WHEN) SEGMENT_STATE(WORDS_WHEN);
 const int MOST_PATH_WORDS = (WORDS_Path + 31) / 32 * 32 + 16;
 #undef WORDS

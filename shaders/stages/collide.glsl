@@ -56,7 +56,7 @@ void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spec
             float looking;
             lane.cached = cached_transmittance_to(v, position, drawn.direction, drawn.distance, looking);
             add_light(lane, lit * lane.cached * light, label);
-            lane.chance = looking_chance(largest(lit * light) / (INV_4PI * frame.fluence), lane.cached, looking);
+            lane.chance = looking_chance(largest(lit * light) / (INV_4PI * frame.fluence * begun_with(lane)), lane.cached, looking);
             lane.todo = to_uniform(next_words(rng)).x < lane.chance ? lane.todo : next;
         }
     } else {
@@ -86,7 +86,7 @@ void gather_light(MediumParams v, MediumParams met, vec3 position, float t, Spec
             lane.cached = cached_transmittance(v, position);
             Spectrum scattered = lit * phase_eval(met, lane.path.direction, frame.lights[FRAME_DIRECTIONAL].direction);
             add_light(lane, scattered * lane.cached * frame.lights[FRAME_DIRECTIONAL].radiance, sun_label);
-            lane.chance = looking_chance(largest(scattered) / INV_4PI, lane.cached, LOOKING);
+            lane.chance = looking_chance(largest(scattered) / (INV_4PI * begun_with(lane)), lane.cached, LOOKING);
             lane.todo = to_uniform(next_words(rng)).x < lane.chance ? TODO_LOOK : next;
         }
     } else {

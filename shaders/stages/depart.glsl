@@ -13,7 +13,7 @@
 // Russian roulette on the throughput: unbiased, survivors are raised to the threshold. Of particles it is what they have left of what
 // they began with that counts: those of a weak light beside a strong one begin with little.
 bool survives(inout Lane lane, float u) {
-    float m = largest(lane.beta), threshold = frame.roulette_threshold * (HAS_PARTICLES ? lane.begun_with : 1.0);
+    float m = largest(lane.beta), threshold = frame.roulette_threshold * begun_with(lane);
     if (m >= threshold)
         return true;
     bool alive = u * threshold < m;
@@ -116,6 +116,8 @@ void set_going(MediumParams v, uvec4 words, bool looks, bool at_camera, inout La
     lane.walk.depth = 0.0;
     if (SHADOW_RAYS_WALK && looks)
         begin_transmittance(words, lane.walk);
+    lane.walk.least = SPLITS && at_camera && !is_particle(lane) && reach_of_flight(lane) >= FAR ? LEAST_IN_CELL : 0.0;
+    lane.split.collided = 0.0;
     begin_here(v, looks, lane);
     lane.T = to_spectrum(vec3(1.0));
     lane.steps = 0u;

@@ -5,8 +5,8 @@
 #include "lib/trace.glsl"
 #include "stages/show.glsl"
 
-// Each light in its group's layer, and what of a sensor's ray has come through.
-void note_escape(Spectrum beta, uint label, vec3 direction, Lane lane) {
+// Each light in its group's layer, and what of a sensor's ray has come `through`.
+void note_escape(Spectrum beta, Spectrum through, uint label, vec3 direction, Lane lane) {
     note_light(lane.record, label | group_label(frame.lights[FRAME_BACKGROUND].group),
                beta * frame.lights[FRAME_BACKGROUND].radiance);
     if (SEES_SKY)
@@ -14,7 +14,7 @@ void note_escape(Spectrum beta, uint label, vec3 direction, Lane lane) {
             note_light(lane.record, label | group_label(light_at(i).group),
                        beta * light_from_one(light_at(i), direction, lane.phase_pdf));
     if (lane.path.depth == 0u)
-        note_transmittance(lane.record, vec3(beta));
+        note_transmittance(lane.record, vec3(through));
 }
 
 // The path's part of the light of all that a flight meets when it leaves.
@@ -28,8 +28,9 @@ vec3 light_left_to_path(vec3 direction, Lane lane) {
     return radiance;
 }
 
-// `direction`: the path's.
-void escape(MediumParams v, vec3 direction, inout Lane lane) {
+// `direction`: the path's. After a flight that was split the path may go on, with what has collided: then
+// `lane.split` still has that.
+void escape(MediumParams v, vec3 direction, inout Lane lane, inout Rng rng) {
     if (is_particle(lane)) {
         lane.todo = TODO_END;
         return;
@@ -38,15 +39,20 @@ void escape(MediumParams v, vec3 direction, inout Lane lane) {
     if (!NULL_FLIGHT && !goes_through())
         beta *= depth_weight(v, beta, lane.walk.depth, false);
     uint label = kind_label(lane.path.depth) | lane.first_label;
-    if (HAS_LAYERS)
-        note_escape(beta, label, direction, lane);
-    lane.path.radiance += held_out(beta * frame.lights[FRAME_BACKGROUND].radiance, label);
+    vec3 light = held_out(frame.lights[FRAME_BACKGROUND].radiance, label);
     if (SEES_SKY && WEIGHS)
-        lane.path.radiance += beta * light_left_to_path(direction, lane);
+        light += light_left_to_path(direction, lane);
     else if (SEES_SKY)
-        lane.path.radiance += held_out(beta * light_from_beyond(direction, lane.phase_pdf), label);
-    trace(TRACE_ESCAPE, lane, lane.path.position, lane.path.direction);
+        light += held_out(light_from_beyond(direction, lane.phase_pdf), label);
     lane.todo = TODO_END;
+    Spectrum through = beta;
+    if (SPLITS) // in an `if` of its own, which kernels without it are compiled without
+        if (lane.split.collided > 0.0)
+            beta += part_that_ends(light, beta, lane.beta, lane.begun_with, lane.split, rng);
+    if (HAS_LAYERS)
+        note_escape(beta, through, label, direction, lane);
+    lane.path.radiance += beta * light;
+    trace(TRACE_ESCAPE, lane, lane.path.position, lane.path.direction);
 }
 
 #endif

@@ -21,7 +21,8 @@ uint copied[MOST_PATH_WORDS];
     bool has_cache = SHADOW_RAYS_WALK && NEE == NEE_CACHED;                                                           \
     bool sees_sky = SEES_SKY;                                                                                         \
     bool has_surfaces = HAS_SURFACES, has_parts = SHAPE == SHAPE_MESH, repeats = REPEATS;                             \
-    bool has_layers = HAS_LAYERS, has_particles = HAS_PARTICLES, weighs_families = PATHS == PATHS_BOTH;
+    bool has_layers = HAS_LAYERS, has_particles = HAS_PARTICLES, weighs_families = PATHS == PATHS_BOTH;               \
+    bool splits = SPLITS;
 
 // Which rows a path needs that does `todo` next, each with those before. `amid`, a constant: whether it may be amid a segment.
 const uint VERTEX_ROWS = 0u, LOOK_ROWS = 1u, SEGMENT_ROWS = 2u;
@@ -171,6 +172,11 @@ uint words_of(SurfaceSearch it) {
     SEEK_STATE(COUNT)
     return count;
 }
+uint words_of(Split it) {
+    uint count = 0u;
+    SPLIT_STATE(COUNT)
+    return count;
+}
 void put(PathState it, inout uint at) {
     VERTEX_STATE(PUT)
 }
@@ -184,6 +190,9 @@ void put(PartSearch it, inout uint at) {
 void put(SurfaceSearch it, inout uint at) {
     SEEK_STATE(PUT)
 }
+void put(Split it, inout uint at) {
+    SPLIT_STATE(PUT)
+}
 void take(out PathState it, inout uint at) {
     VERTEX_STATE(TAKE)
 }
@@ -196,6 +205,9 @@ void take(out PartSearch it, inout uint at) {
 }
 void take(out SurfaceSearch it, inout uint at) {
     SEEK_STATE(TAKE)
+}
+void take(out Split it, inout uint at) {
+    SPLIT_STATE(TAKE)
 }
 
 // `pixel`: see PathState.

@@ -117,6 +117,10 @@ float flying_as_far_as(Lane lane) {
 float flown_before(Lane lane) {
     return REPEATS ? lane.flown : 0.0;
 }
+// What its throughput is compared with.
+float begun_with(Lane lane) {
+    return HAS_PARTICLES || SPLITS ? lane.begun_with : 1.0;
+}
 // One that corrects no cache.
 void look_in_full(inout Lane lane) {
     lane.cached = to_spectrum(vec3(0.0));

@@ -33,7 +33,7 @@ uint step_segment(MediumParams v, inout Lane lane, inout Rng rng, out Spectrum d
     } else {
         float from = lane.walk.t - c.flown; // a walk has gone its step already
         Spectrum before = lane.beta;
-        event = fly(v, c, event, lane.walk, rng, lane.beta, deposit, tally);
+        event = fly(v, c, event, lane.walk, rng, lane.beta, lane.split, deposit, tally);
         bool matter = !NULL_FLIGHT || c.sigma_maj > 0.0; // else the cell is empty
         if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS && !goes_through() && matter && !is_particle(lane)) {
             uint medium;
@@ -56,7 +56,7 @@ uint track(MediumParams v, inout Lane lane, inout Rng rng, out Spectrum deposit,
                             seeing ? looking_along(lane) : lane.path.direction,
                             seeing ? looking_as_far_as(lane) : flying_as_far_as(lane), seeing, lane.walk, lane.search);
     if (looks_ahead()) {
-        event = step_ahead(v, seeing, lane.walk, rng, lane.beta, lane.T, tally);
+        event = step_ahead(v, seeing, lane.walk, rng, lane.beta, lane.T, lane.split, tally);
     } else {
         for (int k = 0; k < STEPS && event == EVENT_MOVING && !is_searching(lane.search); ++k) {
             event = step_segment(v, lane, rng, deposit, tally);
@@ -68,6 +68,8 @@ uint track(MediumParams v, inout Lane lane, inout Rng rng, out Spectrum deposit,
         event = EVENT_CUT;
         tally.step_caps += 1u;
     }
+    if (SPLITS && event == EVENT_COLLIDED && lane.split.collided > 0.0)
+        pick_again(lane.walk, lane.beta, lane.begun_with, lane.split, rng);
     if (event == EVENT_COLLIDED)
         lane.path.position += (lane.walk.start + lane.walk.t) * lane.path.direction;
     return event;

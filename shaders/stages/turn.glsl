@@ -33,7 +33,8 @@ void arrive(MediumParams v, uint event, Spectrum deposit, inout Lane lane, inout
         if (event == EVENT_LEFT)
             goes_on = passes_seam(seeing, event, lane, tally);
     bool leaves = !seeing && event == EVENT_LEFT;
-    bool meets = !seeing && (event == EVENT_COLLIDED || event == EVENT_TOUCHED || (HAS_SURFACES && leaves));
+    bool splits = SPLITS && leaves && lane.split.collided > 0.0;
+    bool meets = !seeing && (event == EVENT_COLLIDED || event == EVENT_TOUCHED || (HAS_SURFACES && leaves) || splits);
     Rng numbers = numbers_of(meets, rng);
     vec3 leaving = direction_of(leaves, lane.path.direction);
     if (goes_on)
@@ -47,10 +48,17 @@ void arrive(MediumParams v, uint event, Spectrum deposit, inout Lane lane, inout
         arrive_at_surface(v, lane, numbers, tally);
 #endif
     else if (event == EVENT_LEFT)
-        escape(v, leaving, lane);
-    else if (event == EVENT_COLLIDED)
+        escape(v, leaving, lane, numbers);
+    if (SPLITS) // in an `if` of its own, which kernels without it are compiled without
+        if (splits && lane.split.collided > 0.0) {
+            event = EVENT_COLLIDED;
+            go_back(lane.walk, lane.split);
+            lane.path.position += lane.walk.t * lane.path.direction;
+            tally.real_collisions += 1u;
+        }
+    if (event == EVENT_COLLIDED && !seeing)
         collide(v, deposit, lane, numbers, tally);
-    else if (event == EVENT_TOUCHED)
+    else if (event == EVENT_TOUCHED && !seeing)
         touch(v, deposit, lane, numbers);
     rng.draw = meets ? numbers.draw : rng.draw;
 }

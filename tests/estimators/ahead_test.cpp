@@ -60,6 +60,30 @@ void check_variety(const std::vector<AheadOutput>& ends, Segment segment) {
 
 } // namespace
 
+TEST_CASE("steps of split flights found ahead are those taken one at a time", "[gpu][free_flight][first_flight]") {
+    const bool chromatic = GENERATE(false, true);
+    MediumRecipe recipe;
+    recipe.filter = Filter::stochastic;
+    recipe.leaps = true;
+    recipe.grid = sparse_recipe();
+    recipe.grid.cell = 4;
+    recipe.grid.linear = skewed;
+    recipe.estimators = {chromatic ? FREE_FLIGHT_SPECTRAL : FREE_FLIGHT_DELTA, TRANSMITTANCE_RATIO, {}};
+    recipe.sigma_t = chromatic ? Rgb(1.0, 0.3, 0.6) : Rgb(1.0);
+    const TestMedium medium(recipe);
+    TestScene scene = medium.scene();
+    scene.specialization[SPEC_FIRST_FLIGHT] = FIRST_FLIGHT_SPLIT;
+    const std::vector<RayInput> rays = inputs(medium);
+    const std::vector<AheadOutput> one_at_a_time = segments(scene, rays, Segment::flight, 0);
+    check_variety(one_at_a_time, Segment::flight);
+    for (const int ahead : {1, 2, 4}) {
+        const std::vector<AheadOutput> found_ahead = segments(scene, rays, Segment::flight, ahead);
+        const auto first = std::mismatch(found_ahead.begin(), found_ahead.end(), one_at_a_time.begin(), same).first;
+        CAPTURE(chromatic, ahead, first - found_ahead.begin());
+        CHECK(first == found_ahead.end());
+    }
+}
+
 TEST_CASE("steps found ahead are those taken one at a time", "[gpu][free_flight][transmittance]") {
     struct Case {
         int free_flight, transmittance;

@@ -23,12 +23,15 @@ void main() {
     Walk w;
     w.tau = ray.e;
     w.depth = 0.0;
+    w.least = SPLITS && !seeing ? LEAST_IN_CELL : 0.0;
+    Split split;
+    split.collided = 0.0;
     PartSearch search;
     begin_segment(v, ray.origin, ray.direction, FAR, seeing, w, search);
     uint event = EVENT_MOVING;
     for (uint turn = 0u; turn < push.step_limit && event == EVENT_MOVING; ++turn) {
         if (ahead) {
-            event = step_ahead(v, seeing, w, rng, beta, T, tally);
+            event = step_ahead(v, seeing, w, rng, beta, T, split, tally);
         } else {
             Collision c = no_collision(v);
             event = next_collision(v, seeing, beta, w, rng, tally, c);
@@ -38,10 +41,11 @@ void main() {
                 event = see(v, c, event, w, rng, T, opaque, tally);
                 event = opaque ? EVENT_OPAQUE : event;
             } else {
-                event = fly(v, c, event, w, rng, beta, deposit, tally);
+                event = fly(v, c, event, w, rng, beta, split, deposit, tally);
             }
         }
     }
-    outputs[i] = AheadOutput(event, w.t, vec3(beta), vec3(T), rng.draw, tally.lookups, tally.cells, tally.steps,
+    vec3 found = SPLITS && !seeing ? vec3(split.collided, split.collided > 0.0 ? split.at : 0.0, 0.0) : vec3(T);
+    outputs[i] = AheadOutput(event, w.t, vec3(beta), found, rng.draw, tally.lookups, tally.cells, tally.steps,
                              tally.null_collisions, tally.violations);
 }

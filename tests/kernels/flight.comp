@@ -19,6 +19,9 @@ void main() {
     PartSearch search;
     w.tau = begin_flight(v, beta, inputs[i].e, inputs[i].select);
     w.depth = 0.0;
+    w.least = SPLITS ? LEAST_IN_CELL : 0.0;
+    Split split;
+    split.collided = 0.0;
     begin_segment(v, inputs[i].origin, inputs[i].direction, FAR, false, w, search);
     uint event = EVENT_MOVING;
     uint steps = 0u;
@@ -29,7 +32,7 @@ void main() {
         }
         Collision c = no_collision(v);
         event = NULL_FLIGHT ? next_collision(v, false, beta, w, rng, tally, c) : EVENT_MOVING;
-        event = fly(v, c, event, w, rng, beta, deposit, tally);
+        event = fly(v, c, event, w, rng, beta, split, deposit, tally);
         event = after_step(event, w, FAR, search);
     }
     if (event == EVENT_LEFT && !NULL_FLIGHT && !goes_through())

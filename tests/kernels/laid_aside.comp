@@ -42,6 +42,7 @@ void fill(out PathState it) { VERTEX_STATE(FILL) }
 void fill(out Walk it) { WALK_STATE(FILL_WHEN) }
 void fill(out PartSearch it) { SEARCH_STATE(FILL) }
 void fill(out SurfaceSearch it) { SEEK_STATE(FILL) }
+void fill(out Split it) { SPLIT_STATE(FILL) }
 
 // What was and what is, of what rows ask for.
 uint written = 0u;
@@ -82,6 +83,7 @@ void compare(Walk was, Walk is) {
 }
 void compare(PartSearch was, PartSearch is) { SEARCH_STATE(COMPARE) }
 void compare(SurfaceSearch was, SurfaceSearch is) { SEEK_STATE(COMPARE) }
+void compare(Split was, Split is) { SPLIT_STATE(COMPARE) }
 
 void main() {
     uint slot = gl_GlobalInvocationID.x;

@@ -67,6 +67,7 @@ TEST_CASE("every axis has a name for each of its ids", "[cpu][method]") {
     CHECK(find_axis("transmittance").names.size() == TRANSMITTANCE_COUNT);
     CHECK(find_axis("nee").names.size() == NEE_CACHED + 1);
     CHECK(find_axis("emission").names.size() == EMISSION_AT_STEPS + 1);
+    CHECK(find_axis("firstFlight").names.size() == FIRST_FLIGHT_SPLIT + 1);
     CHECK(find_choice(find_axis("flight"), "spectral") == FREE_FLIGHT_SPECTRAL);
     CHECK(find_choice(find_axis("flight"), "march") == FREE_FLIGHT_MARCH);
     CHECK(find_choice(find_axis("transmittance"), "telescoping") == TRANSMITTANCE_TELESCOPING);

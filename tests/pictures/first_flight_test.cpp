@@ -1,0 +1,153 @@
+// First flights that are split: what goes through and what collides both count. See shaders/estimators/split.glsl.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "first_flights.h"
+#include "loaded_medium.h"
+#include "method.h"
+#include "shared/constants.h"
+#include "support/agreement.h"
+#include "support/images.h"
+#include "support/scene_text.h"
+#include "support/scenes.h"
+
+using namespace vkvol;
+
+namespace {
+
+Scene with(Scene scene, int first_flight) {
+    scene.settings.choices.first_flight = first_flight;
+    return scene;
+}
+
+// Of all pixels of the picture together: the mean of a sample's variance.
+double variance_of(const Film& film) {
+    double sum = 0.0;
+    for (const glm::vec3& variance : film.variance)
+        sum += double(variance.x) + variance.y + variance.z;
+    return sum / (3.0 * double(film.pixel_count())) * film.samples.front();
+}
+
+Scene dark_wisp() {
+    Scene scene = scene_of(medium(cloud_file(), 0.02, 0.9), 11.0, 24, 25.0);
+    scene.lights = {sunlight({3.0, 2.5, 1.5})};
+    scene.settings.spp = 128;
+    return scene;
+}
+
+} // namespace
+
+TEST_CASE("split first flights equal the reference's, that draws them", "[gpu][first_flight]") {
+    for (const NamedScene& named : agreement_scenes()) {
+        if (named.name.starts_with("homogeneous") || named.name.starts_with("sphere"))
+            continue; // whose flights are closed forms
+        Scene scene = with(named.scene, FIRST_FLIGHT_SPLIT);
+        scene.settings.spp = 256;
+        scene.settings.integrator = "ratioTracking";
+        CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_reference(scene, 2), named.name));
+    }
+}
+
+TEST_CASE("split first flights equal drawn ones", "[gpu][first_flight]") {
+    const auto check = [](Scene scene, const char* integrator, const std::string& name) {
+        scene.settings.spp = 256;
+        scene.settings.integrator = integrator;
+        CHECK_AGREEMENT(agree(render_here(with(scene, FIRST_FLIGHT_SPLIT), 1).film,
+                              render_here(with(scene, FIRST_FLIGHT_DRAWN), 2).film, name));
+    };
+    const std::vector<NamedScene> scenes = agreement_scenes();
+    Scene cloud = scenes[4].scene;
+    check(cloud, "cachedRatioTracking", "cached");
+    check(cloud, "deltaTrackingNEE", "delta shadow rays");
+    cloud.background = Rgb(0.0);
+    check(cloud, "cachedRatioTracking", "dark");
+    cloud.settings.max_depth = 1;
+    check(cloud, "ratioTracking", "to one depth");
+    cloud.settings.max_depth.reset();
+    cloud.volumes.front().Le = {0.5, 0.2, 0.1};
+    check(cloud, "ratioTracking", "glowing");
+    cloud.settings.choices.emission = EMISSION_AT_STEPS;
+    check(cloud, "ratioTracking", "glowing, at steps");
+    cloud.settings.choices.scattering = SCATTERING_NONE;
+    check(cloud, "ratioTracking", "glowing, without scattering");
+    cloud.settings.choices = {};
+    cloud.lights = {PointLight{{1.0, 4.0, 0.5}, Rgb(60.0)}};
+    check(cloud, "bidirectional", "bidirectional");
+    cloud.settings.choices.distance = DISTANCE_MIXED;
+    check(cloud, "ratioTracking", "looks from along flights");
+}
+
+TEST_CASE("split first flights beside surfaces, and under a sky", "[gpu][first_flight]") {
+    const std::string cloud =
+        "<noise/><sphere radius='2'/><sigma_a>0.1</sigma_a><sigma_s>0.6</sigma_s><width>16</width>"
+        "<height>16</height><camera z='9' fov='32'/><rayPerPixelCount>512</rayPerPixelCount>";
+    const std::string below = "<surfaces><plane y='-1.5' r='0.6' g='0.5' b='0.3'/></surfaces>";
+    const std::string sky = "<backgroundColor r='0.2' g='0.3' b='0.6'/><lights><sun zenith='40' multiplier='2' "
+                            "angle='3'/><sphere x='-1' y='3' radius='0.4' multiplier='6'/></lights>";
+    for (const std::string& xml : {cloud + below + sky, cloud + sky}) {
+        const Scene scene = parse(xml);
+        CHECK_AGREEMENT(agree(render_here(with(scene, FIRST_FLIGHT_SPLIT), 1).film,
+                              render_here(with(scene, FIRST_FLIGHT_DRAWN), 2).film, "surfaces and skies"));
+    }
+}
+
+TEST_CASE("what goes through is alpha, and layers sum up to the picture", "[gpu][first_flight][aovs]") {
+    Scene scene = with(dark_wisp(), FIRST_FLIGHT_SPLIT);
+    scene.background = {0.3, 0.5, 0.9};
+    scene.layers = layer_background | layer_emission | layer_direct | layer_indirect | layer_transmittance;
+    const Film film = render_here(scene, 3).film; // by both schedules
+    const Film drawn = render_here(with(scene, FIRST_FLIGHT_DRAWN), 4).film;
+    for (const char* name : {"background", "direct", "indirect"})
+        CHECK_AGREEMENT(agree(as_film(film, name), as_film(drawn, name), name));
+    // Of the picture's mean: in some pixels none of the drawn flights collides.
+    const Film through = as_film(film, "transmittance"), passed = as_film(drawn, "transmittance");
+    const double samples = double(film.pixel_count()) * scene.settings.spp;
+    CHECK(std::abs(mean_of(through) - mean_of(passed)) <
+          4.0 * std::sqrt((variance_of(through) + variance_of(passed)) / samples));
+    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
+        glm::vec3 sum(0.0f);
+        for (const char* name : {"background", "emission", "direct", "indirect"})
+            sum += layer_of(film, name).mean[i];
+        CHECK(glm::length(sum - film.mean[i]) < 1e-5f);
+    }
+    // Ratio tracking along the way leaves a hundredth of the variance of light that passes or does not.
+    CHECK(variance_of(through) < 0.1 * variance_of(passed));
+}
+
+TEST_CASE("thin matter before nothing is seen by every sample", "[gpu][first_flight][variances]") {
+    // One of 40 drawn flights collides. Each split one does, and gets a fortieth: of a variance that was 40 times the
+    // mean's square that leaves what light differs by from place to place, and how much collides by chance.
+    const Scene scene = dark_wisp();
+    CHECK(variance_of(render_here(with(scene, FIRST_FLIGHT_SPLIT), 1).film) <
+          0.2 * variance_of(render_here(with(scene, FIRST_FLIGHT_DRAWN), 1).film));
+}
+
+TEST_CASE("an even glow leaves no noise, wherever flights are split", "[gpu][first_flight][furnace]") {
+    Scene scene = dark_wisp();
+    scene.lights.clear();
+    scene.background = Rgb(1.0);
+    scene.volumes.front().sigma_s += scene.volumes.front().sigma_a;
+    scene.volumes.front().sigma_a = Rgb(0.0);
+    scene.settings.integrator = "deltaTracking";
+    for (const double scale : {1.0, 100.0}) {
+        scene.volumes.front().density_scale = scale;
+        const Film film = render_here(with(scene, FIRST_FLIGHT_SPLIT), 5).film;
+        for (std::size_t i = 0; i < film.pixel_count(); ++i)
+            CHECK(std::abs(film.mean[i].x - 1.0f) < 1e-5f);
+        CHECK(variance_of(film) < 1e-10);
+    }
+}
+
+TEST_CASE("first flights are split where media are thin and nothing bright is behind", "[cpu][first_flight]") {
+    const auto splits = [](const Scene& scene) {
+        return gains_by_split_flights(scene, load_assets(scene, choose_method(scene)).media);
+    };
+    Scene scene = dark_wisp();
+    CHECK(splits(scene));
+    scene.background = Rgb(0.5);
+    CHECK(!splits(scene));
+    scene.background = Rgb(0.0);
+    scene.volumes.front().density_scale = 1000.0;
+    CHECK(!splits(scene));
+}
