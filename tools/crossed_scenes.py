@@ -36,7 +36,8 @@ OTHERS = ["ratioTracking:distance=flights", "ratioTracking:distance=mixed", "rat
           "ratioTracking:mis=phase", "ratioTracking:mis=power", "ratioTracking:emission=steps", "ratioTracking:nee=none", "ratioNEE",
           "cachedRatioTracking", "deltaTrackingNEE", "residualRatioTracking", "weightedTracking", "decompositionTracking", "spectralTracking",
           "unbiasedRayMarching", "regularTracking", "ratioTracking:transmittance=jackknife", "deltaTracking",
-          "weightedTracking:emission=steps", "decompositionTracking:distance=mixed"]
+          "weightedTracking:emission=steps", "decompositionTracking:distance=mixed", "ratioTracking:firstFlight=split",
+          "cachedRatioTracking:firstFlight=split", "spectralTracking:firstFlight=split:emission=steps"]
 PARTICLES = ["lightTracing:flight=weighted", "lightTracing:flight=spectral", "lightTracing:flight=regular", "lightTracing:flight=decomposition"]
 # By make_field: what makes it, its middle and its extent, world units.
 FIELDS = {"cumulus": (("cumulus", "--size", "32"), (1, 20, 1), 60), "broken": (("broken_cloud", "--size", "32"), (0, 12, 0), 95),

@@ -269,10 +269,11 @@ void MethodChooser::choose_transmittance() {
 void MethodChooser::choose_first_flight() {
     const bool from_camera = method_.paths != PATHS_LIGHT && !reads_flux(scene_.camera);
     const bool could = from_camera && method_.nee != NEE_TENTATIVE && !scene_.periodic &&
+                       !(emits_ && field_ == FIELD_SUPERPOSITION) &&
                        (method_.free_flight == FREE_FLIGHT_DELTA || method_.free_flight == FREE_FLIGHT_SPECTRAL);
     if (choices_.first_flight == FIRST_FLIGHT_SPLIT && !could)
         warn("first flights are drawn: split ones are of cameras, by flight delta or spectral, without shadow rays at "
-             "null collisions, and not in domains that repeat");
+             "null collisions, and neither in domains that repeat nor where several volumes glow");
     method_.first_flight = could ? choices_.first_flight : FIRST_FLIGHT_DRAWN;
 }
 

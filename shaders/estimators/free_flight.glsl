@@ -77,10 +77,12 @@ uint fly(MediumParams v, Collision c, uint event, inout Walk w, inout Rng rng, i
         event = EVENT_MOVING; // nobody asks
     if (event == EVENT_COLLIDED) {
         tally.real_collisions += 1u;
-        if (NULL_FLIGHT)
+        if (NULL_FLIGHT) {
+            w.per_extinction = vec3(over(beta, c.sigma_t * c.ratio));
             beta *= c.share;
-        else
+        } else {
             beta *= depth_weight(v, beta, w.depth, true);
+        }
     }
     return event;
 }

@@ -66,6 +66,14 @@ float extinction_of(MediumParams v, uint row, vec3 position, vec3 tap) {
     return inside ? uintBitsToFloat(rest.x) * found : 0.0;
 }
 
+// The medium at a place of a list, and whether there are more behind it.
+uint listed(uint k, out bool more) {
+    uint word = overlap_word(k);
+    uint row = word & ~LAST_OF_LIST;
+    more = row == word;
+    return row;
+}
+
 // In a cell of that entry, at a point of the superposition's space, which is that of render space in units of a cell. `u` in
 // [0, 1), for the draw; `tap`: see density.glsl. Media are drawn as they extinguish throughput `beta`, as spectral flights
 // choose what happens: drawn by the channel that is extinguished most, a path of one colour would gain weight at each collision
@@ -80,9 +88,7 @@ Matter matter_in(MediumParams v, uint entry, vec3 p, vec3 tap, float u, Spectrum
 #endif
     uint k = overlap_word(frame.overlaps.lists + entry);
     for (bool more = k != 0u; more; ++k) {
-        uint word = overlap_word(k);
-        uint row = word & ~LAST_OF_LIST;
-        more = row == word;
+        uint row = listed(k, more);
         float sigma_t = extinction_of(v, row, v.extent * p, tap);
         found.density += sigma_t;
         float part = sigma_t;
@@ -109,10 +115,20 @@ Matter matter_in(MediumParams v, uint entry, vec3 p, vec3 tap, float u, Spectrum
     return found;
 }
 
-Matter matter_at(MediumParams v, vec3 p, vec3 tap, float u, Spectrum beta) {
+// That of the cell at a point of the superposition's space.
+uint entry_at(MediumParams v, vec3 p) {
     int edge;
     ivec3 cell = ivec3(clamp(floor(p - v.cells_min), vec3(0.0), vec3(v.cell_dims - 1)));
-    return matter_in(v, cell_entry(v, cell, edge), p, tap, u, beta);
+    return cell_entry(v, cell, edge);
+}
+
+// Where the list of media that may be there begins, or 0 if there is none.
+uint list_at(MediumParams v, vec3 p) {
+    return overlap_word(frame.overlaps.lists + entry_at(v, p));
+}
+
+Matter matter_at(MediumParams v, vec3 p, vec3 tap, float u, Spectrum beta) {
+    return matter_in(v, entry_at(v, p), p, tap, u, beta);
 }
 
 float density(MediumParams v, vec3 p, vec3 tap) {

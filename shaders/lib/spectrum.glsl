@@ -24,6 +24,10 @@ float smallest(vec3 s) { return min(min(s.x, s.y), s.z); }
 float total(float s) { return s; }
 float total(vec3 s) { return s.x + s.y + s.z; }
 
+// Where the denominator is 0, nothing.
+float over(float a, float b) { return b != 0.0 ? a / b : 0.0; }
+vec3 over(vec3 a, vec3 b) { return mix(a / b, vec3(0.0), equal(b, vec3(0.0))); }
+
 // 1 - exp(-x), x >= 0, with all digits where x is small: the series to x^4, of relative error x^4 / 120.
 float one_minus_exp(float x) {
     return x < 0.03 ? x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0)))) : 1.0 - exp(-x);

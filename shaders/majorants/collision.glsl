@@ -49,6 +49,7 @@ uint next_collision(MediumParams v, bool seeing, Spectrum beta, inout Walk w, in
         c.ratio = met.ratio;
         c.share = met.share;
         w.met = met.medium;
+        w.tap = to_tap(words);
         tally.lookups += 1u;
         float above = residual ? abs(c.sigma_t - c.sigma_c) : c.sigma_t;
         tally.violations += above > 1.00001 * c.sigma_maj ? 1u : 0u;

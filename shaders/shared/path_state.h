@@ -96,6 +96,8 @@
     ROW(float, t, true)         /* travelled in it */                                                                 \
     ROW(float, at, false)       /* where in it the last interaction was: set by every step */                         \
     ROW(uint, met, false)       /* of several media, the row of that which it was with: likewise */                   \
+    ROW(vec3, tap, false)       /* of several media, with which their densities were looked up there: likewise */      \
+    ROW(vec3, per_extinction, false) /* and the throughput that collided with any of them, over their extinction there [world units] */ \
     ROW(float, tau, true)       /* optical depth left: of the majorant, or, where no collision is null, of the medium */ \
     ROW(float, depth, adds_depth) /* density integrated so far, over all parts */                                     \
     ROW(float, sigma_maj, walks)  /* of the present cell [1 / world unit]; if it is empty, minus its reach, see majorant.glsl */ \

@@ -1,7 +1,7 @@
 // A flight meets matter.
 #ifndef STAGE_COLLIDE_GLSL
 #define STAGE_COLLIDE_GLSL
-#include "field/emission.glsl"
+#include "stages/glow.glsl"
 #include "lights/directional.glsl"
 #include "lights/equiangular.glsl"
 #include "lights/light_cache.glsl"
@@ -96,13 +96,31 @@ void gather_light(MediumParams v, MediumParams met, vec3 position, float t, Spec
     }
 }
 
+// Light that comes of a collision, or absorption at it, of throughput lane.beta.
+void add_glow(MediumParams v, MediumParams met, inout Lane lane) {
+#ifdef SEVERAL
+    add_glow_of_all(v, lane.walk.per_extinction, lane.walk.origin + lane.walk.t * lane.walk.direction, lane.walk.tap, lane.path.position,
+                    lane);
+#else
+    add_light(lane, lane.beta * emitted_radiance(met, lane.path.position), glow_label(lane.path.depth) | lane.first_label);
+#endif
+}
+vec3 absorbed_here(MediumParams v, MediumParams met, Lane lane) {
+#ifdef SEVERAL
+    return absorbed_by_all(v, lane.walk.per_extinction, lane.walk.origin + lane.walk.t * lane.walk.direction, lane.walk.tap,
+                           lane.path.position);
+#else
+    return vec3(lane.beta) * absorbed_at(met, lane.path.position);
+#endif
+}
+
 // At a real collision: emission, absorption, light. Then the path departs, or ends.
 void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, inout Tally tally) {
     lane.path.medium = lane.walk.met;
     MediumParams met = medium_of(v, lane.walk.met);
     lane.first_label = label_at(lane, met);
     if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_COLLISIONS && !is_particle(lane))
-        add_light(lane, lane.beta * emitted_radiance(met, lane.path.position), glow_label(lane.path.depth) | lane.first_label);
+        add_glow(v, met, lane);
     vec3 albedo = albedo_at(met, lane.path.position);
     if (WEIGHS)
         note_shares(lane.path.position, lane.walk.start + lane.walk.t, lane);
@@ -112,7 +130,7 @@ void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, i
                            flown_before(lane) + lane.walk.start + lane.walk.t, albedo);
     if (COUNTS_ABSORBED)
         if (is_particle(lane))
-            count_absorbed(lane.path.position, vec3(lane.beta) * absorbed_at(met, lane.path.position), lane);
+            count_absorbed(lane.path.position, absorbed_here(v, met, lane), lane);
     lane.beta *= to_spectrum(albedo);
     bool capped = SCATTERING != SCATTERING_NONE && lane.path.depth >= frame.max_depth;
     tally.depth_caps += capped ? 1u : 0u;

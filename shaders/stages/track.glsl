@@ -2,20 +2,24 @@
 #ifndef STAGE_TRACK_GLSL
 #define STAGE_TRACK_GLSL
 #include "estimators/ahead.glsl"
-#include "field/emission.glsl"
+#include "stages/glow.glsl"
 #include "stages/lane.glsl"
 #include "stages/show.glsl"
 
 // Emission along what was just flown, by one sample: a track-length estimate.
-vec3 emission_along(MediumParams v, Spectrum beta, float from, Walk w, PathState path, out uint medium, inout Rng rng,
-                    inout Tally tally) {
+void add_glow_along(MediumParams v, Spectrum beta, float from, inout Lane lane, inout Rng rng, inout Tally tally) {
     uvec4 words = next_words(rng);
+    Walk w = lane.walk;
     float t = mix(from, w.t, to_uniform(words).x);
     tally.lookups += 1u;
-    Matter met = matter_at(v, w.origin + t * w.direction, to_tap(words), to_choice(words), beta);
-    medium = met.medium;
-    vec3 Le = emitted_radiance(medium_of(v, met.medium), path.position + (w.start + t) * path.direction);
-    return beta * (w.t - from) * (v.sigma_t * met.density) * (met.ratio * met.share) * Le;
+    vec3 p = w.origin + t * w.direction, position = lane.path.position + (w.start + t) * lane.path.direction;
+#ifdef SEVERAL
+    add_glow_of_all(v, vec3(beta * (w.t - from)), p, to_tap(words), position, lane);
+#else
+    Matter met = matter_at(v, p, to_tap(words), 0.0, beta);
+    add_light(lane, beta * (w.t - from) * (v.sigma_t * met.density) * met.ratio * emitted_radiance(v, position),
+              glow_label(lane.path.depth) | label_at(lane, v));
+#endif
 }
 
 // One step of the lane's segment, flight or shadow ray.
@@ -35,11 +39,8 @@ uint step_segment(MediumParams v, inout Lane lane, inout Rng rng, out Spectrum d
         Spectrum before = lane.beta;
         event = fly(v, c, event, lane.walk, rng, lane.beta, lane.split, deposit, tally);
         bool matter = !NULL_FLIGHT || c.sigma_maj > 0.0; // else the cell is empty
-        if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS && !goes_through() && matter && !is_particle(lane)) {
-            uint medium;
-            vec3 light = emission_along(v, before, from, lane.walk, lane.path, medium, rng, tally);
-            add_light(lane, light, glow_label(lane.path.depth) | label_at(lane, medium_of(v, medium)));
-        }
+        if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS && !goes_through() && matter && !is_particle(lane))
+            add_glow_along(v, before, from, lane, rng, tally);
     }
     return after_step(event, lane.walk, seeing ? looking_as_far_as(lane) : flying_as_far_as(lane), lane.search);
 }

@@ -76,6 +76,19 @@ TEST_CASE("a peak of the phase function is not looked along for a lamp that lies
             0.5) < 2.0);
 }
 
+TEST_CASE("each of several media glows wherever any is met", "[gpu][variances][several]") {
+    // A hundredth of what paths meet glows. Left to which one they meet: 100. All of it is met, and brings its part.
+    const auto media = [](const char* thick) {
+        return fmt::format("<volumes><volume><box width='4' height='4' depth='4'/><sigma_a {}/><sigma_s>0</sigma_s>"
+                           "</volume><volume><box width='4' height='4' depth='4'/><sigma_a>0.03</sigma_a><sigma_s>0"
+                           "</sigma_s><medium r='1' g='1' b='1'/></volume></volumes><camera z='9' fov='10'/>",
+                           thick);
+    };
+    CHECK(spread(media("r='3' g='3' b='3'"), 1.0) < 0.01);
+    // Collisions of a channel that differ from those of the others in how often they happen have weights, of their own.
+    CHECK(spread(media("r='3' g='2' b='4'"), 1.0) < 1.0);
+}
+
 TEST_CASE("lamps behind frosted glass are looked for by how far it scatters", "[gpu][variances][surfaces]") {
     // It scatters 22 times less far than metal of this roughness: 7.
     CHECK(spread("<surfaces><rectangle lookAt='0 0 1' width='4' height='4' material='dielectric' ior='1.1' "
