@@ -56,6 +56,8 @@ private:
     void choose_distance();
     void choose_transmittance();
     void choose_first_flight();
+    bool glows_evenly() const;
+    bool gains_by_closed_glow() const;
     void choose_emission();
     void choose_filter();
     void check_channels() const;
@@ -277,13 +279,31 @@ void MethodChooser::choose_first_flight() {
     method_.first_flight = could ? choices_.first_flight : FIRST_FLIGHT_DRAWN;
 }
 
+// Then what a flight gathers of the glow is a closed form.
+bool MethodChooser::glows_evenly() const {
+    return method_.flights_have(TRAIT_CLOSED) && scene_.volumes.size() == 1 && !has_map(scene_) &&
+           scene_.volumes.front().temperature.color == Rgb(0.0) && scene_.volumes.front().albedo_grid.empty();
+}
+
+// Before what is not nearly as bright. Before what is as bright as the glow, flights that find the one or the other
+// have no noise.
+bool MethodChooser::gains_by_closed_glow() const {
+    const auto is_map = [](const Light& light) { return std::holds_alternative<SkyLight>(light); };
+    if (!glows_evenly() || std::any_of(scene_.lights.begin(), scene_.lights.end(), is_map))
+        return false;
+    const Volume& volume = scene_.volumes.front();
+    const Rgb glow = volume.sigma_a * volume.Le, background = scene_.background * (volume.sigma_a + volume.sigma_s);
+    return !glm::any(glm::greaterThan(background, 0.5 * glow));
+}
+
 void MethodChooser::choose_emission() {
-    method_.emission_at = emits_ ? choices_.emission.value_or(EMISSION_AT_COLLISIONS) : EMISSION_AT_COLLISIONS;
+    const int usual = gains_by_closed_glow() ? EMISSION_AT_STEPS : EMISSION_AT_COLLISIONS;
+    method_.emission_at = emits_ ? choices_.emission.value_or(usual) : EMISSION_AT_COLLISIONS;
     if (method_.emission_at == EMISSION_AT_COLLISIONS)
         return;
     if (is_through(method_)) {
         method_.emission_at = EMISSION_AT_COLLISIONS; // the march adds it anyway
-    } else if (chromatic_ && !method_.flights_have(TRAIT_NULL)) {
+    } else if (chromatic_ && !method_.flights_have(TRAIT_NULL) && !glows_evenly()) {
         warn("emission is added at collisions: along these flights it would be biased, since the extinction differs "
              "between the colour channels; flight spectral adds it at steps");
         method_.emission_at = EMISSION_AT_COLLISIONS;

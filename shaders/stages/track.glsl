@@ -22,6 +22,20 @@ void add_glow_along(MediumParams v, Spectrum beta, float from, inout Lane lane, 
 #endif
 }
 
+// Whether what a flight gathers of an even glow is a closed form: all that it may fly through, wherever it ends.
+const bool GLOWS_EVENLY = (int((FLIGHT_TRAITS & TRAIT_CLOSED) != 0) & int(EMISSION == EMISSION_CONSTANT) & int(ALBEDO == ALBEDO_CONSTANT) &
+                           int(MAP == MAP_NONE)) != 0;
+
+// Of a part of a flight that has come to it with throughput `beta`, having passed the density integral `depth`.
+void add_glow_of_part(MediumParams v, Spectrum beta, float depth, inout Lane lane) {
+    Walk w = lane.walk;
+    float whole = w.t_end;
+    if (LAYERED)
+        whole = faded_depth(fading_along(v, w.origin, w.direction), w.t_end);
+    Spectrum met = beta * depth_weight(v, beta, depth, false) * one_minus_exp(v.sigma_t * to_spectrum(v.sigma_ratio) * whole);
+    add_light(lane, met * emitted_radiance(v, lane.path.position), glow_label(lane.path.depth) | label_at(lane, v));
+}
+
 // One step of the lane's segment, flight or shadow ray.
 uint step_segment(MediumParams v, inout Lane lane, inout Rng rng, out Spectrum deposit, inout Tally tally) {
     bool seeing = at_shadow_ray(lane.todo == TODO_SEE);
@@ -37,10 +51,16 @@ uint step_segment(MediumParams v, inout Lane lane, inout Rng rng, out Spectrum d
     } else {
         float from = lane.walk.t - c.flown; // a walk has gone its step already
         Spectrum before = lane.beta;
+        float depth = lane.walk.depth;
         event = fly(v, c, event, lane.walk, rng, lane.beta, lane.split, deposit, tally);
         bool matter = !NULL_FLIGHT || c.sigma_maj > 0.0; // else the cell is empty
-        if (EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS && !goes_through() && matter && !is_particle(lane))
-            add_glow_along(v, before, from, lane, rng, tally);
+        bool gathers = EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_STEPS && !goes_through();
+        if (gathers && matter && !is_particle(lane)) {
+            if (GLOWS_EVENLY)
+                add_glow_of_part(v, before, depth, lane);
+            else
+                add_glow_along(v, before, from, lane, rng, tally);
+        }
     }
     return after_step(event, lane.walk, seeing ? looking_as_far_as(lane) : flying_as_far_as(lane), lane.search);
 }

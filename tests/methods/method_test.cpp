@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <set>
 
 #include "error.h"
@@ -10,6 +11,7 @@
 #include "scene_facts.h"
 #include "scene_hash.h"
 #include "shared/constants.h"
+#include "support/scene_text.h"
 #include "support/test_directory.h"
 
 using namespace vkvol;
@@ -257,6 +259,21 @@ TEST_CASE("emission is estimated at steps where that is unbiased", "[cpu][method
     CHECK_THAT(warning_of(chromatic), Catch::Contains("flight spectral"));
     CHECK(at("nanoVDBEmission:emission=steps", FIELD_GRID, false).emission_at == EMISSION_AT_COLLISIONS);
     CHECK(method_of("ratioTracking:emission=steps", FIELD_GRID).emission_at == EMISSION_AT_COLLISIONS);
+}
+
+TEST_CASE("an even glow is a closed form where flights are, before what is darker", "[cpu][method]") {
+    const auto at = [](double background, double glow, const char* integrator) {
+        Scene scene =
+            parse(fmt::format("<sphere/><sigma_a r='1' g='2' b='3'/><sigma_s>1</sigma_s><medium r='{0}' g='{0}' "
+                              "b='{0}'/><backgroundColor r='{1}' g='{1}' b='{1}'/><integrator>{2}</integrator>",
+                              glow, background, integrator));
+        return choose_method(scene).emission_at;
+    };
+    CHECK(at(0.0, 1.0, "ratioTracking") == EMISSION_AT_STEPS);
+    CHECK(at(0.24, 1.0, "ratioTracking") == EMISSION_AT_STEPS);
+    CHECK(at(0.26, 1.0, "ratioTracking") == EMISSION_AT_COLLISIONS); // more than half of red's glow
+    CHECK(at(0.0, 0.0, "ratioTracking") == EMISSION_AT_COLLISIONS);
+    CHECK(at(0.0, 1.0, "rayMarching") == EMISSION_AT_COLLISIONS);
 }
 
 TEST_CASE("the stochastic filter serves null-collision estimators alone", "[cpu][method]") {

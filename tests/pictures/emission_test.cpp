@@ -4,8 +4,12 @@
 #include <fmt/format.h>
 
 #include "blackbody.h"
+#include "method.h"
 #include "scene_xml.h"
+#include "shared/constants.h"
+#include "support/agreement.h"
 #include "support/images.h"
+#include "support/scene_text.h"
 #include "support/scenes.h"
 #include "tests/reference/emission.h"
 
@@ -176,4 +180,36 @@ TEST_CASE("emission in scene files", "[cpu][emission]") {
     CHECK_THROWS_WITH(parse(R"(<emission model="blackbody" brightness="peak" referenceTemperature="2000"/>)"),
                       Catch::Contains("brightness=\"planck\" only"));
     CHECK_THROWS_WITH(parse(R"(<emission model="blackbody" brightness="bright"/>)"), Catch::Contains("planck or peak"));
+}
+
+TEST_CASE("an even glow along flights that are closed forms equals that at collisions", "[gpu][image][emission]") {
+    const std::string matter = "<sigma_a r='0.5' g='0.2' b='1'/><sigma_s r='1' g='0.3' b='0.1'/><medium r='1' g='0.7' "
+                               "b='0.4'/><width>12</width><height>12</height><rayPerPixelCount>400</rayPerPixelCount>";
+    const std::string lamp = "<lights><point x='1.5' y='1' z='1' power='20'/></lights>";
+    const std::string floor = "<surfaces><plane y='-1.2' r='0.6' g='0.5' b='0.3'/></surfaces>";
+    const std::vector<std::string> scenes = {
+        "<sphere/><camera z='5' fov='30'/>" + lamp,
+        "<box width='2' height='1' depth='2'/><camera x='1' y='1' z='5' lookAt='0 0 0' fov='30'/>" + floor + lamp,
+        "<everywhere/><layers scaleHeight='2' bottom='-1' top='9'/><camera y='1' z='5' pitch='10' fov='50'/>",
+        "<box width='2' height='2' depth='2'/><periodic x='-1.5 1.5'/><maxDepth>9</maxDepth><camera z='5' y='3' "
+        "lookAt='0 0 0' fov='50'/>"};
+    std::vector<Scene> all;
+    for (const std::string& xml : scenes)
+        all.push_back(parse(xml + matter));
+    for (const NamedScene& named : agreement_scenes())
+        if (named.name == "noise in a mesh") { // of two bodies, one behind the other
+            Scene scene = named.scene;
+            scene.volumes.front().noise.reset();
+            scene.volumes.front().Le = Rgb(1.0, 0.7, 0.4);
+            all.push_back(scene);
+        }
+    REQUIRE(all.size() == scenes.size() + 1);
+    for (Scene& scene : all) {
+        scene.settings.integrator = "ratioTracking";
+        scene.settings.choices.emission = EMISSION_AT_STEPS;
+        REQUIRE(choose_method(scene).emission_at == EMISSION_AT_STEPS);
+        const Film along = render_here(scene, 1).film;
+        scene.settings.choices.emission = EMISSION_AT_COLLISIONS;
+        CHECK_AGREEMENT(agree(along, render_here(scene, 2).film, "even glow"));
+    }
 }

@@ -76,6 +76,13 @@ TEST_CASE("a peak of the phase function is not looked along for a lamp that lies
             0.5) < 2.0);
 }
 
+TEST_CASE("a thin even glow is seen by every sample", "[gpu][variances][emission]") {
+    // One of 50 flights collides there: 50. What is left is what chords and second collisions differ by.
+    CHECK(spread("<sphere/><sigma_a>0.01</sigma_a><sigma_s>0.01</sigma_s><medium r='1' g='1' b='1'/><camera z='4' "
+                 "fov='10'/>",
+                 0.97) < 0.5);
+}
+
 TEST_CASE("each of several media glows wherever any is met", "[gpu][variances][several]") {
     // A hundredth of what paths meet glows. Left to which one they meet: 100. All of it is met, and brings its part.
     const auto media = [](const char* thick) {
