@@ -169,8 +169,24 @@ shared::MediumParams make_medium(const Scene& scene, const Volume& volume, const
     return params;
 }
 
+// Extinction of the channels to that of each medium's largest, of all media together: what the cache of light has for
+// every place. By how much of each there is, roughly.
+Rgb ratio_of_all(const Scene& scene, Media media, const Superposition& whole) {
+    Rgb sum(0.0);
+    double most = 0.0;
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+        const Volume& volume = scene.volumes[i];
+        const double edge = std::min(diagonal_of(volume, media[i]), whole.diagonal());
+        const Rgb sigma_t = world_sigma_t(volume, media[i].field ? &*media[i].field : nullptr) *
+                            (usual_density(volume, media[i]) * edge * edge * edge);
+        sum += sigma_t;
+        most += largest(sigma_t);
+    }
+    return most > 0.0 ? sum / most : Rgb(1.0);
+}
+
 // The superposition as one medium. Collisions ask its parts for what is theirs.
-shared::MediumParams make_whole(const Superposition& whole) {
+shared::MediumParams make_whole(const Scene& scene, Media media, const Superposition& whole) {
     shared::MediumParams params{};
     fill_rows(params.to_medium,
               glm::inverse(glm::scale(glm::translate(glm::dmat4(1.0), whole.origin), glm::dvec3(whole.edge))),
@@ -186,7 +202,7 @@ shared::MediumParams make_whole(const Superposition& whole) {
     params.cell_size = 1.0f;
     params.sigma_t = 1.0f;
     params.usual_sigma_t = static_cast<float>(std::max(0.5 * whole.mean_bound(), 1e-30));
-    params.sigma_ratio = glm::vec3(1.0f);
+    params.sigma_ratio = ratio_of_all(scene, media, whole);
     params.noise = make_noise(Noise{}, whole.origin); // its permutation is the same everywhere
     return params;
 }
@@ -300,7 +316,7 @@ shared::FrameParams make_frame(const Scene& scene, Media media, const Method& me
     const double diagonal = longest_diagonal(scene, media, whole);
     const int nodes = cache_layout(scene).most_nodes;
     if (whole) {
-        frame.media[0] = make_whole(*whole);
+        frame.media[0] = make_whole(scene, media, *whole);
         if (method.nee == NEE_CACHED && !whole->cells.bounds.empty())
             frame.lattice = make_lattice(whole->low(), whole->high(), whole->edge * glm::dvec3(whole->dims()),
                                          whole->dims(), nodes);

@@ -76,6 +76,17 @@ TEST_CASE("a peak of the phase function is not looked along for a lamp that lies
             0.5) < 2.0);
 }
 
+TEST_CASE("the cache of light knows the colours that several media take away", "[gpu][variances][several]") {
+    // A thirtieth of red is taken away of what is of blue. Held to be as dark as blue, most of its light is left to the
+    // twentieth of the collisions that look whatever the cache says: 15 there, where flights alone make 3.
+    const std::string half =
+        "<volume><sphere radius='2'/><noise/><sigma_a>0</sigma_a><sigma_s r='0.1' g='1' b='3'/></volume>";
+    CHECK(spread("<volumes>" + half + half +
+                     "</volumes><light x='1' y='1' z='0.3' r='1' g='1' b='1' multiplier='3'/>"
+                     "<maxDepth>1</maxDepth><camera z='9' fov='20'/><integrator>cachedRatioTracking</integrator>",
+                 0.97) < 6.0);
+}
+
 TEST_CASE("a thin even glow is seen by every sample", "[gpu][variances][emission]") {
     // One of 50 flights collides there: 50. What is left is what chords and second collisions differ by.
     CHECK(spread("<sphere/><sigma_a>0.01</sigma_a><sigma_s>0.01</sigma_s><medium r='1' g='1' b='1'/><camera z='4' "
