@@ -176,6 +176,8 @@ Rgb ratio_of_all(const Scene& scene, Media media, const Superposition& whole) {
     double most = 0.0;
     for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
         const Volume& volume = scene.volumes[i];
+        if (!has_matter(volume, media[i]))
+            continue;
         const double edge = std::min(diagonal_of(volume, media[i]), whole.diagonal());
         const Rgb sigma_t = world_sigma_t(volume, media[i].field ? &*media[i].field : nullptr) *
                             (usual_density(volume, media[i]) * edge * edge * edge);

@@ -194,8 +194,10 @@ Specialization specialize(const Scene& scene, Media media, const Method& method,
     constants[SPEC_NEE] = method.nee;
     constants[SPEC_EMISSION_AT] = method.emission_at;
     constants[SPEC_FREE_FLIGHT] = method.free_flight;
-    constants[SPEC_FIRST_FLIGHT] =
-        method.first_flight.value_or(gains_by_split_flights(scene, media) ? FIRST_FLIGHT_SPLIT : FIRST_FLIGHT_DRAWN);
+    const auto usual_flight = [&] {
+        return gains_by_split_flights(scene, media) ? FIRST_FLIGHT_SPLIT : FIRST_FLIGHT_DRAWN;
+    };
+    constants[SPEC_FIRST_FLIGHT] = method.first_flight ? *method.first_flight : usual_flight();
     // Without shadow rays the choice is to leave no trace in the kernel.
     constants[SPEC_TRANSMITTANCE] = method.nee != NEE_NONE ? method.transmittance : TRANSMITTANCE_ANALYTIC;
     constants[SPEC_STEPS] = 1;

@@ -36,7 +36,7 @@ std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
     const std::uint32_t look_up = loops.media > 0 ? 1 + loops.media * (1 + of_one) : of_one;
     iterations += (4 * steps + 1) * look_up + 4 * search; // colours are looked up at collisions
     if (loops.media > 0)                                  // where all of them glow, or absorb, too
-        iterations += look_up + loops.media * 4 * search;
+        iterations += look_up + loops.media * std::max(4u, 2 * steps) * search;
     // A record is begun and added, and lights in the sky are noted one by one.
     const std::uint32_t records = loops.layers > 0 ? 2 * (loops.layers + 1) + loops.lights : 0;
     return iterations + loops.phase + loops.lights + records;

@@ -1,6 +1,6 @@
 // The first flight from the camera, split: what goes through adds the light from beyond, and what collides goes on from one of the
-// places where it does, so that neither is left to chance. Where a medium is thin, most flights that are drawn go through, and the
-// few that collide bring all that is seen of it.
+// places where it does. Where a medium is thin, most flights that are drawn go through, and the few that collide bring all that is
+// seen of it.
 //
 // Along the way tentative collisions have the rate mu, at least sigma_maj. Each takes the part sigma_t / mu of the throughput that has
 // come so far, and leaves the rest: ratio tracking. One of them is picked in proportion to what they take, by a reservoir (Chao 1982),
@@ -8,15 +8,15 @@
 // Once little is left a flight that is drawn decides over that: it collides, and competes, or it goes through. So matter that is dense
 // costs no more look-ups.
 //
-// Cells are left before they have been looked at where sigma_maj is low: mu is so high that each has some tentative collisions, on
-// average, from wherever the flight is in it to its end. It is for nobody to know how thin the medium is on the whole.
+// Where sigma_maj is low cells would be left before they have been looked at: mu is so high that each has a tentative collision, on
+// average. It is for nobody to know how thin the medium is on the whole.
 #ifndef SPLIT_GLSL
 #define SPLIT_GLSL
 #include "majorants/collision.glsl"
 #include "lib/directions.glsl"
 
 // Measured.
-const float LEAST_IN_CELL = HAS_CELLS ? 1.0 : 4.0; // tentative collisions
+const float LEAST_IN_CELL = HAS_CELLS ? 2.0 : 4.0; // tentative collisions, or without cells in each part
 const float DRAWN_BELOW = 0.5;                     // of the throughput
 const float HARDLY_SEEN = 0.02;                    // of light that is scattered evenly
 
@@ -60,18 +60,21 @@ void pick_again(inout Walk w, inout Spectrum beta, out float begun_with, inout S
 }
 
 // What was left, `through`, has gone through, and meets that `light`. What has collided goes on by chance, with the share, roughly, that
-// it has of all there is to be seen; in front of nothing it always does. Whether it does or not, it is first taken to bring the same
+// it has of all there is to be seen, which is that of a drawn flight at least: in front of nothing it mostly does. Whether it does or not, it is first taken to bring the same
 // light as what went through, which where it goes on is taken away again: where both are alike, as in an even glow, chance then leaves
 // no trace. Hence the throughput that is returned, to be added to the former; its expectation is 0.
-Spectrum part_that_ends(vec3 light, Spectrum through, out Spectrum beta, inout float begun_with, inout Split split, inout Rng rng) {
+Spectrum stand_in(vec3 light, Spectrum through, out Spectrum beta, inout float begun_with, inout Split split, inout Rng rng) {
+    const bool glows_there = EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_COLLISIONS;
+    if (!glows_there && (SCATTERING == SCATTERING_NONE || frame.max_depth == 0u))
+        split.collided = 0.0; // there is nothing to find
     Spectrum whole = split.picked * split.collided;
     float fluence = largest(frame.lights[FRAME_DIRECTIONAL].radiance) + (LIGHTS == LIGHTS_LONE ? 0.0 : frame.fluence);
-    float even = INV_4PI * fluence + largest(frame.lights[FRAME_BACKGROUND].radiance), m = largest(whole);
+    float even = max(INV_4PI * fluence + largest(frame.lights[FRAME_BACKGROUND].radiance), 1.0e-20), m = largest(whole);
     float scattered = m * even;
     float share = scattered / max(scattered + largest(light * through) + HARDLY_SEEN * even, 1.0e-30);
     float chance = min(max(m, share), 1.0); // of several colours m may be more
     bool goes_on = to_event(next_words(rng)) < chance;
-    beta = whole / chance;
+    beta = over(whole, to_spectrum(vec3(chance)));
     begun_with = largest(beta);
     split.collided = goes_on ? split.collided : 0.0;
     return whole - (goes_on ? beta : to_spectrum(vec3(0.0)));

@@ -1,7 +1,7 @@
 // Emission: the medium sends out sigma_a * density * Le per unit length, Le constant, or following a grid of temperatures or
 // colours.
 // Where density is 0 nothing is emitted, however hot. Estimated at real collisions, whose density is sigma_t * density:
-// each adds beta * (1 - albedo) * Le; or along flights, by one sample per step.
+// each adds beta * (1 - albedo) * Le; or along flights, by one sample per step or, of an even glow, in closed form.
 #ifndef EMISSION_GLSL
 #define EMISSION_GLSL
 #include "field/albedo.glsl"

@@ -15,7 +15,7 @@ struct Matter {
     Spectrum share; // of the medium in a channel's extinction, over the chance with which it was drawn
 };
 
-// The part of a superposition that is to be asked for what collisions need: phase function, albedo, emission.
+// The part of a superposition that is to be asked for what collisions need: phase function, albedo.
 MediumParams medium_of(MediumParams v, uint row) {
 #ifdef SEVERAL
     return media[row];

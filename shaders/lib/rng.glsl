@@ -15,7 +15,7 @@
 //   camera                 x, y: position in the pixel; e_z: first free flight; select
 //   tentative collision    e_x: next distance; event: which, or roulette; tap: stochastic filtering
 //   step of a march        x: position in the step; y: roulette of a march through the medium
-//   emission along a step  x: position in the step; after the step's own draw; none in an empty cell
+//   emission along a step  x: position in the step; after the step's own draw; none in an empty cell, or for a closed form
 //   shadow ray             e_x: first distance; y, z, select: telescoping's level, offset and residue; none is drawn
 //                          for one known in closed form
 //   light from the cache   x: whether a shadow ray corrects it; after the choice of a light, where there is one

@@ -148,13 +148,19 @@ uint next_cell(MediumParams v, bool residual, float t_exit, vec3 t_face, inout W
     return left ? EVENT_LEFT : EVENT_MOVING;
 }
 
+// Along the ray, per world unit; of a part without cells, one.
+float cells_per_length(MediumParams v, Walk w) {
+    vec3 d = abs(w.direction);
+    return HAS_CELLS ? max(d.x, max(d.y, d.z)) / v.cell_size : 1.0 / max(w.t_end, 1.0e-30);
+}
+
 // One step: to the face of the cell, or to a tentative collision before it (EVENT_COLLIDED).
 uint advance(MediumParams v, bool residual, inout Walk w) {
     vec3 t_face;
     float t_exit = cell_exit(v, w, t_face);
     w.rate = LEAPS != 0 ? max(w.sigma_maj, 0.0) : w.sigma_maj;
     if (SPLITS)
-        w.rate = w.rate > 0.0 ? max(w.rate, w.least / max(t_exit - w.t, 1.0e-30)) : 0.0;
+        w.rate = w.rate > 0.0 ? max(w.rate, w.least * cells_per_length(v, w)) : 0.0;
     float tau_cell = w.rate * (t_exit - w.t);
     if (w.tau < tau_cell) {
         w.t = min(w.t + w.tau / w.rate, t_exit);

@@ -29,9 +29,10 @@ void main() {
             uint row;
             radiance = seen_lamp(ray.origin, ray.direction, to_uniform(next_words(rng)).w, row).light;
         }
-        radiance += frame.lights[FRAME_BACKGROUND].radiance;
+        vec3 light = frame.lights[FRAME_BACKGROUND].radiance;
         if (SEES_SKY)
-            radiance += light_from_beyond(ray.direction, 0.0);
+            light += light_from_beyond(ray.direction, 0.0);
+        radiance += light;
         film_add(entry, radiance, place, i, tally);
     }
     if (hit) {

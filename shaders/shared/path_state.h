@@ -102,7 +102,7 @@
     ROW(float, depth, adds_depth) /* density integrated so far, over all parts */                                     \
     ROW(float, sigma_maj, walks)  /* of the present cell [1 / world unit]; if it is empty, minus its reach, see majorant.glsl */ \
     ROW(float, rate, false)       /* of tentative collisions in the last step [1 / world unit]: set by every step */ \
-    ROW(float, least, splits)     /* of them in each cell that is not empty, on average; 0: as sigma_maj has it */ \
+    ROW(float, least, splits)     /* of them at least, on average, for each cell that it passes; 0: as sigma_maj has it */ \
     ROW(float, control, controlled) /* control density of the present cell */                                         \
     ROW(ivec3, cell, cells)       /* majorant cell; the voxel in regular tracking */                                  \
     ROW(uint, cell_row, listed) /* of several media: the cell's in their tables */ \

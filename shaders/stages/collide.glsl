@@ -96,22 +96,20 @@ void gather_light(MediumParams v, MediumParams met, vec3 position, float t, Spec
     }
 }
 
-// Light that comes of a collision, or absorption at it, of throughput lane.beta.
+// Light that comes of a collision, or absorption at it, of throughput lane.beta. Marches collide where they have looked nothing up: of
+// several media theirs is that of the one that was drawn.
 void add_glow(MediumParams v, MediumParams met, inout Lane lane) {
-#ifdef SEVERAL
-    add_glow_of_all(v, lane.walk.per_extinction, lane.walk.origin + lane.walk.t * lane.walk.direction, lane.walk.tap, lane.path.position,
-                    lane);
-#else
-    add_light(lane, lane.beta * emitted_radiance(met, lane.path.position), glow_label(lane.path.depth) | lane.first_label);
-#endif
+    if (SEVERAL_MEDIA && NULL_FLIGHT)
+        add_glow_of_all(v, lane.walk.per_extinction, lane.walk.origin + lane.walk.t * lane.walk.direction, lane.walk.tap,
+                        lane.path.position, lane);
+    else
+        add_light(lane, lane.beta * emitted_radiance(met, lane.path.position), glow_label(lane.path.depth) | lane.first_label);
 }
 vec3 absorbed_here(MediumParams v, MediumParams met, Lane lane) {
-#ifdef SEVERAL
-    return absorbed_by_all(v, lane.walk.per_extinction, lane.walk.origin + lane.walk.t * lane.walk.direction, lane.walk.tap,
-                           lane.path.position);
-#else
+    if (SEVERAL_MEDIA && NULL_FLIGHT)
+        return absorbed_by_all(v, lane.walk.per_extinction, lane.walk.origin + lane.walk.t * lane.walk.direction, lane.walk.tap,
+                               lane.path.position);
     return vec3(lane.beta) * absorbed_at(met, lane.path.position);
-#endif
 }
 
 // At a real collision: emission, absorption, light. Then the path departs, or ends.

@@ -116,7 +116,8 @@ void set_going(MediumParams v, uvec4 words, bool looks, bool at_camera, inout La
     lane.walk.depth = 0.0;
     if (SHADOW_RAYS_WALK && looks)
         begin_transmittance(words, lane.walk);
-    lane.walk.least = SPLITS && at_camera && !is_particle(lane) && reach_of_flight(lane) >= FAR ? LEAST_IN_CELL : 0.0;
+    bool is_first = !looks && lane.path.depth == 0u && !is_particle(lane);
+    lane.walk.least = SPLITS && is_first && reach_of_flight(lane) >= FAR ? LEAST_IN_CELL : 0.0;
     lane.split.collided = 0.0;
     begin_here(v, looks, lane);
     lane.T = to_spectrum(vec3(1.0));

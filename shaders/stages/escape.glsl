@@ -48,7 +48,7 @@ void escape(MediumParams v, vec3 direction, inout Lane lane, inout Rng rng) {
     Spectrum through = beta;
     if (SPLITS) // in an `if` of its own, which kernels without it are compiled without
         if (lane.split.collided > 0.0)
-            beta += part_that_ends(light, beta, lane.beta, lane.begun_with, lane.split, rng);
+            beta += stand_in(light, beta, lane.beta, lane.begun_with, lane.split, rng);
     if (HAS_LAYERS)
         note_escape(beta, through, label, direction, lane);
     lane.path.radiance += beta * light;

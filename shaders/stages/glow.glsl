@@ -31,6 +31,11 @@ vec3 absorbed_by_all(MediumParams v, vec3 per_extinction, vec3 p, vec3 tap, vec3
     }
     return absorbed;
 }
+#else
+void add_glow_of_all(MediumParams v, vec3 per_extinction, vec3 p, vec3 tap, vec3 position, inout Lane lane) {}
+vec3 absorbed_by_all(MediumParams v, vec3 per_extinction, vec3 p, vec3 tap, vec3 position) {
+    return vec3(0.0);
+}
 #endif
 
 #endif
