@@ -17,6 +17,7 @@ TestScene make(const Volume& volume, const LoadedMedium& loaded, Filter filter, 
     scene.settings.filter = filter;
     const bool homogeneous = density_kind(scene) == FIELD_CONSTANT;
     Method method{};
+    method.first_flight = FIRST_FLIGHT_DRAWN; // else chosen by how thin the medium is
     method.scattering = SCATTERING_MULTIPLE;
     method.free_flight = estimators.free_flight >= 0 ? estimators.free_flight
                          : homogeneous               ? FREE_FLIGHT_ANALYTIC
