@@ -57,7 +57,8 @@ double chance_to_collide(const Volume& volume, const LoadedMedium& loaded) {
 }
 
 bool gains_by_split_flights(const Scene& scene, Media media) {
-    constexpr double most = 0.75; // measured: tools/results/README.md
+    constexpr double most = 0.75;  // measured: tools/results/README.md
+    constexpr double least = 1e-4; // thinner ones are mostly meant otherwise: black pictures are explained
     const auto is_map = [](const Light& light) { return std::holds_alternative<SkyLight>(light); };
     const bool has_sky = std::any_of(scene.lights.begin(), scene.lights.end(), is_map);
     if (scene.volumes.empty() || !scene.surfaces.empty() || has_sky || any_medium(scene, is_everywhere))
@@ -65,7 +66,7 @@ bool gains_by_split_flights(const Scene& scene, Media media) {
     double chance = 0.0;
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         chance = std::max(chance, chance_to_collide(scene.volumes[i], media[i]));
-    return chance < most && largest(scene.background) <= chance * even_light(scene);
+    return chance > least && chance < most && largest(scene.background) <= chance * even_light(scene);
 }
 
 } // namespace vkvol
