@@ -63,10 +63,13 @@ bool gains_by_split_flights(const Scene& scene, Media media) {
     const bool has_sky = std::any_of(scene.lights.begin(), scene.lights.end(), is_map);
     if (scene.volumes.empty() || !scene.surfaces.empty() || has_sky || any_medium(scene, is_everywhere))
         return false;
+    const double even = even_light(scene), background = largest(scene.background);
+    if (background > even) // whatever the chance, for which all cells are asked
+        return false;
     double chance = 0.0;
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         chance = std::max(chance, chance_to_collide(scene.volumes[i], media[i]));
-    return chance > least && chance < most && largest(scene.background) <= chance * even_light(scene);
+    return chance > least && chance < most && background <= chance * even;
 }
 
 } // namespace vkvol

@@ -8,7 +8,7 @@
 // Once little is left a flight that is drawn decides over that: it collides, and competes, or it goes through. So matter that is dense
 // costs no more look-ups.
 //
-// Where sigma_maj is low cells would be left before they have been looked at: mu is so high that each has a tentative collision, on
+// Where sigma_maj is low cells would be left before they have been looked at: mu is so high that each has two tentative collisions, on
 // average. It is for nobody to know how thin the medium is on the whole.
 #ifndef SPLIT_GLSL
 #define SPLIT_GLSL
@@ -18,7 +18,7 @@
 // Measured.
 const float LEAST_IN_CELL = HAS_CELLS ? 2.0 : 4.0; // tentative collisions, or without cells in each part
 const float DRAWN_BELOW = 0.5;                     // of the throughput
-const float HARDLY_SEEN = 0.02;                    // of light that is scattered evenly
+const float HARDLY_SEEN = 0.02;                    // of light that is scattered evenly; chosen, not measured
 
 struct Split {
     SPLIT_STATE(STATE_FIELD)
