@@ -16,7 +16,7 @@ packages=(
     build-essential cmake ninja-build python3
     libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers glslang-tools spirv-tools
     libglm-dev libtinyobjloader-dev libnanovdb-dev libopenvdb-dev libboost-iostreams-dev libtbb-dev libblosc-dev zlib1g-dev libimath-dev
-    libopenimageio-dev libpugixml-dev libcli11-dev libfmt-dev libcpp-httplib-dev pkg-config libxxhash-dev nlohmann-json3-dev catch2 libxml2-utils
+    libopenimageio-dev libpugixml-dev libcli11-dev libfmt-dev libcpp-httplib-dev pkg-config libxxhash-dev libjemalloc-dev nlohmann-json3-dev catch2 libxml2-utils
     python3-numpy python3-pil python3-matplotlib python3-dev pybind11-dev
 )
 
