@@ -53,22 +53,24 @@ ValueMap ramp_of(const std::string& attributes) {
 } // namespace
 
 TEST_CASE("mapped values equal the reference", "[gpu][image][value_map]") {
-    check_against_reference(lit_by_sun(mapped_cloud(bumpy_map(), 1.5)), "map");
-    check_against_reference(lit_by_sun(mapped_cloud(tissues())), "transfer function");
+    std::vector<std::pair<const char*, Scene>> all = {{"map", lit_by_sun(mapped_cloud(bumpy_map(), 1.5))},
+                                                      {"transfer function", lit_by_sun(mapped_cloud(tissues()))}};
     Scene scene = lit_by_sun(mapped_cloud(tissues()));
     scene.volumes.front().Le = {0.02, 0.03, 0.05};
     scene.settings.integrator = "ratioTracking";
     scene.settings.choices.nee = NEE_TENTATIVE;
     scene.settings.choices.emission = EMISSION_AT_STEPS;
-    check_against_reference(scene, "at every step");
+    all.emplace_back("at every step", scene);
     scene.settings.filter = Filter::nearest;
-    check_against_reference(scene, "nearest");
+    all.emplace_back("nearest", scene);
     scene.settings.choices = {};
     scene.settings.integrator = "regularTracking";
-    check_against_reference(scene, "nearest, regular");
+    all.emplace_back("nearest, regular", scene);
     scene.settings.filter = Filter::trilinear;
     scene.settings.integrator = "nanoVDBEmission";
-    check_against_reference(scene, "marched through");
+    all.emplace_back("marched through", scene);
+    for (const auto& [name, each] : in_turn(all, 0, 2))
+        check_against_reference(each, name);
 }
 
 TEST_CASE("a map of each voxel equals a grid that holds what it makes of them", "[gpu][image][value_map]") {
