@@ -96,11 +96,13 @@ Matter matter_in(MediumParams v, uint entry, vec3 p, vec3 tap, float u, Spectrum
         vec3 extinguished = sigma_t * media[row].sigma_ratio;
         part = total(parts * extinguished);
 #endif
+        float before = sum;
         sum += part;
-        float share = part > 0.0 ? part / sum : 0.0;
-        bool drawn = u < share;
+        // The smaller chance is that of small numbers, which have digits.
+        float share = part > 0.0 ? part / sum : 0.0, rest = part > 0.0 ? before / sum : 1.0, less = min(share, rest);
+        bool is_less = u < less, drawn = is_less == (share <= rest);
         found.medium = drawn ? row : found.medium;
-        u = drawn ? u / share : (u - share) / (1.0 - share); // uniform again
+        u = is_less ? u / less : (u - less) / max(share, rest); // uniform again
 #ifdef CHROMATIC
         channels += extinguished;
         own = drawn ? extinguished : own;
@@ -135,7 +137,7 @@ float density(MediumParams v, vec3 p, vec3 tap) {
     return matter_at(v, p, tap, 0.0, to_spectrum(vec3(1.0))).density;
 }
 float to_choice(uvec4 words) {
-    return to_uniform(pcg4d(words)).x;
+    return to_event(pcg4d(words));
 }
 #else
 Matter matter_at(MediumParams v, vec3 p, vec3 tap, float u, Spectrum beta) {

@@ -1,14 +1,15 @@
 // Where a sample has a path from the sensor and a particle, both find the same light by the same vertices, and share the work: weights
-// of the two that add up to 1 for all that can be found by both (multiple importance sampling, see table.glsl). What lies between
-// the first and the last vertex is drawn alike by both, so that their densities differ by what the sensor and the light draw alone
-// (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 10.2); and transmittances, of which each family
-// knows all but one, are left out of it: any function of the vertices may weigh them. The weight of a particle is r / (1 + r), that
-// of a path 1 / (1 + r),
+// of the two that add up to 1 for all that can be found by both (multiple importance sampling, see table.glsl). Between the vertex
+// nearest to the sensor and that nearest to the light both draw alike, so that their densities differ by what is drawn at
+// these two and beyond (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 10.2); and transmittances, of which
+// each family knows all but one, are left out of it: any function of the vertices may weigh them. The weight of a particle is
+// r / (1 + r), that of a path 1 / (1 + r),
 //
-//   r = sensor_share * light_share
+//   r = sensor_share * light_share * scattered at the light's vertex / scattered at the sensor's
 //
-// of particles in a picture over the density with which a sample of a pixel draws the sensor's nearest vertex, and of the density
-// with which a particle comes to the light's nearest vertex over that with which a path there finds the light.
+// of particles in a picture over the density with which a sample of a pixel draws the sensor's nearest vertex, of the density
+// with which a particle comes to the light's nearest vertex over that with which a path there finds the light, and, if these are
+// two, of the densities with which each family leaves its first vertex, where the other one only looks.
 #ifndef FAMILIES_GLSL
 #define FAMILIES_GLSL
 #include "lights/lamp.glsl"
@@ -46,6 +47,21 @@ vec2 shares_at(vec2 shares, float distance) {
 vec2 shares_of_found(LightRow light, vec3 from, vec3 direction, float distance, float pdf) {
     float cosine = max(-dot(light.direction, direction), 0.0);
     return shares_at(light_shares(light, cosine, pdf), distance);
+}
+
+// How much a vertex faces where the sensor or the light is: densities on a surface have that cosine, in matter none.
+float facing(Scatterer s, vec3 direction) {
+#ifdef SURFACES
+    return s.is_surface ? max(abs(dot(s.bsdf.face, direction)), 1.0e-6) : 1.0;
+#else
+    return 1.0;
+#endif
+}
+
+// The density of a direction at a vertex, the same whichever way light goes; surfaces are taken to be matt, over the cosine that
+// belongs to the segment.
+float between(bool is_surface, float pdf) {
+    return is_surface ? 1.0 / PI : max(pdf, 1.0e-12);
 }
 
 float weight_of_path(float sensor_share, float light_share) {

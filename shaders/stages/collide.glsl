@@ -15,7 +15,9 @@ void show_to_sensor(MediumParams v, Scatterer s, vec3 position, Spectrum lit, ui
     s = as_shown_along(s, look.direction);
     vec3 value = vec3(scatter_value(s, lane.path.direction, look.direction)) *
                  adjoint(s, lane.path.direction, look.direction);
-    show(v, look, lit_position(s, position, look.direction), value, lit, next, lane);
+    vec3 lit_at = lit_position(s, position, look.direction);
+    float share = WEIGHS && look.pixel != NO_PIXEL ? share_of_shown(s, look, lit_at, between(is_surface(s), value.x), lane) : 0.0;
+    show(v, look, lit_at, value, share, lit, next, lane);
 }
 
 // Likewise from one of many lights, which is drawn here.
@@ -35,7 +37,8 @@ void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spec
         light = vec3(0.0);
 #endif
     if (WEIGHS)
-        light *= weight_of_found(lane, shares_of_found(row, position, drawn.direction, drawn.distance, 0.0), true);
+        light *= weight_of_looked_for(lane, shares_of_found(row, position, drawn.direction, drawn.distance, 0.0),
+                                      facing(s, drawn.direction), between(is_surface(s), pdf));
     if (LOOKS_ALONG && !is_surface(s))
         light *= weight_of_collision(v, row, lane.path.direction, position, t, flying_as_far_as(lane));
     if (SHADOW_RAYS_WALK) {
@@ -121,7 +124,7 @@ void collide(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng, i
         add_glow(v, met, lane);
     vec3 albedo = albedo_at(met, lane.path.position);
     if (WEIGHS)
-        note_shares(lane.path.position, lane.walk.start + lane.walk.t, lane);
+        note_shares(lane.path.position, lane.walk.start + lane.walk.t, 1.0, lane);
     if (HAS_LAYERS)
         if (lane.path.depth == 0u)
             note_collision(lane.record, vec3(lane.beta), lane.path.position, lane.path.direction,

@@ -34,8 +34,10 @@ uvec4 first_words(bool looks, inout Rng rng) {
 void scatter(MediumParams v, vec4 u, inout Lane lane) {
     vec3 before = lane.path.direction;
     lane.path.direction = phase_sample(v, before, u.yz);
-    if (SEES_SKY)
+    if (SEES_SKY || WEIGHS)
         lane.phase_pdf = phase_eval(v, before, lane.path.direction);
+    if (WEIGHS)
+        note_scattered(between(false, lane.phase_pdf), lane);
     lane.todo = survives(lane, u.w) ? TODO_FLY : TODO_END;
     if (LIGHTS == LIGHTS_LONE) // in an `if` of its own, as below
         if (SHADOW_RAYS_WALK && NEE == NEE_CACHED && PHASE_HAS_TWICE && lane.path.depth < frame.max_depth)
@@ -78,6 +80,8 @@ void scatter_at_surface(uvec4 words, inout Lane lane, inout Rng rng) {
     lane.phase_pdf = drawn.pdf;
     if (WEIGHS && drawn.pdf == 0.0)
         note_specular(lane);
+    else if (WEIGHS)
+        note_scattered(between(true, drawn.pdf), lane);
     lane.beta *= drawn.weight;
     if (is_particle(lane))
         lane.beta *= bsdf_adjoint(bsdf, wo, drawn.direction);
@@ -95,7 +99,7 @@ bool look_at_shown_lamps(inout Lane lane, inout Rng rng) {
     bool sees = is_shown && seen.distance < FAR;
     uint label = kind_label(lane.path.depth) | group_label(light_at(row).group) | lane.first_label;
     if (sees && WEIGHS)
-        seen.light *= weight_of_found(lane, shares_of_found(light_at(row), lane.path.position, seen.direction, seen.distance, 0.0), false);
+        seen.light *= weight_of_found(lane, shares_of_found(light_at(row), lane.path.position, seen.direction, seen.distance, 0.0), 0.0);
     if (sees)
         look_straight(seen, light_at(row).body, lane.beta, label, TODO_SET_OUT, lane);
     return sees;

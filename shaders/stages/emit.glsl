@@ -17,7 +17,7 @@ void emit(MediumParams v, inout Lane lane, inout Rng rng) {
     lane.todo = largest(p.light) > 0.0 ? TODO_DEPART : TODO_END;
     if (PATHS == PATHS_LIGHT && !COUNTS && lane.todo != TODO_END && p.shines != SHINES_UNSEEN) {
         SensorLook look = toward_sensor(p.position, rng);
-        show(v, look, p.position, vec3(shine_toward(p, look.direction)), lane.beta, TODO_DEPART, lane);
+        show(v, look, p.position, vec3(shine_toward(p, look.direction)), 0.0, lane.beta, TODO_DEPART, lane);
     }
 }
 

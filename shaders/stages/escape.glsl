@@ -20,10 +20,16 @@ void note_escape(Spectrum beta, Spectrum through, uint label, vec3 direction, La
 // The path's part of the light of all that a flight meets when it leaves.
 vec3 light_left_to_path(vec3 direction, Lane lane) {
     vec3 radiance = vec3(0.0);
+    bool is_surface = surface_at(lane.path) != NO_SURFACE;
+    float density = lane.phase_pdf > 0.0 ? between(is_surface, lane.phase_pdf) : 0.0;
+#ifdef SURFACES
+    if (is_surface)
+        density *= max(abs(dot(surface_point(surface_at(lane.path), lane.path.position).normal, direction)), 1.0e-6);
+#endif
     for (uint i = 0u; i < frame.sky_count; ++i) {
         LightRow light = light_at(i);
         vec2 shares = shares_of_found(light, lane.path.position, direction, FAR, pdf_from_beyond(light, direction));
-        radiance += weight_of_found(lane, shares, lane.phase_pdf > 0.0) * light_from_one(light, direction, lane.phase_pdf);
+        radiance += weight_of_found(lane, shares, density) * light_from_one(light, direction, lane.phase_pdf);
     }
     return radiance;
 }

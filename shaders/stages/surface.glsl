@@ -27,7 +27,7 @@ void arrive_at_surface(MediumParams v, inout Lane lane, inout Rng rng, inout Tal
         }
     lane.path.position = at.position + at.apart * bsdf.face;
     if (WEIGHS)
-        note_shares(lane.path.position, lane.reach, lane);
+        note_shares(lane.path.position, lane.reach, facing(surface_of(v, bsdf, at.apart), lane.path.direction), lane);
     lane.path.medium = AT_SURFACE | lane.struck;
     bool capped = SCATTERING != SCATTERING_NONE && lane.path.depth >= frame.max_depth;
     tally.depth_caps += capped ? 1u : 0u;
