@@ -98,7 +98,7 @@ Matter matter_in(MediumParams v, uint entry, vec3 p, vec3 tap, float u, Spectrum
 #endif
         float before = sum;
         sum += part;
-        // The smaller chance is that of small numbers, which have digits.
+        // The smaller chance is that of small numbers, which have more digits: behind an even choice they are steps of 2^-23.
         float share = part > 0.0 ? part / sum : 0.0, rest = part > 0.0 ? before / sum : 1.0, less = min(share, rest);
         bool is_less = u < less, drawn = is_less == (share <= rest);
         found.medium = drawn ? row : found.medium;

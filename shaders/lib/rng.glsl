@@ -8,12 +8,13 @@
 //           it should
 //   tap   = ((words_z >> 8), (words_w >> 8), low bytes of m_y, m_z, m_x as one 24-bit number) * 2^-24, m = words ^ words >> 16:
 //           low bytes alone know nothing of the key's upper ones, so that of rows 256 apart they are the same
+//   media = event of pcg4d(words): of several that are met, which
 //   e_i   = -log(1 - U), U = (words_i + r * 2^-24) * 2^-32, r: low bytes of words_w, words_y, words_x as one number.
 //           At most 38.82; of steps of 2^-48 near 0: a medium thinner than 2^-24 is hit as often as it should be.
 //
 // Order of draws along a path; each draw yields four words. `select` is tap.z: it chooses a colour channel.
 //   camera                 x, y: position in the pixel; e_z: first free flight; select
-//   tentative collision    e_x: next distance; event: which, or roulette; tap: stochastic filtering
+//   tentative collision    e_x: next distance; event: which, or roulette; tap: stochastic filtering; media
 //   step of a march        x: position in the step; y: roulette of a march through the medium
 //   emission along a step  x: position in the step; after the step's own draw; none in an empty cell, or for a closed form
 //   shadow ray             e_x: first distance; y, z, select: telescoping's level, offset and residue; none is drawn

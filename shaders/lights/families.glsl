@@ -65,7 +65,7 @@ float between(bool is_surface, float pdf) {
 }
 
 float weight_of_path(float sensor_share, float light_share) {
-    return sensor_share > 0.0 ? 1.0 / (1.0 + sensor_share * light_share) : 1.0;
+    return min(sensor_share, light_share) > 0.0 ? 1.0 / (1.0 + sensor_share * light_share) : 1.0;
 }
 float weight_of_particle(float sensor_share, float light_share) {
     float r = sensor_share * light_share;

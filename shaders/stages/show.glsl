@@ -51,8 +51,8 @@ float share_of_shown(Scatterer s, SensorLook look, vec3 position, float density,
     return lane.path.depth > 1u ? share / density : share;
 }
 
-// `value`: per steradian toward it, of light `lit` at `position`; `share`: see share_of_shown. Known at once in a homogeneous sphere or box, else the lane goes to
-// look; then it does as `next` says.
+// `value`: per steradian toward it, of light `lit` at `position`; `share`: see share_of_shown. Known at once in a homogeneous sphere or
+// box, else the lane goes to look; then it does as `next` says.
 void show(MediumParams v, SensorLook look, vec3 position, vec3 value, float share, Spectrum lit, uint next, inout Lane lane) {
     value *= look.weight;
     if (WEIGHS && look.pixel != NO_PIXEL)

@@ -196,7 +196,7 @@ TEST_CASE("fog without end equals a box of it that is larger than any path", "[g
         each->lights = {sunlight(), PointLight{{1.0, 2.0, 3.0}, Rgb(30.0)}};
         each->volumes.push_back(cloud);
         each->volumes.push_back(medium(Sphere{{6.0, 0.0, 0.0}, 1.5}, 0.6, 0.5));
-        each->settings.spp = 512; // what is near the point is rare and bright
+        each->settings.spp = 1024; // what is near the point is rare and bright
     }
     CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_here(box, 2).film, "a cloud in fog"));
 }
@@ -233,7 +233,7 @@ TEST_CASE("media that are everywhere equal the reference", "[gpu][image][layers]
     Scene alone = lit_from_above(endless_fog(0.2, 0.9));
     alone.lights = {PointLight{{1.0, 2.0, 3.0}, Rgb(30.0)}};
     all.emplace_back("a lamp in fog", alone);
-    for (const auto& [name, each] : in_turn(all, 0, 2))
+    for (const auto& [name, each] : in_turn(all, 1, 2))
         check_against_reference(each, name);
 }
 

@@ -128,9 +128,24 @@ void check(const ParticleCase& c, int turn) {
 } // namespace
 
 TEST_CASE("particles, paths and both show the same", "[gpu][particles]") {
-    int turn = 0;
+    int turn = 1;
     for (const ParticleCase& c : in_turn(particle_cases(), 0, 5))
         check(c, turn++);
+}
+
+// Which paths find by looks, and where they leave, weighed against particles each time.
+TEST_CASE("paths and particles share the light of a sky, in smoke and on what is before it", "[gpu][particles]") {
+    RadianceMap map{8, 4, {}, 0};
+    for (int i = 0; i < 32; ++i)
+        map.texels.emplace_back(0.2 + 0.5 * (i % 5), 0.4, i / 8 < 2 ? 1.5 : 0.2);
+    const Scene lit = before_smoke(
+        {surface_of(left_ball, MaterialKind::diffuse), surface_of(right_ball, MaterialKind::dielectric, 0.3)},
+        {write_sky(map)});
+    Scene bare = small_picture(medium(Sphere{{0.0, 0.0, 0.0}, 1.5}, 2.0, 0.95, 0.8), 4.0, {write_sky(map)});
+    for (Scene scene : {lit, bare}) {
+        scene.background = Rgb(0.0);
+        CHECK_AGREEMENT(agree(render_here(by(scene, "bidirectional"), 1).film, render_reference(scene, 2), "a sky"));
+    }
 }
 
 // Glass throws light where looks do not find it: particles find it, and a path from the camera only what the camera

@@ -69,7 +69,7 @@ TEST_CASE("mapped values equal the reference", "[gpu][image][value_map]") {
     scene.settings.filter = Filter::trilinear;
     scene.settings.integrator = "nanoVDBEmission";
     all.emplace_back("marched through", scene);
-    for (const auto& [name, each] : in_turn(all, 0, 2))
+    for (const auto& [name, each] : in_turn(all, 1, 2))
         check_against_reference(each, name);
 }
 

@@ -1,8 +1,10 @@
 """What a build by ninja used: headers and libraries, by path, and programs, by name."""
 import json
 import os
+import pathlib
 import re
 import shlex
+import tempfile
 
 from .debian import lines_of
 
@@ -71,7 +73,10 @@ class Build:
         return word
 
     def read_tests(self):
-        listing = "\n".join(lines_of("ctest", "--test-dir", self.directory, "--show-only=json-v1"))
+        # From elsewhere: it would write its own log over that of the tests that call this.
+        with tempfile.TemporaryDirectory() as elsewhere:
+            pathlib.Path(elsewhere, "CTestTestfile.cmake").write_text(f"subdirs([[{self.directory.resolve()}]])\n")
+            listing = "\n".join(lines_of("ctest", "--test-dir", elsewhere, "--show-only=json-v1"))
         for test in json.loads(listing or '{"tests": []}')["tests"]:
             if test.get("command"):
                 self.call(test["command"][0], f"the test {test['name']}")
