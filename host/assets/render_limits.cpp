@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <limits>
 
+#include "camera_rays.h"
 #include "error.h"
 #include "layers.h"
 #include "method.h"
@@ -173,12 +174,28 @@ void check_points(const Scene& scene) {
                                 surface.place.empty() ? "" : surface.place + ": ", point.x, point.y, point.z));
 }
 
+// Such a sensor is kept off the surface to where it faces: behind a ground, where it would read what is not there.
+void check_facing(const Scene& scene) {
+    if (scene.camera.projection != Projection::irradiance)
+        return;
+    const CameraRays rays = camera_rays(scene.camera, scene.picture);
+    for (const Surface& surface : scene.surfaces)
+        if (const auto* plane = std::get_if<PlaneSurface>(&surface.shape))
+            if (glm::dot(plane->normal, rays.forward) < -0.5 &&
+                DistanceTo{scene.camera.position}(*plane) <= SURFACE_SPARE)
+                throw InputError(
+                    fmt::format("{}<irradiance>: it lies in this plane and faces into it; lift it off, to the "
+                                "side that is meant",
+                                surface.place.empty() ? "" : surface.place + ": "));
+}
+
 } // namespace
 
 void check_scene_limits(const Scene& scene) {
     if (scene.periodic)
         check_periodic(scene);
     check_points(scene);
+    check_facing(scene);
     const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
     if (is_superposition(scene) && any_medium(scene, is_mesh))
         throw InputError(

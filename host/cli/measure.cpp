@@ -252,11 +252,10 @@ void tell_once(const MeasureOptions& options, const RenderScene& loaded, const R
         notes.push_back(loaded.assumed);
     if (!result.biased.empty())
         notes.push_back("the readings are biased: " + result.biased);
-    if (options.request.noise_goal && !result.interrupted && result.samples > 1 && !relative_noise(result.film))
-        notes.push_back(
-            fmt::format("no light came in {} samples, and --noise has nothing to go by: such readings are 0 "
-                        "as far as these tell",
-                        result.samples));
+    if (!result.interrupted && result.samples > 1 && !relative_noise(result.film))
+        notes.push_back(fmt::format("no light came in {} samples{}: such readings are 0 as far as these tell",
+                                    result.samples,
+                                    options.request.noise_goal ? ", and --noise has nothing to go by" : ""));
     for (const std::string& note : workshop.new_warnings(notes))
         tell(stderr, "vkvol: note: {}\n", note);
 }

@@ -80,6 +80,11 @@ float lookup_trilinear(GridParams g, int type, vec3 p) {
     return mix(plane[0], plane[1], f.x);
 }
 
+// Of what no estimator knows to be linear: as densities are, but never by a corner that is drawn.
+float lookup_value(GridParams g, int type, vec3 p) {
+    return FILTER == FILTER_NEAREST ? voxel(g, type, nearest_voxel(p)) : lookup_trilinear(g, type, p);
+}
+
 vec3 voxel_color(GridParams g, ivec3 ijk) {
     VoxelPlace place = find_voxel(g, ijk);
     uint entry = leaf_entry(place.entry);
@@ -91,7 +96,9 @@ vec3 voxel_color(GridParams g, ivec3 ijk) {
 // Colour of a grid of colours; grey if the grid is of numbers.
 vec3 lookup_color(GridParams g, int type, vec3 p) {
     vec3 result = vec3(0.0);
-    if (type == GRID_COLOR) {
+    if (type == GRID_COLOR && FILTER == FILTER_NEAREST) {
+        result = voxel_color(g, nearest_voxel(p));
+    } else if (type == GRID_COLOR) {
         vec3 base = floor(p);
         vec3 f = p - base;
         [[unroll]] for (int i = 0; i < 8; ++i) {
@@ -100,7 +107,7 @@ vec3 lookup_color(GridParams g, int type, vec3 p) {
             result += weights.x * weights.y * weights.z * voxel_color(g, ivec3(base) + corner);
         }
     } else {
-        result = vec3(lookup_trilinear(g, type, p));
+        result = vec3(lookup_value(g, type, p));
     }
     return result;
 }

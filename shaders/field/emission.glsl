@@ -28,7 +28,7 @@ vec3 grid_emission(MediumParams v, vec3 position) {
     index = clamp(index, vec3(e.grid.voxel_min - 2), vec3(e.grid.voxel_max + 2)); // beyond which there is nothing
     if (HAS_COLORS && type == GRID_COLOR)
         return e.constant + e.color * lookup_color(e.grid, GRID_COLOR, index);
-    float value = lookup_trilinear(e.grid, type, index);
+    float value = lookup_value(e.grid, type, index);
     if (kind == EMISSION_COLOR)
         return e.constant + value * e.color;
     float kelvin = e.kelvin_scale * value + e.kelvin_offset;

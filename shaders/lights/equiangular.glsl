@@ -88,7 +88,7 @@ float distance_in(Stretch s, float u) {
 // Densities of t, per world unit: of distance_in, and about that of a free flight.
 float equiangular_pdf(Stretch s, float t) {
     float y = 1.0 / (1.0 + abs(t - s.foot) / s.off);
-    return y * y / (s.off * (s.mass.x + s.mass.y));
+    return y / (s.mass.x + s.mass.y) / (s.off + abs(t - s.foot)); // in this order, for y and mass may be as small as numbers are
 }
 float assumed_flight_pdf(MediumParams v, Stretch s, float t) {
     return v.usual_sigma_t * exp(-v.usual_sigma_t * max(t - s.first, 0.0));

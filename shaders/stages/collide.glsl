@@ -54,7 +54,7 @@ void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spec
         lane.light_distance = drawn.distance;
         lane.light = light;
         lane.label = label;
-        lane.todo = largest(light) > 0.0 && largest(lit) > 0.0 ? TODO_LOOK : next;
+        lane.todo = largest(lit * light) > 0.0 ? TODO_LOOK : next;
         if (NEE == NEE_CACHED) {
             float looking;
             lane.cached = cached_transmittance_to(v, position, drawn.direction, drawn.distance, looking);

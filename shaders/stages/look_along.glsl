@@ -15,7 +15,8 @@ LightRow choose_placed(MediumParams v, vec3 position, vec3 direction, float reac
         vec2 t;
         if (!medium_interval(v, to_medium(v, position, direction), t))
             t = vec2(0.0);
-        i = descend(Lit(position + t.x * direction, false, direction, max(min(t.y, reach) - t.x, 1.0e-30), v.usual_sigma_t), rng, chance);
+        float clearest = max(v.usual_sigma_t * smallest(v.sigma_ratio), 1.0e-30); // of the channels, so that none is lost
+        i = descend(Lit(position + t.x * direction, false, direction, max(min(t.y, reach) - t.x, 1.0e-30), clearest), rng, chance);
     }
     return light_at(i);
 }
@@ -41,7 +42,7 @@ bool look_along(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tall
                (matter.ratio * matter.share * to_spectrum(albedo_at(met, position)));
     lane.light = drawn.light * phase_eval(met, lane.path.direction, drawn.direction);
     uint label = kind_label(lane.path.depth + 1u) | group_label(light.group) | label_at(lane, met);
-    bool is_lit = is_open(s) && lane.path.depth < frame.max_depth && largest(lane.lit) > 0.0 && largest(lane.light) > 0.0;
+    bool is_lit = is_open(s) && lane.path.depth < frame.max_depth && largest(lane.lit * lane.light) > 0.0;
     if (is_lit && SHADOW_RAYS_WALK) {
         lane.position = position;
         lane.to_light = drawn.direction;

@@ -138,6 +138,9 @@ TEST_CASE("readings are a table, a row for each point and combination of values"
     const Run dark = folder.vkvol("measure glow.xml -D sigma=0 -D glow=1 --noise 5%");
     CHECK(dark.code == exit_done);
     CHECK_THAT(dark.text, Contains("no light came in 2097152 samples"));
+    const Run unlit = folder.vkvol("measure glow.xml -D sigma=0 -D glow=1 --spp 64");
+    CHECK(unlit.code == exit_done);
+    CHECK_THAT(unlit.text, Contains("no light came in 64 samples: such readings are 0 as far as these tell"));
     folder.write("seen.xml", "<options><width>2</width><height>1</height><film aov='depth'/><sphere/></options>");
     const Run seen = folder.vkvol("measure seen.xml --spp 2");
     CHECK(seen.code == exit_done);

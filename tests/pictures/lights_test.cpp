@@ -154,6 +154,17 @@ TEST_CASE("shadow rays end at a lamp within the medium", "[gpu][lights]") {
 }
 
 // From along flights, in all shapes and with all that a look takes; by free flights alone the same, with more noise.
+// As a searchlight does: looks from along a flight are drawn about where it begins, far before the medium.
+TEST_CASE("a lamp at the eye lights what is before it", "[gpu][lights]") {
+    const Volume fog = medium(Box{{0, 0, 0}, glm::dvec3(4.0)}, 0.2, 0.95, 0.0);
+    Scene scene = lit_by(fog, 2.5, {PointLight{{0.0, 0.0, 2.5}, Rgb(20.0)}}, 1024);
+    scene.camera.position = {0.0, 0.0, 2.5};
+    scene.settings.choices.distance = DISTANCE_MIXED;
+    const RenderResult result = render_here(scene, 55);
+    CHECK(result.counts.non_finite == 0);
+    CHECK_AGREEMENT(agree(result.film, render_reference(scene, 56), "a lamp at the eye"));
+}
+
 TEST_CASE("looks from along flights find what lights of a place give", "[gpu][lights]") {
     Volume chromatic = cloud();
     chromatic.sigma_s = {2.0, 1.0, 0.4};

@@ -42,12 +42,12 @@ Rgb blackbody(double kelvin, double reference) {
     return luminance > 0.0 ? shown * (xyz.y / luminance) : shown;
 }
 
-Rgb Emission::at(const glm::dvec3& world) const {
+Rgb Emission::at(const glm::dvec3& world, bool nearest_voxel) const {
     if (!colors.empty())
-        return constant + temperature.color * colors.trilinear(world);
+        return constant + temperature.color * colors.looked_up(world, nearest_voxel);
     if (grid.empty())
         return constant;
-    const double value = grid.trilinear(grid.to_index(world));
+    const double value = grid.looked_up(grid.to_index(world), nearest_voxel);
     if (temperature.model == vkvol::TemperatureEmission::Model::color)
         return constant + value * temperature.color;
     const double kelvin = temperature.scale * value + temperature.offset;

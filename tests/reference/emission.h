@@ -20,7 +20,7 @@ struct Emission {
 
     static constexpr double spacing = 0.5;
 
-    vkvol::Rgb at(const glm::dvec3& world) const;
+    vkvol::Rgb at(const glm::dvec3& world, bool nearest_voxel) const;
 };
 
 // `file` is the density field's; null for other shapes than grids. Without a temperature grid in it nothing glows but

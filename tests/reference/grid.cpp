@@ -70,18 +70,22 @@ double Grid::trilinear(const glm::dvec3& index) const {
     return lerp(lerp(row(0), row(dy), f.y), lerp(row(dz), row(dz + dy), f.y), f.z);
 }
 
-vkvol::Rgb ColorGrid::trilinear(const glm::dvec3& world) const {
+double Grid::looked_up(const glm::dvec3& index, bool nearest_voxel) const {
+    return nearest_voxel ? nearest(index) : trilinear(index);
+}
+
+vkvol::Rgb ColorGrid::looked_up(const glm::dvec3& world, bool nearest_voxel) const {
     vkvol::Rgb color;
     for (int c = 0; c < 3; ++c)
-        color[c] = channels[c].trilinear(channels[c].to_index(world));
+        color[c] = channels[c].looked_up(channels[c].to_index(world), nearest_voxel);
     return color;
 }
 
-vkvol::Rgb ColorGrid::clamped(const glm::dvec3& world) const {
+vkvol::Rgb ColorGrid::clamped(const glm::dvec3& world, bool nearest_voxel) const {
     const Grid& grid = channels[0]; // within its border of zeros
     const glm::dvec3 low(grid.lower + 1), high(grid.lower + grid.size - 2);
     const glm::dvec3 index = glm::clamp(grid.to_index(world), low, high);
-    return trilinear(grid.linear * index + grid.translation);
+    return looked_up(grid.linear * index + grid.translation, nearest_voxel);
 }
 
 Grid make_grid(const glm::ivec3& first, const glm::ivec3& last, const std::function<double(glm::ivec3)>& value,

@@ -37,6 +37,7 @@ struct Grid {
     double voxel(const glm::ivec3& index) const;
     double nearest(const glm::dvec3& index) const;
     double trilinear(const glm::dvec3& index) const;
+    double looked_up(const glm::dvec3& index, bool nearest_voxel) const;
 };
 
 // Voxels [first, last]; values that are negative or not finite become 0.
@@ -51,8 +52,9 @@ struct ColorGrid {
 
     bool empty() const { return channels[0].empty(); }
     void move(const glm::dmat4& transform);
-    vkvol::Rgb trilinear(const glm::dvec3& world) const; // in world space
-    vkvol::Rgb clamped(const glm::dvec3& world) const;   // likewise, going on outside of the box of active voxels
+    vkvol::Rgb looked_up(const glm::dvec3& world, bool nearest_voxel) const; // in world space
+    vkvol::Rgb clamped(const glm::dvec3& world,
+                       bool nearest_voxel) const; // likewise, going on outside of the box of active voxels
 };
 
 bool has_colors(const std::filesystem::path& path, const std::string& name);

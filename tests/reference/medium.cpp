@@ -114,7 +114,9 @@ double Medium::grid_value(const glm::dvec3& index) const {
 
 Rgb Medium::albedo_at(const glm::dvec3& unfolded) const {
     const glm::dvec3 world = folded(*this, unfolded);
-    Rgb here = albedo_grid.empty() ? albedo : albedo * glm::min(albedo_grid.clamped(world), Rgb(1.0));
+    Rgb here = albedo_grid.empty()
+                   ? albedo
+                   : albedo * glm::min(albedo_grid.clamped(world, filter == vkvol::Filter::nearest), Rgb(1.0));
     if (map.is_transfer)
         here *= mapped(map, mapped_value(world)).albedo;
     return here;
@@ -122,7 +124,7 @@ Rgb Medium::albedo_at(const glm::dvec3& unfolded) const {
 
 Rgb Medium::emission_at(const glm::dvec3& unfolded) const {
     const glm::dvec3 world = folded(*this, unfolded);
-    Rgb here = emission.at(world);
+    Rgb here = emission.at(world, filter == vkvol::Filter::nearest);
     if (map.is_transfer)
         here += mapped(map, mapped_value(world)).emission;
     return here;

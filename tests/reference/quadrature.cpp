@@ -179,7 +179,9 @@ Rgb unscattered_quadrature(const Medium& medium, const Rgb& background, const Ra
         return t;
     };
     return (1.0 - medium.albedo) *
-               attenuated_integral(medium, ray, panels, smooth, [&](double t) { return emission.at(ray.at(t)); }) +
+               attenuated_integral(
+                   medium, ray, panels, smooth,
+                   [&](double t) { return emission.at(ray.at(t), medium.filter == vkvol::Filter::nearest); }) +
            T * background;
 }
 

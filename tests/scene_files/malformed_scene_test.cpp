@@ -101,6 +101,10 @@ TEST_CASE("media that a ray would never get through are refused, with the scene'
         CHECK_THAT(render_error_of(surfaces + "<fluence>0 0 0</fluence>"), Contains("lies in this surface"));
         CHECK(render_error_of(surfaces + "<fluence>0 0.001 0</fluence>") == "no error");
     }
+    const std::string ground = "<surfaces><plane/></surfaces>", sensor = "<irradiance width=\"1\" height=\"1\" lookAt=";
+    CHECK_THAT(render_error_of(ground + sensor + "\"0 -1 0\"/>"), Contains("faces into it"));
+    CHECK(render_error_of(ground + sensor + "\"0 1 0\"/>") == "no error");
+    CHECK(render_error_of(ground + sensor + "\"0 -1 0\" y=\"0.01\"/>") == "no error");
     CHECK_THAT(render_error_of("<sphere radius=\"1e-11\"/><fluence>0 0 0  1e11 0 0</fluence>"),
                Contains("move the point"));
     CHECK_THAT(render_error_of("<sphere/><sigma_s>1</sigma_s><noise frequency=\"1e15\" octaves=\"3\"/>"),

@@ -72,7 +72,7 @@ def main():
     if not found:
         raise SystemExit("no group's name contains such a word")
     judged = [v for v in found if v.case.judged]
-    most = judge.limit(len(judged))
+    most = judge.limit(max(len(judged), 1))
     print(f"\n{len(judged)} figures; |z| may be {most:.2f}\n")
     for name, (seconds, figures) in groups.items():
         here = [v for v in found if v.case.name == name]
