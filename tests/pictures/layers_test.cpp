@@ -237,6 +237,19 @@ TEST_CASE("media that are everywhere equal the reference", "[gpu][image][layers]
         check_against_reference(each, name);
 }
 
+// Near a lamp collisions find its light with a variance that has no bound, however many they are.
+TEST_CASE("lamps in air that thins with height are looked at from along flights", "[gpu][image][layers]") {
+    Scene scene = lit_from_above(atmosphere(0.4, 0.9));
+    scene.settings.integrator = "ratioTracking";
+    scene.lights = {SphereLight{{0.5, 1.0, 2.0}, 0.4, Rgb(20.0)}};
+    check_against_reference(scene, "a ball of light");
+    scene.lights = {PointLight{{0.5, 1.0, 2.0}, Rgb(10.0)}};
+    const Film along = render_here(scene, 1).film;
+    scene.settings.choices.distance = DISTANCE_FLIGHTS;
+    const auto noise = [](const Film& film) { return relative_noise(film).value(); };
+    CHECK(noise(along) < 0.6 * noise(render_here(scene, 1).film));
+}
+
 TEST_CASE("parts of a medium that is everywhere are the whole", "[gpu][image][layers]") {
     for (const Volume& whole : {atmosphere(0.8, 0.9), table(0.8, 0.9), endless_fog(0.2, 0.7)}) {
         const Scene alone = lit_from_above(whole);
