@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <glm/glm.hpp>
+#include <optional>
 #include <utility>
 
 #include "atomic_file.h"
@@ -214,18 +216,24 @@ bool keep(const MeasureOptions& options, const std::vector<Values>& rows) {
 
 // Before any time is spent: what is wrong with the last of many values is wrong now.
 void check_all(const MeasureOptions& options, const std::vector<SpectralBand>& bands, Workshop& workshop) {
-    for (const Values& values : combinations(options.sweeps))
+    for (const Values& values : combinations(options.sweeps)) {
+        std::optional<glm::ivec2> size;
         for (const SpectralBand& band : bands)
             of_values(options.sweeps, values, band, [&] {
                 if (interrupted())
                     return;
                 const RenderScene loaded = load_render_scene(request_of(options, values, band), workshop.fields());
+                const glm::ivec2 its(loaded.scene.picture.width, loaded.scene.picture.height);
+                if (size.value_or(its) != its)
+                    throw InputError(another_size);
+                size = its;
                 check_output(options, loaded.scene);
                 check_keys(options, loaded.scene);
                 FileUses uses;
                 uses.reads_files_of(loaded.scene);
                 uses.check_inputs();
             });
+    }
 }
 
 // One, of weight 1, without a table of them.

@@ -98,7 +98,7 @@ void add_band(const Film& film, double weight, Film& sum) {
         sum.sum_variance = glm::dvec3(0.0);
     }
     if (sum.pixel_count() != film.pixel_count())
-        throw InputError("bands are of pictures of one size; the values of some make it another");
+        throw InputError(another_size);
     const std::optional<glm::dvec3> of_band = variance_of_sum(film);
     if (sum.sum_variance && of_band)
         *sum.sum_variance += weight * weight * *of_band;

@@ -19,6 +19,8 @@ struct SpectralBand {
 // comment. Throws InputError, with file and line.
 std::vector<SpectralBand> read_bands(const std::filesystem::path& file);
 
+inline constexpr const char* another_size = "bands are of pictures of one size; the values of some make it another";
+
 // Adds a film of the same pixels. Bands have seeds of their own and are independent, so that the squares of their
 // standard errors add up; with the same random numbers errors themselves would, which is more.
 void add_band(const Film& film, double weight, Film& sum);

@@ -100,6 +100,12 @@ TEST_CASE("readings are sums over bands", "[gpu][command]") {
     CHECK_THAT(twice.text, Contains("-D glow: is a column of"));
     folder.write("bands.csv", "weight,sigma,glow\n0.5,0.5,1\n2,x,3\n");
     CHECK_THAT(folder.vkvol("measure glow.xml --bands bands.csv").text, Contains("band of glow=3: band of sigma=x: "));
+    folder.write("wide.xml", "<options><width>$n</width><height>1</height><sphere/><sigma_s>1</sigma_s></options>");
+    folder.write("bands.csv", "weight,n\n1,2\n1,3\n");
+    const Run wide =
+        folder.vkvol("measure wide.xml --bands bands.csv --spp 1000000000"); // found before any is rendered
+    CHECK(wide.code == exit_bad_input);
+    CHECK_THAT(wide.text, Contains("bands are of pictures of one size"));
 }
 
 TEST_CASE("readings are a table, a row for each point and combination of values", "[gpu][command]") {
