@@ -34,7 +34,7 @@ float weight_of_found(Lane lane, vec2 light_shares, float density) {
     return lane.path.depth == 0u ? 1.0 : weight_of_path(lane.shares.x, density > 0.0 ? light_shares.x * density : light_shares.y);
 }
 
-// Of one that is looked for, where looking is the first that the path does it has not scattered.
+// Of one that is looked for, at a vertex that `faces` it: from the first one before anything has scattered.
 float weight_of_looked_for(Lane lane, vec2 light_shares, float faces, float density) {
     return weight_of_found(lane, light_shares, faces * (lane.path.depth > 1u ? density : 1.0));
 }

@@ -121,19 +121,22 @@ TEST_CASE("voxels of one value each have one glow and one albedo", "[gpu][image]
     scene.volumes.front().temperature.grid = "glow";
     CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_reference(scene, 2), "of colours"));
     // By half at their faces, where they were interpolated.
-    GridRecipe density{{0, 0, 0}, {0, 7, 0}, [](glm::ivec3) { return 1.0f; }}, glow = density;
-    glow.name = "temperature";
-    Scene column = scene_of(medium(write_grids({density, glow}), 40.0, 0.0), 20.0, 4);
-    column.volumes.front().temperature.color = Rgb(0.7);
-    column.volumes.front().temperature.model = TemperatureEmission::Model::color;
-    column.volumes.front().temperature.grid = glow.name;
-    column.periodic = Periodic{{-0.5, 0.0, -0.5}, {0.5, 0.0, 0.5}};
-    column.camera.position = {0.1, 20.0, 0.2};
-    column.camera.pitch = -90.0;
-    column.settings.filter = Filter::nearest;
-    column.background = Rgb(0.0);
-    for (const glm::vec3& pixel : render_here(column, 1).film.mean)
-        CHECK(pixel.x == Approx(0.7).epsilon(1e-5));
+    GridRecipe density{{0, 0, 0}, {0, 7, 0}, [](glm::ivec3) { return 1.0f; }}, numbers = density, colours = density;
+    numbers.name = colours.name = "temperature";
+    colours.color = [](glm::ivec3) { return glm::vec3(1.0f); };
+    for (const GridRecipe& glow : {numbers, colours}) {
+        Scene column = scene_of(medium(write_grids({density, glow}), 40.0, 0.0), 20.0, 4);
+        column.volumes.front().temperature.color = Rgb(0.7);
+        column.volumes.front().temperature.model = TemperatureEmission::Model::color;
+        column.volumes.front().temperature.grid = glow.name;
+        column.periodic = Periodic{{-0.5, 0.0, -0.5}, {0.5, 0.0, 0.5}};
+        column.camera.position = {0.1, 20.0, 0.2};
+        column.camera.pitch = -90.0;
+        column.settings.filter = Filter::nearest;
+        column.background = Rgb(0.0);
+        for (const glm::vec3& pixel : render_here(column, 1).film.mean)
+            CHECK(pixel.x == Approx(0.7).epsilon(1e-5));
+    }
 }
 
 TEST_CASE("an opaque cube has the radiance of its colours", "[gpu][color_grids]") {
