@@ -28,7 +28,7 @@ bool is_map(LightRow light) {
 }
 
 // The row of a light, and the chance with which it was chosen.
-uint choose_light(vec3 from, bool on_surface, uvec4 words, inout Rng rng, out float chance) {
+uint choose_light(Lit lit, uvec4 words, inout Rng rng, out float chance) {
     uint i = 0u;
     chance = 1.0;
     if (!SOLE_LIGHT) {
@@ -38,7 +38,7 @@ uint choose_light(vec3 from, bool on_surface, uvec4 words, inout Rng rng, out fl
     }
     if (HAS_TREE && i == frame.choices - 1u) {
         float of_leaf;
-        i = descend(lit_point(from, on_surface), rng, of_leaf);
+        i = descend(lit, rng, of_leaf);
         chance *= of_leaf;
     }
     return i;
@@ -82,7 +82,7 @@ LightSample over_density(LightSample drawn, float chance) {
 LightSample look_for_light(Scatterer s, vec3 from, vec3 travel, inout Rng rng, out LightRow light) {
     uvec4 words = next_words(rng);
     float chance;
-    light = light_at(choose_light(from, is_surface(s), words, rng, chance));
+    light = light_at(choose_light(lit_point(from, is_surface(s), lit_side(s)), words, rng, chance));
     return over_density(sample_light(s, light, from, travel, words, rng), chance);
 }
 

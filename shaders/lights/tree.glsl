@@ -31,13 +31,23 @@ struct Lit {
     vec3 from;
     bool on_surface; // there it pays to ask where lights shine: in matter most noise is that of distances along flights, which may be
                      // lit elsewhere than `from`, and looks at what does not shine there are cheap
+    vec3 normal;     // unit: light counts that comes from this side, by the cosine; 0: from everywhere
     vec3 direction;
     float extent;  // 0 of a point
     float sigma_t; // roughly
 };
 
-Lit lit_point(vec3 from, bool on_surface) {
-    return Lit(from, on_surface, vec3(0.0), 0.0, 0.0);
+Lit lit_point(vec3 from, bool on_surface, vec3 normal) {
+    return Lit(from, on_surface, normal, vec3(0.0), 0.0, 0.0);
+}
+
+// Cosine under which lights in a box stand over a surface, roughly, and 0 only if none does: the height of its middle, or of half its
+// top if that is more, over how far off its nearest point is.
+float facing(vec3 normal, vec3 apart, vec3 half_size) {
+    float middle = dot(normal, apart), top = middle + dot(abs(normal), half_size);
+    float height = max(middle, 0.5 * top);
+    vec3 nearest = max(abs(apart) - half_size, 0.0);
+    return normal == vec3(0.0) ? 1.0 : clamp(height * inversesqrt(max(dot(nearest, nearest), 1.0e-20)), 0.0, 1.0);
 }
 
 // Integral of the density by which distances are drawn, see equiangular.glsl, from the foot to x times as far as that is off.
@@ -67,7 +77,9 @@ float importance(LightNode node, Lit lit) {
     if (lit.extent > 0.0)
         return node.power_in_matter * gathered(lit, apart, half_square, least);
     float near = 1.0 / max(dot(apart, apart), least);
-    return lit.on_surface ? node.power * near * (SOME_AIMED ? aim(node, -apart, half_square) : 1.0) : node.power_in_matter * near;
+    if (!lit.on_surface)
+        return node.power_in_matter * near;
+    return node.power * near * facing(lit.normal, apart, half_size) * (SOME_AIMED ? aim(node, -apart, half_square) : 1.0);
 }
 
 // Of the choices this share is made without a look at the lights, by halves: what seems faint here is yet found, and counts no more

@@ -27,7 +27,8 @@ LightSample look_from_sensor(vec3 from, vec3 ray, inout Rng rng, out uint row) {
     uvec4 words = next_words(rng);
     vec2 u = to_uniform(words).zw;
     float chance;
-    row = choose_light(from, true, words, rng, chance);
+    vec3 normal = SENSOR == SENSOR_IRRADIANCE ? frame.sensors[0].corner : vec3(0.0);
+    row = choose_light(lit_point(from, true, normal), words, rng, chance);
     LightRow light = light_at(row);
     LightSample drawn;
     if (SEES_LAMPS && (light.kind & LIGHT_SHAPED) != 0u)

@@ -16,7 +16,7 @@ LightRow choose_placed(MediumParams v, vec3 position, vec3 direction, float reac
         if (!medium_interval(v, to_medium(v, position, direction), t))
             t = vec2(0.0);
         float clearest = max(v.usual_sigma_t * smallest(v.sigma_ratio), 1.0e-30); // of the channels, so that none is lost
-        i = descend(Lit(position + t.x * direction, false, direction, max(min(t.y, reach) - t.x, 1.0e-30), clearest), rng, chance);
+        i = descend(Lit(position + t.x * direction, false, vec3(0.0), direction, max(min(t.y, reach) - t.x, 1.0e-30), clearest), rng, chance);
     }
     return light_at(i);
 }

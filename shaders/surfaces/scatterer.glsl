@@ -27,6 +27,11 @@ bool is_surface(Scatterer s) {
     return s.is_surface;
 }
 
+// Unit normal of the side that light is scattered from, or 0 if it is from all sides.
+vec3 lit_side(Scatterer s) {
+    return s.is_surface && s.bsdf.material != MATERIAL_ROUGH_DIELECTRIC ? s.bsdf.face : vec3(0.0);
+}
+
 // From `position` before the surface to where light arrives along -to_light: behind it, where that is.
 vec3 lit_position(Scatterer s, vec3 position, vec3 to_light) {
     bool behind = has_material(MATERIAL_ROUGH_DIELECTRIC) && s.is_surface && dot(s.bsdf.face, to_light) < 0.0;
@@ -76,6 +81,7 @@ float scatter_peak(Scatterer s, vec3 travel, vec3 toward, float sine) {
 #define Scatterer MediumParams
 #define matter_of(v) (v)
 #define is_surface(s) false
+#define lit_side(s) vec3(0.0)
 #define scatter_value phase_eval
 #define scatter_pdf phase_eval
 #define scatter_direction phase_sample

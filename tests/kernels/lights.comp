@@ -15,7 +15,7 @@ void main() {
     Rng rng = Rng(inputs[i].key, 0u, 0u, frame.seed), again = rng;
     uvec4 words = next_words(rng);
     float chance;
-    uint index = choose_light(from, inputs[i].on_surface != 0u, words, rng, chance);
+    uint index = choose_light(lit_point(from, inputs[i].on_surface != 0u, inputs[i].normal), words, rng, chance);
     LightSample drawn = over_density(sample_light(frame.media[0], light_at(index), from, travel, words, rng), chance);
     LightRow light;
     if (inputs[i].on_surface == 0u)

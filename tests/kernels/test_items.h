@@ -152,6 +152,7 @@ struct LookInput {
     uint key;
     vec3 position;
     uint on_surface; // 1: it is, 0: it is in matter
+    vec3 normal;     // see Lit
 };
 
 struct LookOutput {

@@ -57,6 +57,19 @@ TEST_CASE("a lamp beside a searchlight that passes by is found", "[gpu][variance
                  0.5) < 150.0);
 }
 
+TEST_CASE("lamps that a surface or a sensor has behind it take no looks from those before it",
+          "[gpu][variances][lights]") {
+    std::string lamps = "<lights><point y='3'/>";
+    for (int i = 0; i < 100; ++i)
+        lamps += fmt::format("<point x='{}' y='-0.5' z='{}'/>", i % 10 - 4.5, i / 10 - 4.5);
+    lamps += "</lights><sphere radius='0.1' y='20'/><maxDepth>1</maxDepth>";
+    // A fiftieth of the looks go down, evenly. By powers and distances those below take 99 of 100: 500 and more.
+    CHECK(spread(lamps + "<surfaces><box y='-0.1' width='10' height='0.2' depth='10'/></surfaces>"
+                         "<camera y='4' z='9' lookAt='0 0 0' fov='30'/>",
+                 0.5) < 0.1);
+    CHECK(spread(lamps + "<irradiance lookAt='0 1 0' width='4' height='4'/>", 0.5) < 0.1);
+}
+
 TEST_CASE("distances are drawn about a lamp however long free paths are", "[gpu][variances][lights]") {
     // With distances drawn evenly within a thousandth of a free path from it: 1 to 30, the nearer the more.
     CHECK(spread("<everywhere/><sigma_a>1e-4</sigma_a><sigma_s>9e-4</sigma_s><maxDepth>1</maxDepth><lights><point "
