@@ -204,8 +204,8 @@ void MethodChooser::choose_nee() {
 
 void MethodChooser::choose_mis() {
     const std::vector<Light>& lights = scene_.lights;
-    const bool looks_too = method_.scattering == SCATTERING_MULTIPLE || reads_flux(scene_.camera);
-    const bool met = looks_too && std::any_of(lights.begin(), lights.end(), is_met_by_chance);
+    const bool scatters = method_.scattering != SCATTERING_NONE || reads_flux(scene_.camera);
+    const bool met = scatters && std::any_of(lights.begin(), lights.end(), is_met_by_chance);
     const bool shared = method_.paths != PATHS_LIGHT && method_.nee != NEE_NONE &&
                         (met || std::any_of(lights.begin(), lights.end(), is_lamp));
     if (choices_.mis && !shared)

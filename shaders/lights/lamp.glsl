@@ -23,12 +23,14 @@ float lamp_pdf(LightRow light, vec3 from, vec3 direction, float t) {
 // c: next to nothing for what is small as seen from here, against the narrowest that the phase function draws toward it; most for what is
 // large, but never all. What 0.85 is worth: tools/results/README.md. Of what is flat it is the nearest of it that counts, which may
 // be long; of a ball directions are even anyway.
+float share_of(float filled, float square) {
+    float share = 0.85 * filled / (filled + square);
+    return MIS == MIS_LIGHT ? 0.0 : MIS == MIS_PHASE ? 1.0 : share;
+}
 float other_share(float peak, LightRow light, vec3 from) {
     vec3 apart = light.position - from;
     float square = light.kind == LIGHT_SPHERE ? dot(apart, apart) : flat_square(light, from);
-    float filled = peak * light.area;
-    float share = 0.85 * filled / (filled + max(square, 1.0e-30));
-    return MIS == MIS_LIGHT ? 0.0 : MIS == MIS_PHASE ? 1.0 : share;
+    return share_of(peak * light.area, max(square, 1.0e-30));
 }
 
 vec3 shape_direction(LightRow light, vec3 from, vec2 u) {

@@ -60,6 +60,38 @@ LightSample sample_shapeless(LightRow light, vec3 from, vec2 u, inout Rng rng) {
     return drawn;
 }
 
+// Per steradian, with which directions of what lies beyond all matter are drawn, and the radiance that comes from there.
+SkyValue beyond_toward(LightRow light, vec3 direction) {
+    SkyValue value;
+    if (is_map(light)) {
+        value = sky_toward(direction, sky_place(direction));
+    } else {
+        float place = disc_place(light, direction);
+        value = SkyValue(place < light.extent ? disc_radiance(light, place) : vec3(0.0), place < light.extent ? disc_pdf(light) : 0.0);
+    }
+    return value;
+}
+
+// Where light is scattered once, no flight meets what lies beyond: a look's direction is drawn from it or as `s` scatters, as with lamps.
+// Draws by `s` that miss a sun are lost, and those from it suffice until some of it has several times what is drawn evenly. Of a map
+// nobody knows how large it is to `s`: half the looks at most, and most of these where some directions have fifty times an even share.
+LightSample look_beyond(Scatterer s, LightRow light, vec3 travel, vec2 u, float select, LightSample drawn) {
+    bool everywhere = is_map(light) || light.extent >= 1.0;
+    float sine = everywhere ? 1.0 : sqrt(light.extent * (2.0 - light.extent));
+    float peak = scatter_peak(s, travel, light.direction, sine) / INV_4PI;
+    float share = is_map(light) ? share_of(peak, 50.0) : share_of(0.5 * light.extent * peak, 4.0);
+    share = is_map(light) && MIS != MIS_PHASE ? min(share, 0.5) : share;
+    if (select < share) {
+        drawn.direction = scatter_direction(s, travel, u);
+        SkyValue there = beyond_toward(light, drawn.direction);
+        drawn.light = there.radiance;
+        drawn.pdf = there.pdf;
+    }
+    drawn.pdf = mix(drawn.pdf, scatter_pdf(s, travel, drawn.direction), share);
+    drawn.light *= drawn.pdf > 0.0 ? 1.0 : 0.0;
+    return drawn;
+}
+
 LightSample sample_light(Scatterer s, LightRow light, vec3 from, vec3 travel, uvec4 words, inout Rng rng) {
     vec2 u = to_uniform(words).zw;
     LightSample drawn;
@@ -67,6 +99,9 @@ LightSample sample_light(Scatterer s, LightRow light, vec3 from, vec3 travel, uv
         drawn = sample_lamp(s, light, from, travel, u, to_tap(words).z);
     else
         drawn = sample_shapeless(light, from, u, rng);
+    if (SEES_SKY && SCATTERING == SCATTERING_SINGLE && MIS != MIS_LIGHT)
+        if (is_map(light) || light.kind == LIGHT_SUN)
+            drawn = look_beyond(s, light, travel, u, to_tap(words).z, drawn);
     return drawn;
 }
 
@@ -99,18 +134,9 @@ float pdf_from_beyond(LightRow light, vec3 direction) {
 // Radiance that a flight meets of one light when it leaves along `direction`, which the phase function drew with density
 // `phase_pdf`; 0 of a camera ray, which sees all there is.
 vec3 light_from_one(LightRow light, vec3 direction, float phase_pdf) {
-    vec3 shown = vec3(0.0);
-    float pdf = SOLE_LIGHT ? 1.0 : light.chance;
-    if (is_map(light)) {
-        SkyValue value = sky_toward(direction, sky_place(direction));
-        shown = value.radiance;
-        pdf *= value.pdf;
-    } else {
-        float place = disc_place(light, direction);
-        shown = place < light.extent ? disc_radiance(light, place) : vec3(0.0);
-        pdf *= disc_pdf(light);
-    }
-    return shown * (phase_pdf > 0.0 ? weight_of_flight(phase_pdf, pdf) : 1.0);
+    SkyValue value = beyond_toward(light, direction);
+    float pdf = value.pdf * (SOLE_LIGHT ? 1.0 : light.chance);
+    return value.radiance * (phase_pdf > 0.0 ? weight_of_flight(phase_pdf, pdf) : 1.0);
 }
 
 vec3 light_from_beyond(vec3 direction, float phase_pdf) {

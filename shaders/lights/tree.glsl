@@ -43,7 +43,7 @@ Lit lit_point(vec3 from, bool on_surface, vec3 normal) {
 
 // Cosine under which lights in a box stand over a surface, roughly, and 0 only if none does: the height of its middle, or of half its
 // top if that is more, over how far off its nearest point is.
-float facing(vec3 normal, vec3 apart, vec3 half_size) {
+float cosine_before(vec3 normal, vec3 apart, vec3 half_size) {
     float middle = dot(normal, apart), top = middle + dot(abs(normal), half_size);
     float height = max(middle, 0.5 * top);
     vec3 nearest = max(abs(apart) - half_size, 0.0);
@@ -79,7 +79,7 @@ float importance(LightNode node, Lit lit) {
     float near = 1.0 / max(dot(apart, apart), least);
     if (!lit.on_surface)
         return node.power_in_matter * near;
-    return node.power * near * facing(lit.normal, apart, half_size) * (SOME_AIMED ? aim(node, -apart, half_square) : 1.0);
+    return node.power * near * cosine_before(lit.normal, apart, half_size) * (SOME_AIMED ? aim(node, -apart, half_square) : 1.0);
 }
 
 // Of the choices this share is made without a look at the lights, by halves: what seems faint here is yet found, and counts no more
