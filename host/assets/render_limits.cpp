@@ -137,13 +137,10 @@ void check_periodic(const Scene& scene) {
                     fail("a plane has to lie along all axes that repeat; turn it, or take a rectangle");
 }
 
-// How far a point is from what is neither a mesh nor a box, over the size of what rays from there go by.
+// How far a point is from what is neither a mesh, a box nor a plane, over the size of what rays from there go by.
 struct DistanceTo {
     glm::dvec3 point;
 
-    double operator()(const PlaneSurface& plane) const {
-        return std::abs(glm::dot(plane.normal, point - plane.point)) / (1e-6 + glm::length(point - plane.point));
-    }
     double operator()(const BallSurface& ball) const {
         return std::abs(glm::length(point - ball.center) - ball.radius) / ball.radius;
     }
@@ -163,30 +160,22 @@ struct DistanceTo {
     template <class Shape> double operator()(const Shape&) const { return std::numeric_limits<double>::infinity(); }
 };
 
+[[noreturn]] void fail_at(const Surface& surface, const std::string& why) {
+    throw InputError(surface.place.empty() ? why : surface.place + ": " + why);
+}
+
+[[noreturn]] void fail_in(const Surface& surface, const glm::dvec3& point) {
+    fail_at(surface, fmt::format("<fluence>: the point {:g} {:g} {:g} lies in this surface, and would read what is on "
+                                 "both sides; lift it off, to the side that is meant",
+                                 point.x, point.y, point.z));
+}
+
 // Rays from a point in a surface would read what is on both sides of it.
 void check_points(const Scene& scene) {
     for (const glm::dvec3& point : scene.camera.points)
         for (const Surface& surface : scene.surfaces)
             if (std::visit(DistanceTo{point}, surface.shape) <= SURFACE_SPARE)
-                throw InputError(
-                    fmt::format("{}<fluence>: the point {:g} {:g} {:g} lies in this surface, and would read "
-                                "what is on both sides; lift it off, to the side that is meant",
-                                surface.place.empty() ? "" : surface.place + ": ", point.x, point.y, point.z));
-}
-
-// Such a sensor is kept off the surface to where it faces: behind a ground, where it would read what is not there.
-void check_facing(const Scene& scene) {
-    if (scene.camera.projection != Projection::irradiance)
-        return;
-    const CameraRays rays = camera_rays(scene.camera, scene.picture);
-    for (const Surface& surface : scene.surfaces)
-        if (const auto* plane = std::get_if<PlaneSurface>(&surface.shape))
-            if (glm::dot(plane->normal, rays.forward) < -0.5 &&
-                DistanceTo{scene.camera.position}(*plane) <= SURFACE_SPARE)
-                throw InputError(
-                    fmt::format("{}<irradiance>: it lies in this plane and faces into it; lift it off, to the "
-                                "side that is meant",
-                                surface.place.empty() ? "" : surface.place + ": "));
+                fail_in(surface, point);
 }
 
 } // namespace
@@ -195,7 +184,6 @@ void check_scene_limits(const Scene& scene) {
     if (scene.periodic)
         check_periodic(scene);
     check_points(scene);
-    check_facing(scene);
     const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
     if (is_superposition(scene) && any_medium(scene, is_mesh))
         throw InputError(
@@ -238,6 +226,28 @@ std::string too_short_paths(const Scene& scene, const Volume& volume, const Load
         "precision tells places apart by in a medium of this size, and light that scatters near its faces "
         "is wrong by some per cent; {:.0e} of the density looks the same, and is right",
         1.0 / (sigma_t * densest), most / paths);
+}
+
+void check_sensor_in_planes(const Scene& scene, const glm::dvec3& origin) {
+    for (const Surface& surface : scene.surfaces) {
+        const auto* plane = std::get_if<PlaneSurface>(&surface.shape);
+        if (!plane)
+            continue;
+        const double middle = glm::dot(plane->normal, origin - plane->point);
+        const auto lies_in_it = [&](const glm::dvec3& point) { // as nearly as kernels know both
+            const double reach = std::max(glm::length(point - origin), std::abs(middle));
+            return std::abs(glm::dot(plane->normal, point - plane->point)) <= SURFACE_SPARE * (1e-6 + reach);
+        };
+        for (const glm::dvec3& point : scene.camera.points)
+            if (lies_in_it(point))
+                fail_in(surface, point);
+        // Such a sensor is kept off the plane to where it faces: behind a ground, where it would read what is not
+        // there.
+        if (scene.camera.projection == Projection::irradiance && lies_in_it(scene.camera.position) &&
+            glm::dot(plane->normal, camera_rays(scene.camera, scene.picture).forward) < -0.5)
+            fail_at(surface, "<irradiance>: it lies in this plane and faces into it; lift it off, to the side that is "
+                             "meant");
+    }
 }
 
 void check_limits(const Scene& scene, const Volume& volume, const LoadedMedium& loaded, const Method& method) {

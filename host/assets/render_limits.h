@@ -10,6 +10,9 @@ namespace vkvol {
 // or time for, for what cannot be in a domain that repeats, and for points that lie in surfaces.
 void check_scene_limits(const Scene& scene);
 
+// Sensors of flux in endless planes, which read what is behind them. `origin`: of render space. Throws InputError.
+void check_sensor_in_planes(const Scene& scene, const glm::dvec3& origin);
+
 // Throws InputError with the figure and the remedy.
 void check_limits(const Scene& scene, const Volume& volume, const LoadedMedium& loaded, const Method& method);
 

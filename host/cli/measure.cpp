@@ -286,6 +286,9 @@ int run_measure(const MeasureOptions& options) {
             if ((std::exchange(loaded.scene.layers, 0u) & ~layer_alpha) != 0)
                 loaded.scene.warnings.push_back(
                     "<film aov>: a table has no layers, and none is rendered; leave it out");
+            if (std::exchange(loaded.scene.holds_out, false))
+                loaded.scene.warnings.push_back(
+                    "<film alpha>: a table has none, and readings have the light from behind the media; leave it out");
             const RenderResult result = measure(options, loaded.scene, static_cast<std::uint32_t>(band), workshop);
             was_interrupted = result.interrupted;
             add_counts(told.counts, result.counts);

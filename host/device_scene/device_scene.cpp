@@ -8,6 +8,7 @@
 #include "camera_rays.h"
 #include "emitter_table.h"
 #include "frame_params.h"
+#include "kept_apart.h"
 #include "kernel_constants.h"
 #include "kernel_text.h"
 #include "light_table.h"
@@ -31,6 +32,8 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
         surfaces_ = make_surface_table(kept_off_seams(*scene.periodic, origin_, scene.surfaces), origin_, first_texel);
     else if (!scene.surfaces.empty())
         surfaces_ = make_surface_table(scene.surfaces, origin_, first_texel);
+    frame_.sensors[0].position +=
+        glm::vec3(shift_of_sensor(scene, surfaces_, origin_) * camera_rays(scene.camera, scene.picture).forward);
     if (specialization_[SPEC_LIGHTS] != LIGHTS_LONE)
         make_lights(scene, method, assets);
     if (assets.superposition)

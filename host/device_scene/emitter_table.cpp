@@ -9,9 +9,9 @@
 
 #include "alias_table.h"
 #include "camera_rays.h"
+#include "kept_apart.h"
 #include "phase_params.h"
 #include "scene_facts.h"
-#include "sensor_params.h"
 
 namespace vkvol {
 
@@ -123,14 +123,15 @@ double place_faces(const shared::PeriodParams& period, shared::ParticleParams& p
 }
 
 // World units^2: its area; of a box world units^3, its volume. Light comes from beyond it.
-double place_sensor(const Scene& scene, glm::dvec3 origin, shared::ParticleParams& params) {
+double place_sensor(const Scene& scene, const SurfaceTable& surfaces, glm::dvec3 origin,
+                    shared::ParticleParams& params) {
     const SensorBox box = sensor_box(scene.camera, scene.picture);
     const glm::dvec3 low = box.low - origin, high = box.high - origin;
     params.sensor_low = low;
     const glm::dvec3 open = params.open;
     const double height = std::max(std::abs(glm::dot(open, low)), std::abs(glm::dot(open, high)));
     const double margin = std::max({1e-5 * std::max(double(params.above) - params.below, glm::length(high - low)),
-                                    2.0 * shift_of_sensor(scene, origin), 0x1p-20 * height});
+                                    2.0 * shift_of_sensor(scene, surfaces, origin), 0x1p-20 * height});
     params.below = static_cast<float>(std::min(double(params.below), glm::dot(open, low) - margin));
     params.above = static_cast<float>(std::max(double(params.above), glm::dot(open, high) + margin));
     if (scene.camera.projection == Projection::absorption)
@@ -155,53 +156,6 @@ double part_that_comes(const shared::LightRow& light, double radius) {
     if (light.kind == LIGHT_SPOT)
         return std::min(1.0, 0.5 * seen / light.none_beyond);
     return light.kind & LIGHT_FLAT ? seen : 0.25 * seen; // by the cosine, or alike into all directions
-}
-
-double extent_of(const shared::LightRow& light) {
-    return light.kind & LIGHT_FLAT ? glm::length(light.edge_u) + glm::length(light.edge_v) : double(light.extent);
-}
-
-// A triangle or a disk.
-struct FlatPiece {
-    explicit FlatPiece(const shared::SurfacePrimitive& p)
-        : corners{p.a, p.b, p.c}, radius(p.shape == SURFACE_TRIANGLES ? 0.0 : double(p.c.x)) {
-        const bool is_disk = p.shape != SURFACE_TRIANGLES;
-        normal = is_disk ? corners[1] : glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
-        double reach = 0.0;
-        for (int k = 0; k < (is_disk ? 1 : 3); ++k)
-            reach = std::max({reach, std::abs(corners[k].x), std::abs(corners[k].y), std::abs(corners[k].z)});
-        spare = SURFACE_SPARE * reach;
-    }
-
-    // By how much rays from what lies in it are kept apart; 0: it does not lie in it, as nearly as rays know it. See
-    // lies_in, surfaces/nearest.glsl.
-    double spare_of(const glm::dvec3& place, double extent) const { return holds(place, extent) ? spare : 0.0; }
-
-    bool holds(const glm::dvec3& place, double extent) const {
-        const double off = glm::dot(normal, place - corners[0]);
-        if (!(std::abs(off) <= 0.125 * spare))
-            return false;
-        const glm::dvec3 foot = place - off * normal;
-        if (radius > 0.0)
-            return glm::distance(foot, corners[0]) <= radius + extent;
-        for (int k = 0; k < 3; ++k) {
-            const glm::dvec3 edge = corners[(k + 1) % 3] - corners[k];
-            if (glm::dot(glm::cross(edge, foot - corners[k]), normal) < -extent * glm::length(edge))
-                return false;
-        }
-        return true;
-    }
-
-    glm::dvec3 corners[3];
-    double radius;
-    glm::dvec3 normal;
-    double spare;
-};
-
-double spare_of_ball(const shared::SurfacePrimitive& ball, const glm::dvec3& place) {
-    const glm::dvec3 middle(ball.a), reach = glm::abs(middle) + double(ball.c.x);
-    const double spare = SURFACE_SPARE * std::max({reach.x, reach.y, reach.z});
-    return std::abs(glm::distance(place, middle) - double(ball.c.x)) <= 0.125 * spare ? spare : 0.0;
 }
 
 // The most, roughly, that a particle brings which leaves a lamp or surface of those the sensor sees: its part of all
@@ -316,31 +270,6 @@ Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumPar
     return glow;
 }
 
-// By how much rays from a light of that place and extent are kept off a primitive that it lies in.
-double spare_of(const shared::SurfacePrimitive& p, const glm::dvec3& place, double extent) {
-    return p.shape == SURFACE_SPHERE ? spare_of_ball(p, place) : FlatPiece(p).spare_of(place, extent);
-}
-
-void keep_apart(std::vector<shared::LightRow>& lights, const SurfaceTable& surfaces) {
-    for (shared::LightRow& light : lights) {
-        if (!(light.kind & LIGHT_PLACED))
-            continue;
-        const glm::dvec3 place = light.position;
-        const double extent = extent_of(light);
-        for (std::size_t i = 0; i < surfaces.nodes.size();) {
-            const shared::BvhNode& node = surfaces.nodes[i];
-            const glm::dvec3 low = node.low, high = node.high, reach = glm::max(glm::abs(low), glm::abs(high));
-            const double margin = extent + SURFACE_SPARE * std::max({reach.x, reach.y, reach.z});
-            const bool near = glm::all(glm::greaterThanEqual(place, low - margin)) &&
-                              glm::all(glm::lessThanEqual(place, high + margin));
-            for (std::size_t k = 0; near && k < node.leaf % 8; ++k)
-                light.apart = std::max(
-                    light.apart, static_cast<float>(spare_of(surfaces.primitives[node.leaf / 8 + k], place, extent)));
-            i = near && node.leaf == 0 ? i + 1 : node.skip;
-        }
-    }
-}
-
 EmitterTable make_emitter_table(const Scene& scene, Media loaded, const Method& method, const LightTable& lights,
                                 const SurfaceTable& surfaces, const Glow& glow, const SkyMap* sky,
                                 const shared::PeriodParams& period, double radius, glm::dvec3 origin, double pixels) {
@@ -349,7 +278,7 @@ EmitterTable make_emitter_table(const Scene& scene, Media loaded, const Method& 
     table.params.radius = bounded ? static_cast<float>(radius * 1.0001) : 0.0f;
     const bool counts = reads_flux(scene.camera);
     const double face = scene.periodic ? place_faces(period, table.params) : 0.0;
-    const double sensor = counts ? place_sensor(scene, origin, table.params) : 0.0;
+    const double sensor = counts ? place_sensor(scene, surfaces, origin, table.params) : 0.0;
     const double across = scene.periodic ? face : bounded ? pi * radius * radius : 0.0; // what comes from afar
     Emitters emitters(table);
     for (std::size_t i = 0; i < lights.rows.size(); ++i)

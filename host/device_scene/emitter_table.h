@@ -26,9 +26,6 @@ struct Glow {
 // `rows`: as many as the scene has volumes.
 Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumParams> rows);
 
-// Lights in the plane of what is far larger than they are far from the origin: by how much particles begin off it.
-void keep_apart(std::vector<shared::LightRow>& lights, const SurfaceTable& surfaces);
-
 // What a scene sends out, in render space. Each kind of source is chosen in proportion to its power, roughly, and never
 // with less than a tenth of an even chance. `radius`: of a ball about the origin that holds all there is, and a sensor
 // that counts particles; not finite where nothing does. `sky`: its map, if any. `origin` of render space; `pixels`

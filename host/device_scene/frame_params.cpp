@@ -19,6 +19,7 @@
 #include "phase_params.h"
 #include "pixel_filter.h"
 #include "placement.h"
+#include "render_limits.h"
 #include "scene_facts.h"
 #include "sensor_params.h"
 #include "shared/estimators.h"
@@ -315,6 +316,7 @@ shared::FrameParams make_frame(const Scene& scene, Media media, const Method& me
                                const Superposition* whole) {
     shared::FrameParams frame{};
     const glm::dvec3 origin = render_origin(scene, media, whole);
+    check_sensor_in_planes(scene, origin);
     const double diagonal = longest_diagonal(scene, media, whole);
     const int nodes = cache_layout(scene).most_nodes;
     if (whole) {

@@ -72,15 +72,6 @@ shared::SensorParams make_pinhole(const Scene& scene, const CameraRays& rays, gl
 
 } // namespace
 
-double shift_of_sensor(const Scene& scene, const glm::dvec3& origin) {
-    if (scene.surfaces.empty())
-        return 0.0;
-    const SensorBox box = sensor_box(scene.camera, scene.picture);
-    const std::optional<SurfaceBounds> bounds = bounds_of(scene.surfaces);
-    const double reach = std::max(reach_of({box.low, box.high}, origin), bounds ? reach_of(*bounds, origin) : 0.0);
-    return 2.0 * SURFACE_SPARE * reach;
-}
-
 shared::SensorParams sensor_params(const Scene& scene, const glm::dvec3& origin, double radius) {
     const CameraRays rays = camera_rays(scene.camera, scene.picture);
     const std::optional<SurfaceBounds> bounds = bounds_of(scene.surfaces);
@@ -103,8 +94,6 @@ shared::SensorParams sensor_params(const Scene& scene, const glm::dvec3& origin,
         params.position += start * rays.forward;
         params.start = static_cast<float>(start);
     }
-    if (rays.projection == Projection::irradiance)
-        params.position += shift_of_sensor(scene, origin) * rays.forward;
     params.forward = rays.forward;
     params.corner = rays.forward;
     params.right = rays.right;

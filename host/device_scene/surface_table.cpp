@@ -25,10 +25,10 @@ struct Piece {
 };
 
 // Pieces of one surface.
-class Pieces {
+class SurfacePieces {
 public:
-    Pieces(std::uint32_t row, const Surface& surface, const glm::dvec3& origin, std::vector<Piece>& planes,
-           std::vector<Piece>& bounded)
+    SurfacePieces(std::uint32_t row, const Surface& surface, const glm::dvec3& origin, std::vector<Piece>& planes,
+                  std::vector<Piece>& bounded)
         : row_(row), surface_(surface), origin_(origin), planes_(planes), bounded_(bounded) {}
 
     void operator()(const BallSurface& ball) const {
@@ -205,7 +205,7 @@ SurfaceTable make_surface_table(const std::vector<Surface>& surfaces, const glm:
     Textures textures(first_texel, table.texels);
     std::vector<Piece> met, bounded; // planes first
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        const Pieces pieces(static_cast<std::uint32_t>(i), surfaces[i], origin, met, bounded);
+        const SurfacePieces pieces(static_cast<std::uint32_t>(i), surfaces[i], origin, met, bounded);
         std::visit(pieces, surfaces[i].shape);
         table.rows.push_back(row_of(surfaces[i]));
         table.rows.back().texture = textures.row_of(surfaces[i].material);

@@ -65,7 +65,7 @@ void Session::render(std::uint32_t samples) {
         job_.progress(done_, std::nullopt);
     while (goes_on()) {
         if (batch_ == 0)
-            batch_ = std::min({next_, wanted_ - done_, until_next_check(), until_next_moment()});
+            batch_ = std::min({next_, most_batch_, wanted_ - done_, until_next_check(), until_next_moment()});
         const double begun = watch_.seconds();
         try {
             while (band_ < bands_.size() && !stopped_)

@@ -236,7 +236,7 @@ private:
     std::uint32_t wanted_ = 0, done_ = 0, batch_ = 0, band_ = 0, next_ = 0;
     std::optional<std::vector<std::uint32_t>> pixels_;
 
-    std::uint32_t most_batch_ = 1;
+    std::uint32_t most_batch_ = 1; // of the moment at hand; `next_` may be from one before
     Stopwatch watch_;
     double next_noise_ = 0.0;
     double next_preview_ = 0.0, preview_seconds_ = 0.0; // when, and for how long until now; seconds

@@ -156,6 +156,17 @@ TEST_CASE("readings are a table, a row for each point and combination of values"
     CHECK(std::count(plain.text.begin(), plain.text.end(), '\n') == 3);
 }
 
+TEST_CASE("readings of cameras have what is behind the media, also where pictures hold it out", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("seen.xml",
+                 "<options><width>1</width><height>1</height><film alpha='true'/><box width='4' height='4' "
+                 "depth='2'/><sigma_a>0.5"
+                 "</sigma_a><sigma_s>0</sigma_s><backgroundColor r='1' g='1' b='1'/><camera z='9' fov='1'/></options>");
+    const Run seen = folder.vkvol("measure seen.xml --spp 64");
+    CHECK(seen.code == exit_done);
+    CHECK_THAT(seen.text, Contains("<film alpha>: a table has none") && !Contains("no light"));
+}
+
 TEST_CASE("readings are not lost", "[gpu][command]") {
     const Folder folder("");
     folder.write("glow.xml", ball);

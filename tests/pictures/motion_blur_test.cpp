@@ -253,6 +253,28 @@ TEST_CASE("a sample sees grids drifted", "[motion]") {
     CHECK_THROWS_WITH(render_here(other, 1), Contains("has no grid \"w\""));
 }
 
+// A batch has room for what its own moment's lights leave room for, not for what those of the moment before did, which
+// were fewer: a black lamp is none.
+TEST_CASE("batches are no larger than their moment has room for", "[motion]") {
+    std::string lamps;
+    for (int i = 0; i < 100; ++i)
+        lamps +=
+            fmt::format(R"(<sphere x="{}" y="3" z="{}" radius="0.1" multiplier="${{= max(0, F)}}"/>)", i % 10, i / 10);
+    Scene scene = parse_at(
+        fmt::format(R"(<width>1</width><height>1</height><irradiance y="0" lookAt="0 1 0" width="2" height="2"/>
+        <integrator>lightTracing</integrator><sphere y="1" radius="0.5"/><sigma_a>0.2</sigma_a><sigma_s>0.4</sigma_s>
+        <lights><sphere y="4" radius="0.5"/>{}</lights>)",
+                    lamps),
+        0, R"(<motionBlur open="-1" close="1"/>)");
+    scene.settings.spp = 2048;
+    RenderJob job;
+    job.sample_offset = 1 << 20; // where 512 samples share a moment
+    job.noise_goal = 1e-9;           // looked at after 1024 samples, say, and not reached
+    const Film film = render_here(scene, 4, job).film;
+    job.plan.most_batch = 16;
+    CHECK(same_bits(film, render_here(scene, 4, job).film));
+}
+
 TEST_CASE("what moves is the same however it is carried out", "[motion]") {
     Scene scene = parse_at(all_that_moves, 0);
     scene.settings.spp = 40;

@@ -1,0 +1,160 @@
+#include "kept_apart.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "camera_rays.h"
+#include "shared/constants.h"
+
+namespace vkvol {
+
+namespace {
+
+// A triangle or a disk.
+struct FlatPiece {
+    explicit FlatPiece(const shared::SurfacePrimitive& p)
+        : corners{p.a, p.b, p.c}, radius(p.shape == SURFACE_TRIANGLES ? 0.0 : double(p.c.x)) {
+        const bool is_disk = p.shape != SURFACE_TRIANGLES;
+        normal = is_disk ? corners[1] : glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+        double reach = 0.0;
+        for (int k = 0; k < (is_disk ? 1 : 3); ++k)
+            reach = std::max({reach, std::abs(corners[k].x), std::abs(corners[k].y), std::abs(corners[k].z)});
+        spare = SURFACE_SPARE * reach;
+    }
+
+    // By how much rays from what lies in it are kept apart; 0: it does not lie in it, as nearly as rays know it. See
+    // lies_in, surfaces/nearest.glsl.
+    double spare_of(const glm::dvec3& place, double extent) const { return holds(place, extent) ? spare : 0.0; }
+
+    bool holds(const glm::dvec3& place, double extent) const {
+        return std::abs(off(place)) <= 0.125 * spare && is_beside(place, extent);
+    }
+
+    double off(const glm::dvec3& place) const { return glm::dot(normal, place - corners[0]); }
+
+    // Whether it reaches as near to the place's foot on its plane.
+    bool is_beside(const glm::dvec3& place, double extent) const {
+        const glm::dvec3 foot = place - off(place) * normal;
+        if (radius > 0.0)
+            return glm::distance(foot, corners[0]) <= radius + extent;
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec3 edge = corners[(k + 1) % 3] - corners[k];
+            if (glm::dot(glm::cross(edge, foot - corners[k]), normal) < -extent * glm::length(edge))
+                return false;
+        }
+        return true;
+    }
+
+    glm::dvec3 corners[3];
+    double radius;
+    glm::dvec3 normal;
+    double spare;
+};
+
+double spare_of_ball(const shared::SurfacePrimitive& ball, const glm::dvec3& place) {
+    const glm::dvec3 middle(ball.a), reach = glm::abs(middle) + double(ball.c.x);
+    const double spare = SURFACE_SPARE * std::max({reach.x, reach.y, reach.z});
+    return std::abs(glm::distance(place, middle) - double(ball.c.x)) <= 0.125 * spare ? spare : 0.0;
+}
+
+// By how much rays from a light of that place and extent are kept off a primitive that it lies in.
+double spare_of(const shared::SurfacePrimitive& p, const glm::dvec3& place, double extent) {
+    return p.shape == SURFACE_SPHERE ? spare_of_ball(p, place) : FlatPiece(p).spare_of(place, extent);
+}
+
+// Of all that rays meet but planes what may be no more than `extent` from the place, and more of it.
+template <class Take>
+void for_each_near(const SurfaceTable& surfaces, const glm::dvec3& place, double extent, const Take& take) {
+    for (std::size_t i = 0; i < surfaces.nodes.size();) {
+        const shared::BvhNode& node = surfaces.nodes[i];
+        const glm::dvec3 low = node.low, high = node.high, reach = glm::max(glm::abs(low), glm::abs(high));
+        const double margin = extent + SURFACE_SPARE * std::max({reach.x, reach.y, reach.z});
+        const bool near =
+            glm::all(glm::greaterThanEqual(place, low - margin)) && glm::all(glm::lessThanEqual(place, high + margin));
+        for (std::size_t k = 0; near && k < node.leaf % 8; ++k)
+            take(surfaces.primitives[node.leaf / 8 + k]);
+        i = near && node.leaf == 0 ? i + 1 : node.skip;
+    }
+}
+
+// A sensor of irradiance, in render space.
+struct SensorRectangle {
+    SensorRectangle(const Scene& scene, const glm::dvec3& origin) {
+        const CameraRays rays = camera_rays(scene.camera, scene.picture);
+        half_edges[0] = 0.5 * scene.picture.width * rays.right;
+        half_edges[1] = 0.5 * scene.picture.height * rays.down;
+        middle = rays.origin(0.5 * scene.picture.width, 0.5 * scene.picture.height) - origin;
+        forward = rays.forward;
+        extent = glm::length(half_edges[0]) + glm::length(half_edges[1]);
+        size = scene.periodic ? scene.periodic->size() : glm::dvec3(0.0);
+        const glm::dvec3 reach = glm::abs(middle) + glm::abs(half_edges[0]) + glm::abs(half_edges[1]);
+        spare = SURFACE_SPARE * std::max({reach.x, reach.y, reach.z});
+    }
+
+    // By how much it has to move to be before the piece by twice `spare`; 0 of a piece whose plane some of it is
+    // farther from, whichever domain that is in. (What is in a seam is kept off that by some of it.)
+    double shift_before(const FlatPiece& piece, double spare) const {
+        glm::dvec3 apart = piece.corners[0] - middle;
+        for (int axis = 0; axis < 3; ++axis)
+            apart[axis] = size[axis] > 0.0 ? std::remainder(apart[axis], size[axis]) : apart[axis];
+        const double off = glm::dot(piece.normal, apart);
+        double tilt = 0.0;
+        for (const glm::dvec3& edge : half_edges)
+            tilt += std::abs(glm::dot(piece.normal, edge));
+        const bool is_in_it = std::abs(off) + tilt <= 2.0 * spare;
+        return is_in_it ? off * (glm::dot(piece.normal, forward) < 0.0 ? -1.0 : 1.0) + 2.0 * spare : 0.0;
+    }
+
+    double shift_before_plane(const FlatPiece& plane) const {
+        return shift_before(plane, std::max(spare, plane.spare));
+    }
+    double shift_before(const FlatPiece& piece) const {
+        const bool is_beside = size != glm::dvec3(0.0) || piece.is_beside(middle, extent);
+        return is_beside ? shift_before(piece, piece.spare) : 0.0;
+    }
+
+    glm::dvec3 middle, forward, half_edges[2];
+    glm::dvec3 size; // of the domain, where it repeats
+    double extent;   // of a ball about it
+    double spare;    // of what is as far off the origin as it is
+};
+
+} // namespace
+
+double extent_of(const shared::LightRow& light) {
+    return light.kind & LIGHT_FLAT ? glm::length(light.edge_u) + glm::length(light.edge_v) : double(light.extent);
+}
+
+void keep_apart(std::vector<shared::LightRow>& lights, const SurfaceTable& surfaces) {
+    for (shared::LightRow& light : lights) {
+        if (!(light.kind & LIGHT_PLACED))
+            continue;
+        const glm::dvec3 place = light.position;
+        const double extent = extent_of(light);
+        for_each_near(surfaces, place, extent, [&](const shared::SurfacePrimitive& p) {
+            light.apart = std::max(light.apart, static_cast<float>(spare_of(p, place, extent)));
+        });
+    }
+}
+
+double shift_of_sensor(const Scene& scene, const SurfaceTable& surfaces, const glm::dvec3& origin) {
+    if (scene.camera.projection != Projection::irradiance)
+        return 0.0;
+    const SensorRectangle sensor(scene, origin);
+    double shift = 0.0;
+    const auto take = [&](const shared::SurfacePrimitive& p) {
+        if (p.shape != SURFACE_SPHERE) // which it touches in a point
+            shift = std::max(shift, sensor.shift_before(FlatPiece(p)));
+    };
+    const std::span<const shared::SurfacePrimitive> all = surfaces.primitives;
+    for (const shared::SurfacePrimitive& plane : all.first(surfaces.planes))
+        shift = std::max(shift, sensor.shift_before_plane(FlatPiece(plane)));
+    if (scene.periodic) // where it stands in all domains
+        std::for_each(all.begin() + surfaces.planes, all.begin() + surfaces.met, take);
+    else
+        for_each_near(surfaces, sensor.middle, sensor.extent, take);
+    return shift;
+}
+
+} // namespace vkvol
