@@ -384,9 +384,9 @@ LoadedMedium Loader::load(const Volume& volume) {
     return loaded;
 }
 
-void load_sky(const SkyLight& sky, Assets& assets) {
+void load_sky(const SkyLight& sky, SkyCache& skies, Assets& assets) {
     try {
-        assets.sky = load_sky(sky);
+        assets.sky = skies.take(sky);
     } catch (const InputError& error) {
         throw InputError(sky.place.empty() ? error.what() : fmt::format("{}: {}", sky.place, error.what()));
     }
@@ -395,9 +395,10 @@ void load_sky(const SkyLight& sky, Assets& assets) {
 
 } // namespace
 
-Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
+Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept, SkyCache* skies) {
     check_scene_limits(scene);
     FieldCache own;
+    SkyCache own_skies;
     FieldCache& fields = kept ? *kept : own;
     fields.retain(grid_files(scene));
     Loader loader(scene, method, fields);
@@ -423,7 +424,7 @@ Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept) {
         check_limits(scene, *assets.superposition, method);
     for (const Light& light : scene.lights)
         if (const auto* sky = std::get_if<SkyLight>(&light))
-            load_sky(*sky, assets);
+            load_sky(*sky, skies ? *skies : own_skies, assets);
     return assets;
 }
 

@@ -59,7 +59,7 @@ std::vector<const DensityField*> distinct_grids(Media media);
 struct Assets {
     std::vector<LoadedMedium> media;
     std::optional<Superposition> superposition; // of them, if there are several
-    std::optional<SkyMap> sky;                  // the map of it, if the scene has one
+    std::shared_ptr<const SkyMap> sky;          // the map of it, if the scene has one
     std::vector<std::string> warnings;
 };
 
@@ -69,8 +69,8 @@ inline const Superposition* whole_of(const Assets& assets) {
 }
 
 // Opens the files, if the scene has any. Throws InputError, also for what is not supported. `kept`: grids that need not
-// be read again; those of the scene are among them then, and no others.
-Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept = nullptr);
+// be read again; those of the scene are among them then, and no others. `skies`: likewise for its map of the sky.
+Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept = nullptr, SkyCache* skies = nullptr);
 
 // Grids that they may be asked for.
 std::vector<GridFile> grid_files(const Scene& scene);

@@ -76,9 +76,10 @@ shared::PhaseParams phase_params(const Volume& volume, std::span<const shared::P
 }
 
 std::uint32_t phase_iterations(const Volume& volume, std::span<const shared::PhaseNode> nodes) {
-    // A flight's next direction, and looks for light from where it collides, tentatively too, and from along it: each
-    // draws one, and evaluates up to five. Lanes of a group are at different ones of them in one turn.
-    constexpr std::uint32_t drawn = 4, evaluated = 1 + 5 + 5 + 4, newton_steps = 10;
+    // A flight's next direction, and looks for light from where it collides, tentatively too, and from along it. These
+    // draw one, toward a lamp or, of what is scattered once, a sun or map, and evaluate three times for each, and twice
+    // for what comes of it. Lanes of a group are at different ones of them in one turn.
+    constexpr std::uint32_t drawn = 1 + 2 + 2 + 1, evaluated = 1 + 8 + 8 + 4, newton_steps = 10;
     if (volume.phase == PhaseFunction::draine || volume.phase == PhaseFunction::droplets)
         return drawn * (newton_steps + 1);
     if (volume.phase == PhaseFunction::table)

@@ -12,8 +12,7 @@ namespace vkvol {
 shared::PhaseParams phase_params(const Volume& volume, std::span<const shared::PhaseNode> nodes);
 
 // Iterations of the loops within phase functions in a turn of a kernel, at most; each with the one that ends it. A turn
-// may draw a direction to scatter, and one to a lamp from either end of a flight, and evaluate four times for each of
-// these.
+// may draw a direction to scatter, and some to lamps, suns and maps from either end of a flight, and from along it.
 std::uint32_t phase_iterations(const Volume& volume, std::span<const shared::PhaseNode> nodes);
 
 // At least the function's largest value [1 / sr]; of mixtures, and Draine's, it may be a few times that.

@@ -142,4 +142,23 @@ SkyMap load_sky(const SkyLight& light) {
     return make_sky(map, light.scale, light.mapping);
 }
 
+// Turning it, and the layer that it goes to, are no part of it.
+std::shared_ptr<const SkyMap> SkyCache::take(const SkyLight& light) {
+    std::error_code ignored;
+    const auto bytes = light.daylight ? 0 : std::filesystem::file_size(light.file, ignored);
+    const auto changed =
+        light.daylight ? std::filesystem::file_time_type{} : std::filesystem::last_write_time(light.file, ignored);
+    const bool is_here = map_ && light_.file == light.file && light_.daylight == light.daylight &&
+                         light_.mapping == light.mapping && light_.mirror == light.mirror &&
+                         light_.scale == light.scale && bytes_ == bytes && changed_ == changed;
+    if (!is_here) {
+        map_.reset(); // before there is another
+        map_ = std::make_shared<const SkyMap>(load_sky(light));
+        light_ = light;
+        bytes_ = bytes;
+        changed_ = changed;
+    }
+    return map_;
+}
+
 } // namespace vkvol

@@ -1,6 +1,12 @@
 // A map of the sky, made ready to be looked up and drawn from: see shaders/lights/sky.glsl.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "lights.h"
 #include "radiance_map.h"
 #include "shared/frame.h"
@@ -19,6 +25,19 @@ struct SkyMap {
 
 // Opens the file. Throws InputError, also for a map without light.
 SkyMap load_sky(const SkyLight& light);
+
+// The map that was made last, so that it is not read and made anew for each moment of a scene that moves, or frame.
+class SkyCache {
+public:
+    // As load_sky, or what that made of the same before, if its file has not changed since.
+    std::shared_ptr<const SkyMap> take(const SkyLight& light);
+
+private:
+    SkyLight light_; // it is of, if there is one
+    std::uintmax_t bytes_ = 0;
+    std::filesystem::file_time_type changed_;
+    std::shared_ptr<const SkyMap> map_;
+};
 
 // Makes the sky of a map that has some light, times `scale`; one of equal areas is square.
 SkyMap make_sky(const RadianceMap& map, const Rgb& scale, SkyMapping mapping = SkyMapping::equirectangular);

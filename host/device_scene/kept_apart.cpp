@@ -25,10 +25,18 @@ struct FlatPiece {
 
     // By how much rays from what lies in it are kept apart; 0: it does not lie in it, as nearly as rays know it. See
     // lies_in, surfaces/nearest.glsl.
-    double spare_of(const glm::dvec3& place, double extent) const { return holds(place, extent) ? spare : 0.0; }
+    double spare_of(const glm::dvec3& place, double extent) const {
+        return holds(place, extent) ? spare_at(place) : 0.0;
+    }
+
+    // Of a disk places err by how far off the origin they are themselves.
+    double spare_at(const glm::dvec3& place) const {
+        const glm::dvec3 reach = glm::abs(place);
+        return radius > 0.0 ? std::max(spare, SURFACE_SPARE * std::max({reach.x, reach.y, reach.z})) : spare;
+    }
 
     bool holds(const glm::dvec3& place, double extent) const {
-        return std::abs(off(place)) <= 0.125 * spare && is_beside(place, extent);
+        return std::abs(off(place)) <= 0.125 * spare_at(place) && is_beside(place, extent);
     }
 
     double off(const glm::dvec3& place) const { return glm::dot(normal, place - corners[0]); }
@@ -92,26 +100,48 @@ struct SensorRectangle {
         spare = SURFACE_SPARE * std::max({reach.x, reach.y, reach.z});
     }
 
-    // By how much it has to move to be before the piece by twice `spare`; 0 of a piece whose plane some of it is
-    // farther from, whichever domain that is in. (What is in a seam is kept off that by some of it.)
-    double shift_before(const FlatPiece& piece, double spare) const {
-        glm::dvec3 apart = piece.corners[0] - middle;
-        for (int axis = 0; axis < 3; ++axis)
-            apart[axis] = size[axis] > 0.0 ? std::remainder(apart[axis], size[axis]) : apart[axis];
-        const double off = glm::dot(piece.normal, apart);
+    // How far it has to move to be before a piece that it lies in by twice as much as places there err; 0: it lies in
+    // none of it. Planes have no end.
+    double shift_before(const FlatPiece& piece, bool ends) const {
+        const double err = std::max(spare, piece.spare);
+        if (ends && size == glm::dvec3(0.0) && !piece.is_beside(middle, extent))
+            return 0.0;
         double tilt = 0.0;
         for (const glm::dvec3& edge : half_edges)
             tilt += std::abs(glm::dot(piece.normal, edge));
-        const bool is_in_it = std::abs(off) + tilt <= 2.0 * spare;
-        return is_in_it ? off * (glm::dot(piece.normal, forward) < 0.0 ? -1.0 : 1.0) + 2.0 * spare : 0.0;
+        const double ahead = off(piece) * (glm::dot(piece.normal, forward) < 0.0 ? -1.0 : 1.0);
+        // Nearly in it, and facing it, is a place of its own; but walls in a seam were moved into the domain
+        // (seams.cpp).
+        const bool may_be_a_seam = glm::length(piece.normal * size) > 1e-3 * glm::length(size);
+        const double most_ahead = (may_be_a_seam ? 3.2 : 1.0) * err;
+        const bool is_in_it = ahead - tilt >= -2.0 * err && ahead + tilt <= most_ahead;
+        return is_in_it ? ahead + 2.0 * err : 0.0;
     }
 
-    double shift_before_plane(const FlatPiece& plane) const {
-        return shift_before(plane, std::max(spare, plane.spare));
+    // Likewise of a ball that its middle touches.
+    double shift_before(const shared::SurfacePrimitive& ball) const {
+        const glm::dvec3 center(ball.a), reach = glm::abs(center) + double(ball.c.x);
+        const double err = std::max(spare, SURFACE_SPARE * std::max({reach.x, reach.y, reach.z}));
+        const double height = glm::distance(middle, center) - ball.c.x;
+        const double outward = glm::dot(forward, glm::normalize(middle - center));
+        return std::abs(height) <= 2.0 * err && std::abs(outward) > 0.5 ? 2.0 * err - (outward > 0.0 ? height : -height)
+                                                                        : 0.0;
     }
-    double shift_before(const FlatPiece& piece) const {
-        const bool is_beside = size != glm::dvec3(0.0) || piece.is_beside(middle, extent);
-        return is_beside ? shift_before(piece, piece.spare) : 0.0;
+
+    // How far the piece's plane is from the middle along its normal, in whichever domain it is nearest.
+    double off(const FlatPiece& piece) const {
+        glm::dvec3 apart = piece.corners[0] - middle, periods(0.0);
+        for (int axis = 0; axis < 3; ++axis)
+            apart[axis] = size[axis] > 0.0 ? std::remainder(apart[axis], size[axis]) : apart[axis];
+        double nearest = glm::dot(piece.normal, apart);
+        const double own = nearest;
+        for (periods.x = -1.0; periods.x <= 1.0; ++periods.x)
+            for (periods.y = -1.0; periods.y <= 1.0; ++periods.y)
+                for (periods.z = -1.0; periods.z <= 1.0; ++periods.z)
+                    if (const double other = own + glm::dot(piece.normal, periods * size);
+                        std::abs(other) < std::abs(nearest))
+                        nearest = other;
+        return nearest;
     }
 
     glm::dvec3 middle, forward, half_edges[2];
@@ -144,16 +174,16 @@ double shift_of_sensor(const Scene& scene, const SurfaceTable& surfaces, const g
     const SensorRectangle sensor(scene, origin);
     double shift = 0.0;
     const auto take = [&](const shared::SurfacePrimitive& p) {
-        if (p.shape != SURFACE_SPHERE) // which it touches in a point
-            shift = std::max(shift, sensor.shift_before(FlatPiece(p)));
+        const bool is_ball = p.shape == SURFACE_SPHERE;
+        shift = std::max(shift, is_ball ? sensor.shift_before(p) : sensor.shift_before(FlatPiece(p), true));
     };
     const std::span<const shared::SurfacePrimitive> all = surfaces.primitives;
     for (const shared::SurfacePrimitive& plane : all.first(surfaces.planes))
-        shift = std::max(shift, sensor.shift_before_plane(FlatPiece(plane)));
+        shift = std::max(shift, sensor.shift_before(FlatPiece(plane), false));
     if (scene.periodic) // where it stands in all domains
         std::for_each(all.begin() + surfaces.planes, all.begin() + surfaces.met, take);
     else
-        for_each_near(surfaces, sensor.middle, sensor.extent, take);
+        for_each_near(surfaces, sensor.middle, sensor.extent + 2.0 * sensor.spare, take);
     return shift;
 }
 

@@ -223,6 +223,7 @@ private:
         glm::dvec3 origin{0.0};
     } film_scene_;
     FieldCache own_fields_;                  // of what moves, without a workshop's
+    SkyCache own_skies_;                     // likewise
     std::optional<PipelineCache> own_cache_; // without a workshop's
     std::vector<Band> bands_;
     std::uint32_t records_ = 0; // of paths, in them

@@ -146,8 +146,9 @@ void Session::take_warnings(const Assets& assets) {
 void Session::load() {
     Stopwatch watch;
     const bool is_first = bands_.empty();
-    FieldCache* const own = moving_ ? &own_fields_ : nullptr;
-    Assets assets = load_assets(scene_, method_, job_.workshop ? &job_.workshop->fields() : own);
+    FieldCache* const fields = job_.workshop ? &job_.workshop->fields() : moving_ ? &own_fields_ : nullptr;
+    SkyCache* const skies = job_.workshop ? &job_.workshop->skies() : moving_ ? &own_skies_ : nullptr;
+    Assets assets = load_assets(scene_, method_, fields, skies);
     if (is_first) {
         result_.load_seconds = watch.lap();
         take_warnings(assets);
@@ -245,8 +246,10 @@ void Session::keep(const Assets& assets) {
 void Session::release_grids() {
     if (job_.workshop && job_.workshop->has_frames())
         job_.workshop->fields().foresee(job_.workshop->next());
-    else if (job_.workshop && !moving_)
+    else if (job_.workshop && !moving_) {
         job_.workshop->fields().retain({});
+        job_.workshop->skies() = {};
+    }
 }
 
 void Session::compile() {

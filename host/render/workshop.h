@@ -13,6 +13,7 @@
 #include "device.h"
 #include "field_cache.h"
 #include "pipeline_cache.h"
+#include "sky_map.h"
 
 namespace vkvol {
 
@@ -32,6 +33,7 @@ public:
         return pipelines_.try_emplace(&device, device, use_disk).first->second;
     }
     FieldCache& fields() { return fields_; }
+    SkyCache& skies() { return skies_; }
     // The grids of the next frame, to be read while one renders whose own are on the device.
     void set_next(std::vector<GridFile> files) { next_ = std::move(files); }
     const std::vector<GridFile>& next() const { return next_; }
@@ -63,6 +65,7 @@ private:
     std::mutex mutex_;
     std::map<const Device*, PipelineCache> pipelines_; // go before their devices
     FieldCache fields_;
+    SkyCache skies_;
     std::vector<GridFile> next_;
     std::set<std::string> warned_;
 };

@@ -95,6 +95,7 @@ struct Daylight {
     glm::dvec3 sun{0.0, 1.0, 0.0}; // unit, towards it; above the horizon
     double turbidity = 3.0;        // haze: 2 is very clear, 10 hazy
     double ground = 0.2;           // albedo of what is below the horizon, in [0, 1]
+    bool operator==(const Daylight&) const = default;
 };
 
 // What directions the places of a map are.

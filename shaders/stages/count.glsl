@@ -3,7 +3,7 @@
 #define STAGE_COUNT_GLSL
 #include "stages/show.glsl"
 
-// World units before the sensor's plane, which is a little before that of a surface that it lies in (sensor_params.cpp): particles that
+// World units before the sensor's plane, which is a little before that of a surface that it lies in (kept_apart.cpp): particles that
 // come to the surface have passed then, and those that leave it, from a little off it, have not.
 float before_sensor(vec3 position) {
     return dot(position - frame.sensors[0].position, frame.sensors[0].corner);

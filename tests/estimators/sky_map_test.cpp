@@ -1,6 +1,7 @@
 // Maps of the sky: what they show, and how directions are drawn from them.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <numbers>
 
@@ -49,7 +50,7 @@ Looks look(const SkyMap& sky, double rotation, SkyMapping mapping = SkyMapping::
     light.mapping = mapping;
     scene.lights = {light};
     Assets assets;
-    assets.sky = sky;
+    assets.sky = std::make_shared<const SkyMap>(sky);
     const LightTable table = make_light_table(scene, assets, glm::dvec3(0.0), 1.0);
     KernelScene kernel;
     kernel.frame.sky = make_sky_params(scene, assets);
@@ -330,4 +331,25 @@ TEST_CASE("the density found in a direction is that with which it was drawn", "[
     for (const shared::SkyOutput& o : looks.outputs)
         beyond += std::abs(o.pdf_there - o.pdf) > 2e-3f * o.pdf ? 1 : 0;
     CHECK(beyond < 1 << 7);
+}
+
+TEST_CASE("a map of the sky is read again where its file or what is made of it changed, and else not", "[cpu][lights]") {
+    SkyCache skies;
+    SkyLight light = write_sky(sun_map(2));
+    const auto first = skies.take(light);
+    light.rotation = 30.0; // which its light table has
+    CHECK(skies.take(light) == first);
+    light.scale = Rgb(2.0);
+    const auto twice = skies.take(light);
+    CHECK(twice->texels.front().x == Approx(2.0 * first->texels.front().x));
+    light.mirror = true;
+    CHECK(skies.take(light)->texels != twice->texels);
+    const SkyLight other = write_sky(half_dark());
+    std::filesystem::copy_file(other.file, light.file, std::filesystem::copy_options::overwrite_existing);
+    CHECK(skies.take(light)->width == 8);
+    light.daylight = Daylight{};
+    const auto day = skies.take(light);
+    CHECK(skies.take(light) == day);
+    light.daylight->turbidity = 5.0;
+    CHECK(skies.take(light) != day);
 }

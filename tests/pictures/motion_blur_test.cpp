@@ -269,7 +269,7 @@ TEST_CASE("batches are no larger than their moment has room for", "[motion]") {
     scene.settings.spp = 2048;
     RenderJob job;
     job.sample_offset = 1 << 20; // where 512 samples share a moment
-    job.noise_goal = 1e-9;           // looked at after 1024 samples, say, and not reached
+    job.noise_goal = 1e-9;       // never reached, nor looked at
     const Film film = render_here(scene, 4, job).film;
     job.plan.most_batch = 16;
     CHECK(same_bits(film, render_here(scene, 4, job).film));

@@ -70,6 +70,51 @@ TEST_CASE("a sensor in a surface, however this leans, reads what comes to it", "
     }
 }
 
+// In what the origin's own coordinates, a centre's or a corner's do not tell how far places there err.
+TEST_CASE("a sensor in the middle of a surface, or far from that, or on a large ball, reads what comes to it",
+          "[gpu][flux][surfaces]") {
+    struct Ground {
+        const char *what, *surface, *sensor, *medium;
+    };
+    const char *beside = R"(<sphere x="3" y="2" radius="0.5"/>)", *about = R"(<sphere radius="0.01"/>)";
+    const Ground grounds[] = {
+        {"disk about the origin", R"(<disk lookAt="0 1 0" radius="3")", R"(lookAt="0 1 0" width="1" height="1")",
+         about},
+        {"leaning disk about the origin", R"(<disk lookAt=".3 1 .2" radius="3")",
+         R"(lookAt=".3 1 .2" width="1" height="1")", about},
+        {"far from a disk's middle", R"(<disk y="-1" lookAt="0.1 -0.1 -0.35" radius="500")",
+         R"(x="283.03" y="-32.44777778" lookAt="283.13 -31.54777778 -0.35" width="10" height="10")", beside},
+        {"large ball", R"(<sphere y="-6371" radius="6371")", R"(lookAt="0 1 0" width="1" height="1")", beside},
+        {"ball", R"(<sphere y="-1" radius="1")", R"(lookAt="0 1 0" width="0.001" height="0.001")", beside}};
+    for (const Ground& ground : grounds) {
+        const Scene scene =
+            parse(fmt::format(R"(<surfaces>{} r="0" g="0" b="0"/></surfaces><backgroundColor r="1" g="1" b="1"/>
+            <irradiance {}/><width>8</width><height>8</height>{}<sigma_a>1e-6</sigma_a><sigma_s>0</sigma_s>
+            <rayPerPixelCount>500</rayPerPixelCount>)",
+                              ground.surface, ground.sensor, ground.medium));
+        check_reading(scene, std::numbers::pi, ground.what, false);
+    }
+}
+
+TEST_CASE("a sensor in a wall of a domain that repeats, in a seam or leaning, is before it", "[gpu][periodic][flux]") {
+    const std::pair<const char*, double> walls[] = {
+        // The sun at 45 degrees, over the next wall.
+        {R"(<periodic x="-1 1" z="-1 1"/><surfaces><rectangle x="-1" lookAt="0 0 0" width="2" height="2" r="0" g="0" b="0"/></surfaces>
+            <light x="1" y="1" r="1" g="1" b="1"/><irradiance x="-1" y="0.9" lookAt="0 0.9 0" width="1" height="0.1"/>)",
+         std::sqrt(0.5)},
+        {R"(<periodic x="-5 5" z="-5 5"/><surfaces><rectangle lookAt="0.3 1 0" width="8" height="8" r="0" g="0" b="0"/></surfaces>
+            <light x="0.3" y="1" r="1" g="1" b="1"/><irradiance x="2.8734789" y="-0.86204367" z="0" lookAt="3.1734789 0.13795633 0" width="0.5" height="0.5"/>)",
+         1.0},
+        {R"(<periodic x="-5 5" z="-5 5"/><surfaces><rectangle lookAt="0.3 1 0" width="8" height="8" r="0" g="0" b="0"/></surfaces>
+            <light x="0.3" y="1" r="1" g="1" b="1"/><irradiance x="-2.8734789" y="0.86204367" z="0" lookAt="-2.5734789 1.86204367 0" width="0.5" height="0.5"/>)",
+         1.0}};
+    for (const auto& [wall, expected] : walls) {
+        const Scene scene =
+            parse(std::string(wall) + "<width>4</width><height>4</height><rayPerPixelCount>64</rayPerPixelCount>");
+        check_reading(scene, expected, wall, false);
+    }
+}
+
 TEST_CASE("sensors above a ground are told from those in it, wherever its point is", "[gpu][flux]") {
     const auto scene_with = [](const char* sensor) {
         return parse(
