@@ -47,7 +47,11 @@ int run_convert(const ConvertOptions& options) {
     const PbrtScene pbrt = read_pbrt(options.scene);
     const std::filesystem::path beside = options.output.parent_path();
     PbrtTranslationOptions choices;
-    choices.name_of_file = [&](const std::string& name) { return name_beside(pbrt.folder / name, beside); };
+    choices.name_of_file = [&](const std::string& name) { // a stream's text may come to be anywhere
+        const std::filesystem::path file = pbrt.folder / name;
+        return name_beside(is_special(options.output) ? std::filesystem::absolute(file).lexically_normal() : file,
+                           beside);
+    };
     choices.grid_stem = options.output.stem().string();
     const PbrtTranslation translation = translate_pbrt(pbrt, choices);
     if (is_special(options.output) && !translation.grids.empty())

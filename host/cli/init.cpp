@@ -43,7 +43,9 @@ int run_init(const InitOptions& options) {
         FileSceneOptions file;
         file.picture = file_picture();
         file.up = options.up;
-        FileScene scene = make_file_scene(options.grid, output.parent_path(), file);
+        // A stream's text may come to be anywhere.
+        const std::filesystem::path grid = is_special(output) ? std::filesystem::absolute(options.grid) : options.grid;
+        FileScene scene = make_file_scene(grid, output.parent_path(), file);
         for (const std::string& warning : scene.warnings)
             if (!options.quiet)
                 tell(stderr, "vkvol: warning: {}\n", warning);

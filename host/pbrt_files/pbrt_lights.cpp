@@ -115,7 +115,7 @@ void PbrtTranslator::write_lights() {
     xml_.open("lights");
     for (const PbrtThing& light : scene_.lights) {
         const PbrtParameters& p = *light.parameters;
-        if (light.type == "infinite" && !p.has("filename")) {
+        if (light.type == "infinite" && p.text("filename").empty()) {
             const double illuminance = p.number("illuminance", -1.0);
             background += light_color(light, "L") * (illuminance > 0.0 ? illuminance / pi : 1.0);
             place = light.place.text();

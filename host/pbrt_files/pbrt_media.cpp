@@ -195,9 +195,8 @@ std::optional<PbrtTranslator::Region> PbrtTranslator::region_within(const PbrtSh
 }
 
 bool PbrtTranslator::has_camera(const PbrtShape& shape, const Region& region) const {
-    if (!scene_.camera)
-        return false;
-    const glm::dmat4 camera = world_ * glm::inverse(scene_.camera->transform);
+    const glm::dmat4 placed = scene_.camera ? scene_.camera->transform : glm::dmat4(1.0); // pbrt's usual one
+    const glm::dmat4 camera = world_ * glm::inverse(placed);
     if (region.element.empty()) { // whose name is, for `vkvol convert`, that beside the new scene
         const std::string file = shape.thing.parameters->text("filename");
         return has_within(scene_.folder / file, region.transform, glm::dvec3(camera[3]));

@@ -140,7 +140,8 @@ XmlAttributes PbrtTranslator::material(const PbrtThing& thing) {
         const double index = index_of(thing, thinnest);
         attributes.emplace_back("material", "dielectric");
         attributes.emplace_back("ior", xml_number(index));
-        if (std::abs(index - 1.0) >= 0.01) // else it bends next to nothing, and scene files take no roughness of it
+        // Else it bends next to nothing, turned inside out or not, and scene files take no roughness of it.
+        if (std::min(std::abs(index - 1.0), std::abs(1.0 / index - 1.0)) >= 0.01)
             add_roughness(attributes, thing);
     } else if (thing.type == "thindielectric") {
         attributes.emplace_back("material", "thinDielectric");

@@ -102,7 +102,7 @@ glm::dmat3 rotation_of(const glm::dmat3& m) {
 }
 
 bool is_map(const PbrtThing& light) {
-    return light.type == "infinite" && light.parameters->has("filename");
+    return light.type == "infinite" && !light.parameters->text("filename").empty();
 }
 
 // The part of the frame that the film has.

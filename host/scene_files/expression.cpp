@@ -13,6 +13,7 @@
 #include "error.h"
 #include "keyed_values.h"
 #include "nearest_name.h"
+#include "number_text.h"
 
 namespace vkvol {
 
@@ -163,7 +164,7 @@ double Expression::primary() {
 
 double Expression::number() {
     double value = 0.0;
-    const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+    const auto [end, error] = read_number_at(text_.data() + at_, text_.data() + text_.size(), value);
     if (error != std::errc())
         fail(fmt::format("'{}' is no number that can be held", text_.substr(at_, 10)));
     at_ = static_cast<std::size_t>(end - text_.data());

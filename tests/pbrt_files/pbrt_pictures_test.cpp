@@ -125,6 +125,12 @@ TEST_CASE("a converted pbrt scene is the picture of the pbrt scene, bit for bit"
                  "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n-9 -1 -9\n"
                  "9 -1 -9\n0 -1 9\n3 0 1 2\n");
     CHECK(folder.script("\"$vkvol\" convert in/a.pbrt -o /dev/stdout 2>/dev/null | tail -c 11").text == "</options>\n");
+    // Wherever that text comes to be, its files are where they were.
+    CHECK(
+        folder
+            .script(
+                "\"$vkvol\" convert in/a.pbrt -o /dev/stdout 2>/dev/null > out/c.xml; \"$vkvol\" out/c.xml -q -o c.exr")
+            .code == exit_done);
     const Run converted = folder.vkvol("convert in/a.pbrt -o out/b.xml");
     CHECK(converted.text == "out/b.xml: 1 media, 1 lights, 1 surfaces\n");
     REQUIRE(folder.vkvol("in/a.pbrt -q -o a.exr").code == exit_done);

@@ -92,6 +92,39 @@ TEST_CASE("pbrt's disks have their front where a mirror puts it", "[cpu][pbrt]")
     CHECK(normal("ReverseOrientation Scale -1 1 1") == Approx(front));
 }
 
+TEST_CASE("pbrt's rough glass that bends next to nothing is smooth, turned inside out or not", "[cpu][pbrt]") {
+    for (const char* turned : {"", "ReverseOrientation "})
+        for (const char* index : {"1.009", "1.01", "1.0100999"}) {
+            const Scene scene =
+                world_of(std::string(turned) + R"(Material "dielectric" "float roughness" 0.1 "float eta" )" + index +
+                         R"( Shape "sphere")");
+            CAPTURE(turned, index);
+            CHECK(scene.surfaces.at(0).material.roughness == 0.0);
+        }
+    CHECK(world_of(R"(Material "dielectric" "float eta" 1.02 "float roughness" 0.1 Shape "sphere")")
+              .surfaces.at(0)
+              .material.roughness > 0.0);
+}
+
+TEST_CASE("pbrt's infinite light with a nameless file is even", "[cpu][pbrt]") {
+    const Scene scene = world_of(R"(LightSource "infinite" "string filename" "" "rgb L" [ 0.4 0.45 0.5 ])");
+    CHECK(scene.lights.empty());
+    CHECK(near(scene.background, {0.4, 0.45, 0.5}));
+}
+
+TEST_CASE("pbrt's usual camera is told to be within a medium, too", "[cpu][pbrt]") {
+    const std::string fog =
+        "WorldBegin MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" AttributeBegin MediumInterface \"fog\" "
+        "\"\" Material \"interface\" Shape \"sphere\" \"float radius\" 3 AttributeEnd";
+    for (const char* camera : {"", "Camera \"perspective\" "}) {
+        const std::vector<std::string> warnings = scene_of(camera + fog).warnings;
+        CAPTURE(camera);
+        CHECK(std::any_of(warnings.begin(), warnings.end(), [](const std::string& w) {
+            return w.find("the camera is within medium") != std::string::npos;
+        }));
+    }
+}
+
 TEST_CASE("pbrt's nameless area light ends what shines, and others are refused", "[cpu][pbrt]") {
     const Scene scene = world_of("AreaLightSource \"diffuse\"" + sided_ball + "AreaLightSource \"\"" + sided_ball);
     REQUIRE(scene.surfaces.size() == 2);

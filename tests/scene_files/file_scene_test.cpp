@@ -201,6 +201,13 @@ TEST_CASE("init writes a scene to start from, and over nothing", "[gpu][command]
     CHECK_THAT(folder.vkvol("init none.nvdb").text, Contains("none.nvdb"));
 }
 
+TEST_CASE("a scene that init writes to a stream finds its grid wherever it comes to be", "[gpu][command]") {
+    const Folder folder;
+    std::filesystem::create_directories(folder.file("elsewhere"));
+    REQUIRE(folder.vkvol("init cloud.nvdb -q -o /dev/stdout > elsewhere/a.xml").code == exit_done);
+    CHECK(folder.vkvol("elsewhere/a.xml -q --width 16 --spp 1 -o a.exr").code == exit_done);
+}
+
 TEST_CASE("a scene that its user has changed is never overwritten", "[gpu][command]") {
     const Folder folder;
     const std::string render = "cloud.nvdb --spp 1 --width 16 -q";

@@ -84,6 +84,7 @@ TEST_CASE("scene values are computed", "[cpu][xml]") {
     // Whole numbers are written as such, others so that nothing is lost.
     CHECK(filled("${= 200*500}") == "100000");
     CHECK(filled("${= -0.5*0}") == "0");
+    CHECK(filled("${= 2*1e-400}") == "0"); // as outside of arithmetic
     CHECK(std::stod(filled("${= 1/3}")) == 1.0 / 3.0);
     CHECK(filled("${=1}$$${=2}") == "1$2");
     CHECK(parse("<width>${= 2*w}</width>", {{"w", "160"}}).picture.width == 320);
