@@ -425,6 +425,8 @@ Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept, S
     for (const Light& light : scene.lights)
         if (const auto* sky = std::get_if<SkyLight>(&light))
             load_sky(*sky, skies ? *skies : own_skies, assets);
+    if (skies && !assets.sky)
+        *skies = {};
     return assets;
 }
 

@@ -234,17 +234,23 @@ void check_sensor_in_planes(const Scene& scene, const glm::dvec3& origin) {
         if (!plane)
             continue;
         const double middle = glm::dot(plane->normal, origin - plane->point);
-        const auto lies_in_it = [&](const glm::dvec3& point) { // as nearly as kernels know both
-            const double reach = std::max(glm::length(point - origin), std::abs(middle));
-            return std::abs(glm::dot(plane->normal, point - plane->point)) <= SURFACE_SPARE * (1e-6 + reach);
+        const auto lies_in_it = [&](const glm::dvec3& point,
+                                    double extent) { // as nearly as kernels know both, or who wrote them
+            const double reach = std::max(glm::length(point - origin) + extent, std::abs(middle));
+            const double written = 1e-8 * (glm::length(point) + glm::length(plane->point));
+            return std::abs(glm::dot(plane->normal, point - plane->point)) <= std::max(SURFACE_SPARE * reach, written);
         };
         for (const glm::dvec3& point : scene.camera.points)
-            if (lies_in_it(point))
+            if (lies_in_it(point, 0.0))
                 fail_in(surface, point);
         // Such a sensor is kept off the plane to where it faces: behind a ground, where it would read what is not
         // there.
-        if (scene.camera.projection == Projection::irradiance && lies_in_it(scene.camera.position) &&
-            glm::dot(plane->normal, camera_rays(scene.camera, scene.picture).forward) < -0.5)
+        if (scene.camera.projection != Projection::irradiance)
+            continue;
+        const CameraRays rays = camera_rays(scene.camera, scene.picture);
+        const double extent =
+            0.5 * (glm::length(rays.right) * scene.picture.width + glm::length(rays.down) * scene.picture.height);
+        if (glm::dot(plane->normal, rays.forward) < -0.5 && lies_in_it(scene.camera.position, extent))
             fail_at(surface, "<irradiance>: it lies in this plane and faces into it; lift it off, to the side that is "
                              "meant");
     }

@@ -49,8 +49,7 @@ int run_convert(const ConvertOptions& options) {
     PbrtTranslationOptions choices;
     choices.name_of_file = [&](const std::string& name) { // a stream's text may come to be anywhere
         const std::filesystem::path file = pbrt.folder / name;
-        return name_beside(is_special(options.output) ? std::filesystem::absolute(file).lexically_normal() : file,
-                           beside);
+        return name_beside(is_special(options.output) ? std::filesystem::weakly_canonical(file) : file, beside);
     };
     choices.grid_stem = options.output.stem().string();
     const PbrtTranslation translation = translate_pbrt(pbrt, choices);

@@ -44,7 +44,8 @@ int run_init(const InitOptions& options) {
         file.picture = file_picture();
         file.up = options.up;
         // A stream's text may come to be anywhere.
-        const std::filesystem::path grid = is_special(output) ? std::filesystem::absolute(options.grid) : options.grid;
+        const std::filesystem::path grid =
+            is_special(output) ? std::filesystem::weakly_canonical(options.grid) : options.grid;
         FileScene scene = make_file_scene(grid, output.parent_path(), file);
         for (const std::string& warning : scene.warnings)
             if (!options.quiet)

@@ -6,6 +6,7 @@
 
 #include "camera_rays.h"
 #include "shared/constants.h"
+#include "surface_mesh.h"
 
 namespace vkvol {
 
@@ -96,45 +97,55 @@ struct SensorRectangle {
         forward = rays.forward;
         extent = glm::length(half_edges[0]) + glm::length(half_edges[1]);
         size = scene.periodic ? scene.periodic->size() : glm::dvec3(0.0);
+        for (int axis = 0; axis < 3; ++axis)
+            if (size[axis] > 0.0) // where surfaces are
+                middle[axis] -=
+                    size[axis] * std::floor((middle[axis] + origin[axis] - scene.periodic->low[axis]) / size[axis]);
+        for (std::size_t i = 0; scene.periodic && i < scene.surfaces.size(); ++i)
+            moved.push_back(1.5 * SURFACE_SPARE * reach_of_surfaces(std::span(&scene.surfaces[i], 1), origin));
         const glm::dvec3 reach = glm::abs(middle) + glm::abs(half_edges[0]) + glm::abs(half_edges[1]);
         spare = SURFACE_SPARE * std::max({reach.x, reach.y, reach.z});
     }
 
     // How far it has to move to be before a piece that it lies in by twice as much as places there err; 0: it lies in
-    // none of it. Planes have no end.
-    double shift_before(const FlatPiece& piece, bool ends) const {
+    // none of it.
+    double shift_before(const shared::SurfacePrimitive& p) const {
+        if (p.shape == SURFACE_SPHERE)
+            return shift_before_ball(p);
+        const FlatPiece piece(p);
         const double err = std::max(spare, piece.spare);
-        if (ends && size == glm::dvec3(0.0) && !piece.is_beside(middle, extent))
+        if (p.shape != SURFACE_PLANE && size == glm::dvec3(0.0) && !piece.is_beside(middle, extent))
             return 0.0;
         double tilt = 0.0;
         for (const glm::dvec3& edge : half_edges)
             tilt += std::abs(glm::dot(piece.normal, edge));
         const double ahead = off(piece) * (glm::dot(piece.normal, forward) < 0.0 ? -1.0 : 1.0);
-        // Nearly in it, and facing it, is a place of its own; but walls in a seam were moved into the domain
-        // (seams.cpp).
+        // Walls in a seam were moved into the domain (seams.cpp).
         const bool may_be_a_seam = glm::length(piece.normal * size) > 1e-3 * glm::length(size);
-        const double most_ahead = (may_be_a_seam ? 3.2 : 1.0) * err;
-        const bool is_in_it = ahead - tilt >= -2.0 * err && ahead + tilt <= most_ahead;
-        return is_in_it ? ahead + 2.0 * err : 0.0;
+        return shift_of(ahead, tilt, err, may_be_a_seam ? moved[p.surface] : 0.0);
     }
 
     // Likewise of a ball that its middle touches.
-    double shift_before(const shared::SurfacePrimitive& ball) const {
+    double shift_before_ball(const shared::SurfacePrimitive& ball) const {
         const glm::dvec3 center(ball.a), reach = glm::abs(center) + double(ball.c.x);
         const double err = std::max(spare, SURFACE_SPARE * std::max({reach.x, reach.y, reach.z}));
         const double height = glm::distance(middle, center) - ball.c.x;
         const double outward = glm::dot(forward, glm::normalize(middle - center));
-        return std::abs(height) <= 2.0 * err && std::abs(outward) > 0.5 ? 2.0 * err - (outward > 0.0 ? height : -height)
-                                                                        : 0.0;
+        return std::abs(outward) > 0.5 ? shift_of(outward > 0.0 ? -height : height, 0.0, err, 0.0) : 0.0;
+    }
+
+    // Of what is ahead by that, and by `tilt` more or less at corners. Nearly in it, and facing it, is a place of its
+    // own.
+    static double shift_of(double ahead, double tilt, double err, double moved) {
+        const bool is_in_it = ahead - tilt >= -2.0 * err && ahead + tilt <= err + 1.01 * moved;
+        return is_in_it ? ahead + 2.0 * err : 0.0;
     }
 
     // How far the piece's plane is from the middle along its normal, in whichever domain it is nearest.
     double off(const FlatPiece& piece) const {
-        glm::dvec3 apart = piece.corners[0] - middle, periods(0.0);
-        for (int axis = 0; axis < 3; ++axis)
-            apart[axis] = size[axis] > 0.0 ? std::remainder(apart[axis], size[axis]) : apart[axis];
-        double nearest = glm::dot(piece.normal, apart);
-        const double own = nearest;
+        const double own = glm::dot(piece.normal, piece.corners[0] - middle);
+        double nearest = own;
+        glm::dvec3 periods(0.0);
         for (periods.x = -1.0; periods.x <= 1.0; ++periods.x)
             for (periods.y = -1.0; periods.y <= 1.0; ++periods.y)
                 for (periods.z = -1.0; periods.z <= 1.0; ++periods.z)
@@ -145,9 +156,10 @@ struct SensorRectangle {
     }
 
     glm::dvec3 middle, forward, half_edges[2];
-    glm::dvec3 size; // of the domain, where it repeats
-    double extent;   // of a ball about it
-    double spare;    // of what is as far off the origin as it is
+    glm::dvec3 size;           // of the domain, where it repeats
+    double extent;             // of a ball about it
+    double spare;              // of what is as far off the origin as it is
+    std::vector<double> moved; // surfaces in a seam by kept_off_seams
 };
 
 } // namespace
@@ -173,15 +185,11 @@ double shift_of_sensor(const Scene& scene, const SurfaceTable& surfaces, const g
         return 0.0;
     const SensorRectangle sensor(scene, origin);
     double shift = 0.0;
-    const auto take = [&](const shared::SurfacePrimitive& p) {
-        const bool is_ball = p.shape == SURFACE_SPHERE;
-        shift = std::max(shift, is_ball ? sensor.shift_before(p) : sensor.shift_before(FlatPiece(p), true));
-    };
-    const std::span<const shared::SurfacePrimitive> all = surfaces.primitives;
-    for (const shared::SurfacePrimitive& plane : all.first(surfaces.planes))
-        shift = std::max(shift, sensor.shift_before(FlatPiece(plane), false));
+    const auto take = [&](const shared::SurfacePrimitive& p) { shift = std::max(shift, sensor.shift_before(p)); };
+    const auto all = surfaces.primitives.begin();
+    std::for_each(all, all + surfaces.planes, take);
     if (scene.periodic) // where it stands in all domains
-        std::for_each(all.begin() + surfaces.planes, all.begin() + surfaces.met, take);
+        std::for_each(all + surfaces.planes, all + surfaces.met, take);
     else
         for_each_near(surfaces, sensor.middle, sensor.extent + 2.0 * sensor.spare, take);
     return shift;

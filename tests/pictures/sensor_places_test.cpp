@@ -97,20 +97,29 @@ TEST_CASE("a sensor in the middle of a surface, or far from that, or on a large 
 }
 
 TEST_CASE("a sensor in a wall of a domain that repeats, in a seam or leaning, is before it", "[gpu][periodic][flux]") {
-    const std::pair<const char*, double> walls[] = {
+    const std::string leaning =
+        R"(<periodic x="-5 5" z="-5 5"/><light x="0.3" y="1" r="1" g="1" b="1"/><surfaces><rectangle lookAt="0.3 1 0" r="0" g="0" b="0")";
+    const std::string low =
+        R"(/></surfaces><irradiance x="2.8734789" y="-0.86204367" lookAt="3.1734789 0.13795633 0" width="0.5" height="0.5"/>)";
+    const std::string high =
+        R"(/></surfaces><irradiance x="-2.8734789" y="0.86204367" lookAt="-2.5734789 1.86204367 0" width="0.5" height="0.5"/>)";
+    const std::string far =
+        R"(/></surfaces><irradiance x="-37.1265211" y="-0.86204367" lookAt="-36.8265211 0.13795633 0" width="0.5" height="0.5"/>)";
+    const std::pair<std::string, double> walls[] = {
         // The sun at 45 degrees, over the next wall.
         {R"(<periodic x="-1 1" z="-1 1"/><surfaces><rectangle x="-1" lookAt="0 0 0" width="2" height="2" r="0" g="0" b="0"/></surfaces>
             <light x="1" y="1" r="1" g="1" b="1"/><irradiance x="-1" y="0.9" lookAt="0 0.9 0" width="1" height="0.1"/>)",
          std::sqrt(0.5)},
-        {R"(<periodic x="-5 5" z="-5 5"/><surfaces><rectangle lookAt="0.3 1 0" width="8" height="8" r="0" g="0" b="0"/></surfaces>
-            <light x="0.3" y="1" r="1" g="1" b="1"/><irradiance x="2.8734789" y="-0.86204367" z="0" lookAt="3.1734789 0.13795633 0" width="0.5" height="0.5"/>)",
-         1.0},
-        {R"(<periodic x="-5 5" z="-5 5"/><surfaces><rectangle lookAt="0.3 1 0" width="8" height="8" r="0" g="0" b="0"/></surfaces>
-            <light x="0.3" y="1" r="1" g="1" b="1"/><irradiance x="-2.8734789" y="0.86204367" z="0" lookAt="-2.5734789 1.86204367 0" width="0.5" height="0.5"/>)",
-         1.0}};
+        {R"(<periodic x="-1 1" z="-1 1"/><surfaces><disk x="-1" lookAt="0 0 0" radius="1" r="0" g="0" b="0"/></surfaces>
+            <sphere radius="0.01"/><sigma_a>1e-6</sigma_a><sigma_s>0</sigma_s>
+            <light x="1" y="1" r="1" g="1" b="1"/><irradiance x="-1" lookAt="0 0 0" width="0.5" height="0.5"/>)",
+         std::sqrt(0.5)},
+        {leaning + R"( width="8" height="8")" + low, 1.0},
+        {leaning + R"( width="8" height="8")" + high, 1.0},
+        {leaning + R"( width="40" height="40")" + low, 1.0},
+        {leaning + R"( width="8" height="8")" + far, 1.0}}; // four domains beside
     for (const auto& [wall, expected] : walls) {
-        const Scene scene =
-            parse(std::string(wall) + "<width>4</width><height>4</height><rayPerPixelCount>64</rayPerPixelCount>");
+        const Scene scene = parse(wall + "<width>4</width><height>4</height><rayPerPixelCount>64</rayPerPixelCount>");
         check_reading(scene, expected, wall, false);
     }
 }
@@ -125,6 +134,22 @@ TEST_CASE("sensors above a ground are told from those in it, wherever its point 
     CHECK_NOTHROW(render_here(scene_with("<fluence>500000 10 5000000</fluence>"), 1));
     CHECK_NOTHROW(
         render_here(scene_with(R"(<irradiance x="500000" y="10" z="5000000" lookAt="500000 0 5000000"/>)"), 1));
+    // Where render space begins at the sensor, what was written in decimals is told by these.
+    const auto in_fog = [](const char* sensor) {
+        return parse(fmt::format(R"(<surfaces><plane lookAt="0.3 1 0.2"/></surfaces><everywhere/><sigma_a>0.1</sigma_a>
+            <sigma_s>0.1</sigma_s><backgroundColor r="1" g="1" b="1"/><rayPerPixelCount>1</rayPerPixelCount>{})",
+                                 sensor));
+    };
+    CHECK_THROWS_WITH(
+        render_here(
+            in_fog(
+                R"(<irradiance x="1.23456789" y="-0.52345679" z="0.7654321" lookAt="0.93456789 -1.52345679 0.5654321"/>)"),
+            1),
+        Contains("faces into it"));
+    CHECK_NOTHROW(render_here(
+        in_fog(
+            R"(<irradiance x="1.23456789" y="-0.52345679" z="0.7654321" lookAt="1.53456789 0.47654321 0.9654321"/>)"),
+        1));
     CHECK_THROWS_WITH(render_here(scene_with("<fluence>500000 0 5000000</fluence>"), 1),
                       Contains("lies in this surface"));
     CHECK_THROWS_WITH(render_here(scene_with(R"(<irradiance x="500000" z="5000000" lookAt="500000 -9 5000000"/>)"), 1),
