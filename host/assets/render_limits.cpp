@@ -234,8 +234,8 @@ void check_sensor_in_planes(const Scene& scene, const glm::dvec3& origin) {
         if (!plane)
             continue;
         const double middle = glm::dot(plane->normal, origin - plane->point);
-        const auto lies_in_it = [&](const glm::dvec3& point,
-                                    double extent) { // as nearly as kernels know both, or who wrote them
+        // As nearly as kernels know both, or as decimals do in which they were written.
+        const auto lies_in_it = [&](const glm::dvec3& point, double extent) {
             const double reach = std::max(glm::length(point - origin) + extent, std::abs(middle));
             const double written = 1e-8 * (glm::length(point) + glm::length(plane->point));
             return std::abs(glm::dot(plane->normal, point - plane->point)) <= std::max(SURFACE_SPARE * reach, written);

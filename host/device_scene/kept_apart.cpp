@@ -12,7 +12,7 @@ namespace vkvol {
 
 namespace {
 
-// A triangle or a disk.
+// A triangle or a disk; or a plane, of which nothing is asked but where it is.
 struct FlatPiece {
     explicit FlatPiece(const shared::SurfacePrimitive& p)
         : corners{p.a, p.b, p.c}, radius(p.shape == SURFACE_TRIANGLES ? 0.0 : double(p.c.x)) {
@@ -61,10 +61,18 @@ struct FlatPiece {
     double spare;
 };
 
+double spare_on_ball(const shared::SurfacePrimitive& ball) {
+    const glm::dvec3 reach = glm::abs(glm::dvec3(ball.a)) + double(ball.c.x);
+    return SURFACE_SPARE * std::max({reach.x, reach.y, reach.z});
+}
+
+double height_over_ball(const shared::SurfacePrimitive& ball, const glm::dvec3& place) {
+    return glm::distance(place, glm::dvec3(ball.a)) - double(ball.c.x);
+}
+
 double spare_of_ball(const shared::SurfacePrimitive& ball, const glm::dvec3& place) {
-    const glm::dvec3 middle(ball.a), reach = glm::abs(middle) + double(ball.c.x);
-    const double spare = SURFACE_SPARE * std::max({reach.x, reach.y, reach.z});
-    return std::abs(glm::distance(place, middle) - double(ball.c.x)) <= 0.125 * spare ? spare : 0.0;
+    const double spare = spare_on_ball(ball);
+    return std::abs(height_over_ball(ball, place)) <= 0.125 * spare ? spare : 0.0;
 }
 
 // By how much rays from a light of that place and extent are kept off a primitive that it lies in.
@@ -127,10 +135,8 @@ struct SensorRectangle {
 
     // Likewise of a ball that its middle touches.
     double shift_before_ball(const shared::SurfacePrimitive& ball) const {
-        const glm::dvec3 center(ball.a), reach = glm::abs(center) + double(ball.c.x);
-        const double err = std::max(spare, SURFACE_SPARE * std::max({reach.x, reach.y, reach.z}));
-        const double height = glm::distance(middle, center) - ball.c.x;
-        const double outward = glm::dot(forward, glm::normalize(middle - center));
+        const double err = std::max(spare, spare_on_ball(ball)), height = height_over_ball(ball, middle);
+        const double outward = glm::dot(forward, glm::normalize(middle - glm::dvec3(ball.a)));
         return std::abs(outward) > 0.5 ? shift_of(outward > 0.0 ? -height : height, 0.0, err, 0.0) : 0.0;
     }
 
