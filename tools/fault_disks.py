@@ -44,16 +44,21 @@ def free_sizes(need, quick):
     return sorted({0, PAGE, *parts, *(max(0, pages + i) * PAGE for i in range(-4, 9))})
 
 
-def disk_rows(lab, table, quick):
-    whole_exr, whole_png = lab.whole, lab.whole.with_suffix(".png")
+class DiskRuns:
+    """Each method makes one run, and judges it."""
 
-    def rescued(run):
+    def __init__(self, lab):
+        self.lab = lab
+        self.whole_exr, self.whole_png = lab.whole, lab.whole.with_suffix(".png")
+
+    def rescued(self, run):
         kept = run.text.rpartition("kept as ")[2].strip()
-        if "kept as " not in run.text or not lab.same(kept):
+        if "kept as " not in run.text or not self.lab.same(kept):
             run.lose(f"no whole picture is rescued: {run.text[-300:]}")
         return run
 
-    def picture(extension, free, rescue=True):
+    def picture(self, extension, free, rescue=True):
+        lab = self.lab
         with Disk(lab, 8 << 20) as disk:
             place = Place(lab, "full", directory=disk.path, pictures=[f"a.{extension}"])
             place.known.add("filler")
@@ -65,28 +70,23 @@ def disk_rows(lab, table, quick):
             place.judge(run.expect_message(place.pictures[0], "No space left"), "unchanged")
             if not rescue and "kept as" in run.text:
                 run.lose("the rescue is a tale")
-            return rescued(run) if rescue else run
+            return self.rescued(run) if rescue else run
 
-    for extension, whole in (("exr", whole_exr), ("png", whole_png)):
-        sizes = free_sizes(whole.stat().st_size, quick)
-        table.row(f"disk full: the {extension.upper()}, an old one there", lambda f, e=extension: picture(e, f), sizes)
-    table.row("disk full, and the temporary directory too", lambda f: picture("exr", f, rescue=False), [0, 64 << 10])
-
-    def beside(free):
+    def beside(self, free):
         """The PNG has room, the EXR does not."""
+        lab = self.lab
         with Disk(lab, 8 << 20) as disk:
             place = Place(lab, "full", directory=disk.path, pictures=["a.exr"])
             place.known.add("filler")
             disk.leave(free)
             good = Place(lab, "good", pictures=["a.png"])
             run = Run(lab, "full", [*lab.render, *place.outputs, *good.outputs]).go().expect(1)
-            rescued(run.expect_message(place.pictures[0]))
+            self.rescued(run.expect_message(place.pictures[0]))
             place.judge(run, "unchanged")
             return good.judge(run, "same")
 
-    table.row("disk full: the EXR, the PNG elsewhere", beside, [0, 64 << 10])
-
-    def report(free):
+    def report(self, free):
+        lab = self.lab
         with Disk(lab, 1 << 20) as disk:
             file = disk.path / "report.json"
             file.write_text("old")
@@ -97,14 +97,13 @@ def disk_rows(lab, table, quick):
                 run.lose("the old report is lost")
             return place.judge(run, "same")
 
-    table.row("disk full: the report", report, [0])
-
-    def checkpoint(free):
+    def checkpoint(self, free):
         """The first picture fits; a checkpoint, which is larger, does not, or not a second one beside the first."""
+        lab = self.lab
         with Disk(lab, 8 << 20) as disk:
             place = Place(lab, "full", directory=disk.path, pictures=["a.png"])
             place.known.add("filler")
-            disk.leave(whole_png.stat().st_size + free)
+            disk.leave(self.whole_png.stat().st_size + free)
             good = Place(lab, "good", pictures=["a.exr"])
             run = Run(lab, "full", [*lab.render, *place.outputs, *good.outputs, "--checkpoint", "0.01s"]).go().expect(0)
             if "the last checkpoint stays" not in run.text and "there is no checkpoint yet" not in run.text:
@@ -112,14 +111,12 @@ def disk_rows(lab, table, quick):
             place.judge(run, "same")
             return good.judge(run, "same")
 
-    size = 64 * lab.pixels
-    table.row("disk full: the checkpoint", checkpoint, [PAGE, 256 << 10])
-
-    def second_checkpoint(seed):
+    def second_checkpoint(self, seed):
+        lab = self.lab
         with Disk(lab, 16 << 20) as disk:
             place = Place(lab, "full", directory=disk.path, pictures=["a.png"])
             place.known.add("filler")
-            disk.leave(size * 5 // 4)
+            disk.leave(64 * lab.pixels * 5 // 4)
             moment = lab.seconds * random.Random(seed).uniform(0.7, 1.0)
             run = Run(lab, "full", [*lab.render, *place.outputs, *lab.checkpoints],
                       signals=[(moment, signal.SIGKILL)]).go().expect(0, -signal.SIGKILL)
@@ -128,9 +125,9 @@ def disk_rows(lab, table, quick):
             place.judge(run, *(["unchanged", "same"] if run.code else ["same"]), strays=True)
             return place.resume(run)
 
-    table.row("disk full: the second checkpoint, then kill -9", second_checkpoint, range(2 if quick else 8))
-
-    def cache(how):
+    def cache(self, how):
+        """`how`: read-only, or so many bytes free."""
+        lab = self.lab
         with Disk(lab, 4 << 20) as disk:
             if how == "read-only":
                 disk.read_only()
@@ -146,18 +143,16 @@ def disk_rows(lab, table, quick):
                     run.lose(f"half a cache: {file.name}, {file.stat().st_size} bytes")
             return place.judge(run, "same")
 
-    table.row("pipeline cache: disk full or read-only", cache, ["0", str(PAGE), str(64 << 10), str(900 << 10), "2000000", "read-only"])
-
-    def read_only_place(_):
+    def read_only_place(self):
+        lab = self.lab
         with Disk(lab, 1 << 20) as disk:
             place = Place(lab, "ro", directory=disk.path)
             disk.read_only()
             run = Run(lab, "ro", [*lab.render, *place.outputs]).go().expect(2).expect_message(place.pictures[0])
             return place.judge(run, "unchanged")
 
-    table.row("output directory read-only", read_only_place, [0])
-
-    def vanish(_):
+    def vanish(self):
+        lab = self.lab
         place = Place(lab, "vanish")
         gone = place.directory.with_name(place.directory.name + "-gone")
 
@@ -173,6 +168,19 @@ def disk_rows(lab, table, quick):
         thief.join()
         place.directory = gone
         place.pictures = [gone / p.name for p in place.pictures]
-        return rescued(place.judge(run, "unchanged"))
+        return self.rescued(place.judge(run, "unchanged"))
 
-    table.row("output directory vanishes during the render", vanish, range(1 if quick else 3))
+
+def disk_rows(lab, table, quick):
+    runs = DiskRuns(lab)
+    for extension, whole in (("exr", runs.whole_exr), ("png", runs.whole_png)):
+        sizes = free_sizes(whole.stat().st_size, quick)
+        table.row(f"disk full: the {extension.upper()}, an old one there", lambda f, e=extension: runs.picture(e, f), sizes)
+    table.row("disk full, and the temporary directory too", lambda f: runs.picture("exr", f, rescue=False), [0, 64 << 10])
+    table.row("disk full: the EXR, the PNG elsewhere", runs.beside, [0, 64 << 10])
+    table.row("disk full: the report", runs.report, [0])
+    table.row("disk full: the checkpoint", runs.checkpoint, [PAGE, 256 << 10])
+    table.row("disk full: the second checkpoint, then kill -9", runs.second_checkpoint, range(2 if quick else 8))
+    table.row("pipeline cache: disk full or read-only", runs.cache, ["0", str(PAGE), str(64 << 10), str(900 << 10), "2000000", "read-only"])
+    table.row("output directory read-only", lambda _: runs.read_only_place(), [0])
+    table.row("output directory vanishes during the render", lambda _: runs.vanish(), range(1 if quick else 3))

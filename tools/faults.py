@@ -91,20 +91,21 @@ def device_rows(lab, table, quick):
                   lambda n, f=function, r=result, c=code: fail(f, n, r, c), numbers)
 
 
-def signal_rows(lab, table, quick, seed):
-    def moment(i, rng):
-        """A fifth while loading and compiling, two while rendering, one while writing, one anywhere."""
-        t = lab.seconds
-        begin, end = lab.phase["render"]
-        return {0: rng.uniform(0.0, begin), 3: rng.uniform(end - 0.05, t + 0.02), 4: rng.uniform(0.0, 1.1 * t)}.get(
-            i % 5, rng.uniform(begin, end))
+def moment(lab, i, rng):
+    """A fifth while loading and compiling, two while rendering, one while writing, one anywhere."""
+    t = lab.seconds
+    begin, end = lab.phase["render"]
+    return {0: rng.uniform(0.0, begin), 3: rng.uniform(end - 0.05, t + 0.02), 4: rng.uniform(0.0, 1.1 * t)}.get(
+        i % 5, rng.uniform(begin, end))
 
+
+def signal_rows(lab, table, quick, seed):
     def interrupt(number, i):
         rng = random.Random(f"{seed} {number} {i}")
         checkpoint = i % 2 == 0
         place = Place(lab, "signal", old=i % 4 < 2)
         more = lab.checkpoints if checkpoint else []
-        run = Run(lab, "signal", [*lab.render, *place.outputs, *more], signals=[(moment(i, rng), number)]).go()
+        run = Run(lab, "signal", [*lab.render, *place.outputs, *more], signals=[(moment(lab, i, rng), number)]).go()
         return judge_signalled(run, place, number, checkpoint)
 
     def judge_signalled(run, place, number, checkpoint):
@@ -122,7 +123,7 @@ def signal_rows(lab, table, quick, seed):
 
     def twice(i):
         rng = random.Random(f"{seed} twice {i}")
-        first = moment(i, rng)
+        first = moment(lab, i, rng)
         second = first + rng.uniform(0.001, 0.05)
         place = Place(lab, "twice", old=i % 4 < 2)
         run = Run(lab, "twice", [*lab.render, *place.outputs, *lab.checkpoints],
@@ -133,7 +134,10 @@ def signal_rows(lab, table, quick, seed):
         return judge_signalled(run, place, signal.SIGINT, True)
 
     table.row("SIGINT twice: ends at once", twice, range(2 if quick else 25))
+    kill_rows(lab, table, quick, seed)
 
+
+def kill_rows(lab, table, quick, seed):
     kills = []
 
     def kill(i):
@@ -142,7 +146,7 @@ def signal_rows(lab, table, quick, seed):
         arguments = [*lab.render, *place.outputs, *lab.checkpoints, "--resume"]
         losses = []
         for _ in range(1 + i % 4):
-            run = Run(lab, "kill", arguments, signals=[(moment(3 + i % 2 if i % 3 == 0 else 1, rng), signal.SIGKILL)]).go()
+            run = Run(lab, "kill", arguments, signals=[(moment(lab, 3 + i % 2 if i % 3 == 0 else 1, rng), signal.SIGKILL)]).go()
             place.judge(run.expect(0, -signal.SIGKILL), "unchanged", "same", strays=True)
             losses += run.losses
             if run.code == 0:
@@ -157,27 +161,35 @@ def signal_rows(lab, table, quick, seed):
         table.note(f"{len(kills)} kills; temporary files left behind: {sum(kills)}")
 
 
-def file_rows(lab, table, quick, seed):
+def a_checkpoint(lab):
+    """Of a render that was killed some way into it."""
     place = Place(lab, "good")
+    found = []
+
+    def far_enough():
+        data = place.checkpoint.read_bytes() if place.checkpoint.exists() else None
+        header = data and json.loads(data[16 : 16 + int.from_bytes(data[8:16], "little")])
+        if header and 1 < header["done"] + header["batch"]:
+            found.append(data)
+        return found
+
+    for _ in range(10):  # on a busy machine the render may be over before it is looked at
+        run = Run(lab, "begun", [*lab.render, *place.outputs, "--checkpoint", "0.01s"],
+                  signals=[(far_enough, signal.SIGKILL)]).go()
+        if found:
+            return found[0]
+    raise SystemExit(f"faults: no checkpoint was made: {run.code} {run.text}")
+
+
+def file_rows(lab, table, quick, seed):
+    rng = random.Random(f"{seed} files")
     if table.wants("checkpoint") or table.wants("grid"):
-        found = []
+        good = a_checkpoint(lab)
+        checkpoint_rows(lab, table, quick, rng, good)
+        grid_rows(lab, table, quick, rng, good)
 
-        def far_enough():
-            data = place.checkpoint.read_bytes() if place.checkpoint.exists() else None
-            header = data and json.loads(data[16 : 16 + int.from_bytes(data[8:16], "little")])
-            if header and 1 < header["done"] + header["batch"]:
-                found.append(data)
-            return found
 
-        for _ in range(10):  # on a busy machine the render may be over before it is looked at
-            run = Run(lab, "begun", [*lab.render, *place.outputs, "--checkpoint", "0.01s"],
-                      signals=[(far_enough, signal.SIGKILL)]).go()
-            if found:
-                break
-        else:
-            raise SystemExit(f"faults: no checkpoint was made: {run.code} {run.text}")
-        good = found[0]
-
+def checkpoint_rows(lab, table, quick, rng, good):
     def refuse(damaged, option="--seed", value=0):
         here = Place(lab, "damaged")
         here.checkpoint.write_bytes(damaged)
@@ -186,7 +198,6 @@ def file_rows(lab, table, quick, seed):
             run.lose("the checkpoint is touched")
         return here.judge(run.expect_message("checkpoint"), "unchanged")
 
-    rng = random.Random(f"{seed} files")
     if table.wants("checkpoint"):
         sizes = [*([0, 15, len(good) - 1] if quick else [0, 1, 8, 15, 16, 20, len(good) - 1]), *(rng.randrange(len(good)) for _ in range(1 if quick else 13))]
         table.row("checkpoint truncated", lambda n: refuse(good[:n]), sizes)
@@ -203,6 +214,8 @@ def file_rows(lab, table, quick, seed):
         subprocess.run([lab.build / "make_field", "sphere", "--output", others[-1][1]], check=True, stdout=subprocess.DEVNULL)
         table.row("checkpoint of another render", lambda o: refuse(good, *o), others[::3] if quick else others)
 
+
+def grid_rows(lab, table, quick, rng, good):
     grid = lab.grid.read_bytes()
 
     def with_grid(content, during=None):

@@ -268,58 +268,80 @@ void tell_once(const MeasureOptions& options, const RenderScene& loaded, const R
         tell(stderr, "vkvol: note: {}\n", note);
 }
 
-} // namespace
+// Reading after reading, band after band, on one device.
+class Readings {
+public:
+    // Throws InputError for what is wrong with any reading.
+    explicit Readings(const MeasureOptions& options) : options_(options), bands_(bands_of(options)) {
+        check_all(options_, bands_, workshop_);
+    }
 
-int run_measure(const MeasureOptions& options) {
-    install_interrupt_handler();
-    check_read_again(options.request.scene, "measure reads the scene for each reading, and to check all of them first");
-    Workshop workshop(true);
-    const std::vector<SpectralBand> bands = bands_of(options);
-    check_all(options, bands, workshop);
-    std::vector<Values> rows;
-    bool was_interrupted = false;
-    std::size_t added = 0; // bands of one reading
-    RenderResult told;     // what all readings together were cut short by
-    const auto measure_band = [&](const Values& values, std::size_t band, Film& sum) {
-        of_values(options.sweeps, values, bands[band], [&] {
-            RenderScene loaded = load_render_scene(request_of(options, values, bands[band]), workshop.fields());
-            if ((std::exchange(loaded.scene.layers, 0u) & ~layer_alpha) != 0)
-                loaded.scene.warnings.push_back(
-                    "<film aov>: a table has no layers, and none is rendered; leave it out");
-            if (std::exchange(loaded.scene.holds_out, false))
-                loaded.scene.warnings.push_back(
-                    "<film alpha>: a table has none, and readings have the light from behind the media; leave it out");
-            const RenderResult result = measure(options, loaded.scene, static_cast<std::uint32_t>(band), workshop);
-            was_interrupted = result.interrupted;
-            add_counts(told.counts, result.counts);
-            told.counts.cleaned_voxels = std::max(told.counts.cleaned_voxels, result.counts.cleaned_voxels);
-            if (!options.quiet)
-                tell_once(options, loaded, result, workshop);
-            if (result.samples == 0 && !was_interrupted)
-                throw RenderError("ended before any sample was done");
-            if (result.samples > 0) {
-                add_band(result.film, bands[band].weight, sum);
-                ++added;
-            }
-        });
-    };
-    const auto measure_one = [&](const Values& values) {
+    // One reading, summed over its bands; nothing if interrupted before: of some bands alone it would be another.
+    std::optional<std::string> table_of(const Values& values) {
         Film sum;
-        added = 0;
-        for (std::size_t band = 0; band < bands.size() && !was_interrupted; ++band)
-            measure_band(values, band, sum);
-        if (added == bands.size()) // of some bands alone it would be another reading
-            add(options.sweeps, values, options.means ? mean_table(sum) : film_table(sum), rows);
-    };
+        std::size_t added = 0;
+        for (std::size_t band = 0; band < bands_.size() && !was_interrupted_; ++band)
+            of_values(options_.sweeps, values, bands_[band], [&] {
+                const RenderResult result = measure_band(values, band);
+                if (result.samples == 0)
+                    return;
+                add_band(result.film, bands_[band].weight, sum);
+                ++added;
+            });
+        if (added < bands_.size())
+            return {};
+        return options_.means ? mean_table(sum) : film_table(sum);
+    }
+
+    bool was_interrupted() const { return was_interrupted_; }
+
+    // What all readings together were cut short by.
+    const RenderResult& told() const { return told_; }
+
+private:
+    RenderScene scene_of(const Values& values, std::size_t band) {
+        RenderScene loaded = load_render_scene(request_of(options_, values, bands_[band]), workshop_.fields());
+        if ((std::exchange(loaded.scene.layers, 0u) & ~layer_alpha) != 0)
+            loaded.scene.warnings.push_back("<film aov>: a table has no layers, and none is rendered; leave it out");
+        if (std::exchange(loaded.scene.holds_out, false))
+            loaded.scene.warnings.push_back(
+                "<film alpha>: a table has none, and readings have the light from behind the media; leave it out");
+        return loaded;
+    }
+
+    RenderResult measure_band(const Values& values, std::size_t band) {
+        const RenderScene loaded = scene_of(values, band);
+        RenderResult result = measure(options_, loaded.scene, static_cast<std::uint32_t>(band), workshop_);
+        was_interrupted_ = result.interrupted;
+        add_counts(told_.counts, result.counts);
+        told_.counts.cleaned_voxels = std::max(told_.counts.cleaned_voxels, result.counts.cleaned_voxels);
+        if (!options_.quiet)
+            tell_once(options_, loaded, result, workshop_);
+        if (result.samples == 0 && !was_interrupted_)
+            throw RenderError("ended before any sample was done");
+        return result;
+    }
+
+    const MeasureOptions& options_;
+    std::vector<SpectralBand> bands_;
+    Workshop workshop_{true};
+    bool was_interrupted_ = false;
+    RenderResult told_;
+};
+
+// Each reading's rows, written between readings where that takes little of the time.
+void measure_all(const MeasureOptions& options, Readings& readings) {
     constexpr double pause = 20.0; // times what writing takes: of many readings the table is long
+    std::vector<Values> rows;
     bool is_written = false;
     double writing = 0.0; // seconds
     Stopwatch unwritten;
     try {
         for (const Values& values : combinations(options.sweeps)) {
-            if (was_interrupted)
+            if (readings.was_interrupted())
                 break;
-            measure_one(values);
+            if (const std::optional<std::string> table = readings.table_of(values))
+                add(options.sweeps, values, *table, rows);
             is_written = false;
             if (unwritten.seconds() < pause * writing)
                 continue;
@@ -334,9 +356,18 @@ int run_measure(const MeasureOptions& options) {
     }
     if (!is_written)
         write(options, rows);
+}
+
+} // namespace
+
+int run_measure(const MeasureOptions& options) {
+    install_interrupt_handler();
+    check_read_again(options.request.scene, "measure reads the scene for each reading, and to check all of them first");
+    Readings readings(options);
+    measure_all(options, readings);
     if (!options.quiet)
-        print_caps(options.request, told);
-    return was_interrupted ? exit_interrupted : exit_done;
+        print_caps(options.request, readings.told());
+    return readings.was_interrupted() ? exit_interrupted : exit_done;
 }
 
 } // namespace vkvol

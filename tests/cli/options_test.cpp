@@ -1,4 +1,6 @@
 #include <catch2/catch.hpp>
+#include <iterator>
+#include <sstream>
 
 #include "error.h"
 #include "options.h"
@@ -46,48 +48,16 @@ TEST_CASE("a scene alone is rendered to EXR and PNG in the current directory", "
 }
 
 TEST_CASE("every option is read, before or after the scene", "[cpu][options]") {
-    const Options options = parse_command_line({"-o",
-                                                "a.exr",
-                                                "-D",
-                                                "g=0.5",
-                                                "--spp",
-                                                "16",
-                                                "s.xml",
-                                                "-o",
-                                                "b.png",
-                                                "-Dk=a=b",
-                                                "--seed=7",
-                                                "--integrator",
-                                                "ratioTracking:flight=weighted",
-                                                "--time",
-                                                "5m",
-                                                "--noise",
-                                                "2.5%",
-                                                "--width",
-                                                "64",
-                                                "--height",
-                                                "32",
-                                                "--grid",
-                                                "x.vdb",
-                                                "--sample-offset",
-                                                "48",
-                                                "--device",
-                                                "cpu",
-                                                "--report",
-                                                "r.json",
-                                                "--progress",
-                                                "json",
-                                                "--tonemap",
-                                                "agx",
-                                                "--exposure",
-                                                "-1.5",
-                                                "--quiet",
-                                                "--strict",
-                                                "--robust",
-                                                "--validate",
-                                                "--no-cache",
-                                                "--crop",
-                                                "0,8,4,16"});
+    std::istringstream text(
+        "-o a.exr -D g=0.5 --spp 16 s.xml -o b.png -Dk=a=b --seed=7 --time 5m --noise 2.5% --width 64 "
+        "--integrator ratioTracking:flight=weighted --height 32 --grid x.vdb --sample-offset 48 "
+        "--device cpu --report r.json --progress json --tonemap agx --exposure -1.5 --quiet "
+        "--strict --robust --validate --no-cache --crop 0,8,4,16");
+    const std::vector<std::string> words{std::istream_iterator<std::string>(text), {}};
+    std::vector<const char*> arguments;
+    for (const std::string& word : words)
+        arguments.push_back(word.c_str());
+    const Options options = parse_command_line(arguments);
     const RenderOptions& render = options.render;
     CHECK(render.scene == "s.xml");
     CHECK(render.outputs == std::vector<std::filesystem::path>{"a.exr", "b.png"});

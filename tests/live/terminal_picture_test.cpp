@@ -41,6 +41,60 @@ Bytes from_base64(const std::string& text) {
     return bytes;
 }
 
+// In percent, row by row; -1 where nothing is drawn.
+std::vector<glm::dvec3> picture_of_sixels(const std::string& text, int width, int height) {
+    const std::size_t begin = text.find("\033P"), end = text.find("\033\\", begin);
+    REQUIRE(begin != std::string::npos);
+    REQUIRE(end != std::string::npos);
+    std::size_t at = text.find('q', begin) + 1;
+    const auto number = [&] {
+        int value = 0;
+        while (at < end && std::isdigit(static_cast<unsigned char>(text[at])))
+            value = 10 * value + (text[at++] - '0');
+        return value;
+    };
+    std::map<int, glm::dvec3> palette;
+    std::vector<glm::dvec3> picture(std::size_t(width) * height, glm::dvec3(-1.0));
+    int color = 0, x = 0, top = 0;
+    while (at < end) {
+        const char c = text[at++];
+        if (c == '"') {
+            std::vector<int> raster = {number()};
+            while (text[at] == ';') {
+                ++at;
+                raster.push_back(number());
+            }
+            CHECK(raster == std::vector<int>{1, 1, width, height});
+        } else if (c == '#') {
+            color = number();
+            if (text[at] == ';') {
+                glm::dvec3 rgb_percent;
+                ++at;
+                CHECK(number() == 2);
+                for (int k = 0; k < 3; ++k) {
+                    ++at;
+                    rgb_percent[k] = number();
+                }
+                palette[color] = rgb_percent;
+            }
+        } else if (c == '$' || c == '-') {
+            x = 0;
+            top += c == '-' ? 6 : 0;
+        } else {
+            const int run = c == '!' ? number() : 1;
+            const int bits = (c == '!' ? text[at++] : c) - '?';
+            for (int k = 0; k < run; ++k, ++x)
+                for (int y = 0; y < 6; ++y)
+                    if (bits >> y & 1) {
+                        REQUIRE(x < width);
+                        REQUIRE(top + y < height);
+                        picture[std::size_t(top + y) * width + x] = palette.at(color);
+                    }
+        }
+    }
+    return picture;
+}
+
 } // namespace
 
 TEST_CASE("pictures fit a terminal and keep their shape", "[cpu][live]") {
@@ -103,56 +157,8 @@ TEST_CASE("kitty gets the pixels as they are", "[cpu][live]") {
 TEST_CASE("sixels have the picture's colours on average", "[cpu][live]") {
     const int width = 64, height = 32;
     const Bytes rgb = ramp(width, height);
-    const std::string text = drawn(TerminalGraphics::sixel, rgb, width, height, {80, 24, 0, 0});
-    const std::size_t begin = text.find("\033P"), end = text.find("\033\\", begin);
-    REQUIRE(begin != std::string::npos);
-    REQUIRE(end != std::string::npos);
-    std::size_t at = text.find('q', begin) + 1;
-    const auto number = [&] {
-        int value = 0;
-        while (at < end && std::isdigit(static_cast<unsigned char>(text[at])))
-            value = 10 * value + (text[at++] - '0');
-        return value;
-    };
-    std::map<int, glm::dvec3> palette;
-    std::vector<glm::dvec3> picture(std::size_t(width) * height, glm::dvec3(-1.0));
-    int color = 0, x = 0, top = 0;
-    while (at < end) {
-        const char c = text[at++];
-        if (c == '"') {
-            std::vector<int> raster = {number()};
-            while (text[at] == ';') {
-                ++at;
-                raster.push_back(number());
-            }
-            CHECK(raster == std::vector<int>{1, 1, width, height});
-        } else if (c == '#') {
-            color = number();
-            if (text[at] == ';') {
-                glm::dvec3 rgb_percent;
-                ++at;
-                CHECK(number() == 2);
-                for (int k = 0; k < 3; ++k) {
-                    ++at;
-                    rgb_percent[k] = number();
-                }
-                palette[color] = rgb_percent;
-            }
-        } else if (c == '$' || c == '-') {
-            x = 0;
-            top += c == '-' ? 6 : 0;
-        } else {
-            const int run = c == '!' ? number() : 1;
-            const int bits = (c == '!' ? text[at++] : c) - '?';
-            for (int k = 0; k < run; ++k, ++x)
-                for (int y = 0; y < 6; ++y)
-                    if (bits >> y & 1) {
-                        REQUIRE(x < width);
-                        REQUIRE(top + y < height);
-                        picture[std::size_t(top + y) * width + x] = palette.at(color);
-                    }
-        }
-    }
+    const std::vector<glm::dvec3> picture =
+        picture_of_sixels(drawn(TerminalGraphics::sixel, rgb, width, height, {80, 24, 0, 0}), width, height);
     // Over blocks of 4 x 4 pixels, as the dither is: of an even colour its 16 thresholds leave a sixteenth of a step of
     // 20 %, and no more comes of a ramp than its own range to either side of the block's middle, 1.5 pixels.
     for (int row = 0; row < height; row += 4)

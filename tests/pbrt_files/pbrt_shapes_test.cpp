@@ -12,6 +12,42 @@ using namespace vkvol;
 using Catch::Contains;
 using std::numbers::pi;
 
+namespace {
+
+Material material(const std::string& text) {
+    return world_of(text + "\nShape \"sphere\"").surfaces.at(0).material;
+}
+
+TriangleSurface mesh_of(const std::string& text) {
+    const Scene scene = world_of(text);
+    REQUIRE(scene.surfaces.size() == 1);
+    return std::get<TriangleSurface>(scene.surfaces[0].shape);
+}
+
+double area_of(const TriangleSurface& mesh) {
+    double sum = 0.0;
+    for (const glm::uvec3& t : mesh.triangles)
+        sum += 0.5 * glm::length(
+                         glm::cross(mesh.vertices[t.y] - mesh.vertices[t.x], mesh.vertices[t.z] - mesh.vertices[t.x]));
+    return sum;
+}
+
+// Part of the triangles that face the way that `front` has at their middle.
+double part_in_front(const TriangleSurface& mesh, const std::function<glm::dvec3(const glm::dvec3&)>& front) {
+    double in_front = 0.0;
+    for (const glm::uvec3& t : mesh.triangles) {
+        const glm::dvec3 a = mesh.vertices[t.x], b = mesh.vertices[t.y], c = mesh.vertices[t.z];
+        in_front += glm::dot(glm::cross(b - a, c - a), front((a + b + c) / 3.0)) > 0.0;
+    }
+    return in_front / double(mesh.triangles.size());
+}
+
+glm::dvec3 outward(const glm::dvec3& p) {
+    return p;
+}
+
+} // namespace
+
 TEST_CASE("what shines in pbrt's scenes", "[cpu][pbrt]") {
     const auto lamp = [](const std::string& text) {
         const Scene scene = world_of("AreaLightSource \"diffuse\" \"rgb L\" [ 1 2 3 ] " + text);
@@ -53,10 +89,7 @@ TEST_CASE("what shines in pbrt's scenes", "[cpu][pbrt]") {
     CHECK(near(std::get<DiskSurface>(disk.shape).center, {1, -2, 0}));
 }
 
-TEST_CASE("pbrt's materials and textures", "[cpu][pbrt]") {
-    const auto material = [](const std::string& text) {
-        return world_of(text + "\nShape \"sphere\"").surfaces.at(0).material;
-    };
+TEST_CASE("pbrt's materials", "[cpu][pbrt]") {
     CHECK(near(material("").color, glm::dvec3(0.5)));
     CHECK(near(material(R"(Material "diffuse" "rgb reflectance" [ .1 .2 .3 ])").color, {.1, .2, .3}));
     CHECK(near(material(R"(Material "diffuse" "spectrum reflectance" [ 300 .25 800 .25 ])").color, glm::dvec3(.25)));
@@ -93,7 +126,12 @@ TEST_CASE("pbrt's materials and textures", "[cpu][pbrt]") {
           MaterialKind::coated);
     const Material coat = material(R"(Material "coateddiffuse" "float eta" 1.7 "rgb reflectance" [ 1 .5 0 ])");
     CHECK((coat.kind == MaterialKind::coated && coat.ior == Approx(1.7)));
+    // Not seen at all.
+    for (const char* name : {"interface", "none", ""})
+        CHECK(world_of(fmt::format("Material \"{}\" Shape \"sphere\"", name)).surfaces.empty());
+}
 
+TEST_CASE("pbrt's textures", "[cpu][pbrt]") {
     const Material tiles = material(R"(Texture "t" "spectrum" "imagemap" "string filename" "t.png" "float uscale" 3
         Texture "s" "spectrum" "scale" "texture tex" "t" "float scale" .5
         MakeNamedMaterial "m" "string type" "diffuse" "texture reflectance" "s" NamedMaterial "m")");
@@ -102,7 +140,7 @@ TEST_CASE("pbrt's materials and textures", "[cpu][pbrt]") {
     CHECK(near(tiles.color, glm::dvec3(0.5)));
 
     // The square on the lower left is the first, two of them are a repeat, and colours by textures are as good.
-    const auto board_of = [&](const std::string& scales) {
+    const auto board_of = [](const std::string& scales) {
         return material(R"(Texture "a" "spectrum" "constant" "rgb value" [ .8 .4 .2 ]
             Texture "b" "spectrum" "scale" "texture tex" "a" "float scale" .5
             Texture "t" "spectrum" "checkerboard" "texture tex1" "b" "rgb tex2" [ .1 .2 .3 ] )" +
@@ -117,10 +155,6 @@ TEST_CASE("pbrt's materials and textures", "[cpu][pbrt]") {
     CHECK(near(board_of(R"("float uscale" -4)").image->colors[3], {.4, .2, .1}, 1e-7));
     for (const char* odd : {R"("integer dimension" 3)", R"("string mapping" "planar")"})
         CHECK_FALSE(board_of(odd).image);
-
-    // Not seen at all.
-    for (const char* name : {"interface", "none", ""})
-        CHECK(world_of(fmt::format("Material \"{}\" Shape \"sphere\"", name)).surfaces.empty());
 }
 
 TEST_CASE("pbrt's triangles", "[cpu][pbrt]") {
@@ -177,29 +211,6 @@ TEST_CASE("pbrt's triangles", "[cpu][pbrt]") {
 // Parts of quadrics, stretched ones and cylinders: on their surface, whole, with their front and their places on
 // textures where pbrt has them.
 TEST_CASE("pbrt's quadrics that are none here are triangles", "[cpu][pbrt]") {
-    const auto mesh_of = [](const std::string& text) {
-        const Scene scene = world_of(text);
-        REQUIRE(scene.surfaces.size() == 1);
-        return std::get<TriangleSurface>(scene.surfaces[0].shape);
-    };
-    const auto area_of = [](const TriangleSurface& mesh) {
-        double sum = 0.0;
-        for (const glm::uvec3& t : mesh.triangles)
-            sum += 0.5 * glm::length(glm::cross(mesh.vertices[t.y] - mesh.vertices[t.x],
-                                                mesh.vertices[t.z] - mesh.vertices[t.x]));
-        return sum;
-    };
-    // Part of the triangles that face the way that `front` has at their middle.
-    const auto part_in_front = [](const TriangleSurface& mesh,
-                                  const std::function<glm::dvec3(const glm::dvec3&)>& front) {
-        double in_front = 0.0;
-        for (const glm::uvec3& t : mesh.triangles) {
-            const glm::dvec3 a = mesh.vertices[t.x], b = mesh.vertices[t.y], c = mesh.vertices[t.z];
-            in_front += glm::dot(glm::cross(b - a, c - a), front((a + b + c) / 3.0)) > 0.0;
-        }
-        return in_front / double(mesh.triangles.size());
-    };
-    const auto outward = [](const glm::dvec3& p) { return p; };
     // A polygon of 128 corners in a circle: its perimeter is less by a part of (pi / 128)^2 / 6 = 1e-4.
     const TriangleSurface pipe = mesh_of("Shape \"cylinder\" \"float radius\" 2 \"float zmin\" -1 \"float zmax\" 3");
     CHECK(area_of(pipe) == Approx(4.0 * pi * 4.0).epsilon(2e-4));
@@ -224,6 +235,9 @@ TEST_CASE("pbrt's quadrics that are none here are triangles", "[cpu][pbrt]") {
             CHECK(glm::dot(glm::normalize(glm::dvec3(ellipsoid.normals.at(i)[corner])), glm::normalize(normal)) >
                   1.0 - 1e-6);
         }
+}
+
+TEST_CASE("parts of pbrt's quadrics are triangles", "[cpu][pbrt]") {
     // A zone of a sphere has the area of the cylinder about it.
     const TriangleSurface zone = mesh_of("Shape \"sphere\" \"float zmin\" -0.2 \"float zmax\" 0.7 \"float phimax\" 90");
     CHECK(area_of(zone) == Approx(0.25 * 2.0 * pi * 0.9).epsilon(1e-3));

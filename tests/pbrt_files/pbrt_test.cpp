@@ -51,6 +51,15 @@ TEST_CASE("pbrt's lights shine as pbrt's do", "[cpu][pbrt]") {
                                     LightSource "infinite" "rgb L" [ 0 1 0 ] "float illuminance" 9)");
     CHECK(near(skies.background, {1.0, 9.0 / pi, 0.0}));
 
+    const Scene wide =
+        scene_of("ColorSpace \"rec2020\"\nCamera \"perspective\"\nWorldBegin\n"
+                 "LightSource \"point\" \"rgb I\" [ 1 1 1 ]\nLightSource \"point\" \"rgb I\" [ 0.6274 0.0691 "
+                 "0.0164 ]");
+    CHECK(near(std::get<PointLight>(wide.lights[0]).intensity, glm::dvec3(1.0), 1e-3));
+    CHECK(near(std::get<PointLight>(wide.lights[1]).intensity, {1, 0, 0}, 2e-3)); // red of Rec.709, by ITU-R BT.2087
+}
+
+TEST_CASE("pbrt's maps of given illuminance shine as pbrt's do", "[cpu][pbrt]") {
     // A map adds up to what pbrt adds up: an even one to pi / 2 times its radiance, half of what it sends there.
     const auto sky_of = [](const std::filesystem::path& map) {
         return only_light<SkyLight>(world_of("LightSource \"infinite\" \"float scale\" 3 \"float illuminance\" 5 "
@@ -66,13 +75,6 @@ TEST_CASE("pbrt's lights shine as pbrt's do", "[cpu][pbrt]") {
             night.texels[std::size_t(i)] = glm::vec3(0.0f);
     CHECK_THROWS_WITH(sky_of(write_sky(night).file), Contains("s.pbrt:3:1") && Contains("black"));
     CHECK_THROWS_WITH(sky_of("none.exr"), Contains("s.pbrt:3:1") && Contains("none.exr"));
-
-    const Scene wide =
-        scene_of("ColorSpace \"rec2020\"\nCamera \"perspective\"\nWorldBegin\n"
-                 "LightSource \"point\" \"rgb I\" [ 1 1 1 ]\nLightSource \"point\" \"rgb I\" [ 0.6274 0.0691 "
-                 "0.0164 ]");
-    CHECK(near(std::get<PointLight>(wide.lights[0]).intensity, glm::dvec3(1.0), 1e-3));
-    CHECK(near(std::get<PointLight>(wide.lights[1]).intensity, {1, 0, 0}, 2e-3)); // red of Rec.709, by ITU-R BT.2087
 }
 
 TEST_CASE("pbrt's media", "[cpu][pbrt]") {

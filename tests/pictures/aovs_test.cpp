@@ -303,7 +303,7 @@ TEST_CASE("layers go on by the schedule they began with, where none is asked for
     CHECK(same_bits(resumed.film, render(test_device(), scene, rest).film));
 }
 
-TEST_CASE("layers of a crop, of a resumed and of a merged render are those of the whole", "[gpu][image][aovs]") {
+TEST_CASE("layers of a crop and of a resumed render are those of the whole", "[gpu][image][aovs]") {
     Scene scene = busy("cachedRatioTracking", 8);
     scene.layers = everything;
     RenderJob job;
@@ -335,10 +335,17 @@ TEST_CASE("layers of a crop, of a resumed and of a merged render are those of th
     part.resume = &loaded;
     const Film resumed = render_here(scene, 7, part).film;
     CHECK(same_bits(resumed, whole));
+}
 
+TEST_CASE("layers of a merged render are those of the whole", "[gpu][image][aovs]") {
+    Scene scene = busy("cachedRatioTracking", 8);
+    scene.layers = everything;
+    RenderJob job;
+    job.plan.schedule = GENERATE(Schedule::fused, Schedule::staged);
+    const Film whole = render_here(scene, 7, job).film;
     std::vector<MergeInput> halves(2);
     for (std::uint32_t half : {0u, 1u}) {
-        part = job;
+        RenderJob part = job;
         scene.settings.spp = half == 0 ? 3 : 5;
         part.sample_offset = half == 0 ? 0 : 3;
         halves[half].film = render_here(scene, 7, part).film;

@@ -44,9 +44,7 @@ struct ParticleCase {
     Scene scene;
 };
 
-// Every kind of light, medium, surface and camera that particles know, and nothing that only paths from the camera
-// find.
-std::vector<ParticleCase> particle_cases() {
+std::vector<ParticleCase> cases_of_media() {
     const auto [point, spot, ball, disk, rectangle, sun, beam] = LightsAbout{};
     RadianceMap map{8, 4, {}, 0};
     for (int i = 0; i < 32; ++i)
@@ -89,12 +87,18 @@ std::vector<ParticleCase> particle_cases() {
     several.volumes.back().sigma_a = Rgb(2.0) - several.volumes.back().sigma_s;
     several.volumes.back().Le = {0.3, 0.2, 0.6};
     all.push_back({"several media, one of which glows", several});
+    return all;
+}
+
+std::vector<ParticleCase> cases_of_surfaces() {
+    const LightsAbout lights;
+    std::vector<ParticleCase> all;
     // With a lamp within the glass: of particles from outside, what its index does to them cancels on the way out
     // again.
-    all.push_back(
-        {"rough surfaces", before_smoke({surface_of(left_ball, MaterialKind::dielectric, 0.3),
-                                         surface_of(right_ball, MaterialKind::conductor, 0.4)},
-                                        {ball, point, SphereLight{left_ball.center, 0.2, {20.0, 15.0, 10.0}}})});
+    all.push_back({"rough surfaces",
+                   before_smoke({surface_of(left_ball, MaterialKind::dielectric, 0.3),
+                                 surface_of(right_ball, MaterialKind::conductor, 0.4)},
+                                {lights.ball, lights.point, SphereLight{left_ball.center, 0.2, {20.0, 15.0, 10.0}}})});
     // All but these are lit by way of them alone.
     const glm::dvec3 aside(2.6, 0.4, 2.2);
     const SpotLight at_stone{aside, glm::normalize(glm::dvec3(0.0, -0.4, 0.9) - aside), Rgb(200.0), 22.0, 0.5};
@@ -109,9 +113,18 @@ std::vector<ParticleCase> particle_cases() {
     hollow.emission = {1.0, 0.8, 2.0};
     hollow.shines_both_ways = true;
     all.push_back({"surfaces that shine", before_smoke({shining, hollow}, {})});
-    Scene bare = before_smoke({surface_of(left_ball, MaterialKind::diffuse)}, {point});
+    Scene bare = before_smoke({surface_of(left_ball, MaterialKind::diffuse)}, {lights.point});
     bare.volumes.clear();
     all.push_back({"no medium", bare});
+    return all;
+}
+
+// Every kind of light, medium, surface and camera that particles know, and nothing that only paths from the camera
+// find.
+std::vector<ParticleCase> particle_cases() {
+    std::vector<ParticleCase> all = cases_of_media();
+    for (const ParticleCase& c : cases_of_surfaces())
+        all.push_back(c);
     return all;
 }
 

@@ -38,6 +38,23 @@ bool equal(const RenderCounts& a, const RenderCounts& b) {
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
+// The last checkpoint of a scene's render.
+Checkpoint checkpoint_of(const Scene& scene) {
+    std::optional<Checkpoint> last;
+    RenderJob job;
+    job.checkpoint_seconds = 0.0;
+    job.checkpoint = [&](const Checkpoint& checkpoint) { last = checkpoint; };
+    render_part(scene, job);
+    REQUIRE(last);
+    return *last;
+}
+
+void check_not_continued(const Checkpoint& last, const Scene& other) {
+    RenderJob rest;
+    rest.resume = &last;
+    CHECK_THROWS_WITH(render_part(other, rest), Catch::Contains("--resume: the checkpoint is of"));
+}
+
 } // namespace
 
 TEST_CASE("a render resumed from any of its checkpoints has the same bits", "[gpu][checkpoint]") {
@@ -110,15 +127,8 @@ TEST_CASE("an interrupted render keeps a checkpoint of all that is in the pictur
 }
 
 TEST_CASE("a checkpoint is continued by its own render alone", "[gpu][checkpoint]") {
-    std::optional<Checkpoint> last;
-    RenderJob job;
-    job.checkpoint_seconds = 0.0;
-    job.checkpoint = [&](const Checkpoint& checkpoint) { last = checkpoint; };
-    render_part(sunlit_cloud(32, 4), job);
-    REQUIRE(last);
-    RenderJob rest;
-    rest.resume = &*last;
     Scene other = sunlit_cloud(32, 4);
+    const Checkpoint last = checkpoint_of(other);
     SECTION("of the scene") {
         other.volumes.front().g = 0.4;
     }
@@ -138,9 +148,18 @@ TEST_CASE("a checkpoint is continued by its own render alone", "[gpu][checkpoint
         recipe.value = [](glm::ivec3 voxel) { return (voxel == faint ? 0.5f : 1.0f) * cloud_noise(voxel); };
         other.volumes.front().shape = write_grid(recipe);
     }
+    SECTION("of one of several media") {
+        other.volumes.push_back(medium(Sphere{{0.0, 0.0, 0.0}, 3.0}, 0.5, 0.5));
+    }
+    check_not_continued(last, other);
+}
+
+TEST_CASE("a checkpoint is continued by what is in its scene alone", "[gpu][checkpoint]") {
+    Scene other = sunlit_cloud(32, 4);
+    Checkpoint last;
     SECTION("of a lamp among others") {
         other.lights.push_back(SphereLight{{3.0, 4.0, 5.0}, 1.0, Rgb(2.0)});
-        render_part(other, job);
+        last = checkpoint_of(other);
         other.lights.back() = SphereLight{{3.0, 4.0, 5.0}, 1.0, Rgb(2.0, 2.0, 2.1)};
     }
     SECTION("of the grid of albedos") {
@@ -149,33 +168,41 @@ TEST_CASE("a checkpoint is continued by its own render alone", "[gpu][checkpoint
         albedo.value = [](glm::ivec3 voxel) { return 0.5f + 0.5f * cloud_noise(voxel); };
         other.volumes.front().shape = write_grids({cloud_grid(), albedo});
         other.volumes.front().albedo_grid = "Cd";
-        render_part(other, job);
+        last = checkpoint_of(other);
         albedo.value = [](glm::ivec3 voxel) { return 0.5f + 0.5f * cloud_noise(voxel + 1); };
         other.volumes.front().shape = write_grids({cloud_grid(), albedo});
     }
     SECTION("of what a map's points emit") {
         other.volumes.front().map.is_transfer = true;
         other.volumes.front().map.points = {{0.0, 0.0}, {1.0, 1.0, Rgb(0.5), Rgb(1.0)}};
-        render_part(other, job);
+        last = checkpoint_of(other);
         other.volumes.front().map.points.back().emission = Rgb(5.0);
     }
-    SECTION("of one of several media") {
+    SECTION("of what one of several media is") {
         other.volumes.push_back(medium(Sphere{{0.0, 0.0, 0.0}, 3.0}, 0.5, 0.5));
-        render_part(other, job);
+        last = checkpoint_of(other);
         other.volumes.back().g = 0.1;
     }
+    check_not_continued(last, other);
+}
+
+TEST_CASE("a checkpoint is continued where it was made, from where it ended", "[gpu][checkpoint]") {
+    const Scene scene = sunlit_cloud(32, 4);
+    Checkpoint last = checkpoint_of(scene);
+    RenderJob rest;
+    rest.resume = &last;
     SECTION("of the samples' range") {
         rest.sample_offset = 1;
     }
     SECTION("of the program") {
-        CHECK_THAT(last->identity.program, Catch::Contains("kernels " + kernels_digest()));
+        CHECK_THAT(last.identity.program, Catch::Contains("kernels " + kernels_digest()));
         CHECK(kernels_digest().size() == 16);
-        last->identity.program += "x";
+        last.identity.program += "x";
     }
     SECTION("of the device") {
-        last->identity.device += "x";
+        last.identity.device += "x";
     }
-    CHECK_THROWS_WITH(render_part(other, rest), Catch::Contains("--resume: the checkpoint is of"));
+    CHECK_THROWS_WITH(render_part(scene, rest), Catch::Contains("--resume: the checkpoint is of"));
 }
 
 TEST_CASE("damaged checkpoints are refused", "[cpu][checkpoint]") {

@@ -24,6 +24,25 @@ const GridFile& grid_of(const Scene& scene) {
     return std::get<GridFile>(scene.volumes.at(0).shape);
 }
 
+// Every element of the vocabulary.
+const char* const whole_vocabulary = R"(
+        <densityField baseDir="..\fields\" grid="smoke">cloud.nvdb</densityField>
+        <sigma_a unit="world"> 0.25 </sigma_a><sigma_s unit="world">4</sigma_s>
+        <heyneygreenstein_g>-0.3</heyneygreenstein_g>
+        <medium r="1" g=".5" b="0" multiplier="2"/>
+        <light x="0" y="3" z="4" r="1" g="2" b="3" multiplier="10"/>
+        <backgroundColor r="0.1" g="0.2" b="0.3" multiplier="2"/>
+        <camera x="1" y="2" z="+3" pitch="-19" yaw="-8" roll="5" fov="60"/>
+        <width startOffset="54" reference="216">108</width><height startOffset="27" reference="108">54</height>
+        <rayPerPixelCount>64</rayPerPixelCount><maxDepth>3</maxDepth>
+        <integrator scattering="single" flight="weighted" transmittance="march" nee="tentative"
+                    emission="steps">ratioTracking</integrator>
+        <march step="0.25" shadowStep="2" opticalStep="0.5" jitter="false" unit="world"/>
+        <filter>trilinear</filter><russianRoulette threshold="0.05"/><majorant scale="1.5" cell="16"/>
+        <lightRayDensityMultiplier>2.5</lightRayDensityMultiplier>
+        <shadowRayDensityMultiplier>2.5</shadowRayDensityMultiplier>
+        <multiThreaded freeThreads="1">true</multiThreaded><multiThreadedChunkSize>20</multiThreadedChunkSize>)";
+
 } // namespace
 
 TEST_CASE("above a folder is what lies there, behind a link to it too", "[cpu][xml]") {
@@ -57,23 +76,7 @@ TEST_CASE("an empty scene has the defaults of the documentation", "[cpu][xml]") 
 }
 
 TEST_CASE("every element of the vocabulary is read", "[cpu][xml]") {
-    const Scene scene = parse(R"(
-        <densityField baseDir="..\fields\" grid="smoke">cloud.nvdb</densityField>
-        <sigma_a unit="world"> 0.25 </sigma_a><sigma_s unit="world">4</sigma_s>
-        <heyneygreenstein_g>-0.3</heyneygreenstein_g>
-        <medium r="1" g=".5" b="0" multiplier="2"/>
-        <light x="0" y="3" z="4" r="1" g="2" b="3" multiplier="10"/>
-        <backgroundColor r="0.1" g="0.2" b="0.3" multiplier="2"/>
-        <camera x="1" y="2" z="+3" pitch="-19" yaw="-8" roll="5" fov="60"/>
-        <width startOffset="54" reference="216">108</width><height startOffset="27" reference="108">54</height>
-        <rayPerPixelCount>64</rayPerPixelCount><maxDepth>3</maxDepth>
-        <integrator scattering="single" flight="weighted" transmittance="march" nee="tentative"
-                    emission="steps">ratioTracking</integrator>
-        <march step="0.25" shadowStep="2" opticalStep="0.5" jitter="false" unit="world"/>
-        <filter>trilinear</filter><russianRoulette threshold="0.05"/><majorant scale="1.5" cell="16"/>
-        <lightRayDensityMultiplier>2.5</lightRayDensityMultiplier>
-        <shadowRayDensityMultiplier>2.5</shadowRayDensityMultiplier>
-        <multiThreaded freeThreads="1">true</multiThreaded><multiThreadedChunkSize>20</multiThreadedChunkSize>)");
+    const Scene scene = parse(whole_vocabulary);
     CHECK(scene.warnings.size() == 2); // steps of free flights, which this integrator does not take
     REQUIRE(scene.volumes.size() == 1);
     const Volume& volume = scene.volumes[0];
@@ -102,6 +105,10 @@ TEST_CASE("every element of the vocabulary is read", "[cpu][xml]") {
     CHECK(scene.picture.height == 54);
     CHECK(scene.picture.start_y == 27.0);
     CHECK(scene.picture.reference_height == 108.0);
+}
+
+TEST_CASE("every setting of the vocabulary is read", "[cpu][xml]") {
+    const Scene scene = parse(whole_vocabulary);
     CHECK(scene.settings.spp == 64);
     CHECK(scene.settings.max_depth.value() == 3);
     CHECK(parse("<maxDepth>0</maxDepth>").settings.max_depth.value() == 0);
