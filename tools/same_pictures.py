@@ -3,8 +3,8 @@
 
     tools/same_pictures.py OLD_VKVOL [NEW_VKVOL] [--scenes FOLDER] [--only WORD] [--runs 1] [--width 64] [--spp 8]
 
-Renders every scene of scenes/ but large_grid, or of another folder if the old build does not know all that these have, every integrator in
-a cloud and in a homogeneous ball, a crop, and a render that is resumed from a checkpoint, by both builds with the same seed. Where bits differ, `vkvol compare` judges another seed of the new
+Renders every scene of scenes/ (large_grid has windows), or of another folder if the old build does not know all that these have, every integrator
+of the old build in a cloud and in a homogeneous ball, a crop, and a render that is resumed from a checkpoint, by both builds with the same seed. Where bits differ, `vkvol compare` judges another seed of the new
 build, so that the two are independent, and its verdict is printed; the reason for such a difference is for people to find.
 Seconds are medians of --runs, in alternation. Fields: tools/all_scenes.sh makes them. Exit code 1: a picture differs by
 more than noise, or was not rendered (closed forms in a cloud are refused, by both builds)."""
@@ -16,6 +16,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from table_runs import commit_of, driver_of
+
 ROOT = Path(__file__).resolve().parent.parent
 CLOUD = ["scenes/bench/cloud.xml"]
 BALL = ["scenes/bench/sphere.xml"]
@@ -23,9 +25,9 @@ RESUMED = "a checkpoint, resumed"
 
 
 def cases(vkvol, scenes):
-    """Name and arguments of every picture."""
+    """Name and arguments of every picture; integrators are those of `vkvol`."""
     listed = [(path.relative_to(scenes).with_suffix("").as_posix(), [path])
-              for path in sorted(scenes.rglob("*.xml")) if path.stem != "large_grid"]
+              for path in sorted(scenes.rglob("*.xml"))]
     for row in json.loads(subprocess.run([vkvol, "integrators", "--json"], capture_output=True, check=True).stdout):
         for scene in (CLOUD, BALL):
             listed.append((f"{Path(scene[0]).stem}, {row['name']}", [*scene, "--integrator", row["name"]]))
@@ -73,6 +75,7 @@ def main():
     parser.add_argument("--spp", default="8")
     options = parser.parse_args()
     failed = 0
+    print(f"old: {commit_of(options.old)}, new: {commit_of(options.new)}; {driver_of(options.new)}; {options.width} pixels wide, {options.spp} samples")
     print(f"{'picture':44} {'bits':10} old/new seconds")
     with tempfile.TemporaryDirectory() as work:
         builds = []
@@ -80,7 +83,7 @@ def main():
             (Path(work) / name).mkdir()
             builds.append(Build(program.resolve(), Path(work) / name))
         old, new = builds
-        chosen = [case for case in cases(new.program, options.scenes.resolve()) if options.only in case[0]]
+        chosen = [case for case in cases(old.program, options.scenes.resolve()) if options.only in case[0]]
         if not chosen:
             sys.exit(f"no picture's name contains {options.only!r}")
         for name, arguments in chosen:

@@ -15,6 +15,8 @@ import subprocess
 import tempfile
 import time
 
+from table_runs import commit_of
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCENES = {
     "cloud": ["scenes/bench/cloud.xml", "--width", "128", "--spp", "64"],
@@ -61,6 +63,7 @@ def main():
             if scene == options.scenes.split(",")[0]:
                 device = reports["fused"][0]["device"]
                 print(f"{device['name']}, {device['driver']}; medians of {options.runs}, in alternation")
+                print((f"old: {commit_of(options.old)}; " if options.old else "") + f"new: {commit_of(vkvol)}")
                 print(f"{'scene':10} {'':7} {'seconds':>8} {'x':>6} {'start':>6} {'lanes':>6}  seconds by pass of the last run (occupancy)")
             first = None
             for column, list_of in reports.items():

@@ -9,6 +9,18 @@ import subprocess
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
+def commit_of(program):
+    """Of the sources that a program lies among, built in a folder of theirs; with a + if these were changed."""
+    found = subprocess.run(["git", "describe", "--always", "--dirty=+", "--exclude=*"], cwd=pathlib.Path(program).resolve().parent,
+                           capture_output=True, text=True)
+    return found.stdout.strip() or "of no known commit"
+
+
+def driver_of(vkvol):
+    found = json.loads(subprocess.run([pathlib.Path(vkvol).resolve(), "devices", "--json"], check=True, capture_output=True).stdout)
+    return next((device["driver"] for device in found if device["usable"]), "no device")
+
+
 def options(description, **defaults):
     """--build, and an integer for each of `defaults`. `vkvol` is the program."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)

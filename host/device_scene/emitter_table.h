@@ -1,4 +1,4 @@
-// What sends out particles, as kernels choose among it: see shaders/lights/emit.glsl.
+// What sends out particles, as kernels choose among it: see shaders/lights/particle.glsl.
 #pragma once
 
 #include <vector>

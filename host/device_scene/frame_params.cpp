@@ -324,11 +324,11 @@ shared::FrameParams make_frame(const Scene& scene, Media media, const Method& me
         if (method.nee == NEE_CACHED && !whole->cells.bounds.empty())
             frame.lattice = make_lattice(whole->low(), whole->high(), whole->edge * glm::dvec3(whole->dims()),
                                          whole->dims(), nodes);
-    } else if (!scene.volumes.empty()) {
-        frame.media[0] = make_medium(scene, scene.volumes.front(), media.front(), UploadLayout(media), method, origin,
-                                     has_chromatic_extinction(scene));
+    } else if (const Volume* lone = lone_volume(scene)) {
+        frame.media[0] =
+            make_medium(scene, *lone, media[0], UploadLayout(media), method, origin, has_chromatic_extinction(scene));
         if (method.nee == NEE_CACHED)
-            frame.lattice = make_lattice_of(scene.volumes.front(), media.front(), nodes);
+            frame.lattice = make_lattice_of(*lone, media[0], nodes);
     }
     frame.sensors[0] = sensor_params(scene, origin, std::max(0.5 * diagonal, reach_of_lamps(scene.lights, origin)));
     const LayerPlan layers = plan_layers(scene);

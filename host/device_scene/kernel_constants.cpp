@@ -172,20 +172,20 @@ int sensor_kind(const Camera& camera) {
 
 Specialization specialize(const Scene& scene, Media media, const Method& method, const Superposition* whole) {
     Specialization constants{}; // no medium, no emission
+    const Volume* lone = whole ? nullptr : lone_volume(scene);
     if (whole) {
         specialize_media(scene, media, *whole, method, constants);
-    } else if (!scene.volumes.empty()) {
-        const shared::MediumKinds kinds = kinds_of(scene.volumes.front(), media.front(), method);
+    } else if (lone) {
+        const shared::MediumKinds kinds = kinds_of(*lone, media[0], method);
         specialize_medium(kinds, constants);
         constants[SPEC_SHAPE] = kinds.shape;
-        constants[SPEC_LEAPS] = media.front().majorants && media.front().majorants->leaps ? 1 : 0;
+        constants[SPEC_LEAPS] = media[0].majorants && media[0].majorants->leaps ? 1 : 0;
     }
     for (const LoadedMedium& medium : media)
         if (!medium.map_knots.empty() && constants[SPEC_MAP] != MAP_NONE)
             constants[SPEC_MAP_HALVINGS] = std::bit_width(medium.map_knots.size()) - 1;
-    const bool lone = !whole && !scene.volumes.empty() && is_everywhere(scene.volumes.front()) &&
-                      has_matter(scene.volumes.front(), media.front());
-    constants[SPEC_UNBOUNDED] = lone || (whole && whole->unbounded) ? 1 : 0;
+    const bool is_unbounded = lone ? is_everywhere(*lone) && has_matter(*lone, media[0]) : whole && whole->unbounded;
+    constants[SPEC_UNBOUNDED] = is_unbounded ? 1 : 0;
     constants[SPEC_FIELD] = density_kind(scene);
     constants[SPEC_FILTER] = method.filter == Filter::nearest     ? FILTER_NEAREST
                              : method.filter == Filter::trilinear ? FILTER_TRILINEAR

@@ -281,8 +281,9 @@ void MethodChooser::choose_first_flight() {
 
 // Then what a flight gathers of the glow is a closed form.
 bool MethodChooser::glows_evenly() const {
-    return method_.flights_have(TRAIT_CLOSED) && scene_.volumes.size() == 1 && !has_map(scene_) &&
-           scene_.volumes.front().temperature.color == Rgb(0.0) && scene_.volumes.front().albedo_grid.empty();
+    const Volume* volume = lone_volume(scene_);
+    return volume && method_.flights_have(TRAIT_CLOSED) && !has_map(scene_) && volume->temperature.color == Rgb(0.0) &&
+           volume->albedo_grid.empty();
 }
 
 // Before what is not nearly as bright. Before what is as bright as the glow, flights that find the one or the other
@@ -291,7 +292,7 @@ bool MethodChooser::gains_by_closed_glow() const {
     const auto is_map = [](const Light& light) { return std::holds_alternative<SkyLight>(light); };
     if (!glows_evenly() || std::any_of(scene_.lights.begin(), scene_.lights.end(), is_map))
         return false;
-    const Volume& volume = scene_.volumes.front();
+    const Volume& volume = *lone_volume(scene_);
     const Rgb glow = volume.sigma_a * volume.Le, background = scene_.background * (volume.sigma_a + volume.sigma_s);
     return !glm::any(glm::greaterThan(background, 0.5 * glow));
 }

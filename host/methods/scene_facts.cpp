@@ -54,8 +54,8 @@ bool has_map(const Scene& scene) {
 }
 
 bool fades(const Scene& scene) {
-    const Volume& volume = scene.volumes.front();
-    return volume.layers && volume.layers->scale_height > 0.0;
+    const Volume* volume = lone_volume(scene);
+    return volume && volume->layers && volume->layers->scale_height > 0.0;
 }
 
 } // namespace vkvol

@@ -237,8 +237,8 @@ Plan Session::plan_by(Schedule schedule) const {
 void Session::keep(const Assets& assets) {
     if (assets.superposition)
         result_.outline = make_outline(*assets.superposition, device_scene_->emits());
-    else if (!assets.media.empty())
-        result_.outline = make_outline(scene_, scene_.volumes.front(), assets.media.front(), device_scene_->emits());
+    else if (const Volume* lone = lone_volume(scene_))
+        result_.outline = make_outline(scene_, *lone, assets.media[0], device_scene_->emits());
     if (leads_ && job_.others.empty())
         release_grids();
 }

@@ -16,11 +16,6 @@ namespace {
 
 using Answer = std::optional<std::string>;
 
-// Null where there are several, whose coefficients and grids are not told apart.
-const Volume* volume_of(const Scene& scene) {
-    return scene.volumes.size() == 1 ? &scene.volumes.front() : nullptr;
-}
-
 bool sees_light(const Evidence& e) {
     return sees_light(e.scene, e.method);
 }
@@ -58,7 +53,7 @@ std::pair<double, double> least_and_most_albedo(const Scene& scene) {
 
 // The emission that the scene asks for, whether there will be any or not.
 bool wants_glow(const Evidence& e) {
-    const Volume* volume = volume_of(e.authored);
+    const Volume* volume = lone_volume(e.authored);
     return volume && (volume->Le != Rgb(0.0) || volume->temperature.color != Rgb(0.0));
 }
 
@@ -92,7 +87,7 @@ Answer black_source(const Evidence& e) {
 }
 
 Answer no_glow(const Evidence& e) {
-    const Volume* volume = volume_of(e.authored);
+    const Volume* volume = lone_volume(e.authored);
     if (e.odd != Odd::black || e.emits || !wants_glow(e) || !is_dark_around(e) || !e.authored.lights.empty())
         return {};
     if (most_sigma_a(*volume) == Rgb(0.0))
@@ -118,7 +113,7 @@ Answer no_light(const Evidence& e) {
 }
 
 Answer light_unseen(const Evidence& e) {
-    const Volume* volume = volume_of(e.authored);
+    const Volume* volume = lone_volume(e.authored);
     if (e.odd != Odd::black || !volume || e.authored.lights.empty() || !is_dark_around(e) || e.emits)
         return {};
     if (volume->sigma_s == Rgb(0.0))
@@ -139,7 +134,7 @@ Answer light_unseen(const Evidence& e) {
 Answer no_medium(const Evidence& e) {
     if (!shows_nothing(e) || !e.result || e.result->outline.exists)
         return {};
-    const Volume* volume = volume_of(e.authored);
+    const Volume* volume = lone_volume(e.authored);
     if (e.authored.volumes.size() > 1)
         return "none of the media holds anything: of each either sigma_a and sigma_s are 0, or the density is, or "
                "lightRayDensityMultiplier";
@@ -149,7 +144,7 @@ Answer no_medium(const Evidence& e) {
         return "lightRayDensityMultiplier is 0, which leaves no medium; 1 is the density as it is";
     if (volume->sigma_a + volume->sigma_s == Rgb(0.0))
         return "sigma_a and sigma_s are 0, which leaves no medium; raise one of them";
-    if (volume_of(e.scene)->sigma_a + volume_of(e.scene)->sigma_s == Rgb(0.0))
+    if (lone_volume(e.scene)->sigma_a + lone_volume(e.scene)->sigma_s == Rgb(0.0))
         return fmt::format("{} leaves sigma_s out and sigma_a is 0, which leaves no medium; raise sigma_a",
                            e.method.integrator);
     const GridFile* file = std::get_if<GridFile>(&volume->shape);
@@ -216,7 +211,7 @@ Answer too_thin(const Evidence& e) {
     constexpr double thin = 0.02; // a screen shows half a per cent of contrast
     if (!shows_nothing(e) || !e.sight || e.sight->most_depth > thin)
         return {};
-    const Volume* volume = volume_of(e.scene);
+    const Volume* volume = lone_volume(e.scene);
     const bool by_voxel = volume && e.result->outline.voxel > 0.0 && volume->unit == CoefficientUnit::voxel;
     const std::string unit =
         by_voxel ? fmt::format(" (sigma_a and sigma_s are per voxel, of {:.3g} world units)", e.result->outline.voxel)
@@ -227,7 +222,7 @@ Answer too_thin(const Evidence& e) {
 }
 
 Answer cold_glow(const Evidence& e) {
-    const Volume* volume = volume_of(e.scene);
+    const Volume* volume = lone_volume(e.scene);
     if (e.odd != Odd::black || !volume || !e.result || !e.result->outline.has_temperature || sees_light(e))
         return {};
     const TemperatureEmission& emission = volume->temperature;
@@ -297,7 +292,7 @@ double phase_to_camera(const Evidence& e, double g) {
 }
 
 Answer phase_peak(const Evidence& e) {
-    const Volume* volume = volume_of(e.scene);
+    const Volume* volume = lone_volume(e.scene);
     if (e.odd != Odd::black || !volume || !e.sight || !sees_light(e) || e.emits)
         return {};
     const double g = volume->g;
@@ -321,7 +316,7 @@ Answer backlit(const Evidence& e) {
 }
 
 Answer unlike_colours(const Evidence& e) {
-    const Volume* volume = volume_of(e.scene);
+    const Volume* volume = lone_volume(e.scene);
     if (e.odd != Odd::black || !volume || !sees_light(e) || e.emits || e.scene.background != Rgb(0.0))
         return {};
     const DirectionalLight* sun = only_directional(e.scene.lights);

@@ -369,6 +369,11 @@ inline const DirectionalLight* lone_directional(const Scene& scene) {
     return reads_flux(scene.camera) ? nullptr : only_directional(scene.lights);
 }
 
+// The medium if there is but one: what is asked of it alone has no other's to mix with.
+inline const Volume* lone_volume(const Scene& scene) {
+    return scene.volumes.size() == 1 ? &scene.volumes[0] : nullptr;
+}
+
 // Names of the groups that lights are in, black ones too, and the background, in the order of the lights. Their layers
 // follow that of what is in none.
 std::vector<std::string> light_groups(const Scene& scene);

@@ -1,7 +1,7 @@
 // A particle begins, at a light. Of all its vertices the sensor is looked for, and from where it begins too.
 #ifndef STAGE_EMIT_GLSL
 #define STAGE_EMIT_GLSL
-#include "lights/emit.glsl"
+#include "lights/particle.glsl"
 #include "stages/show.glsl"
 
 void emit(MediumParams v, inout Lane lane, inout Rng rng) {

@@ -11,7 +11,7 @@
 #include "shared/constants.h"
 #include "support/kernel_runner.h"
 #include "support/statistics.h"
-#include "tests/reference/lights.h"
+#include "tests/reference/reference_lights.h"
 #include "tests/reference/rng.h"
 
 using namespace vkvol;

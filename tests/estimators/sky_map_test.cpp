@@ -12,8 +12,8 @@
 #include "support/kernel_runner.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
-#include "tests/reference/lights.h"
 #include "tests/reference/phase.h"
+#include "tests/reference/reference_lights.h"
 
 using namespace vkvol;
 using std::numbers::pi;
@@ -333,7 +333,8 @@ TEST_CASE("the density found in a direction is that with which it was drawn", "[
     CHECK(beyond < 1 << 7);
 }
 
-TEST_CASE("a map of the sky is read again where its file or what is made of it changed, and else not", "[cpu][lights]") {
+TEST_CASE("a map of the sky is read again where its file or what is made of it changed, and else not",
+          "[cpu][lights]") {
     SkyCache skies;
     SkyLight light = write_sky(sun_map(2));
     const auto first = skies.take(light);

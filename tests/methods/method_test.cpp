@@ -174,6 +174,21 @@ TEST_CASE("what cannot be is an error with its remedy", "[cpu][method]") {
     CHECK_THAT(error_of("deltaTracing", FIELD_GRID), Catch::Contains("did you mean deltaTracking?"));
 }
 
+TEST_CASE("several media have no voxels and no control density in common", "[cpu][method]") {
+    const auto method = [](const std::string& request) {
+        Scene scene = requested(request, FIELD_GRID);
+        scene.volumes.push_back(scene.volumes.front());
+        return choose_method(with_preset(scene));
+    };
+    CHECK_THROWS_WITH(method("regularTracking"), Catch::Contains("several volumes share none; use flight delta"));
+    const Method flights = method("ratioTracking:flight=decomposition");
+    CHECK(flights.free_flight == FREE_FLIGHT_DELTA);
+    CHECK_THAT(warning_of(flights), Catch::Contains("flights are delta: several volumes have no control density"));
+    const Method looks = method("residualRatioTracking");
+    CHECK(looks.transmittance == TRANSMITTANCE_RATIO);
+    CHECK_THAT(warning_of(looks), Catch::Contains("by ratio tracking: several volumes have no control density"));
+}
+
 TEST_CASE("unused transmittance is no obstacle", "[cpu][method]") {
     const Method method = method_of("densitySampling:flight=march", FIELD_GRID);
     CHECK(method.scattering == SCATTERING_NONE);

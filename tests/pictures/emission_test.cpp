@@ -201,6 +201,7 @@ TEST_CASE("an even glow along flights that are closed forms equals that at colli
             Scene scene = named.scene;
             scene.volumes.front().noise.reset();
             scene.volumes.front().Le = Rgb(1.0, 0.7, 0.4);
+            scene.volumes.front().sigma_a += Rgb(0.0, 0.3, 1.0); // what is behind a body has lost its colours
             all.push_back(scene);
         }
     REQUIRE(all.size() == scenes.size() + 1);

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "lights.h"
 #include "medium.h"
+#include "reference_lights.h"
 #include "reference_method.h"
 #include "rng.h"
 

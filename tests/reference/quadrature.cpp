@@ -5,9 +5,9 @@
 #include <cmath>
 #include <functional>
 
-#include "lights.h"
 #include "mapped.h"
 #include "phase.h"
+#include "reference_lights.h"
 
 namespace reference {
 

@@ -12,6 +12,7 @@
 #include "program.h"
 #include "support/images.h"
 #include "support/scenes.h"
+#include "support/surface_scenes.h"
 #include "support/test_device.h"
 
 using namespace vkvol;
@@ -62,8 +63,11 @@ TEST_CASE("a render resumed from any of its checkpoints has the same bits", "[gp
     const Schedule schedule = GENERATE(Schedule::fused, Schedule::staged);
     const Schedule resumed_by = GENERATE(Schedule::fused, Schedule::staged);
     Scene scene = sunlit_cloud(32, 9);
-    if (band_rows > 0)
+    if (band_rows > 0) {
         scene.volumes.push_back(medium(Sphere{{0.0, 0.0, 0.0}, 3.0}, 0.5, 0.5));
+        scene.surfaces = {surface_of(BallSurface{{1.0, -1.5, 2.0}, 1.0}, MaterialKind::dielectric, 0.3),
+                          surface_of(PlaneSurface{{0.0, -2.5, 0.0}, {0.0, 1.0, 0.0}}, MaterialKind::diffuse)};
+    }
     RenderJob job;
     job.plan.schedule = schedule;
     job.plan.slots = 64;           // few, so that every checkpoint finds pixels left

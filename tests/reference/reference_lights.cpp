@@ -1,4 +1,4 @@
-#include "lights.h"
+#include "reference_lights.h"
 
 #include <OpenImageIO/imagebuf.h>
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Where particles come from: a source is chosen by its power, then a place and a direction as it shines. So their light is nearly the
 // same for all of one source, and of all sources where the host knows their power.
-#ifndef EMIT_GLSL
-#define EMIT_GLSL
+#ifndef PARTICLE_GLSL
+#define PARTICLE_GLSL
 #include "field/emission.glsl"
 #include "field/superposition.glsl"
 #include "lights/families.glsl"
