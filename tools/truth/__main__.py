@@ -77,7 +77,11 @@ def main():
     for name, (seconds, figures) in groups.items():
         here = [v for v in found if v.case.name == name]
         worst = max(here, key=lambda v: abs(v.z))
-        print(f"{name:28} {figures:4} figures in {seconds:6.1f} s, largest |z| {abs(worst.z):.2f} ({worst.case.what}, {worst.label})")
+        of_figure = max(v.error / max(abs(v.published), 1e-30) for v in here)
+        print(f"{name:28} {figures:4} figures in {seconds:6.1f} s, errors up to {of_figure:.1e} of the figure, largest |z| {abs(worst.z):.2f} "
+              f"({worst.case.what}, {worst.label})")
+    as_good = sum(v.error <= 1.001 * chosen.share * v.slack for v in judged)
+    print(f"{as_good} of {len(judged)} are read to {chosen.share:.2g} of the prints' slack, or better; the others to {chosen.least:g} of the figure, if that is in reach")
     if chosen.page:
         page.write(chosen.page, found)
     return 0 if all(abs(v.z) <= most for v in judged) else 1
