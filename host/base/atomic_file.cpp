@@ -91,6 +91,10 @@ path temporary_name(const path& target) {
     return name;
 }
 
+bool is_standard_output(const path& name) {
+    return stream_of(behind_links(name)) == STDOUT_FILENO;
+}
+
 bool is_special(const path& name) {
     const path target = behind_links(name);
     if (stream_of(target))

@@ -49,6 +49,9 @@ std::filesystem::path temporary_name(const std::filesystem::path& target);
 // A device or pipe (/dev/stdout, say): written to, never replaced by a file.
 bool is_special(const std::filesystem::path& name);
 
+// By whatever name, through links too: what is said besides would be amid it.
+bool is_standard_output(const std::filesystem::path& name);
+
 // The file that a chain of links leads to, whether or not it is there, or the stream of this process; a name that is no
 // link leads to itself.
 std::filesystem::path behind_links(std::filesystem::path name);

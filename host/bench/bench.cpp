@@ -295,9 +295,9 @@ int run_bench(const BenchRequest& request) {
                                 : "--time is too short for a single render; raise it, or lower --width");
         return result.interrupted ? exit_interrupted : exit_render_failed;
     }
-    write_bench(request, bench.device(), result);
-    print_bench(request, result);
+    print_bench(request, result); // first: files may not take it
     print_notes(request, result);
+    write_bench(request, bench.device(), result);
     if (bench.failure()) {
         tell(stderr, "vkvol: note: a render failed; what was measured before is written\n");
         std::rethrow_exception(bench.failure());

@@ -75,7 +75,7 @@ void CheckpointFile::keep(const Checkpoint& checkpoint) {
 void CheckpointFile::remove() {
     std::error_code ignored;
     if ((saved_ || from_) && is_checkpoint(path_))
-        std::filesystem::remove(path_, ignored);
+        std::filesystem::remove(behind_links(path_), ignored);
 }
 
 std::string CheckpointFile::advice() const {

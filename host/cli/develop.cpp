@@ -6,6 +6,7 @@
 #include "file_uses.h"
 #include "image_io.h"
 #include "messages.h"
+#include "render_summary.h"
 
 namespace vkvol {
 
@@ -33,7 +34,8 @@ int run_develop(const DevelopOptions& options) {
     for (const std::filesystem::path& output : options.outputs)
         outputs += (outputs.empty() ? "" : ", ") + output.string();
     const std::string told = tone_text(tone);
-    tell(stdout, "{}: {}x{} pixels{}\n", outputs, film.width(), film.height(), told.empty() ? "" : ", " + told);
+    tell(stream_for_words(options.outputs, {}), "{}: {}x{} pixels{}\n", outputs, film.width(), film.height(),
+         told.empty() ? "" : ", " + told);
     return exit_done;
 }
 

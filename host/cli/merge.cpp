@@ -14,6 +14,7 @@
 #include "messages.h"
 #include "metadata.h"
 #include "one_line.h"
+#include "render_summary.h"
 #include "sample_ranges.h"
 #include "tone_choice.h"
 
@@ -184,6 +185,9 @@ FilmLayer merge_layer(const std::vector<MergeInput>& inputs, std::size_t which, 
     }
     FilmLayer merged{first.name, {}, {}};
     take_means(moments, merged.mean, merged.variance);
+    const auto lacks_variance = [which](const MergeInput& input) { return input.film.layers[which].variance.empty(); };
+    if (std::any_of(inputs.begin(), inputs.end(), lacks_variance)) // of which nobody knows how sure it is
+        merged.variance.clear();
     return merged;
 }
 
@@ -304,8 +308,8 @@ void print_summary(const MergeOptions& options, const MergeResult& result) {
     std::string outputs;
     for (const std::filesystem::path& output : options.outputs)
         outputs += (outputs.empty() ? "" : ", ") + output.string();
-    tell(stdout, "{}: {} images, up to {} samples per pixel\n", outputs, options.inputs.size(),
-         *std::max_element(result.film.samples.begin(), result.film.samples.end()));
+    tell(stream_for_words(options.outputs, {}), "{}: {} images, up to {} samples per pixel\n", outputs,
+         options.inputs.size(), *std::max_element(result.film.samples.begin(), result.film.samples.end()));
 }
 
 } // namespace

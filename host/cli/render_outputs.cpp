@@ -70,6 +70,8 @@ void RenderOutputs::write(const Device& device, const RenderResult& result, cons
                 write_image(output, result.film, metadata, shown.tone.mapping);
             append(written, ", ", output.string());
             exr_written = exr_written || file_ending(output) == ".exr";
+        } catch (const std::bad_alloc&) {
+            append(failures, "; ", output.string() + ": there is not enough memory to write it");
         } catch (const RenderError& error) {
             append(failures, "; ", error.what());
         }

@@ -7,6 +7,7 @@
 #include "file_scene.h"
 #include "image_io.h"
 #include "messages.h"
+#include "render_summary.h"
 #include "requested_scene.h"
 #include "scene_beside.h"
 #include "scene_xml.h"
@@ -78,8 +79,8 @@ void keep_made_scene(const RenderOptions& options, const RenderScene& made) {
     if (!options.dry_run)
         write_text(made.xml_file, made.xml);
     if (!options.quiet)
-        tell(stdout, "{}; scene{}: {}\n", made.assumed, options.dry_run ? " that would be written" : "",
-             made.xml_file.string());
+        tell(stream_for_words(options.outputs, options.report), "{}; scene{}: {}\n", made.assumed,
+             options.dry_run ? " that would be written" : "", made.xml_file.string());
 }
 
 } // namespace vkvol

@@ -4,6 +4,7 @@
 #include <array>
 #include <fmt/format.h>
 
+#include "atomic_file.h"
 #include "messages.h"
 #include "render_notes.h"
 
@@ -33,6 +34,12 @@ std::string noise_text(const Film& film) {
 
 } // namespace
 
+std::FILE* stream_for_words(const std::vector<std::filesystem::path>& outputs,
+                            const std::optional<std::filesystem::path>& report) {
+    const bool is_taken = std::any_of(outputs.begin(), outputs.end(), is_standard_output);
+    return is_taken || (report && is_standard_output(*report)) ? stderr : stdout;
+}
+
 void print_reading(const RenderOptions& options) {
     const std::array<double, 4> corner = {0.0, 1.0, 0.0, 1.0};
     if (!options.quiet && !options.trace && options.crop && !options.crop->fractions && options.crop->window == corner)
@@ -45,8 +52,8 @@ void print_summary(const RenderOptions& options, const Device& device, const Ren
     for (const std::filesystem::path& output : options.outputs)
         outputs += (outputs.empty() ? "" : ", ") + output.string();
     const std::string told = tone_text(tone);
-    tell(stdout, "{}: {} per pixel{}, {:.2f} s{}{}, on {}{}\n", outputs, samples_text(result.film),
-         more_samples(options, result.film), result.render_seconds, noise_text(result.film),
+    tell(stream_for_words(options.outputs, options.report), "{}: {} per pixel{}, {:.2f} s{}{}, on {}{}\n", outputs,
+         samples_text(result.film), more_samples(options, result.film), result.render_seconds, noise_text(result.film),
          told.empty() ? "" : ", " + told, of_all_devices(device, result, &DeviceInfo::name),
          device.is_cpu() ? " (software)" : "");
 }

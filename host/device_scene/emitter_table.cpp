@@ -122,16 +122,17 @@ double place_faces(const shared::PeriodParams& period, shared::ParticleParams& p
     return open == 1 ? area : 0.0;
 }
 
-// World units^2: its area; of a box world units^3, its volume. Light comes from beyond it.
-double place_sensor(const Scene& scene, const SurfaceTable& surfaces, glm::dvec3 origin,
-                    shared::ParticleParams& params) {
+// World units^2: its area; of a box world units^3, its volume. Light comes from beyond it, and from beyond where it is
+// kept off what it lies in: by at most 2 SURFACE_SPARE of how far there is anything, of which the domain's range has
+// more.
+double place_sensor(const Scene& scene, glm::dvec3 origin, shared::ParticleParams& params) {
     const SensorBox box = sensor_box(scene.camera, scene.picture);
     const glm::dvec3 low = box.low - origin, high = box.high - origin;
     params.sensor_low = low;
     const glm::dvec3 open = params.open;
     const double height = std::max(std::abs(glm::dot(open, low)), std::abs(glm::dot(open, high)));
-    const double margin = std::max({1e-5 * std::max(double(params.above) - params.below, glm::length(high - low)),
-                                    2.0 * shift_of_sensor(scene, surfaces, origin), 0x1p-20 * height});
+    const double margin =
+        std::max({1e-5 * std::max(double(params.above) - params.below, glm::length(high - low)), 0x1p-20 * height});
     params.below = static_cast<float>(std::min(double(params.below), glm::dot(open, low) - margin));
     params.above = static_cast<float>(std::max(double(params.above), glm::dot(open, high) + margin));
     if (scene.camera.projection == Projection::absorption)
@@ -278,7 +279,7 @@ EmitterTable make_emitter_table(const Scene& scene, Media loaded, const Method& 
     table.params.radius = bounded ? static_cast<float>(radius * 1.0001) : 0.0f;
     const bool counts = reads_flux(scene.camera);
     const double face = scene.periodic ? place_faces(period, table.params) : 0.0;
-    const double sensor = counts ? place_sensor(scene, surfaces, origin, table.params) : 0.0;
+    const double sensor = counts ? place_sensor(scene, origin, table.params) : 0.0;
     const double across = scene.periodic ? face : bounded ? pi * radius * radius : 0.0; // what comes from afar
     Emitters emitters(table);
     for (std::size_t i = 0; i < lights.rows.size(); ++i)

@@ -247,6 +247,8 @@ void write_images(const std::vector<path>& targets, const Film& film, const Meta
         try {
             write_image(target, film, metadata, mapping);
             written += (written.empty() ? "; written: " : ", ") + target.string();
+        } catch (const std::bad_alloc&) {
+            failures += (failures.empty() ? "" : "; ") + target.string() + ": there is not enough memory to write it";
         } catch (const RenderError& error) {
             failures += (failures.empty() ? "" : "; ") + std::string(error.what());
         }

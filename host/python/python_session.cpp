@@ -63,8 +63,11 @@ void PythonSession::render(std::optional<std::uint32_t> samples) {
 PythonPicture PythonSession::picture() {
     const Turn turn(*shop_, work_->job.interrupted);
     const Scene& scene = work_->scene;
-    on_device([&] { work_->session->result(); }); // which reads the film
-    const RenderResult& result = work_->session->result();
+    const RenderResult* read = nullptr;
+    on_device([&] { read = &work_->session->result(); });
+    const RenderResult& result = *read;
+    if (!work_->session->has_whole_film() && result.counts.abandoned == 0)
+        throw RenderError("there is no picture: a batch failed, of which the film has some paths and not others");
     const Film& film = result.film;
     if (std::none_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n > 0; }))
         throw RenderError("there is no picture: nothing was rendered yet");

@@ -4,11 +4,13 @@
 #include <bit>
 #include <cmath>
 #include <fmt/format.h>
+#include <new>
 #include <stdexcept>
 #include <utility>
 
 #include "camera_rays.h"
 #include "error.h"
+#include "vulkan_error.h"
 
 namespace vkvol {
 
@@ -84,9 +86,9 @@ void Session::render(std::uint32_t samples) {
             band_ = 0;
         }
     }
+    end_rendering();
     if (job_.checkpoint && done_ < wanted_ && !result_.reached_goal && !gave_up_)
         save_checkpoint();
-    end_rendering();
     if (done_ >= wanted_ || result_.reached_goal) // what ended it came too late
         result_.interrupted = false;
 }
@@ -182,8 +184,30 @@ void Session::resume(const Checkpoint& from) {
     }
 }
 
+// One that there is no room for is left out, and the render goes on: pictures take less.
 void Session::save_checkpoint() {
     bring_home();
+    try {
+        make_checkpoint();
+    } catch (const std::bad_alloc&) {
+        warn_of_checkpoint();
+    } catch (const VulkanError& error) {
+        if (error.result != VK_ERROR_OUT_OF_HOST_MEMORY && error.result != VK_ERROR_OUT_OF_DEVICE_MEMORY)
+            throw;
+        warn_of_checkpoint();
+    }
+    checkpoint_at_ = watch_.seconds();
+}
+
+void Session::warn_of_checkpoint() {
+    const std::string warning =
+        "a checkpoint was left out: there is no memory for it; a smaller picture, or parts of it "
+        "by --crop, need less";
+    if (std::find(result_.warnings.begin(), result_.warnings.end(), warning) == result_.warnings.end())
+        result_.warnings.push_back(warning);
+}
+
+void Session::make_checkpoint() {
     Checkpoint checkpoint{identity_,
                           done_,
                           batch_,
@@ -199,7 +223,6 @@ void Session::save_checkpoint() {
                           result_.passes,
                           result_.rounds};
     job_.checkpoint(checkpoint);
-    checkpoint_at_ = watch_.seconds();
 }
 
 bool Session::checkpoint_due() const {
@@ -338,6 +361,8 @@ void Session::run_band(const Band& band) {
 
 // Likewise where every pixel waits for all particles: a batch is done, or it was not.
 void Session::run_particles(const Band& band) {
+    const auto counts = result_.counts;
+    const std::vector<NonFiniteSample> non_finite = result_.non_finite;
     begin_band(band, {0, band.rows});
     bool over = false;
     while (!over && !(stopping() && out_of_patience())) {
@@ -350,6 +375,9 @@ void Session::run_particles(const Band& band) {
         wavefront_->collect(band.rows * width());
         ++band_;
         offer_preview();
+    } else { // nothing of it is in the film
+        result_.counts = counts;
+        result_.non_finite = non_finite;
     }
 }
 

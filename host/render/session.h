@@ -164,6 +164,8 @@ private:
     void begin_identity(const Assets& assets);
     void resume(const Checkpoint& from);
     void save_checkpoint();
+    void make_checkpoint();
+    void warn_of_checkpoint();
     bool checkpoint_due() const;
     void report_noise();
     void offer_preview();

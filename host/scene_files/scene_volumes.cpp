@@ -11,6 +11,8 @@ namespace vkvol {
 
 namespace {
 
+constexpr std::size_t longest_name = 200; // of 255 characters of a channel, with what is before and behind it
+
 const std::vector<std::string> in_a_volume = {"transform",
                                               "densityField",
                                               "sphere",
@@ -209,6 +211,11 @@ void SceneReader::read_volumes(Scene& scene) {
         for (const char* name : {"medium", "emission"})
             warn_of_forgotten_color(XmlElement(document_, node.child(name)));
         medium->name = XmlElement(document_, node).attribute("name");
+        if (medium->name.size() > longest_name)
+            XmlElement(document_, node)
+                .fail(fmt::format(
+                    "the name has {} characters; expected {} at most, for which channels of images have room",
+                    medium->name.size(), longest_name));
         medium->transform = transform();
         scene.volumes.push_back(*medium);
     }

@@ -2,18 +2,12 @@
 
 #include <cstring>
 
-#include "shared/frame.h"
+#include "pipeline_layout.h"
 #include "vulkan_error.h"
 
 namespace vkvol {
 
 namespace {
-VkDescriptorType descriptor_type(std::uint32_t binding) {
-    return binding == BINDING_FRAME    ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-           : binding < BINDING_BUFFERS ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
-                                       : VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-}
-
 VkFormat texel_format(std::uint32_t binding) {
     return binding == BINDING_LATTICE_TEXELS                                    ? VK_FORMAT_R32G32B32A32_SFLOAT
            : binding == BINDING_SKY_ALIAS_TEXELS                                ? VK_FORMAT_R32G32_UINT
@@ -42,24 +36,6 @@ Bindings::Bindings(const Device& device, const BoundBuffers& buffers)
 }
 
 void Bindings::create() {
-    std::array<VkDescriptorSetLayoutBinding, BINDING_COUNT> slots{};
-    for (std::uint32_t i = 0; i < BINDING_COUNT; ++i)
-        slots[i] = {i, descriptor_type(i), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
-    VkDescriptorSetLayoutCreateInfo set_layout{};
-    set_layout.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-    set_layout.bindingCount = BINDING_COUNT;
-    set_layout.pBindings = slots.data();
-    VK_CHECK(vkCreateDescriptorSetLayout(device_.handle(), &set_layout, nullptr, &set_layout_));
-
-    const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(shared::PassPush)};
-    VkPipelineLayoutCreateInfo layout{};
-    layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-    layout.setLayoutCount = 1;
-    layout.pSetLayouts = &set_layout_;
-    layout.pushConstantRangeCount = 1;
-    layout.pPushConstantRanges = &push;
-    VK_CHECK(vkCreatePipelineLayout(device_.handle(), &layout, nullptr, &layout_));
-
     const std::array<VkDescriptorPoolSize, 3> sizes{
         {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
          {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BINDING_BUFFERS - 1},
@@ -74,7 +50,8 @@ void Bindings::create() {
     allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
     allocate.descriptorPool = pool_;
     allocate.descriptorSetCount = 1;
-    allocate.pSetLayouts = &set_layout_;
+    const VkDescriptorSetLayout layout = device_.layout().set_layout();
+    allocate.pSetLayouts = &layout;
     VK_CHECK(vkAllocateDescriptorSets(device_.handle(), &allocate, &set_));
 }
 
@@ -113,8 +90,6 @@ void Bindings::release() {
     for (const VkBufferView view : views_)
         vkDestroyBufferView(device_.handle(), view, nullptr);
     vkDestroyDescriptorPool(device_.handle(), pool_, nullptr);
-    vkDestroyPipelineLayout(device_.handle(), layout_, nullptr);
-    vkDestroyDescriptorSetLayout(device_.handle(), set_layout_, nullptr);
 }
 
 } // namespace vkvol

@@ -1,4 +1,4 @@
-// The one descriptor set that every pass shares, and the pipeline layout that goes with it.
+// The one descriptor set that every pass shares.
 #pragma once
 
 #include <array>
@@ -23,7 +23,6 @@ public:
     // Puts `buffer` in place of what was bound there. No submitted work may still use the set.
     void bind(std::uint32_t binding, const Buffer& buffer);
 
-    VkPipelineLayout layout() const { return layout_; }
     VkDescriptorSet set() const { return set_; }
 
 private:
@@ -34,8 +33,6 @@ private:
 
     const Device& device_;
     Buffer unused_; // stands where a scene needs no buffer
-    VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
-    VkPipelineLayout layout_ = VK_NULL_HANDLE;
     VkDescriptorPool pool_ = VK_NULL_HANDLE;
     VkDescriptorSet set_ = VK_NULL_HANDLE;
     std::vector<VkBufferView> views_;

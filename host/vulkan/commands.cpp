@@ -52,12 +52,13 @@ void Commands::run(const std::function<void(VkCommandBuffer)>& record) {
     submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
     submit.commandBufferCount = 1;
     submit.pCommandBuffers = &buffer_;
+    // Here, since a wait that failed left it as it was: signalled it would let what follows begin too early.
+    VK_CHECK(vkResetFences(device_.handle(), 1, &fence_));
     VK_CHECK(vkQueueSubmit(device_.queue(), 1, &submit, fence_));
     const VkResult waited = vkWaitForFences(device_.handle(), 1, &fence_, VK_TRUE, UINT64_MAX);
     if (waited < 0)
         vkDeviceWaitIdle(device_.handle()); // whoever learns of the failure frees what the device may still be using
     check_vulkan(waited, "vkWaitForFences", __FILE__, __LINE__);
-    VK_CHECK(vkResetFences(device_.handle(), 1, &fence_));
 }
 
 namespace {

@@ -28,6 +28,7 @@ private:
     void bind(VkCommandBuffer commands, const shared::PassPush& push) const;
 
     const Bindings& bindings_;
+    VkPipelineLayout layout_;
     std::shared_ptr<const Pipeline> pipeline_;
 };
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "pipeline_cache.h"
+#include "pipeline_layout.h"
 #include "pipelines.h"
 #include "shared/constants.h"
 #include "vulkan_error.h"
@@ -344,7 +345,8 @@ void Device::create_device(const DeviceOptions& options) {
                                       "another (`vkvol devices` lists them)",
                                       info_.name, result_name(result)));
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
-    pipelines_ = std::make_unique<Pipelines>(device_, info_.swiftshader);
+    layout_ = std::make_unique<PipelineLayout>(device_);
+    pipelines_ = std::make_unique<Pipelines>(device_, *layout_, info_.swiftshader);
 }
 
 Device::~Device() {
@@ -353,6 +355,7 @@ Device::~Device() {
 
 void Device::destroy() {
     pipelines_.reset();
+    layout_.reset();
     if (device_)
         vkDestroyDevice(device_, nullptr);
     if (messenger_)

@@ -10,6 +10,7 @@
 
 namespace vkvol {
 
+class PipelineLayout;
 class Pipelines;
 
 struct DeviceOptions {
@@ -73,6 +74,9 @@ public:
     // What has been compiled for it.
     Pipelines& pipelines() const { return *pipelines_; }
 
+    // Of all that is compiled for it.
+    const PipelineLayout& layout() const { return *layout_; }
+
     // What the validation layer has said so far; empty without --validate.
     const std::vector<std::string>& validation_messages() const { return messages_; }
 
@@ -89,6 +93,7 @@ private:
     VkQueue queue_ = VK_NULL_HANDLE;
     std::uint32_t queue_family_ = 0;
     std::uint32_t timestamp_bits_ = 0; // valid ones
+    std::unique_ptr<PipelineLayout> layout_;
     std::unique_ptr<Pipelines> pipelines_;
     VkPhysicalDeviceProperties properties_{};
     VkPhysicalDeviceMemoryProperties memory_{};

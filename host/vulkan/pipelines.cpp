@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pipeline_cache.h"
+#include "pipeline_layout.h"
 #include "vulkan_error.h"
 
 namespace vkvol {
@@ -33,7 +34,7 @@ SharedPipeline compile(VkDevice device, const std::vector<std::uint32_t>& code, 
 } // namespace
 
 SharedPipeline Pipelines::get(std::span<const std::uint32_t> spirv, const Specialization& specialization,
-                              VkPipelineLayout layout, const PipelineCache* cache) {
+                              const PipelineCache* cache) {
     const Key key{spirv.data(), declared_of(spirv, specialization)};
     std::promise<SharedPipeline> promise;
     std::shared_future<SharedPipeline> pipeline;
@@ -41,7 +42,7 @@ SharedPipeline Pipelines::get(std::span<const std::uint32_t> spirv, const Specia
         try {
             const std::vector<std::uint32_t> code =
                 cache ? cache->kernels().get(spirv, specialization) : specialized(spirv, specialization);
-            promise.set_value(compile(device_, keep_loops_ ? loops_kept(code) : code, layout,
+            promise.set_value(compile(device_, keep_loops_ ? loops_kept(code) : code, layout_.handle(),
                                       cache ? cache->handle() : VK_NULL_HANDLE));
         } catch (...) {
             forget(key); // who waits for it hears of this failure, who comes later tries again

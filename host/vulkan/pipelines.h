@@ -13,6 +13,7 @@
 namespace vkvol {
 
 class PipelineCache;
+class PipelineLayout;
 
 class Pipeline {
 public:
@@ -36,14 +37,13 @@ using SharedPipeline = std::shared_ptr<const Pipeline>;
 class Pipelines {
 public:
     // Kernels take 2 to 5 MB each on llvmpipe. `keep_loops`: see loops_kept().
-    explicit Pipelines(VkDevice device, bool keep_loops = false, std::size_t most_kept = 128)
-        : device_(device), keep_loops_(keep_loops), most_kept_(most_kept) {}
+    Pipelines(VkDevice device, const PipelineLayout& layout, bool keep_loops = false, std::size_t most_kept = 128)
+        : device_(device), layout_(layout), keep_loops_(keep_loops), most_kept_(most_kept) {}
 
-    // `spirv`, one of the kernels within this program, with these constants; compiled unless it is here. `layout` is
-    // that of any Bindings: theirs are all alike. `cache` may be null, and nothing is kept between runs then. Throws
-    // RenderError.
+    // `spirv`, one of the kernels within this program, with these constants; compiled unless it is here. `cache` may be
+    // null, and nothing is kept between runs then. Throws RenderError.
     SharedPipeline get(std::span<const std::uint32_t> spirv, const Specialization& specialization,
-                       VkPipelineLayout layout, const PipelineCache* cache);
+                       const PipelineCache* cache);
 
 private:
     // Where the kernel lies, and the constants that it has.
@@ -59,6 +59,7 @@ private:
     void drop_oldest();
 
     VkDevice device_;
+    const PipelineLayout& layout_;
     bool keep_loops_;
     std::size_t most_kept_;
     std::mutex mutex_;

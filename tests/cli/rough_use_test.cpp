@@ -111,6 +111,16 @@ TEST_CASE("pipes are read and written", "[gpu][command]") {
     CHECK_THAT(picture.text, Contains("identical"));
 }
 
+TEST_CASE("what goes to standard output has no words amid it", "[gpu][command]") {
+    const Folder folder("");
+    REQUIRE(folder.script("\"$vkvol\" ball.xml --spp 2 -o a.exr --report /dev/stdout 2>words >a.json").code == exit_done);
+    CHECK(nlohmann::json::parse(folder.text("a.json"))["samplesPerPixel"]["most"] == 2);
+    CHECK_THAT(folder.text("words"), Contains("a.exr: 2 samples per pixel"));
+    REQUIRE(folder.script("ln -s /dev/stdout a.csv; \"$vkvol\" merge a.exr -o a.csv >table 2>words").code == exit_done);
+    CHECK_THAT(folder.text("table"), Catch::StartsWith("column,row,") && !Contains("images"));
+    CHECK_THAT(folder.text("words"), Contains("1 images"));
+}
+
 TEST_CASE("two signals one after the other are one", "[gpu][command]") {
     const Folder folder("");
     const Run run = folder.script("\"$vkvol\" ball.xml --spp 1000000000 --progress json -o h.exr 2>p.txt & "

@@ -136,6 +136,18 @@ TEST_CASE("disjoint windows are put side by side", "[cpu][merge]") {
         Catch::Contains("windows overlap"));
 }
 
+TEST_CASE("a merged layer of which a part has no variance has none", "[cpu][merge]") {
+    std::vector<MergeInput> inputs;
+    for (int i = 0; i < 2; ++i) {
+        Film film = film_of(draw(unsigned(3 + i), 4));
+        film.layers = {FilmLayer{"direct", film.mean, film.variance}};
+        inputs.push_back(input(i == 0 ? "a" : "b", film, 4 * i, 4));
+    }
+    CHECK_FALSE(merge_films(inputs).film.layers.at(0).variance.empty());
+    inputs[1].film.layers[0].variance.clear();
+    CHECK(merge_films(inputs).film.layers.at(0).variance.empty());
+}
+
 TEST_CASE("what does not belong together is not merged", "[cpu][merge]") {
     const Film film = film_of(draw(1, 4));
     const MergeInput a = input("a.exr", film, 0, 4);

@@ -366,6 +366,14 @@ TEST_CASE("what volumes hardly mean is told", "[cpu][xml][several]") {
     CHECK(warnings("<volume><sphere/><medium r='0' multiplier='7'/></volume>") == "");
 }
 
+TEST_CASE("names of volumes have room in names of channels", "[cpu][xml][several]") {
+    const auto named = [](std::size_t length) {
+        return "<volumes><volume name=\"" + std::string(length, 'n') + "\"><sphere/></volume></volumes>";
+    };
+    CHECK(parse(named(200)).volumes.front().name.size() == 200);
+    CHECK_THROWS_WITH(parse(named(201)), Contains("the name has 201 characters; expected 200 at most"));
+}
+
 TEST_CASE("groups of volumes in scene files", "[cpu][xml][several]") {
     const Scene scene = parse(R"(<sphere radius="2"/><sigma_a>1</sigma_a>
         <volumes><volume name="haze"><box width="3"/><sigma_s>.1</sigma_s><phase>rayleigh</phase></volume>

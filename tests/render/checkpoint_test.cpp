@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
+#include <new>
 #include <unistd.h>
 
 #include "checkpoint.h"
@@ -128,6 +129,24 @@ TEST_CASE("an interrupted render keeps a checkpoint of all that is in the pictur
     CHECK(same_bits(render_part(sunlit_cloud(32, 12), rest).film, render_part(sunlit_cloud(32, 12), longer).film));
     last->done = 10;
     CHECK_THROWS_WITH(render_part(scene, rest), Catch::Contains("--spp"));
+}
+
+TEST_CASE("a checkpoint that there is no memory for is left out, and told of once", "[gpu][checkpoint]") {
+    const Scene scene = sunlit_cloud(32, 9);
+    RenderJob job;
+    job.plan.submit_seconds = 0.0;
+    const RenderResult whole = render_part(scene, job);
+    int asked = 0;
+    job.checkpoint_seconds = 0.0;
+    job.checkpoint = [&](const Checkpoint&) {
+        ++asked;
+        throw std::bad_alloc();
+    };
+    const RenderResult result = render_part(scene, job);
+    CHECK(asked > 1);
+    CHECK(same_bits(result.film, whole.film));
+    REQUIRE(result.warnings.size() == 1);
+    CHECK_THAT(result.warnings[0], Catch::Contains("a checkpoint was left out"));
 }
 
 TEST_CASE("a checkpoint is continued by its own render alone", "[gpu][checkpoint]") {

@@ -1,0 +1,30 @@
+// How kernels find what is bound: one descriptor set, and push constants. A device has one, which outlives all
+// pipelines that were made with it, as Vulkan 1.2 asks.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include "shared/constants.h"
+
+namespace vkvol {
+
+VkDescriptorType descriptor_type(std::uint32_t binding);
+
+class PipelineLayout {
+public:
+    // Throws VulkanError.
+    explicit PipelineLayout(VkDevice device);
+    ~PipelineLayout();
+    PipelineLayout(const PipelineLayout&) = delete;
+    PipelineLayout& operator=(const PipelineLayout&) = delete;
+
+    VkPipelineLayout handle() const { return layout_; }
+    VkDescriptorSetLayout set_layout() const { return set_layout_; }
+
+private:
+    VkDevice device_;
+    VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
+    VkPipelineLayout layout_ = VK_NULL_HANDLE;
+};
+
+} // namespace vkvol
