@@ -200,9 +200,8 @@ void Session::save_checkpoint() {
 }
 
 void Session::warn_of_checkpoint() {
-    const std::string warning =
-        "a checkpoint was left out: there is no memory for it; a smaller picture, or parts of it "
-        "by --crop, need less";
+    const std::string warning = "a checkpoint was left out: there is no memory for it; --crop renders parts of a "
+                                "picture, which need less";
     if (std::find(result_.warnings.begin(), result_.warnings.end(), warning) == result_.warnings.end())
         result_.warnings.push_back(warning);
 }
