@@ -56,6 +56,7 @@ TriangleSurface load(const MeshSurface& mesh, const glm::dmat4& transform, bool 
     }
     Polygons read = files.of(mesh.file);
     place_warnings = std::move(read.place_warnings);
+    drop_loose_vertices(read.vertices, read.triangles);
     for (glm::dvec3& vertex : read.vertices)
         vertex = glm::dvec3(transform * glm::dvec4(vertex, 1.0));
     TriangleSurface shape{std::move(read.vertices), std::move(read.triangles), std::move(read.normals),
@@ -153,6 +154,7 @@ void finish(TriangleSurface& mesh, const Surface& surface) {
     }
     if (is_textured(surface.material) && mesh.places.empty())
         throw InputError("<mesh> does not say where on a texture its corners are; add <places>");
+    drop_loose_vertices(mesh.vertices, mesh.triangles);
     complete(mesh);
 }
 
@@ -175,6 +177,15 @@ std::shared_ptr<const Texture> load_texture(const std::filesystem::path& file, s
     return std::make_shared<const Texture>(Texture{map.width, map.height, std::move(map.texels)});
 }
 
+// What scene and files say is within the limit; what transforms make of it need not be.
+void check_lengths(const Surface& surface) {
+    const std::optional<SurfaceBounds> bounds = bounds_of({&surface, 1});
+    if (bounds && !(reach_of(*bounds, glm::dvec3(0.0)) <= 2.0 * largest_length)) // its corners
+        throw InputError(fmt::format("its <transform> takes it to {:.3g} from the origin; lengths and coordinates end "
+                                     "at {:g}: choose a larger unit",
+                                     reach_of(*bounds, glm::dvec3(0.0)), largest_length));
+}
+
 } // namespace
 
 Scene with_surface_files(Scene scene) {
@@ -191,6 +202,7 @@ Scene with_surface_files(Scene scene) {
                 textures[material.texture] = load_texture(material.texture, scene.warnings);
             if (!material.texture.empty())
                 material.image = textures[material.texture];
+            check_lengths(surface);
         } catch (const InputError& error) { // of the file; the scene says who asked for it
             throw InputError(surface.place.empty() ? error.what() : fmt::format("{}: {}", surface.place, error.what()));
         }

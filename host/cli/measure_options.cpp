@@ -40,8 +40,11 @@ std::vector<std::string> evenly(const std::string& key, const std::string& text)
                                       text.substr(times + 1), most_values));
     std::vector<std::string> values;
     const int last = static_cast<int>(count) - 1;
-    for (int i = 0; i <= last; ++i)
-        values.push_back(fmt::format("{:.12g}", from + (to - from) * i / last));
+    const double dust = 1e-12 * std::max(std::abs(from), std::abs(to)); // of rounding, where a step is at 0
+    for (int i = 0; i <= last; ++i) {
+        const double value = i == last ? to : from + (to - from) * i / last;
+        values.push_back(fmt::format("{:.12g}", std::abs(value) > dust ? value : 0.0));
+    }
     return values;
 }
 
@@ -84,6 +87,11 @@ Sweep parse_sweep(const std::string& text) {
     Sweep sweep{key, evenly(key, value)};
     if (sweep.values.empty())
         sweep.values = split(value, ',');
+    if (sweep.values.size() > 1 && std::count(sweep.values.begin(), sweep.values.end(), "") > 0)
+        fail_command_line(
+            fmt::format("-D {}: '{}' has nothing between two commas, or at an end; give a value there, or "
+                        "remove the comma",
+                        key, value));
     return sweep;
 }
 

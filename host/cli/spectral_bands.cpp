@@ -77,6 +77,8 @@ std::vector<SpectralBand> read_bands(const std::filesystem::path& file) {
         for (std::size_t i = 0; i < names.size(); ++i)
             if (names[i] == "weight")
                 band.weight = weight_of(file, line, words[i]);
+            else if (words[i].empty()) // which the scene would take for its default
+                fail_line(file, line, fmt::format("{} has no value; give one", names[i]));
             else
                 band.values[names[i]] = words[i];
         bands.push_back(std::move(band));

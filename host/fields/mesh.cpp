@@ -204,24 +204,14 @@ void turn_outward(Polygons& obj, std::vector<Body> bodies) {
             }
 }
 
-// Only the vertices that a triangle uses.
-void append(Mesh& mesh, const Polygons& obj) {
+void append(Mesh& mesh, Polygons& obj) {
     if (mesh.normals.size() == mesh.triangles.size())
         mesh.normals.insert(mesh.normals.end(), obj.normals.begin(), obj.normals.end());
-    constexpr std::uint32_t unused = ~0u;
-    std::vector<std::uint32_t> place(obj.vertices.size(), unused);
-    for (const glm::uvec3& t : obj.triangles) {
-        glm::uvec3 moved;
-        for (int corner = 0; corner < 3; ++corner) {
-            std::uint32_t& at = place[t[corner]];
-            if (at == unused) {
-                at = static_cast<std::uint32_t>(mesh.vertices.size());
-                mesh.vertices.push_back(obj.vertices[t[corner]]);
-            }
-            moved[corner] = at;
-        }
-        mesh.triangles.push_back(moved);
-    }
+    drop_loose_vertices(obj.vertices, obj.triangles);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), obj.vertices.begin(), obj.vertices.end());
+    for (const glm::uvec3& t : obj.triangles)
+        mesh.triangles.push_back(t + first);
 }
 
 } // namespace
@@ -234,6 +224,22 @@ std::vector<std::uint32_t> welded_vertices(const std::vector<glm::dvec3>& vertic
     for (std::size_t i = 0; i < order.size(); ++i)
         welded[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? welded[order[i - 1]] : order[i];
     return welded;
+}
+
+void drop_loose_vertices(std::vector<glm::dvec3>& vertices, std::vector<glm::uvec3>& triangles) {
+    constexpr std::uint32_t loose = ~0u;
+    std::vector<std::uint32_t> place(vertices.size(), loose);
+    for (const glm::uvec3& t : triangles)
+        place[t.x] = place[t.y] = place[t.z] = 0;
+    std::uint32_t kept = 0;
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        if (place[i] != loose) {
+            vertices[kept] = vertices[i];
+            place[i] = kept++;
+        }
+    vertices.resize(kept);
+    for (glm::uvec3& t : triangles)
+        t = {place[t.x], place[t.y], place[t.z]};
 }
 
 void close_polygons(Polygons& polygons, const std::string& name) {

@@ -23,6 +23,8 @@ struct Mesh {
 // Welds equal positions and turns bodies that are inside out. InputError, with `name`, for what is not closed or
 // encloses nothing.
 void close_polygons(Polygons& polygons, const std::string& name);
+// Those that no triangle has: a mesh ends where its faces do.
+void drop_loose_vertices(std::vector<glm::dvec3>& vertices, std::vector<glm::uvec3>& triangles);
 // For each vertex one at the same position, the same for all of them there.
 std::vector<std::uint32_t> welded_vertices(const std::vector<glm::dvec3>& vertices);
 

@@ -278,9 +278,11 @@ Polygons read_obj(const std::filesystem::path& path) {
                                      path.string()));
     obj.normals = of_corners<glm::mat3>(progress.normals, progress.of_triangles);
     obj.places = of_corners<glm::mat3x2>(progress.places, progress.places_of_triangles);
-    const auto bare =
-        std::count_if(progress.places_of_triangles.begin(), progress.places_of_triangles.end(),
-                      [](const glm::ivec3& corners) { return glm::any(glm::lessThan(corners, glm::ivec3(0))); });
+    const glm::ivec3 end(static_cast<int>(progress.places.size()));
+    const auto bare = std::count_if(
+        progress.places_of_triangles.begin(), progress.places_of_triangles.end(), [&](const glm::ivec3& corners) {
+            return glm::any(glm::lessThan(corners, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(corners, end));
+        });
     if (!obj.places.empty() && bare > 0)
         obj.place_warnings.push_back(
             fmt::format("{}: {} of its {} triangles do not say where on a texture their corners "

@@ -42,6 +42,12 @@ TEST_CASE("values one after the other", "[cpu][options]") {
     CHECK(parse_sweep("g=0.8,0.9,x").values == std::vector<std::string>{"0.8", "0.9", "x"});
     CHECK(parse_sweep("g=0..1x5").values == std::vector<std::string>{"0", "0.25", "0.5", "0.75", "1"});
     CHECK(parse_sweep("g=1..-1x3").values == std::vector<std::string>{"1", "0", "-1"});
+    CHECK(parse_sweep("g=0.4..0x4").values.back() == "0"); // not -5.6e-17
+    CHECK(parse_sweep("g=-0.4..0.4x7").values[3] == "0");
+    CHECK(parse_sweep("g=-1e-20..1e-20x3").values == std::vector<std::string>{"-1e-20", "0", "1e-20"});
+    CHECK(parse_sweep("g=").values == std::vector<std::string>{""}); // the scene's default
+    for (const char* text : {"g=0.1,", "g=,0.1", "g=0.1,,0.2"})
+        CHECK_THROWS_WITH(parse_sweep(text), Contains("-D g: ") && Contains("nothing between two commas"));
     CHECK(parse_sweep("file=../box.obj").values == std::vector<std::string>{"../box.obj"});
     CHECK_THROWS_WITH(parse_sweep("g=0..1x1"), Contains("whole number from 2"));
     CHECK_THROWS_WITH(parse_sweep("g=0..axb3"), Contains("is not a number"));
@@ -65,6 +71,7 @@ TEST_CASE("tables of bands", "[cpu][options]") {
     CHECK_THROWS_WITH(read("sigma,sun\n1,2\n"), Contains("bands.csv:1: ") && Contains("one is weight"));
     CHECK_THROWS_WITH(read("weight,sigma,sigma\n"), Contains("a name of its own"));
     CHECK_THROWS_WITH(read("weight,sigma\n1\n"), Contains("bands.csv:2: 1 values under 2 names"));
+    CHECK_THROWS_WITH(read("weight,sigma,sun\n1,,2\n"), Contains("bands.csv:2: sigma has no value"));
     CHECK_THROWS_WITH(read("weight,sigma\nx,1\n"), Contains("bands.csv:2: the weight is 'x'"));
     CHECK_THROWS_WITH(read("weight,sigma\n1e20,1\n"), Contains("choose another unit"));
     CHECK_THROWS_WITH(read("weight,sigma\n1e-20,1\n"), Contains("choose another unit"));

@@ -177,6 +177,10 @@ TEST_CASE("materials", "[mesh]") {
     REQUIRE(textured.place_warnings.size() == 2);
     CHECK_THAT(textured.place_warnings[0], Contains("vt 0 inf counts as 0 0"));
     CHECK_THAT(textured.place_warnings[1], Contains("8 of its 10 triangles do not say where on a texture"));
+    const std::string beyond = "vt 0 0\nvt 1 1\nvt 0 1\n" + cube_vertices + "f 4/1 3/2 2/3\nf 4/1 2/7 1/3\n";
+    const Polygons misnumbered = read_polygons(directory.write("beyond.obj", beyond));
+    REQUIRE(misnumbered.place_warnings.size() == 1);
+    CHECK_THAT(misnumbered.place_warnings[0], Contains("1 of its 2 triangles do not say where on a texture"));
     CHECK(!directory.load("mtllib missing.mtl\n" + cube_vertices + "usemtl red\n" + caps + cube_sides).diffuse);
     directory.write("my scene.mtl", "newmtl red\nKd 0.75 0.25 0.125\n");
     mesh = directory.load("mtllib my scene.mtl\n" + cube_vertices + "usemtl red\n" + caps + cube_sides);

@@ -1,4 +1,5 @@
 // Tone: what curve and exposure a picture gets where nobody says, and pictures developed again from an EXR.
+#include <OpenImageIO/imageio.h>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
@@ -243,6 +244,30 @@ TEST_CASE("develop refuses what it cannot do", "[cpu][command]") {
     refused("a.exr -o b.png --exposur 1", "did you mean --exposure?");
     refused("a.exr c.exr -o b.png", "unexpected argument 'c.exr'");
     CHECK_THAT(folder.vkvol("develop --help", false).text, Contains("same bytes") && Contains("--tonemap"));
+}
+
+TEST_CASE("how a camera was set is in the picture, and makes the PNG", "[gpu][command]") {
+    const Folder folder;
+    std::ofstream(folder.file("set.xml"))
+        << "<options><sphere/><sigma_a>2</sigma_a><sigma_s>1</sigma_s><width>24</width><height>16</height>"
+           "<rayPerPixelCount>4</rayPerPixelCount><backgroundColor r=\"90\" g=\"200\" b=\"400\"/>"
+           "<camera z=\"4\" fov=\"30\" shutter=\"0.02\" fNumber=\"4\" iso=\"250\"/></options>";
+    REQUIRE(folder.vkvol("set.xml -q -o set.exr -o set.png").code == exit_done);
+    // White is a luminance of 1.2 N^2 / t 100 / S = 384: 8.585 stops.
+    REQUIRE(folder.vkvol("develop -q set.exr -o same.png --exposure 0", false).code == exit_done);
+    CHECK(folder.bytes("same.png") == folder.bytes("set.png"));
+    Metadata metadata;
+    const Film film = read_exr(folder.file("set.exr"), &metadata);
+    CHECK(std::stod(std::get<std::string>(metadata.at(camera_exposure_key))) == Approx(-std::log2(384.0)));
+    CHECK(film.mean.front() == glm::vec3(90.0f, 200.0f, 400.0f)); // what came, however the camera was set
+    const std::vector<std::uint8_t> bytes = tone_map(film, {ToneCurve::srgb, -std::log2(384.0)});
+    CHECK(bytes.at(2) == 255); // 400 of 384
+    CHECK(bytes.at(1) == 191); // 255 (1.055 (200 / 384)^(1 / 2.4) - 0.055)
+    const auto file = OIIO::ImageInput::open(folder.file("set.exr").string());
+    REQUIRE(file);
+    CHECK(file->spec().get_float_attribute("ExposureTime") == 0.02f);
+    CHECK(file->spec().get_float_attribute("FNumber") == 4.0f);
+    CHECK(file->spec().get_float_attribute("isoSpeed") == 250.0f);
 }
 
 TEST_CASE("a camera's exposure is where that which is asked for begins", "[cpu][develop]") {

@@ -48,19 +48,29 @@ TEST_CASE("facets and coats lose no light, found by looks or by flights", "[gpu]
     scene.lights = {write_sky(make_map(8, 4, [](int, int) { return Rgb(1.0); }))};
     scene.settings.integrator = "ratioTracking";
     scene.settings.spp = 2048;
-    const std::pair<Material, int> usual[] = {{frosted(MaterialKind::conductor, 0.3), MIS_LIGHT},
-                                              {frosted(MaterialKind::dielectric, 0.6), MIS_BALANCE},
-                                              {white(MaterialKind::coated), MIS_PHASE}};
-    for (const auto& [material, usual_mis] : usual)
-        for (const int mis : {MIS_BALANCE, MIS_LIGHT, MIS_PHASE}) {
-            if (mis != usual_mis && !thorough())
-                continue;
-            CAPTURE(static_cast<int>(material.kind), mis);
-            scene.surfaces = {ball_surface(material)};
-            scene.settings.choices.mis = mis;
-            const Film film = render_here(scene, 1).film;
-            CHECK_AGREEMENT(agree_with_means(film, std::vector<Rgb>(film.mean.size(), Rgb(1.0)), "furnace"));
-        }
+    struct Usual {
+        Material material;
+        int mis;
+        bool in_fog;
+    };
+    const Usual usual[] = {{frosted(MaterialKind::conductor, 0.3), MIS_LIGHT, true},
+                           {frosted(MaterialKind::dielectric, 0.6), MIS_BALANCE, false},
+                           {white(MaterialKind::coated), MIS_PHASE, false},
+                           {white(MaterialKind::coated), MIS_BALANCE, true}};
+    for (const auto& [material, usual_mis, usually_in_fog] : usual)
+        for (const int mis : {MIS_BALANCE, MIS_LIGHT, MIS_PHASE})
+            for (const bool in_fog : {false, true}) {
+                if ((mis != usual_mis || in_fog != usually_in_fog) && !thorough())
+                    continue;
+                CAPTURE(static_cast<int>(material.kind), mis, in_fog);
+                scene.surfaces = {ball_surface(material)};
+                scene.volumes.clear();
+                if (in_fog)
+                    scene.volumes = {box_of_fog(1.5, 1.0)};
+                scene.settings.choices.mis = mis;
+                const Film film = render_here(scene, 1).film;
+                CHECK_AGREEMENT(agree_with_means(film, std::vector<Rgb>(film.mean.size(), Rgb(1.0)), "furnace"));
+            }
 }
 
 // A mesh whose corners have the ball's normals, of each material.

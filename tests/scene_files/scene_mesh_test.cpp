@@ -3,6 +3,7 @@
 
 #include "error.h"
 #include "support/scene_text.h"
+#include "support/test_directory.h"
 #include "surface_mesh.h"
 
 using namespace vkvol;
@@ -45,6 +46,30 @@ TEST_CASE("meshes of glass in scene files have to be closed", "[cpu][xml][surfac
     CHECK(read_triangles(mesh(tetrahedron, glass)).triangles.size() == 4);
     CHECK_THROWS_AS(read_triangles(mesh(corners + "<triangles>0 2 1  0 1 3  0 3 2</triangles>", glass)), InputError);
     CHECK(read_triangles(mesh(corners + "<triangles>0 2 1  0 1 3  0 3 2</triangles>")).triangles.size() == 3);
+}
+
+TEST_CASE("a mesh ends where its faces do, wherever loose vertices are", "[cpu][xml][surfaces]") {
+    const std::string loose = "<vertices>1e6 0 0  0 0 0  1 0 0  0 1 0  0 0 -1e6</vertices><triangles>1 2 3</triangles>";
+    const auto check_bounds = [](const Scene& scene) {
+        const SurfaceBounds bounds = bounds_of(with_surface_files(scene).surfaces).value();
+        CHECK(bounds.low == glm::dvec3(0.0));
+        CHECK(bounds.high == glm::dvec3(1, 1, 0));
+    };
+    check_bounds(parse(mesh(loose)));
+    CHECK(read_triangles(mesh(loose)).triangles.front() == glm::uvec3(0, 1, 2));
+    const TestDirectory directory;
+    const std::string obj = "v 1e6 0 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 -1e6\nf 2 3 4\n";
+    check_bounds(parse(mesh("", " file=\"" + directory.write("loose.obj", obj).string() + "\"")));
+}
+
+TEST_CASE("transforms may not take surfaces beyond what single precision holds", "[cpu][xml][surfaces]") {
+    const std::string far = "<transform><scale value=\"1e6\"/></transform>";
+    for (const std::string& shape :
+         {"<sphere radius=\"1e6\">" + far + "</sphere>", "<disk x=\"1e6\" lookAt=\"0 0 0\">" + far + "</disk>",
+          "<box x=\"-1e6\">" + far + "</box>"})
+        CHECK_THROWS_WITH(with_surface_files(parse("<surfaces>" + shape + "</surfaces>")),
+                          Contains("s.xml:1:20: ") && Contains("lengths and coordinates end at 1e+11"));
+    CHECK_NOTHROW(with_surface_files(parse("<surfaces><sphere radius=\"1e5\">" + far + "</sphere></surfaces>")));
 }
 
 TEST_CASE("wrong meshes in scene files are refused with their place", "[cpu][xml][surfaces]") {
