@@ -58,9 +58,10 @@ void check_input(const MergeInput& input) {
             fmt::format("{}: is denoised, and knows no variance; merge noisy images, and denoise the sum", input.name));
     const std::vector<std::uint32_t>& samples = input.film.samples;
     if (std::all_of(samples.begin(), samples.end(), [](std::uint32_t n) { return n == 0; }))
-        throw InputError(fmt::format("{}: does not say how many samples its pixels have; merge needs images written by "
-                                     "vkvol",
-                                     input.name));
+        throw InputError(
+            fmt::format("{}: does not say how many samples its pixels have, or their variance; merge needs "
+                        "images written by vkvol",
+                        input.name));
 }
 
 // n samples with this mean and sum of squares per channel.

@@ -1,6 +1,7 @@
 // Loaded by picture_codec.cpp, and by nothing else.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <algorithm>
 #include <cctype>
 #include <string_view>
 
@@ -133,15 +134,32 @@ OIIO::ImageSpec png_spec(const PictureHeader& header) {
     return spec;
 }
 
+// By its name, or what it is. OpenImageIO takes what follows a ? in a name for arguments: then by its ending alone.
+std::unique_ptr<OIIO::ImageInput> open_input(const std::filesystem::path& file, std::string& reason) {
+    OIIO::ImageSpec as_stored; // a PNG's colours are not multiplied by its alpha
+    as_stored.attribute("oiio:UnassociatedAlpha", 1);
+    std::unique_ptr<OIIO::ImageInput> input;
+    const bool has_arguments = file.string().find('?') != std::string::npos;
+    const std::string ending = file.extension().string();
+    if (has_arguments)
+        input = OIIO::ImageInput::create(ending.substr(std::min<std::size_t>(1, ending.size())));
+    else
+        input = OIIO::ImageInput::open(file.string(), &as_stored);
+    if (!input)
+        reason = reason_of(OIIO::geterror());
+    OIIO::ImageSpec spec;
+    if (input && has_arguments && !input->open(file.string(), spec, as_stored)) {
+        reason = reason_of(input->geterror());
+        input.reset();
+    }
+    return input;
+}
+
 class OiioCodec : public PictureCodec {
 public:
     std::unique_ptr<PictureReader> open(const std::filesystem::path& file, std::string& reason) const override {
-        OIIO::ImageSpec as_stored; // a PNG's colours are not multiplied by its alpha
-        as_stored.attribute("oiio:UnassociatedAlpha", 1);
-        std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), &as_stored);
-        if (input)
+        if (std::unique_ptr<OIIO::ImageInput> input = open_input(file, reason))
             return std::make_unique<OiioReader>(std::move(input));
-        reason = reason_of(OIIO::geterror());
         return nullptr;
     }
 

@@ -162,7 +162,8 @@ Film film_of(const PictureHeader& header, const std::vector<float>& pixels, cons
     const auto channel = [&header](const char* name) { return channel_of(header, name); };
     const int color[3] = {channel("R"), channel("G"), channel("B")};
     const int variance[3] = {channel("variance.R"), channel("variance.G"), channel("variance.B")};
-    const int samples = channel("samples");
+    const bool knows_variance = *std::min_element(variance, variance + 3) >= 0;
+    const int samples = knows_variance ? channel("samples") : -1; // which else would be taken for ones without noise
     if (*std::min_element(color, color + 3) < 0)
         throw InputError(one_line(fmt::format("{}: has channels {}; R, G and B are needed", file.string(),
                                               fmt::join(header.channels, ", "))));
@@ -181,7 +182,7 @@ Film film_of(const PictureHeader& header, const std::vector<float>& pixels, cons
         const float* pixel = &pixels[i * header.channels.size()];
         for (int c = 0; c < 3; ++c) {
             film.mean[i][c] = pixel[color[c]];
-            if (variance[c] >= 0)
+            if (knows_variance)
                 film.variance[i][c] = pixel[variance[c]];
         }
         if (samples >= 0 && pixel[samples] > 0.0f && pixel[samples] < 4294967296.0f)

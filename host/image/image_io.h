@@ -40,8 +40,8 @@ void write_exr(const std::filesystem::path& path, const Film& film, const Metada
 // 8 bit sRGB; the crop alone.
 void write_display(const std::filesystem::path& path, const Film& film, const ToneMapping& mapping);
 
-// R, G and B are required; a file without variance or samples gives zeros there. Samples may be
-// floats, as they were once. Throws InputError.
+// R, G and B are required; a file without variance or samples gives zeros there, and no samples without variance: they
+// would be without noise. Samples may be floats, as they were once. Throws InputError.
 Film read_exr(const std::filesystem::path& path, Metadata* metadata = nullptr);
 
 // Writes text the same atomic way.

@@ -25,12 +25,12 @@ int density_kind(const Scene& scene) {
 }
 
 bool can_scatter(const Volume& volume) {
-    return volume.sigma_s * most_map_albedo(volume) != Rgb(0.0);
+    return volume.density_scale * volume.sigma_s * most_map_albedo(volume) != Rgb(0.0);
 }
 
 bool has_chromatic_extinction(const Scene& scene) {
     return any_medium(scene, [](const Volume& volume) {
-        const Rgb sigma_t = volume.sigma_a + volume.sigma_s;
+        const Rgb sigma_t = volume.density_scale * (volume.sigma_a + volume.sigma_s);
         const double largest = std::max({sigma_t.x, sigma_t.y, sigma_t.z});
         const double smallest = std::min({sigma_t.x, sigma_t.y, sigma_t.z});
         return largest - smallest > 1e-9 * largest; // what sums of decimals differ by is rounding
@@ -39,7 +39,9 @@ bool has_chromatic_extinction(const Scene& scene) {
 
 bool emits(const Scene& scene) {
     return any_medium(scene, [](const Volume& volume) {
-        return most_sigma_a(volume) * (volume.Le + volume.temperature.color + most_map_emission(volume)) != Rgb(0.0);
+        return volume.density_scale * most_sigma_a(volume) *
+                   (volume.Le + volume.temperature.color + most_map_emission(volume)) !=
+               Rgb(0.0);
     });
 }
 

@@ -2,6 +2,7 @@
 // pipelines that were made with it, as Vulkan 1.2 asks.
 #pragma once
 
+#include <cstdint>
 #include <vulkan/vulkan.h>
 
 #include "shared/constants.h"

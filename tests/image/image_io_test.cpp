@@ -92,14 +92,32 @@ TEST_CASE("samples are whole numbers, and may be floats as they once were", "[cp
     write_exr(scratch.path / "a.exr", film, {});
     CHECK(read_exr(scratch.path / "a.exr").samples == film.samples);
 
-    OIIO::ImageSpec spec(2, 2, 4, OIIO::TypeDesc::FLOAT);
-    spec.channelnames = {"R", "G", "B", "samples"};
-    const std::vector<float> pixels = {1, 2, 3, 8, 1, 2, 3, 8, 1, 2, 3, 8, 1, 2, 3, 1024};
-    const auto output = OIIO::ImageOutput::create("old.exr");
-    REQUIRE(output->open((scratch.path / "old.exr").string(), spec));
-    output->write_image(OIIO::TypeDesc::FLOAT, pixels.data());
-    output->close();
-    CHECK(read_exr(scratch.path / "old.exr").samples == std::vector<std::uint32_t>{8, 8, 8, 1024});
+    const auto samples_of = [&](const std::vector<std::string>& channels) {
+        OIIO::ImageSpec spec(2, 2, int(channels.size()), OIIO::TypeDesc::FLOAT);
+        spec.channelnames = channels;
+        const std::vector<float> pixels(4 * channels.size(), 8.0f);
+        const auto output = OIIO::ImageOutput::create("old.exr");
+        REQUIRE(output->open((scratch.path / "old.exr").string(), spec));
+        output->write_image(OIIO::TypeDesc::FLOAT, pixels.data());
+        output->close();
+        return read_exr(scratch.path / "old.exr").samples;
+    };
+    CHECK(samples_of({"R", "G", "B", "samples", "variance.R", "variance.G", "variance.B"}) ==
+          std::vector<std::uint32_t>(4, 8));
+    // Of which the scatter is not known: no samples without noise, as they would be by a variance of 0.
+    CHECK(samples_of({"R", "G", "B", "samples"}) == std::vector<std::uint32_t>(4, 0));
+    CHECK(samples_of({"R", "G", "B", "samples", "variance.R"}) == std::vector<std::uint32_t>(4, 0));
+}
+
+TEST_CASE("a name that has a ? is one of a file", "[cpu][image_io]") {
+    const Scratch scratch;
+    std::filesystem::create_directory(scratch.path / "take?");
+    const Film film = film_with_distinct_values();
+    write_exr(scratch.path / "take?" / "a.exr", film, {});
+    CHECK(read_exr(scratch.path / "take?" / "a.exr").mean == film.mean);
+    CHECK_THROWS_AS(read_exr(scratch.path / "take?" / "none.exr"), InputError);
+    std::ofstream(scratch.path / "take?" / "rubbish.exr") << "rubbish";
+    CHECK_THROWS_WITH(read_exr(scratch.path / "take?" / "rubbish.exr"), Catch::Contains("rubbish.exr"));
 }
 
 TEST_CASE("values that are not finite survive an EXR file", "[cpu][image_io]") {

@@ -64,12 +64,16 @@ class FarmTest(unittest.TestCase):
         checkpoint = self.folder / "out/a.still.1-of-2.partial.checkpoint"
         checkpoint.parent.mkdir()
         checkpoint.write_text("of another device")
+        refused = ("is of another device", "has 500 samples per pixel already, more than the 256 asked for")
         self.program("vkvol", 'echo "vkvol: error: a.nvdb: cannot be opened" >&2; exit 2')  # whatever it begins from
         self.assertEqual(self.run_script(*part).returncode, 2)
         self.assertEqual(checkpoint.read_text(), "of another device")
-        self.program("vkvol", f'[ -f "{checkpoint}" ] && echo "--resume: the checkpoint is of another device" >&2 && exit 2; while [ $# -gt 0 ]; do [ "$1" != -o ] || echo picture >"$2"; shift; done')
-        self.assertEqual(self.run_script(*part).returncode, 0)
-        self.assertEqual([file.name for file in checkpoint.parent.glob("*partial*")], [])
+        for why in refused:
+            checkpoint.write_text("of another render")
+            self.program("vkvol", f'[ -f "{checkpoint}" ] && echo "--resume: the checkpoint {why}" >&2 && exit 2; while [ $# -gt 0 ]; do [ "$1" != -o ] || echo picture >"$2"; shift; done')
+            self.assertEqual(self.run_script(*part).returncode, 0)
+            self.assertEqual([file.name for file in checkpoint.parent.glob("*partial*")], [])
+            (checkpoint.parent / "a.still.1-of-2.exr").unlink()
 
     def test_strict_parts_fail_and_are_rendered_once(self):
         self.program("vkvol", 'echo run >>runs; while [ $# -gt 0 ]; do [ "$1" != -o ] || echo picture >"$2"; shift; done; exit 5')

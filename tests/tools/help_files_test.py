@@ -23,13 +23,14 @@ class Completions(unittest.TestCase):
 
     def complete(self, *words):
         with tempfile.TemporaryDirectory() as folder:
-            for name in ("cloud.xml", "smoke.nvdb", "a.exr", "notes.txt"):
+            for name in ("cloud.xml", "smoke.nvdb", "a.exr", "notes.txt", "my scene.xml"):
                 (pathlib.Path(folder) / name).touch()
+            (pathlib.Path(folder) / "my scenes").mkdir()
             script = help_files.bash(self.commands, self.integrators) + (
                 'COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _vkvol; printf "%s\\n" "${COMPREPLY[@]}"')
             done = subprocess.run(["bash", "-c", script, "bash", *words], cwd=folder, capture_output=True, text=True, check=True)
             self.assertEqual(done.stderr, "")
-            return set(done.stdout.split())
+            return set(done.stdout.splitlines()) - {""}
 
     def test_every_option_of_help_is_found(self):
         for name, options in self.commands.items():
@@ -52,8 +53,10 @@ class Completions(unittest.TestCase):
         self.assertEqual(self.complete("vkvol", "cloud.xml", "--tonemap", "a"), {"aces", "agx"})
         self.assertEqual(self.complete("vkvol", "cloud.xml", "--integrator", "ra"), {"ratioTracking"})
         self.assertEqual(self.complete("vkvol", "cloud.xml", "--spp", ""), set())
-        self.assertEqual(self.complete("vkvol", "info", ""), {"smoke.nvdb"})
-        self.assertEqual(self.complete("vkvol", "compare", ""), {"a.exr"})
+        self.assertEqual(self.complete("vkvol", "info", ""), {"smoke.nvdb", "my scenes"})
+        self.assertEqual(self.complete("vkvol", "compare", ""), {"a.exr", "my scenes"})
+        self.assertEqual(self.complete("vkvol", "my"), {"my scene.xml", "my scenes"})
+        self.assertEqual(self.complete("vkvol", "cloud.xml", "--report", "my"), {"my scene.xml", "my scenes"})
         self.assertEqual(self.complete("vkvol", "d"), {"devices", "develop", "demo"})
         self.assertEqual(self.complete("vkvol", "cl"), {"cloud.xml"})
 

@@ -68,8 +68,8 @@ render() {
 }
 echo "rendering $output"
 render "$@"
-# By other arguments, on another device or by another vkvol: its bits are of no use here.
-if [ $code -eq 2 ] && [ -f "$checkpoint" ] && grep -qE -e '--resume: the checkpoint is of|no checkpoint to go on from' "$partial.log"; then
+# By other arguments, of more samples, on another device or by another vkvol: its bits are of no use here.
+if [ $code -eq 2 ] && [ -f "$checkpoint" ] && grep -qE -e '--resume: the checkpoint (is of|has)|no checkpoint to go on from' "$partial.log"; then
     echo "$output begins anew"
     rm -- "$checkpoint"
     render "$@"

@@ -59,7 +59,7 @@ _vkvol() {{
     esac
     case $before in
 {values}
-    {'|'.join(sorted(OF_FILES))}) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    {'|'.join(sorted(OF_FILES))}) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
     {plain}) return ;;
     esac
     if [[ $word == -* ]]; then
@@ -69,7 +69,8 @@ _vkvol() {{
     for ending in $endings; do
         mapfile -t -O ${{#files[@]}} files < <(compgen -f -X "!*.$ending" -- "$word")
     done
-    COMPREPLY=("${{files[@]}}" $(compgen -d -- "$word"))
+    mapfile -t -O ${{#files[@]}} files < <(compgen -d -- "$word")
+    COMPREPLY=("${{files[@]}}")
     [ "$COMP_CWORD" != 1 ] || COMPREPLY+=($(compgen -W '{' '.join(commands)}' -- "$word"))
 }}
 complete -o filenames -F _vkvol vkvol

@@ -1,0 +1,23 @@
+// What a scene has, as methods and kernels ask for it.
+#include <catch2/catch.hpp>
+
+#include "scene_facts.h"
+#include "support/scene_text.h"
+#include "support/scenes.h"
+
+using namespace vkvol;
+
+TEST_CASE("a volume without density is not there, whatever its coefficients", "[cpu][method]") {
+    Volume volume = medium(Sphere{{0.0, 0.0, 0.0}, 1.0}, 1.0, 0.0);
+    volume.sigma_s = {1.0, 0.5, 0.0};
+    volume.Le = Rgb(1.0);
+    Scene scene = parse("<volumes><volume><sphere/></volume></volumes>");
+    scene.volumes.push_back(volume);
+    CHECK(can_scatter(volume));
+    CHECK(has_chromatic_extinction(scene));
+    CHECK(emits(scene));
+    scene.volumes.back().density_scale = 0.0; // as one that fades has it at last
+    CHECK_FALSE(can_scatter(scene.volumes.back()));
+    CHECK_FALSE(has_chromatic_extinction(scene));
+    CHECK_FALSE(emits(scene));
+}
