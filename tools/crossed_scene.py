@@ -11,6 +11,8 @@ FIELDS = {"cumulus": (("cumulus", "--size", "32"), (1, 20, 1), 60), "broken": ((
           "sheared": (("sheared",), (1.2, 1.2, 1.2), 8), "glow": (("glow",), (1.2, 1.2, 1.2), 8), "tiles": (("tiles",), (-2, 15, 15), 36),
           "eight": (("ramp", "--type", "fp8"), (8, 8, 8), 16)}
 
+SKIES = [">sky.hdr", ">sky.hdr", 'mapping="equalArea">square.hdr']
+
 
 class Writer:
     """One scene, by the numbers of `seed`."""
@@ -136,18 +138,25 @@ class Writer:
             at += self.r.uniform(0.2, 1)
         return "".join(rows)
 
+    def shine(self, low, high, power, faint=0.0):
+        """A lamp's colour by its radiance or intensity, as a black body, or by what it sends out in all, up to so much."""
+        way = self.r.choice(["color", "color", "kelvin", "power"])
+        return {"color": self.color(low, high, faint),
+                "kelvin": f'kelvin="{self.number(1000, 12000)}" multiplier="{self.number(low, high)}"',
+                "power": f'power="{self.number(0.2 * power, power)}"'}[way]
+
     def light(self, periodic, at=None):
         """At a place, or anywhere."""
         kind = self.r.choice(["directional", "sun", "sky"] + ([] if periodic else ["point", "spot", "sphere", "disk", "rectangle"]))
         about = f'{at or self.place(2.0, 1.5)} lookAt="{self.numbers(3, -0.5, 0.5)}"'
         return {"directional": f'<directional {self.place(1, 1)} {self.color(0.3, 2, 0.1)}/>',
-                "sun": f'<sun {self.place(1, 1)} angle="{self.number(2, 60)}" {self.color(0.3, 2)}/>',
-                "sky": f'<sky rotation="{self.number(0, 360)}" multiplier="{self.number(0.3, 1)}">sky.hdr</sky>',
-                "point": f"<point {at or self.place(2, 1.5)} {self.color(1, 8, 0.2)}/>",
-                "spot": f'<spot {about} angle="{self.number(30, 120)}" {self.color(2, 20)}/>',
-                "sphere": f'<sphere {self.place(2, 1.5)} radius="{self.number(0.2, 0.6)}" {self.color(1, 8, 0.2)}/>',
-                "disk": f'<disk {about} radius="{self.number(0.2, 0.6)}" {self.color(1, 8)}/>',
-                "rectangle": f'<rectangle {about} width="{self.number(0.3, 1)}" height="{self.number(0.3, 1)}" {self.color(1, 8)}/>'}[kind]
+                "sun": f'<sun {self.place(1, 1)} angle="{self.number(2, 60)}" limbDarkening="{self.r.choice([0, 0, 0.6, 1])}" {self.color(0.3, 2)}/>',
+                "sky": f'<sky rotation="{self.number(0, 360)}" multiplier="{self.number(0.3, 1)}" {self.r.choice(SKIES)}</sky>',
+                "point": f"<point {at or self.place(2, 1.5)} {self.shine(1, 8, 50, 0.2)}/>",
+                "spot": f'<spot {about} angle="{self.number(30, 120)}" {self.shine(2, 20, 20)}/>',
+                "sphere": f'<sphere {self.place(2, 1.5)} radius="{self.number(0.2, 0.6)}" {self.shine(1, 8, 20, 0.2)}/>',
+                "disk": f'<disk {about} radius="{self.number(0.2, 0.6)}" {self.shine(1, 8, 5)}/>',
+                "rectangle": f'<rectangle {about} width="{self.number(0.3, 1)}" height="{self.number(0.3, 1)}" {self.shine(1, 8, 5)}/>'}[kind]
 
     def surface(self, flat_only):
         kind = self.r.choice(["sphere", "disk", "rectangle", "box", "mesh", "plane"] if not flat_only else ["plane", "sphere", "rectangle"])
@@ -283,4 +292,6 @@ def write_files(folder, make_field):
     (folder / "phase.txt").write_text("".join(f"{angle} {0.3 + math.exp(-angle / 20):.6g}\n" for angle in range(0, 181, 5)))
     texels = bytes(byte for row in range(8) for column in range(16)
                    for byte in ((250, 230, 200, 131) if (row, column) == (2, 5) else (60 + 10 * row, 80, 160 - 12 * row + column, 128)))
-    (folder / "sky.hdr").write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n" + texels)
+    head = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X "
+    (folder / "sky.hdr").write_bytes(head + b"16\n" + texels)
+    (folder / "square.hdr").write_bytes(head + b"8\n" + texels[:4 * 64])

@@ -5,6 +5,7 @@
 
 `x` is the median of the first column's seconds over this one's: above 1 is faster. `start` is the seconds of the whole command
 that are not rendering, without a pipeline cache. Occupancy is the part of the slots that was in a pass's queue when it began.
+Builds may run by different numbers of lanes on Mesa's software driver: LP_NATIVE_VECTOR_WIDTH=256 gives all of them eight.
 """
 
 import argparse
@@ -61,9 +62,9 @@ def main():
                 for column, command in columns.items():
                     reports[column].append(render(command, SCENES[scene], folder))
             if scene == options.scenes.split(",")[0]:
-                device = reports["fused"][0]["device"]
-                print(f"{device['name']}, {device['driver']}; medians of {options.runs}, in alternation")
-                print((f"old: {commit_of(options.old)}; " if options.old else "") + f"new: {commit_of(vkvol)}")
+                device = {column: f"{list_of[0]['device']['name']}, {list_of[0]['device']['driver']}" for column, list_of in reports.items()}
+                print(f"medians of {options.runs}, in alternation")
+                print((f"old: {commit_of(options.old)}, {device['old']}; " if options.old else "") + f"new: {commit_of(vkvol)}, {device['fused']}")
                 print(f"{'scene':10} {'':7} {'seconds':>8} {'x':>6} {'start':>6} {'lanes':>6}  seconds by pass of the last run (occupancy)")
             first = None
             for column, list_of in reports.items():

@@ -21,6 +21,9 @@ CONFIDENCE = 0.95
 FEWEST_PASSES, MOST_PASSES = 8, 32  # independent renders that give a peer's picture its variance
 REFERENCE_FACTOR = 16  # samples of the reference to those of a measured render
 SHORTEST = 0.25  # seconds that a render must take before its rate is believed
+NEAR = 1.2  # times the wanted seconds, or over it: near enough. Short renders have other rates than long ones
+MOST_TRIES = 5
+LIKE = 1.5  # times the seconds of the quickest renderer: beyond, what each costs before it begins is in the figures
 
 
 def add_options(parser):
@@ -79,7 +82,7 @@ class Measured:
         self.agreement = None
 
     def calibrate(self, target, seed):
-        """Finds the number of samples that take `target` seconds."""
+        """Finds the number of samples that take `target` seconds. Returns the seconds that it does take."""
         self.renderer.warm_up()
         self.renderer.render(self.samples, seed)  # the first with caches may have to fill them
         while True:
@@ -87,8 +90,12 @@ class Measured:
             if seconds >= min(SHORTEST, target / 2) or self.samples >= 1 << 20:
                 break
             self.samples *= 2
-        self.samples = max(1, round(self.samples * target / seconds))
-        self.renderer.render(self.samples, seed)  # which some compile another kernel for than for powers of two
+        for _ in range(MOST_TRIES):
+            self.samples = max(1, round(self.samples * target / seconds))
+            _, seconds, _ = self.renderer.render(self.samples, seed)  # some compile another kernel than for powers of two
+            if self.samples == 1 or target / NEAR < seconds < target * NEAR:
+                break
+        return seconds
 
     def render(self, seed, reference, variance):
         image, seconds, cores = self.renderer.render(self.samples, seed)
@@ -121,6 +128,14 @@ class Measured:
         return {**entry, **self.renderer.details()}
 
 
+def check_times(seconds):
+    """Of one render by each renderer."""
+    if max(seconds.values()) > LIKE * min(seconds.values()):
+        sys.exit("renders are too unlike to be compared, in seconds: "
+                 + ", ".join(f"{name} {value:.2f}" for name, value in seconds.items())
+                 + "; give more --time, or fewer pixels, and nothing else to do to the machine")
+
+
 class Contest:
     def __init__(self, options, renderers):
         if options.rounds < 5:
@@ -137,9 +152,12 @@ class Contest:
 
     def run(self):
         target = self.budget / (self.options.rounds * len(self.measured))
+        seconds = {}
         for measured in self.measured:
-            measured.calibrate(target, self.next_seed())
-            self.say(f"{measured.renderer.name()}: {measured.samples} samples a pixel are about {target:.1f} s")
+            name = measured.renderer.name()
+            seconds[name] = measured.calibrate(target, self.next_seed())
+            self.say(f"{name}: {measured.samples} samples a pixel take {seconds[name]:.1f} s")
+        check_times(seconds)
         self.make_reference()
         for turn in range(self.options.rounds):
             first = turn % len(self.measured)
