@@ -52,10 +52,10 @@ def t_quantile(p, freedom):
     return math.sqrt(freedom) * math.tan(np.interp(p, cumulative / cumulative[-1], theta))
 
 
-def interval(logs):
+def interval(logs, confidence=CONFIDENCE):
     """Geometric mean of positive figures from their logarithms, and its interval of confidence."""
     mean = statistics.fmean(logs)
-    half = t_quantile((1 + CONFIDENCE) / 2, len(logs) - 1) * statistics.stdev(logs) / math.sqrt(len(logs))
+    half = t_quantile((1 + confidence) / 2, len(logs) - 1) * statistics.stdev(logs) / math.sqrt(len(logs))
     return {"value": math.exp(mean), "low": math.exp(mean - half), "high": math.exp(mean + half)}
 
 
