@@ -1,6 +1,5 @@
 // The Python module vkvol._vkvol: what vkvol/__init__.py is made of, which has the documentation. A thin layer: nothing
 // is decided here but what Python's objects come to.
-#include <cxxabi.h>
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -172,21 +171,21 @@ bool ask() {
         ::pause();
 }
 
-// Without Python's lock. A forced unwind throws no object, of which the sanitizer would complain.
-template <class Work> [[gnu::no_sanitize("null")]] void run(const Work& work) {
+// Without Python's lock. A forced unwind is an exception without an object.
+template <class Work> void run(const Work& work) {
     std::exception_ptr failure;
     PyThreadState* const state = PyEval_SaveThread();
     try {
         const InterruptQuestion question(&ask);
         work();
-    } catch (abi::__forced_unwind&) {
-        rest();
     } catch (...) {
         failure = std::current_exception();
+        if (!failure)
+            rest();
     }
     try {
         PyEval_RestoreThread(state);
-    } catch (abi::__forced_unwind&) {
+    } catch (...) {
         rest();
     }
     if (const auto error = std::move(raised)) // which is why
