@@ -79,20 +79,27 @@ def told(value):
     return f"{value['value']:6.3f} [{value['low']:.3f}, {value['high']:.3f}]"
 
 
+def no_ratio(scene, why, is_well):
+    print(f"{scene:22} {why}", flush=True)
+    return None, is_well
+
+
 def measure(scene, builds, options, count, folder):
     """One line of the table, of `count`: the ratio of efficiencies, none of a scene that cannot be rendered, and whether all is well."""
     try:
         samples = samples_for(builds["new"], scene, options.time, folder)
-        Render(builds["old"], scene, samples, 1, folder)
-        renders = {"old": [], "new": []}
-        for turn in range(options.rounds):
-            for name in ("old", "new") if turn % 2 else ("new", "old"):
-                place = folder / name
-                place.mkdir(exist_ok=True)
-                renders[name].append(Render(builds[name], scene, samples, 100 + turn + (1000 if name == "new" else 0), place))
     except RuntimeError as why:
-        print(f"{scene:22} left out: {why}", flush=True)
-        return None, True
+        return no_ratio(scene, f"FAILS: {why}", False)
+    try:
+        Render(builds["old"], scene, samples, 1, folder)
+    except RuntimeError as why:
+        return no_ratio(scene, f"left out, as the old build says: {why}", True)
+    renders = {"old": [], "new": []}
+    for name in renders:
+        (folder / name).mkdir(exist_ok=True)
+    for turn in range(options.rounds):
+        for name, first_seed in (("old", 100), ("new", 1100))[::1 if turn % 2 else -1]:
+            renders[name].append(Render(builds[name], scene, samples, first_seed + turn, folder / name))
     efficiency, speed, lost = ratios(renders["old"], renders["new"], CONFIDENCE ** (1 / count))
     same = are_same(builds["new"], renders["old"], renders["new"], SIGNIFICANCE / count)
     seconds = statistics.median(render.seconds for render in renders["new"])

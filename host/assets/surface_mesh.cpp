@@ -177,10 +177,11 @@ std::shared_ptr<const Texture> load_texture(const std::filesystem::path& file, s
     return std::make_shared<const Texture>(Texture{map.width, map.height, std::move(map.texels)});
 }
 
-// What scene and files say is within the limit; what transforms make of it need not be.
+// What scene and files say is within the limit, and no corner of a box about that farther away than those of a ball's
+// of the largest radius at the largest coordinates, 2 sqrt(3) limits; what transforms make of it may be.
 void check_lengths(const Surface& surface) {
     const std::optional<SurfaceBounds> bounds = bounds_of({&surface, 1});
-    if (bounds && !(reach_of(*bounds, glm::dvec3(0.0)) <= 2.0 * largest_length)) // its corners
+    if (bounds && !(reach_of(*bounds, glm::dvec3(0.0)) <= 4.0 * largest_length))
         throw InputError(fmt::format("its <transform> takes it to {:.3g} from the origin; lengths and coordinates end "
                                      "at {:g}: choose a larger unit",
                                      reach_of(*bounds, glm::dvec3(0.0)), largest_length));

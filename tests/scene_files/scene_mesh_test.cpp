@@ -69,7 +69,9 @@ TEST_CASE("transforms may not take surfaces beyond what single precision holds",
           "<box x=\"-1e6\">" + far + "</box>"})
         CHECK_THROWS_WITH(with_surface_files(parse("<surfaces>" + shape + "</surfaces>")),
                           Contains("s.xml:1:20: ") && Contains("lengths and coordinates end at 1e+11"));
-    CHECK_NOTHROW(with_surface_files(parse("<surfaces><sphere radius=\"1e5\">" + far + "</sphere></surfaces>")));
+    for (const std::string& shape : {"<sphere radius=\"1e5\">" + far + "</sphere>",
+                                     std::string("<sphere x=\"1e11\" y=\"-1e11\" z=\"1e11\" radius=\"1e11\"/>")})
+        CHECK_NOTHROW(with_surface_files(parse("<surfaces>" + shape + "</surfaces>")));
 }
 
 TEST_CASE("wrong meshes in scene files are refused with their place", "[cpu][xml][surfaces]") {
