@@ -47,6 +47,8 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
         make_surfaces(assets);
     if (method.paths != PATHS_CAMERA)
         make_emitters(scene, method, assets);
+    else if (!lights_.pieces.empty())
+        buffers_.upload_emitters(device, commands, lights_.pieces);
     specialization_[SPEC_TABLE_TEXELS] = buffers_.find_table_texels(most_texel_bytes) ? 1 : 0;
     for (const glm::dvec3& point : scene.camera.points)
         points_.emplace_back(point - origin_);
@@ -66,7 +68,8 @@ void DeviceScene::make_lights(const Scene& scene, const Method& method, const As
         const double reach = reach_of(*bounds, origin_);
         radius = any_medium(scene, is_everywhere) ? std::min(radius, reach) : std::max(radius, reach);
     }
-    lights_ = make_light_table(scene, assets, origin_, radius);
+    lights_ = make_light_table(scene, assets, surfaces_, origin_, radius);
+    tell_look_densities(lights_, surfaces_);
     if (method.paths != PATHS_CAMERA)
         keep_apart(lights_.rows, surfaces_);
     frame_.choices = lights_.choices;
@@ -126,7 +129,7 @@ void DeviceScene::make_emitters(const Scene& scene, const Method& method, const 
                            double(frame_.crop_width) * frame_.crop_height);
     frame_.particles = table.params;
     text_ += method.paths == PATHS_LIGHT ? ", by particles" : ", and by particles";
-    buffers_.upload_emitters(device_, commands_, table);
+    buffers_.upload_emitters(device_, commands_, table.rows);
 }
 
 void DeviceScene::set_queues(std::uint32_t slots, std::uint32_t queue_capacity) {

@@ -40,26 +40,22 @@ public:
     }
 
     void add_primitive(const shared::SurfacePrimitive& piece, const shared::SurfaceRow& surface, std::uint32_t i) {
-        const double radius = piece.c.x;
-        const double area = piece.shape == SURFACE_TRIANGLES
-                                ? 0.5 * glm::length(glm::cross(glm::dvec3(piece.b) - glm::dvec3(piece.a),
-                                                               glm::dvec3(piece.c) - glm::dvec3(piece.a)))
-                                : (piece.shape == SURFACE_SPHERE ? 4.0 : 1.0) * pi * radius * radius;
-        add(AT_SURFACE | i, surface.sides * pi * area * channel_mean(surface.emission));
+        add(AT_SURFACE | i, surface.sides * pi * area_of(piece) * channel_mean(surface.emission));
     }
 
     double power() const { return sum_; }
 
     void finish() {
-        if (table_.rows.empty()) { // a black background
+        const std::size_t first = table_.params.first_emitter;
+        if (powers_.empty()) { // a black background
             table_.rows.push_back({{}, 0.0f, SOURCE_BACKGROUND});
             powers_.push_back(sum_ = 1.0);
         }
         const std::vector<double> chances = defensive_chances(powers_);
         const std::vector<shared::AliasEntry> alias = make_alias_table(chances);
         for (std::size_t i = 0; i < chances.size(); ++i) {
-            table_.rows[i].chance = static_cast<float>(chances[i]);
-            table_.rows[i].alias = alias[i];
+            table_.rows[first + i].chance = static_cast<float>(chances[i]);
+            table_.rows[first + i].alias = alias[i];
         }
         table_.params.emitters = static_cast<std::uint32_t>(chances.size());
         table_.params.power = static_cast<float>(sum_);
@@ -191,7 +187,7 @@ double brightest_in_view(const Scene& scene, const LightTable& lights, const Sur
 double usual_length(const LightTable& lights, const SurfaceTable& surfaces, glm::dvec3 eye) {
     double farthest = 0.0;
     for (const shared::LightRow& light : lights.rows)
-        if (light.kind & LIGHT_PLACED)
+        if ((light.kind & LIGHT_PLACED) && light.kind != LIGHT_SURFACE) // which is where its pieces are
             farthest = std::max(farthest, glm::distance(glm::dvec3(light.position), eye));
     for (std::size_t i = 0; i < surfaces.planes && farthest == 0.0; ++i)
         farthest = std::abs(glm::dot(glm::dvec3(surfaces.primitives[i].b), glm::dvec3(surfaces.primitives[i].a) - eye));
@@ -224,7 +220,7 @@ double brightest_of(const Scene& scene, Media loaded, const LightTable& lights, 
     for (const shared::LightRow& light : lights.rows) {
         double factor =
             light.kind == LIGHT_DIRECTIONAL || light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT ? peak : 1.0;
-        if ((light.kind & LIGHT_PLACED) && !(light.kind & LIGHT_SHAPED)) {
+        if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) {
             const double beyond = bounded ? double(glm::length(light.position)) - reach : 0.0;
             const double nearest = std::max(beyond, std::ldexp(reach, -15));
             factor /= nearest * nearest;
@@ -274,7 +270,8 @@ Glow glow_of(const Scene& scene, Media loaded, std::span<const shared::MediumPar
 EmitterTable make_emitter_table(const Scene& scene, Media loaded, const Method& method, const LightTable& lights,
                                 const SurfaceTable& surfaces, const Glow& glow, const SkyMap* sky,
                                 const shared::PeriodParams& period, double radius, glm::dvec3 origin, double pixels) {
-    EmitterTable table;
+    EmitterTable table{lights.pieces, {}};
+    table.params.first_emitter = static_cast<std::uint32_t>(table.rows.size());
     const bool bounded = std::isfinite(radius);
     table.params.radius = bounded ? static_cast<float>(radius * 1.0001) : 0.0f;
     const bool counts = reads_flux(scene.camera);

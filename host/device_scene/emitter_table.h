@@ -11,7 +11,7 @@
 namespace vkvol {
 
 struct EmitterTable {
-    std::vector<shared::EmitterRow> rows; // at least one
+    std::vector<shared::EmitterRow> rows; // behind the pieces of LightTable, at least one
     shared::ParticleParams params{};
 };
 

@@ -144,7 +144,7 @@ bool gains_by_looks_along(const Scene& scene, Media media) {
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         for (const Light& light : scene.lights)
             if (const std::optional<glm::dvec3> place = place_of(light);
-                place && (scene.surfaces.empty() || !is_lamp(light)))
+                place && (scene.surfaces.empty() || !is_lamp(light))) // surfaces of any shape have none
                 if (distance_to(scene.volumes[i], media[i], *place) < near * diagonal_of(scene.volumes[i], media[i]))
                     return true;
     return false;

@@ -10,6 +10,7 @@
 #include "alias_table.h"
 #include "layer_plan.h"
 #include "light_tree.h"
+#include "shining_pieces.h"
 
 namespace vkvol {
 
@@ -28,9 +29,9 @@ struct Entry {
     shared::LightRow row{};
     double fluence = 0.0; // amid the media, roughly
     // In this order rows are laid out.
-    enum class Place { sky, far, lamp, point } place = Place::far; // sky: met by flights that leave
-    float reach = 0.0f;                                            // from its middle
-    double power = 0.0;                                            // see LightTable
+    enum class Place { sky, far, lamp, point, surface } place = Place::far; // sky: met by flights that leave
+    glm::vec3 reach{0.0f};                                                  // from its middle
+    double power = 0.0;                                                     // see LightTable
     double cone = pi; // radians, the most that its light is off its direction
     // What counts of its intensity for the chance to be chosen, of spots: the fourth root of the share of the media
     // that is in the cone. The square root would have the least noise if all places counted alike; what is lit counts
@@ -39,14 +40,14 @@ struct Entry {
 };
 
 bool is_somewhere(const Entry& entry) {
-    return entry.place == Entry::Place::lamp || entry.place == Entry::Place::point;
+    return entry.place >= Entry::Place::lamp;
 }
 
 // One light as a row.
 class Rows {
 public:
-    Rows(const Scene& scene, const Assets& assets, const glm::dvec3& origin, double radius)
-        : assets_(assets), origin_(origin), radius_(radius),
+    Rows(const Scene& scene, const Assets& assets, const ShiningPieces& pieces, const glm::dvec3& origin, double radius)
+        : assets_(assets), pieces_(pieces), origin_(origin), radius_(radius),
           reach_(scene.surfaces.empty() && !any_medium(scene, is_everywhere) && !reads_flux(scene.camera)
                      ? radius
                      : std::numeric_limits<double>::infinity()) {}
@@ -124,6 +125,22 @@ public:
         return entry;
     }
 
+    // Seen from anywhere it is as large as a ball of its area would be, or both its sides.
+    Entry operator()(const SurfaceLight& light) const {
+        Entry entry = begin(LIGHT_SURFACE, light.radiance);
+        const ShiningSurface& pieces = pieces_.surfaces.at(light.body);
+        entry.row.first_piece = pieces.first;
+        entry.row.pieces = pieces.count;
+        entry.row.sides = pieces.sides;
+        entry.row.position = 0.5f * (pieces.low + pieces.high);
+        entry = lamp(entry, light.radiance, origin_ + glm::dvec3(entry.row.position), 0.25 * pieces.sides * pieces.area,
+                     0.0f);
+        entry.row.area = static_cast<float>(pieces.area);
+        entry.reach = 0.5f * (pieces.high - pieces.low);
+        entry.place = Entry::Place::surface;
+        return entry;
+    }
+
     Entry operator()(const SkyLight&) const {
         Entry entry = begin(LIGHT_MAP, Rgb(0.0));
         entry.fluence = channel_mean(assets_.sky->fluence);
@@ -170,7 +187,7 @@ private:
         entry.fluence =
             std::min(channel_mean(radiance) * area / square_distance(center), 2.0 * pi * channel_mean(radiance));
         entry.place = Entry::Place::lamp;
-        entry.reach = reach;
+        entry.reach = glm::vec3(reach);
         return entry;
     }
 
@@ -182,6 +199,7 @@ private:
     }
 
     const Assets& assets_;
+    const ShiningPieces& pieces_;
     glm::dvec3 origin_;
     double radius_; // of a ball about the media
     double reach_;  // of one about all that lights may shine on
@@ -194,7 +212,7 @@ double power_of(const Light& light, const Entry& entry) {
             if constexpr (requires { power_per_unit(kind); })
                 return channel_mean(entry.row.radiance) * power_per_unit(kind);
             else
-                return entry.fluence;
+                return entry.place == Entry::Place::surface ? 0.0 : entry.fluence;
         },
         light);
 }
@@ -228,8 +246,10 @@ std::vector<glm::vec3> find_suns(std::vector<Entry> entries, double fluence) {
 PlacedLight placed(const Entry& entry, std::uint32_t row) {
     const glm::vec3 radiance = entry.row.radiance;
     const float mean = (radiance.x + radiance.y + radiance.z) / 3.0f;
-    const float power =
-        mean * (entry.place == Entry::Place::lamp ? entry.row.area : 1.0f) * (entry.fluence > 0.0 ? 1.0f : 1e-6f);
+    const float area = entry.place == Entry::Place::lamp      ? entry.row.area
+                       : entry.place == Entry::Place::surface ? 0.25f * float(entry.row.sides) * entry.row.area
+                                                              : 1.0f;
+    const float power = mean * area * (entry.fluence > 0.0 ? 1.0f : 1e-6f);
     PlacedLight light{entry.row.position - entry.reach, entry.row.position + entry.reach, std::max(power, 1e-30f),
                       std::max(power * static_cast<float>(entry.by_cone), 1e-30f), row};
     if (entry.row.kind & LIGHT_AIMED) {
@@ -237,6 +257,21 @@ PlacedLight placed(const Entry& entry, std::uint32_t row) {
         light.reach = entry.cone;
     }
     return light;
+}
+
+// By area, with the chance that the tree would have if all lights were as far off: see shining.glsl.
+void set_look_densities(const std::vector<PlacedLight>& in_tree, std::vector<shared::LightRow>& rows, float placed) {
+    double all = 0.0;
+    for (const PlacedLight& light : in_tree)
+        all += light.power_in_matter;
+    const auto set = [&](shared::LightRow& light, double share) {
+        if (light.kind == LIGHT_SURFACE && light.area > 0.0f)
+            light.look_density = static_cast<float>(placed * share / light.area);
+    };
+    for (const PlacedLight& light : in_tree)
+        set(rows[light.row], light.power_in_matter / all);
+    if (in_tree.empty() && !rows.empty()) // the last is all that may have a place
+        set(rows.back(), 1.0);
 }
 
 } // namespace
@@ -259,8 +294,8 @@ int lights_kind(const Scene& scene) {
     const bool asks_where = (!scene.surfaces.empty() || reads_flux(scene.camera)) && any(is_aimed);
     const int tree = somewhere > 1 ? LIGHTS_TREE | (asks_where ? LIGHTS_AIMED : 0) : 0;
     return LIGHTS_TABLE | (any(is_met_by_chance) ? LIGHTS_SKY : 0) | (any(is_lamp) ? LIGHTS_LAMPS : 0) | tree |
-           (any(is_map) ? LIGHTS_MAP : 0) | (lights.size() == 1 ? LIGHTS_SOLE : 0) |
-           (any(is_square) ? LIGHTS_EQUAL_AREA : 0);
+           (any(is_shining_surface) ? LIGHTS_SURFACES : 0) | (any(is_map) ? LIGHTS_MAP : 0) |
+           (lights.size() == 1 ? LIGHTS_SOLE : 0) | (any(is_square) ? LIGHTS_EQUAL_AREA : 0);
 }
 
 std::uint32_t loop_iterations(const Scene& scene) {
@@ -293,15 +328,19 @@ double reach_of_lamps(const std::vector<Light>& lights, const glm::dvec3& origin
     return reach;
 }
 
-LightTable make_light_table(const Scene& scene, const Assets& assets, const glm::dvec3& origin, double radius) {
+LightTable make_light_table(const Scene& scene, const Assets& assets, const SurfaceTable& surfaces,
+                            const glm::dvec3& origin, double radius) {
     std::vector<Entry> entries;
     const std::vector<std::string> groups = plan_layers(scene).groups;
-    const Rows rows(scene, assets, origin, radius);
+    ShiningPieces pieces = find_shining_pieces(scene.lights, surfaces);
+    const Rows rows(scene, assets, pieces, origin, radius);
     for (const Light& light : scene.lights) {
         entries.push_back(std::visit(rows, light));
         entries.back().power = power_of(light, entries.back());
         entries.back().row.group = group_layer(groups, group_of(light));
-        entries.back().row.body = body_of(light) == no_body ? NO_SURFACE : static_cast<std::uint32_t>(body_of(light));
+        // Of a lamp, which looks pass over on their way to it; a surface of any shape may hide itself.
+        const bool has_body = body_of(light) != no_body && !is_shining_surface(light);
+        entries.back().row.body = has_body ? static_cast<std::uint32_t>(body_of(light)) : NO_SURFACE;
     }
     std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.place < b.place; });
     LightTable table;
@@ -328,7 +367,17 @@ LightTable make_light_table(const Scene& scene, const Assets& assets, const glm:
     table.suns = find_suns(entries, table.fluence);
     if (has_tree)
         table.tree = make_light_tree(somewhere);
+    if (table.choices > 0)
+        set_look_densities(somewhere, table.rows, table.rows[table.choices - 1].chance);
+    table.pieces = std::move(pieces.rows);
     return table;
+}
+
+void tell_look_densities(const LightTable& table, SurfaceTable& surfaces) {
+    for (const shared::LightRow& light : table.rows)
+        if (light.kind == LIGHT_SURFACE && light.look_density > 0.0f)
+            surfaces.rows[surfaces.primitives[table.pieces[light.first_piece].source].surface].look_density =
+                light.look_density;
 }
 
 shared::SkyParams make_sky_params(const Scene& scene, const Assets& assets) {

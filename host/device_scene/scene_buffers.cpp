@@ -139,9 +139,11 @@ void SceneBuffers::upload_lights(const Device& device, Commands& commands, const
     make_buffer(device, commands, sky_alias_, "choice of the sky's texels", bytes_of(sky->alias));
 }
 
-void SceneBuffers::upload_emitters(const Device& device, Commands& commands, const EmitterTable& table) {
-    check_size(device, "the sources of particles", bytes_of(table.rows).size(), "let fewer triangles shine");
-    make_buffer(device, commands, emitters_, "sources of particles", bytes_of(table.rows));
+void SceneBuffers::upload_emitters(const Device& device, Commands& commands,
+                                   const std::vector<shared::EmitterRow>& rows) {
+    check_size(device, "pieces of surfaces that shine, and other sources,", bytes_of(rows).size(),
+               "let fewer triangles shine");
+    make_buffer(device, commands, emitters_, "sources of light", bytes_of(rows));
 }
 
 void SceneBuffers::upload_surfaces(const Device& device, Commands& commands, const SurfaceTable& table,

@@ -6,7 +6,6 @@
 
 #include "bindings.h"
 #include "commands.h"
-#include "emitter_table.h"
 #include "light_table.h"
 #include "loaded_medium.h"
 #include "shared/frame.h"
@@ -35,7 +34,7 @@ public:
     void upload_lights(const Device& device, Commands& commands, const LightTable& table, const SkyMap* sky);
 
     // What particles come from. Throws InputError if it is too much for the device.
-    void upload_emitters(const Device& device, Commands& commands, const EmitterTable& table);
+    void upload_emitters(const Device& device, Commands& commands, const std::vector<shared::EmitterRow>& rows);
 
     // In the buffer of the sky's texels, behind these.
     void upload_textures(const Device& device, Commands& commands, const std::vector<glm::vec4>& texels,

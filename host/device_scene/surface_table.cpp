@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <tuple>
 
@@ -12,7 +13,7 @@
 namespace vkvol {
 
 static_assert(SMOOTH_FACES > MATERIAL_THIN_DIELECTRIC, "bits of one number");
-static_assert(sizeof(shared::SurfaceRow) == 4 * 16, "texels, as surface_point.glsl reads them");
+static_assert(sizeof(shared::SurfaceRow) == SURFACE_ROW_TEXELS * 16, "texels, as surface_point.glsl reads them");
 
 namespace {
 
@@ -226,6 +227,16 @@ SurfaceTable make_surface_table(const std::vector<Surface>& surfaces, const glm:
         node.leaf += node.leaf != 0 ? 8 * table.planes : 0;
     table.nodes = std::move(tree.nodes);
     return table;
+}
+
+double area_of(const shared::SurfacePrimitive& piece) {
+    if (piece.shape == SURFACE_TRIANGLES)
+        return 0.5 * glm::length(glm::cross(glm::dvec3(piece.b) - glm::dvec3(piece.a),
+                                            glm::dvec3(piece.c) - glm::dvec3(piece.a)));
+    const double radius = piece.c.x;
+    return piece.shape == SURFACE_PLANE
+               ? 0.0
+               : (piece.shape == SURFACE_SPHERE ? 4.0 : 1.0) * std::numbers::pi * radius * radius;
 }
 
 int material_bits(const std::vector<Surface>& surfaces) {

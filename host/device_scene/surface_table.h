@@ -22,6 +22,9 @@ struct SurfaceTable {
 SurfaceTable make_surface_table(const std::vector<Surface>& surfaces, const glm::dvec3& origin,
                                 std::uint32_t first_texel = 0);
 
+// World units^2; of a plane, none.
+double area_of(const shared::SurfacePrimitive& piece);
+
 // Bits of SPEC_MATERIALS.
 int material_bits(const std::vector<Surface>& surfaces);
 

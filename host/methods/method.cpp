@@ -207,7 +207,8 @@ void MethodChooser::choose_mis() {
     const bool scatters = method_.scattering != SCATTERING_NONE || reads_flux(scene_.camera);
     const bool met = scatters && std::any_of(lights.begin(), lights.end(), is_met_by_chance);
     const bool shared = method_.paths != PATHS_LIGHT && method_.nee != NEE_NONE &&
-                        (met || std::any_of(lights.begin(), lights.end(), is_lamp));
+                        (met || std::any_of(lights.begin(), lights.end(), is_lamp) ||
+                         std::any_of(lights.begin(), lights.end(), is_shining_surface));
     if (choices_.mis && !shared)
         warn("mis is without effect: no light is found in two ways");
     method_.mis = shared ? choices_.mis.value_or(MIS_BALANCE) : MIS_BALANCE;

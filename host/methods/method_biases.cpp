@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,7 @@ private:
         return std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(), is);
     }
     bool has_thrown_light() const;
+    bool shines_by_chance() const;
     bool is_thrown_from_afar() const;
     std::string who_finds_caustics() const;
     void warn(const std::string& message) { method_.warnings.push_back(method_.integrator + ": " + message); }
@@ -44,13 +46,23 @@ private:
     Method& method_;
 };
 
-bool shines(const Surface& surface) {
-    return surface.emission != Rgb(0.0);
+bool has_no_extent(const Light& light) {
+    return !is_lamp(light) && !is_met_by_chance(light) && !is_shining_surface(light);
+}
+
+// Whether any surface shines that is no light.
+bool BiasFinder::shines_by_chance() const {
+    std::set<int> lights;
+    for (const Light& light : scene_.lights)
+        lights.insert(body_of(light));
+    for (std::size_t i = 0; i < scene_.surfaces.size(); ++i)
+        if (scene_.surfaces[i].emission != Rgb(0.0) && !lights.contains(static_cast<int>(i)))
+            return true;
+    return false;
 }
 
 // Whether there are caustics of lights that no path may meet.
 bool BiasFinder::has_thrown_light() const {
-    const auto has_no_extent = [](const Light& light) { return !is_lamp(light) && !is_met_by_chance(light); };
     return method_.scattering == SCATTERING_MULTIPLE && method_.nee != NEE_NONE && any_surface(is_smooth) &&
            std::any_of(scene_.lights.begin(), scene_.lights.end(), has_no_extent);
 }
@@ -72,8 +84,7 @@ std::string BiasFinder::who_finds_caustics() const {
 }
 
 void BiasFinder::find_chances() {
-    const bool has_extent = std::any_of(scene_.lights.begin(), scene_.lights.end(),
-                                        [](const Light& light) { return is_lamp(light) || is_met_by_chance(light); });
+    const bool has_extent = !std::all_of(scene_.lights.begin(), scene_.lights.end(), has_no_extent);
     std::vector<const char*> found;
     const bool by_particles = method_.paths == PATHS_BOTH && particles_come_from_afar(scene_);
     const bool both_can = !why_no_particles(scene_, true, false);
@@ -88,10 +99,10 @@ void BiasFinder::find_chances() {
                               "looks for"
                             : "what smooth mirrors, coats and glass throw of lights, which integrator bidirectional "
                               "looks for if they have a place");
-    if (method_.paths != PATHS_LIGHT && method_.scattering != SCATTERING_SINGLE && any_surface(shines))
-        found.push_back(
-            "light of surfaces that no shadow ray looks for (meshes, boxes, planes, balls that shine inwards; all "
-            "where there are more than 256, or in domains that repeat)");
+    if (method_.paths != PATHS_LIGHT && method_.scattering != SCATTERING_SINGLE && shines_by_chance())
+        found.push_back(scene_.periodic ? "light of surfaces, for which no shadow ray looks in domains that repeat"
+                        : method_.nee == NEE_NONE ? "light of surfaces, for which no shadow ray looks"
+                                                  : "light of planes, for which no shadow ray looks");
     method_.by_chance = fmt::format("{}", fmt::join(found, "; "));
 }
 
@@ -114,7 +125,7 @@ void BiasFinder::find_biases() {
     const bool needs_majorant = method_.flights_have(TRAIT_BOUND) || method_.shadow_rays_have(TRAIT_BOUND);
     if (needs_majorant && scene_.settings.majorant_scale < 1.0)
         add(bias_majorant, "the majorant is scaled below the density");
-    if (method_.scattering == SCATTERING_SINGLE && (any_surface(is_smooth) || any_surface(shines)))
+    if (method_.scattering == SCATTERING_SINGLE && (any_surface(is_smooth) || shines_by_chance()))
         add(bias_single_at_surfaces,
             "single scattering ends at the first surface: what mirrors, coats and glass show is "
             "missing, and so is what surfaces scatter of others that no shadow ray looks for");

@@ -181,6 +181,8 @@ void add_light(Writer& writer, const DiskLight& light) {
     writer.add("radiance", light.radiance);
 }
 
+void add_light(Writer&, const SurfaceLight&) {} // known by its surface
+
 void add_light(Writer& writer, const RectangleLight& light) {
     writer.add("rectangle", light.center);
     writer.add("edge", light.edge_u);

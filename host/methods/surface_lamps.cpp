@@ -7,9 +7,9 @@ namespace vkvol {
 
 namespace {
 
-constexpr std::size_t most_lamps = 256; // every camera ray asks all of them
+constexpr std::ptrdiff_t most_lamps = 256; // every camera ray asks all of them
 
-// The lamp that a surface's front is, or with -1 its back; none where it is met by chance.
+// The lamp that a surface's front is, or with -1 its back, if it can be one.
 struct LampOf {
     const Surface& surface;
     int body;
@@ -38,24 +38,31 @@ std::vector<Light> lamps_of(const Surface& surface, std::size_t index) {
     return lamps;
 }
 
+// A plane has no end, and no point that is drawn evenly.
+bool can_be_light(const Surface& surface) {
+    return surface.emission != Rgb(0.0) && !std::holds_alternative<PlaneSurface>(surface.shape);
+}
+
 } // namespace
 
 bool has_lamps_of_surfaces(const Scene& scene) {
-    if (scene.periodic) // then every domain has them, and looks would find those of one
-        return false;
-    const auto shines = [](const Surface& surface) { return !lamps_of(surface, 0).empty(); };
-    const auto lamps = std::size_t(std::count_if(scene.surfaces.begin(), scene.surfaces.end(), shines));
-    return lamps > 0 && lamps <= most_lamps;
+    // Where a domain repeats each has them, and looks would find those of one.
+    return !scene.periodic && std::any_of(scene.surfaces.begin(), scene.surfaces.end(), can_be_light);
 }
 
 Scene with_lamps_of_surfaces(Scene scene) {
     if (!has_lamps_of_surfaces(scene))
         return scene;
+    const auto can_be_lamp = [](const Surface& surface) { return !lamps_of(surface, 0).empty(); };
+    const bool few = std::count_if(scene.surfaces.begin(), scene.surfaces.end(), can_be_lamp) <= most_lamps;
     for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
-        const std::vector<Light> lamps = lamps_of(scene.surfaces[i], i);
+        Surface& surface = scene.surfaces[i];
+        const std::vector<Light> lamps = few ? lamps_of(surface, i) : std::vector<Light>();
         scene.lights.insert(scene.lights.end(), lamps.begin(), lamps.end());
         if (!lamps.empty())
-            scene.surfaces[i].emission = Rgb(0.0);
+            surface.emission = Rgb(0.0);
+        else if (can_be_light(surface))
+            scene.lights.push_back(SurfaceLight{surface.emission, "", static_cast<int>(i)});
     }
     return scene;
 }

@@ -90,6 +90,14 @@ struct RectangleLight {
     glm::dvec3 normal() const { return glm::normalize(glm::cross(edge_u, edge_v)); }
 };
 
+// A surface of any shape that shines, and is looked for by points of it, while flights go on to meet it: no lamp, and
+// the surface goes on to shine.
+struct SurfaceLight {
+    Rgb radiance{0.0};
+    std::string group = {};
+    int body = no_body;
+};
+
 // A sky by day, as assets/daylight.h makes it.
 struct Daylight {
     glm::dvec3 sun{0.0, 1.0, 0.0}; // unit, towards it; above the horizon
@@ -123,8 +131,8 @@ struct SkyLight {
     std::string group = {};
 };
 
-using Light =
-    std::variant<DirectionalLight, SunLight, PointLight, SpotLight, SkyLight, SphereLight, DiskLight, RectangleLight>;
+using Light = std::variant<DirectionalLight, SunLight, PointLight, SpotLight, SkyLight, SphereLight, DiskLight,
+                           RectangleLight, SurfaceLight>;
 
 inline const std::string& group_of(const Light& light) {
     return std::visit([](const auto& kind) -> const std::string& { return kind.group; }, light);
@@ -158,17 +166,21 @@ inline bool is_met_by_chance(const Light& light) {
     return std::holds_alternative<SunLight>(light) || std::holds_alternative<SkyLight>(light);
 }
 
-// One with a shape and a place, which the camera sees.
+inline bool is_shining_surface(const Light& light) {
+    return std::holds_alternative<SurfaceLight>(light);
+}
+
+// One with a shape and a place, which the camera sees by looks.
 inline bool is_lamp(const Light& light) {
     return std::holds_alternative<SphereLight>(light) || std::holds_alternative<DiskLight>(light) ||
            std::holds_alternative<RectangleLight>(light);
 }
 
-// Middle of a light that is somewhere, near or far; none of one infinitely far.
+// Middle of a light that is somewhere, near or far; none of one infinitely far, or that is a surface of any shape.
 std::optional<glm::dvec3> place_of(const Light& light);
 
 inline bool has_place(const Light& light) {
-    return place_of(light).has_value();
+    return is_shining_surface(light) || place_of(light).has_value();
 }
 
 } // namespace vkvol

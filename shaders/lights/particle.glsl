@@ -128,20 +128,11 @@ Particle from_glow(MediumParams v, vec2 where, vec2 u, uvec4 words, inout Rng rn
 Particle from_primitive(uint i, vec2 where, vec2 u, float side) {
     SurfacePrimitive piece = primitive_at(i);
     SurfaceRow row = surface_row(piece.surface);
-    vec3 near = mix(piece.a, mix(piece.b, piece.c, where.y), sqrt(where.x));
-    float scale = edge_scale(piece);
+    float scale = edge_scale(piece), radius = piece.c.x;
     float area = 0.5 * length(cross(scale * (piece.b - piece.a), scale * (piece.c - piece.a))) / scale / scale;
-    if (piece.shape == SURFACE_SPHERE) {
-        near = piece.a + piece.c.x * in_any_direction(where);
-        area = 4.0 * PI * piece.c.x * piece.c.x;
-    } else if (piece.shape == SURFACE_DISK) {
-        vec3 tangent, bitangent;
-        build_frame(piece.b, tangent, bitangent);
-        vec2 at = piece.c.x * in_disk(where);
-        near = piece.a + at.x * tangent + at.y * bitangent;
-        area = PI * piece.c.x * piece.c.x;
-    }
-    SurfacePoint at = surface_point(i, near);
+    if (piece.shape != SURFACE_TRIANGLES)
+        area = (piece.shape == SURFACE_SPHERE ? 4.0 : 1.0) * PI * radius * radius;
+    SurfacePoint at = surface_point(i, point_on(piece, where));
     vec3 normal = row.sides == 2u && side < 0.5 ? -at.normal : at.normal;
     Particle p = particle(at.position + at.apart * normal, by_cosine(normal, u), PI * float(row.sides) * area * row.emission, SHINES_FLAT);
     p.normal = normal;
@@ -152,8 +143,8 @@ Particle from_primitive(uint i, vec2 where, vec2 u, float side) {
 
 Particle emit_particle(MediumParams v, inout Rng rng) {
     uvec4 words = next_words(rng), more = next_words(rng);
-    uint i = below(frame.particles.emitters, words.x);
-    EmitterRow source = emitters[choose(emitters[i].alias, i, words.y)];
+    uint i = below(frame.particles.emitters, words.x), first = frame.particles.first_emitter;
+    EmitterRow source = emitters[first + choose(emitters[first + i].alias, i, words.y)];
     vec2 where = to_uniform(words).zw, u = to_uniform(more).xy;
     Particle p;
     if (EMISSION != EMISSION_NONE && source.source == SOURCE_GLOW)

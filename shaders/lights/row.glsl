@@ -11,7 +11,7 @@ LightRow light_at(uint i) {
     if (TABLE_TEXELS == 0)
         return lights[i];
     uvec4 a = light_texel(i, 0u), b = light_texel(i, 1u), c = light_texel(i, 2u), d = light_texel(i, 3u),
-          e = light_texel(i, 4u), f = light_texel(i, 5u), g = light_texel(i, 6u);
+          e = light_texel(i, 4u), f = light_texel(i, 5u), g = light_texel(i, 6u), h = light_texel(i, 7u);
     LightRow row;
     row.kind = a.x;
     row.alias = AliasEntry(a.y, a.z);
@@ -29,6 +29,10 @@ LightRow light_at(uint i) {
     row.full_within = uintBitsToFloat(g.x);
     row.none_beyond = uintBitsToFloat(g.y);
     row.apart = uintBitsToFloat(g.z);
+    row.look_density = uintBitsToFloat(g.w);
+    row.first_piece = h.x;
+    row.pieces = h.y;
+    row.sides = h.z;
     return row;
 }
 

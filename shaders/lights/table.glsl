@@ -1,27 +1,14 @@
 // Any number of lights of any kind. A look goes toward one of them, chosen with a chance that the host has fixed; what
-// flights meet by themselves of a light with extent, they meet when they leave for the sky. Both find the same light, and share the
-// work by weights that add up to 1 for every direction: multiple importance sampling (Veach and Guibas, "Optimally Combining
-// Sampling Techniques for Monte Carlo Rendering", 1995).
+// flights meet by themselves of a light with extent, they meet when they leave for the sky, or come to a surface that shines.
 #ifndef LIGHT_TABLE_GLSL
 #define LIGHT_TABLE_GLSL
 #include "lights/disc.glsl"
 #include "lights/lamp.glsl"
+#include "lights/mis.glsl"
 #include "lights/point.glsl"
+#include "lights/shining.glsl"
 #include "lights/sky.glsl"
 #include "lights/tree.glsl"
-
-// Weight of a direction that was drawn with density `own`, and that the other technique draws with `other`. By quotients, since the
-// densities of small lights overflow when squared.
-float mis_weight(float own, float other) {
-    float r = other / own;
-    return own > 0.0 ? 1.0 / (1.0 + (MIS == MIS_POWER ? r * r : r)) : 0.0;
-}
-float weight_of_look(float pdf, float phase_pdf) {
-    return MIS == MIS_LIGHT || SCATTERING == SCATTERING_SINGLE ? 1.0 : MIS == MIS_PHASE ? 0.0 : mis_weight(pdf, phase_pdf);
-}
-float weight_of_flight(float phase_pdf, float pdf) {
-    return MIS == MIS_PHASE || NEE == NEE_NONE ? 1.0 : MIS == MIS_LIGHT ? 0.0 : mis_weight(phase_pdf, pdf);
-}
 
 bool is_map(LightRow light) {
     return HAS_SKY_MAP && (SOLE_LIGHT || light.kind == LIGHT_MAP);
@@ -97,6 +84,10 @@ LightSample sample_light(Scatterer s, LightRow light, vec3 from, vec3 travel, uv
     LightSample drawn;
     if (SEES_LAMPS && (light.kind & LIGHT_SHAPED) != 0u)
         drawn = sample_lamp(s, light, from, travel, u, to_tap(words).z);
+#ifdef SURFACES
+    else if (SEES_SURFACES && light.kind == LIGHT_SURFACE)
+        drawn = sample_shining(s, light, from, travel, u, rng);
+#endif
     else
         drawn = sample_shapeless(light, from, u, rng);
     if (SEES_SKY && SCATTERING == SCATTERING_SINGLE && MIS != MIS_LIGHT)

@@ -31,14 +31,20 @@ LightSample look_from_sensor(vec3 from, vec3 ray, inout Rng rng, out uint row) {
     row = choose_light(lit_point(from, true, normal), words, rng, chance);
     LightRow light = light_at(row);
     LightSample drawn;
+    float density = 0.0; // for weights; 0 of what no ray meets
     if (SEES_LAMPS && (light.kind & LIGHT_SHAPED) != 0u)
         drawn = sample_lamp_by_ray(light, from, ray, u, to_tap(words).z);
+#ifdef SURFACES
+    else if (SEES_SURFACES && light.kind == LIGHT_SURFACE)
+        drawn = draw_shining(light, from, u, rng, density);
+#endif
     else
         drawn = sample_shapeless(light, from, u, rng);
     drawn = over_density(drawn, chance);
+    density = max(density, drawn.pdf);
     float by_ray = flux_pdf(drawn.direction);
-    float weight = MIS == MIS_LIGHT ? 1.0 : MIS == MIS_PHASE ? 0.0 : mis_weight(drawn.pdf, by_ray);
-    drawn.light *= by_ray * (drawn.pdf > 0.0 ? weight : 1.0);
+    float weight = MIS == MIS_LIGHT ? 1.0 : MIS == MIS_PHASE ? 0.0 : mis_weight(density, by_ray);
+    drawn.light *= by_ray * (density > 0.0 ? weight : 1.0);
     return drawn;
 }
 

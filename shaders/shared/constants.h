@@ -49,7 +49,7 @@
 #define BINDING_MEMBER_TEXELS 35 // the same, four words at a time
 #define BINDING_NODE_TEXELS 36 // of BINDING_BVH, two to a node
 #define BINDING_PRIMITIVE_TEXELS 37 // three to a primitive
-#define BINDING_SURFACE_TEXELS 38 // four to a row
+#define BINDING_SURFACE_TEXELS 38 // SURFACE_ROW_TEXELS to a row
 #define BINDING_LIGHT_TEXELS 39 // LIGHT_ROW_TEXELS to a row
 #define BINDING_BLACKBODY_TEXELS 40
 #define BINDING_SKY_TEXELS 41 // one to a texel of the sky, then of textures
@@ -205,6 +205,7 @@
 #define LIGHTS_LAMPS 4 // some that have a shape and a place
 #define LIGHTS_TREE 8  // several that have a place
 #define LIGHTS_AIMED 32 // of those that have a place, some that do not shine into all directions
+#define LIGHTS_SURFACES 256 // surfaces of any shape, which flights meet, too
 #define LIGHTS_EQUAL_AREA 16 // a map of the sky, and that a square one; see equal_area.glsl
 
 // Kinds of lights: each a number of its own, and what else is to be known of it.
@@ -220,6 +221,7 @@
 #define LIGHT_SPHERE (5 | LIGHT_PLACED | LIGHT_SHAPED)
 #define LIGHT_DISK (6 | LIGHT_PLACED | LIGHT_SHAPED | LIGHT_FLAT | LIGHT_AIMED)
 #define LIGHT_RECTANGLE (7 | LIGHT_PLACED | LIGHT_SHAPED | LIGHT_FLAT | LIGHT_AIMED)
+#define LIGHT_SURFACE (8 | LIGHT_PLACED) // of any shape, which flights meet, too: no lamp
 
 // What a surface is made of. A plane has no end; there are few, and no hierarchy holds them.
 #define SURFACE_TRIANGLES 0
@@ -341,7 +343,8 @@
 
 #define LAST_OF_LIST 0x80000000u // of media in a cell: set in the last one's word
 
-#define LIGHT_ROW_TEXELS 7u
+#define LIGHT_ROW_TEXELS 8u
+#define SURFACE_ROW_TEXELS 5u
 #define SURFACE_SPARE 3.8147e-6 // 64 ulps of 1: see surfaces/surface_point.glsl
 #define NO_LIGHT 0xffffffffu
 

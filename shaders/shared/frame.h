@@ -236,7 +236,11 @@ struct LightRow {
     float full_within; // of a spot, 1 - cos of angles to its axis: full intensity within,
     float none_beyond; // none beyond
     float apart;     // from its place: so far on no surface that it lies in is before it, by rounding
-    uint unused;     // so that it is whole texels: see lights/row.glsl
+    float look_density; // of a surface: per area, of looks toward it, as weights have it; see shining.glsl
+    uint first_piece;   // the first of the rows of BINDING_EMITTERS that are its pieces,
+    uint pieces;        // and how many these are
+    uint sides;         // that shine: 1 or 2
+    uint unused;        // so that it is whole texels: see lights/row.glsl
 };
 
 // A surface; which fields mean something depends on its kinds.
@@ -249,6 +253,8 @@ struct SurfaceRow {
     uint sides;    // that shine: 1 or 2
     vec3 k;        // of a conductor, the index's imaginary part; of what is coated, x: what its coat throws back at it
     uint texture;  // that multiplies the colour: 1 and where it is in BINDING_SKY; or 0
+    float look_density; // per area, of looks toward it; 0 if there are none. See shining.glsl
+    uint unused[3];
 };
 
 // A piece of a surface that a ray meets at once. Render space.
@@ -274,7 +280,7 @@ struct LightNode {
     float reach;  // cosine of the most that light is off its light's axis
 };
 
-// What sends out particles: see emit.glsl.
+// What sends out particles, see emit.glsl; or a piece of a surface that is looked for, see shining.glsl.
 struct EmitterRow {
     AliasEntry alias;
     float chance; // with which it is chosen
@@ -283,7 +289,8 @@ struct EmitterRow {
 
 struct ParticleParams {
     float radius;      // of a ball about the origin that holds all that is to be lit from afar; 0: nothing comes from there
-    uint emitters;     // rows to choose among
+    uint first_emitter; // of the rows to choose among: behind the pieces of surfaces that are looked for
+    uint emitters;     // how many
     float power;       // of all of them together, roughly: a particle's throughput is in units of it
     float glow_volume; // of the box about the media [world units^3],
     vec3 glow_corner;  // and where that is

@@ -71,7 +71,7 @@
     ROW(uint, target, has_particles)        /* the film entry that what it lights is seen in */                       \
     ROW(uint, lit_surface, has_surfaces)    /* the primitive that the shadow ray lights, or NO_SURFACE */             \
     ROW(uint, lamp_body, has_surfaces)      /* the surface whose light it looks for, or NO_SURFACE */                 \
-    ROW(float, phase_pdf, sees_sky)         /* with which the flight's direction was drawn; 0 at the camera */        \
+    ROW(float, phase_pdf, meets_lights)     /* with which the flight's direction was drawn; 0 at the camera */        \
     ROW(float, reach, has_surfaces) /* of the flight, to the surface that ends it, or FAR [world units] */            \
     ROW(uint, struck, has_surfaces) /* that surface's primitive */
 

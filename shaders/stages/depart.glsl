@@ -34,7 +34,7 @@ uvec4 first_words(bool looks, inout Rng rng) {
 void scatter(MediumParams v, vec4 u, inout Lane lane) {
     vec3 before = lane.path.direction;
     lane.path.direction = phase_sample(v, before, u.yz);
-    if (SEES_SKY || WEIGHS)
+    if (MEETS_LIGHTS || WEIGHS)
         lane.phase_pdf = phase_eval(v, before, lane.path.direction);
     if (WEIGHS)
         note_scattered(between(false, lane.phase_pdf), lane);
@@ -184,7 +184,7 @@ void depart(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     bool at_camera = !looks && lane.path.depth == 0u;
     uvec4 words = first_words(looks, rng);
     lane.todo = looks ? TODO_SEE : TODO_FLY;
-    if (SEES_SKY && at_camera)
+    if (MEETS_LIGHTS && at_camera)
         lane.phase_pdf = READS_FLUX ? flux_pdf(lane.path.direction) : 0.0;
     bool scatters = !looks && !at_camera && !has_looked;
 #ifdef SURFACES

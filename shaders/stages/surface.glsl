@@ -4,9 +4,11 @@
 #include "stages/collide.glsl"
 
 #ifdef SURFACES
-// What shines on both sides, or on the side that is seen.
-vec3 surface_emission(SurfaceRow row, vec3 normal, vec3 travel) {
-    return row.sides == 2u || dot(normal, travel) < 0.0 ? row.emission : vec3(0.0);
+// What shines on both sides, or on the side that is seen; of what is looked for, too, the flight's share.
+vec3 surface_emission(SurfaceRow row, vec3 normal, Lane lane) {
+    float cosine = dot(normal, lane.path.direction);
+    vec3 emission = row.sides == 2u || cosine < 0.0 ? row.emission : vec3(0.0);
+    return SEES_SURFACES ? emission * share_of_met(row, cosine, lane.reach, lane.phase_pdf) : emission;
 }
 
 void arrive_at_surface(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
@@ -15,7 +17,7 @@ void arrive_at_surface(MediumParams v, inout Lane lane, inout Rng rng, inout Tal
     SurfacePoint at = surface_point(lane.struck, lane.path.position + lane.reach * lane.path.direction);
     SurfaceRow row = row_at(at);
     if (!is_particle(lane))
-        add_light(lane, lane.beta * surface_emission(row, at.normal, lane.path.direction),
+        add_light(lane, lane.beta * surface_emission(row, at.normal, lane),
                   SOLID | kind_label(lane.path.depth) | lane.first_label);
     uvec4 key = takes_walks() ? next_words(rng) : uvec4(0u);
     Bsdf bsdf = bsdf_of(row, at, -lane.path.direction, key);

@@ -39,10 +39,11 @@ SurfacePrimitive primitive_at(uint i) {
 SurfaceRow surface_row(uint i) {
 #ifdef SURFACES
     if (TABLE_TEXELS != 0) {
-        uvec4 a = texelFetch(surface_texels, int(4u * i)), b = texelFetch(surface_texels, int(4u * i + 1u)),
-              c = texelFetch(surface_texels, int(4u * i + 2u)), d = texelFetch(surface_texels, int(4u * i + 3u));
+        int at = int(SURFACE_ROW_TEXELS * i);
+        uvec4 a = texelFetch(surface_texels, at), b = texelFetch(surface_texels, at + 1), c = texelFetch(surface_texels, at + 2),
+              d = texelFetch(surface_texels, at + 3), e = texelFetch(surface_texels, at + 4);
         return SurfaceRow(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w,
-                          uintBitsToFloat(d.xyz), d.w);
+                          uintBitsToFloat(d.xyz), d.w, uintBitsToFloat(e.x), uint[3](0u, 0u, 0u));
     }
 #endif
     return surfaces[i];

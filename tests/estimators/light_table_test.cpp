@@ -48,7 +48,7 @@ std::vector<shared::LookOutput> look(const std::vector<Light>& lights, const glm
     Scene scene;
     scene.lights = lights;
     scene.surfaces.resize(on_surface ? 1 : 0);
-    const LightTable table = make_light_table(scene, Assets{}, glm::dvec3(0.0), 60.0);
+    const LightTable table = make_light_table(scene, Assets{}, SurfaceTable{}, glm::dvec3(0.0), 60.0);
     KernelScene kernel;
     kernel.frame.choices = table.choices;
     kernel.frame.sky_count = table.sky_count;

@@ -51,7 +51,7 @@ Looks look(const SkyMap& sky, double rotation, SkyMapping mapping = SkyMapping::
     scene.lights = {light};
     Assets assets;
     assets.sky = std::make_shared<const SkyMap>(sky);
-    const LightTable table = make_light_table(scene, assets, glm::dvec3(0.0), 1.0);
+    const LightTable table = make_light_table(scene, assets, SurfaceTable{}, glm::dvec3(0.0), 1.0);
     KernelScene kernel;
     kernel.frame.sky = make_sky_params(scene, assets);
     kernel.frame.seed = 7;

@@ -187,10 +187,10 @@ void check_field(const DensityField& field) {
     }
 }
 
-void check_surfaces(const std::vector<Surface>& surfaces, const glm::dvec3& origin) {
-    const SurfaceTable table = make_surface_table(surfaces, origin);
+void check_surfaces(const SurfaceTable& table) {
     for (const shared::SurfaceRow& row : table.rows) {
         expect_radiance(row.emission, "a surface's light is out of range");
+        expect(row.look_density >= 0.0f && std::isfinite(row.look_density), "looks toward a surface have no density");
         expect_finite(row.eta, "an index of refraction is not finite");
         expect_finite(row.k, "an index of refraction is not finite");
         for (int i = 0; i < 3; ++i)
@@ -229,10 +229,14 @@ void use_scene(const Scene& authored) {
     is_chromatic(scene);
     const Crop crop{0, scene.picture.width, 0, scene.picture.height};
     const shared::FrameParams frame = make_frame(scene, assets.media, method, crop, 1, whole);
-    check_surfaces(scene.surfaces, render_origin(scene, assets.media, whole));
+    const glm::dvec3 origin = render_origin(scene, assets.media, whole);
+    SurfaceTable surfaces = make_surface_table(scene.surfaces, origin);
     if (constants[SPEC_LIGHTS] != LIGHTS_LONE) {
-        const LightTable table = make_light_table(scene, assets, render_origin(scene, assets.media, whole),
-                                                  lit_radius(scene, assets, frame.media[0]));
+        const LightTable table =
+            make_light_table(scene, assets, surfaces, origin, lit_radius(scene, assets, frame.media[0]));
+        tell_look_densities(table, surfaces);
+        for (const shared::EmitterRow& piece : table.pieces)
+            expect(piece.source < std::max(surfaces.primitives.size(), std::size_t(1)), "no piece that shines");
         for (const shared::LightRow& row : table.rows)
             check_light(row);
         for (std::uint32_t i = 0; i < table.choices; ++i)
@@ -245,6 +249,7 @@ void use_scene(const Scene& authored) {
             expect(std::abs(node.spread) <= 1.0f && node.reach >= -1.0f && node.reach < 1.0f, "a light's cone is none");
         }
     }
+    check_surfaces(surfaces);
     check_frame(frame, static_cast<int>(constants[SPEC_SHAPE]));
 }
 

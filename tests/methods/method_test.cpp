@@ -127,7 +127,12 @@ TEST_CASE("the best unbiased choice is taken where none is named", "[cpu][method
     room.surfaces[0].shape = RectangleSurface{};
     CHECK(choose_integrator(room).name == std::string("ratioTracking"));
     room.surfaces[0].shape = RectangleSurface{}.triangles();
+    CHECK(choose_integrator(room).name == std::string("ratioTracking"));
+    CHECK(choose_method(with_preset(room)).by_chance.empty());
+    room.surfaces[0].shape = PlaneSurface{};
     CHECK(choose_integrator(room).name == std::string("deltaTracking"));
+    CHECK_THAT(choose_method(with_preset(room)).by_chance,
+               Catch::Contains("light of surfaces, for which no shadow ray"));
     CHECK(method_of(":flight=weighted", FIELD_GRID).integrator == "cachedRatioTracking:flight=weighted");
     CHECK_NOTHROW(choose_method(Scene{}));
     for (const Integrator& integrator : integrators()) {

@@ -72,6 +72,7 @@ struct Ask {
         return Towards{{p, direction, distance}, radiance * (area * cosine / (distance * distance))};
     }
     std::optional<Towards> operator()(const vkvol::SkyLight&) const { return std::nullopt; }
+    std::optional<Towards> operator()(const vkvol::SurfaceLight&) const { return std::nullopt; } // it has no surfaces
 };
 
 } // namespace
