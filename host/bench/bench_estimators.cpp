@@ -11,6 +11,7 @@
 #include "scene_hash.h"
 #include "scene_xml.h"
 #include "shared/estimators.h"
+#include "surface_lamps.h"
 
 namespace vkvol {
 
@@ -28,16 +29,21 @@ Estimator load_estimator(const RenderRequest& request, const std::optional<std::
     return estimator;
 }
 
+// What its integrator makes of a scene, for others: whether these look for surfaces that shine is theirs to say.
+Scene as_seen(const Scene& scene) {
+    return without_lamps_of_surfaces(with_preset(scene));
+}
+
 // The same light by other means: the scene as `of` sees it, rendered by `request`.
 Estimator with_request(const Estimator& of, const IntegratorRequest& request) {
     Estimator estimator;
-    estimator.scene = with_preset(of.scene);
+    estimator.scene = as_seen(of.scene);
     if (of.scene.motion_blur) { // at all times
         MotionBlur blur = *of.scene.motion_blur;
         blur.scene_at = [scene_at = blur.scene_at, settings = of.scene.settings](double time) {
             Scene then = scene_at(time);
             then.settings = asked_of(then.settings, settings);
-            return with_preset(then);
+            return as_seen(then);
         };
         estimator.scene.motion_blur = std::make_shared<const MotionBlur>(std::move(blur));
     }

@@ -176,7 +176,7 @@ double extent_of(const shared::LightRow& light) {
 
 void keep_apart(std::vector<shared::LightRow>& lights, const SurfaceTable& surfaces) {
     for (shared::LightRow& light : lights) {
-        if (!(light.kind & LIGHT_PLACED))
+        if (!(light.kind & LIGHT_PLACED) || light.kind == LIGHT_SURFACE) // which is where its pieces are
             continue;
         const glm::dvec3 place = light.position;
         const double extent = extent_of(light);

@@ -266,7 +266,7 @@ void set_look_densities(const std::vector<PlacedLight>& in_tree, std::vector<sha
         all += light.power_in_matter;
     const auto set = [&](shared::LightRow& light, double share) {
         if (light.kind == LIGHT_SURFACE && light.area > 0.0f)
-            light.look_density = static_cast<float>(placed * share / light.area);
+            light.look_density = static_cast<float>(std::clamp(placed * share / light.area, 1e-30, 1e30));
     };
     for (const PlacedLight& light : in_tree)
         set(rows[light.row], light.power_in_matter / all);

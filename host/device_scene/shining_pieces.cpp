@@ -7,6 +7,8 @@ namespace vkvol {
 
 namespace {
 
+constexpr double least_area = 1e-30; // world units^2, of what is any light: powers of it have to be numbers
+
 // From a middle.
 glm::vec3 extent_of(const shared::SurfacePrimitive& piece) {
     return glm::vec3(piece.shape == SURFACE_TRIANGLES ? 0.0f : piece.c.x);
@@ -31,8 +33,11 @@ void add_rows(const SurfaceTable& table, ShiningSurface& surface, std::vector<sh
     for (const double area : areas)
         surface.area += area;
     surface.first = static_cast<std::uint32_t>(rows.size());
-    if (!(surface.area > 0.0)) // looks draw one that brings nothing
-        surface.pieces = {0}, areas = {1.0};
+    if (!(surface.area >= least_area)) { // looks draw one that brings nothing
+        surface.pieces = {0};
+        areas = {1.0};
+        surface.area = 0.0;
+    }
     const std::vector<shared::AliasEntry> alias = make_alias_table(areas);
     for (std::size_t i = 0; i < areas.size(); ++i)
         rows.push_back({alias[i], 0.0f, surface.pieces[i]});
@@ -43,18 +48,19 @@ void add_rows(const SurfaceTable& table, ShiningSurface& surface, std::vector<sh
 
 ShiningPieces find_shining_pieces(const std::vector<Light>& lights, const SurfaceTable& surfaces) {
     ShiningPieces found;
+    std::vector<ShiningSurface*> of_row(surfaces.rows.size());
     for (const Light& light : lights)
-        if (is_shining_surface(light))
-            found.surfaces[body_of(light)].sides = surfaces.rows[std::size_t(body_of(light))].sides;
-    if (found.surfaces.empty())
-        return found;
-    for (std::uint32_t i = 0; i < surfaces.met; ++i) {
+        if (is_shining_surface(light)) {
+            const auto body = std::size_t(body_of(light));
+            of_row[body] = &found.surfaces[body_of(light)];
+            of_row[body]->sides = surfaces.rows[body].sides;
+        }
+    for (std::uint32_t i = 0; i < surfaces.met && !found.surfaces.empty(); ++i) {
         const shared::SurfacePrimitive& piece = surfaces.primitives[i];
-        const auto surface = found.surfaces.find(static_cast<int>(piece.surface));
-        if (surface == found.surfaces.end())
-            continue;
-        add_box(piece, surface->second);
-        surface->second.pieces.push_back(i);
+        if (ShiningSurface* surface = of_row[piece.surface]) {
+            add_box(piece, *surface);
+            surface->pieces.push_back(i);
+        }
     }
     for (auto& [body, surface] : found.surfaces)
         add_rows(surfaces, surface, found.rows);

@@ -92,8 +92,12 @@ Method MethodChooser::choose() {
 
 void MethodChooser::choose_paths() {
     method_.paths = choices_.paths.value_or(preset_.paths);
-    if (method_.paths == PATHS_BOTH && scene_.lights.empty()) {
-        warn("paths are from the camera: without lights there are no particles");
+    // Surfaces of any shape are for paths to find.
+    if (method_.paths == PATHS_BOTH && std::all_of(scene_.lights.begin(), scene_.lights.end(), is_shining_surface)) {
+        warn(scene_.lights.empty()
+                 ? "paths are from the camera: without lights there are no particles"
+                 : "paths are from the camera: what shines are meshes, of which particles bring nothing "
+                   "beside paths");
         method_.paths = PATHS_CAMERA;
     }
     const bool for_particles = scene_.camera.projection == Projection::absorption;
@@ -222,7 +226,7 @@ void MethodChooser::choose_distance() {
         !any_medium(scene_, is_mesh) &&
         (has_lamps_of_surfaces(scene_) || std::any_of(scene_.lights.begin(), scene_.lights.end(), has_place));
     if (choices_.distance && !could)
-        warn("distance is without effect: it is for point, spot, sphere, disk and rectangle lights, and not in models");
+        warn("distance is without effect: it is for lights that have a place, and not in models");
     method_.distance = could ? choices_.distance : DISTANCE_FLIGHTS;
 }
 

@@ -84,7 +84,8 @@ std::string BiasFinder::who_finds_caustics() const {
 }
 
 void BiasFinder::find_chances() {
-    const bool has_extent = !std::all_of(scene_.lights.begin(), scene_.lights.end(), has_no_extent);
+    const bool has_extent = std::any_of(scene_.lights.begin(), scene_.lights.end(),
+                                        [](const Light& light) { return is_lamp(light) || is_met_by_chance(light); });
     std::vector<const char*> found;
     const bool by_particles = method_.paths == PATHS_BOTH && particles_come_from_afar(scene_);
     const bool both_can = !why_no_particles(scene_, true, false);
@@ -99,10 +100,12 @@ void BiasFinder::find_chances() {
                               "looks for"
                             : "what smooth mirrors, coats and glass throw of lights, which integrator bidirectional "
                               "looks for if they have a place");
+    if (method_.paths != PATHS_LIGHT && any_surface(is_smooth) &&
+        std::any_of(scene_.lights.begin(), scene_.lights.end(), is_shining_surface))
+        found.push_back("what smooth mirrors, coats and glass throw of meshes that shine");
     if (method_.paths != PATHS_LIGHT && method_.scattering != SCATTERING_SINGLE && shines_by_chance())
         found.push_back(scene_.periodic ? "light of surfaces, for which no shadow ray looks in domains that repeat"
-                        : method_.nee == NEE_NONE ? "light of surfaces, for which no shadow ray looks"
-                                                  : "light of planes, for which no shadow ray looks");
+                                        : "light of planes, or of any surface without shadow rays");
     method_.by_chance = fmt::format("{}", fmt::join(found, "; "));
 }
 

@@ -67,8 +67,10 @@ Scene with_preset(Scene scene) {
     const bool marches = scatters == SCATTERING_SINGLE &&
                          flight_has(choices.free_flight.value_or(integrator.free_flight), TRAIT_MARCH) &&
                          !any_medium(scene, is_everywhere); // in which flights do not march
-    const bool looks = choices.nee ? *choices.nee != NEE_NONE : integrator.nee != NEE_NONE || marches;
-    return looks && scatters != SCATTERING_NONE ? with_lamps_of_surfaces(std::move(scene)) : scene;
+    const bool has_particles = choices.paths.value_or(integrator.paths) != PATHS_CAMERA; // which are looked at
+    const bool looks = choices.nee ? *choices.nee != NEE_NONE : integrator.nee != NEE_NONE || marches || has_particles;
+    const bool scatters_or_reads = scatters != SCATTERING_NONE || reads_flux(scene.camera);
+    return looks && scatters_or_reads ? with_lamps_of_surfaces(std::move(scene)) : scene;
 }
 
 } // namespace vkvol

@@ -43,6 +43,10 @@ bool can_be_light(const Surface& surface) {
     return surface.emission != Rgb(0.0) && !std::holds_alternative<PlaneSurface>(surface.shape);
 }
 
+bool is_of_surface(const Light& light) {
+    return body_of(light) != no_body;
+}
+
 } // namespace
 
 bool has_lamps_of_surfaces(const Scene& scene) {
@@ -51,7 +55,7 @@ bool has_lamps_of_surfaces(const Scene& scene) {
 }
 
 Scene with_lamps_of_surfaces(Scene scene) {
-    if (!has_lamps_of_surfaces(scene))
+    if (!has_lamps_of_surfaces(scene) || std::any_of(scene.lights.begin(), scene.lights.end(), is_of_surface))
         return scene;
     const auto can_be_lamp = [](const Surface& surface) { return !lamps_of(surface, 0).empty(); };
     const bool few = std::count_if(scene.surfaces.begin(), scene.surfaces.end(), can_be_lamp) <= most_lamps;
@@ -76,7 +80,7 @@ Scene without_lamps_of_surfaces(Scene scene) {
                         scene.surfaces[std::size_t(kind.body)].emission = kind.radiance;
             },
             light);
-    std::erase_if(scene.lights, [](const Light& light) { return body_of(light) != no_body; });
+    std::erase_if(scene.lights, is_of_surface);
     return scene;
 }
 

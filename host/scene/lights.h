@@ -161,7 +161,7 @@ inline const DirectionalLight* only_directional(const std::vector<Light>& lights
     return lights.size() == 1 ? std::get_if<DirectionalLight>(&lights.front()) : nullptr;
 }
 
-// One that flights meet by themselves, since it has an extent.
+// One that flights meet when they leave, since it has an extent.
 inline bool is_met_by_chance(const Light& light) {
     return std::holds_alternative<SunLight>(light) || std::holds_alternative<SkyLight>(light);
 }

@@ -22,7 +22,7 @@
 //   light from the cache   x: whether a shadow ray corrects it; after the choice of a light, where there is one
 //   choice of a light      x, y: which; z, w: where on it; select: whether by the phase function instead. Then, down a tree,
 //                          a draw for each three levels, x, y, z, and w of the first: whether by halves; of a map of the sky
-//                          x, y: row; z, w: column
+//                          x, y: row; z, w: column; of a surface of any shape x, y: which piece
 //   look along a flight    x: how far on a light counts that is chosen down a tree; y: the distance; tap: its density. Then
 //                          the light's own draw, as of a choice. The flight takes a draw of its own after that
 //   light before a sensor  of flux: a choice of a light, behind the camera's draw; then as after a lamp before the camera

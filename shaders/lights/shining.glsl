@@ -48,7 +48,7 @@ LightSample draw_shining(LightRow light, vec3 from, vec2 u, inout Rng rng, out f
     float square = max(dot(apart, apart), max(1.0e-14 * light.area, 1.0e-30)), distance = sqrt(square);
     vec3 direction = apart / distance;
     float cosine = -dot(normal_at(piece, at), direction);
-    bool shines = light.sides == 2u || cosine > 0.0;
+    bool shines = light.area > 0.0 && (light.sides == 2u || cosine > 0.0);
     density = shining_density(light.look_density, square, cosine);
     return LightSample(direction, distance, shines ? light.radiance * (light.area * abs(cosine) / square) : vec3(0.0), 0.0);
 }

@@ -1,6 +1,6 @@
 // Sensors that read flux: irradiance through a rectangle, fluence at points. They stand among the lights as a collision does, with
 // the density of their rays in the place of a phase function: light that no ray meets by chance, of what has no extent or is a
-// lamp, they find by a look; what rays meet when they leave is shared between the two, by the same weights.
+// lamp, they find by a look; what rays meet of the sky and of surfaces is shared between the two, by the same weights.
 #ifndef FLUX_GLSL
 #define FLUX_GLSL
 #include "lights/table.glsl"

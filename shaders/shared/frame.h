@@ -227,7 +227,7 @@ struct LightRow {
     vec3 direction;  // unit: towards the light, where it is infinitely far; of a spot, along its axis; of what is flat, its normal
     float darkening; // of a disc toward its rim, in [0, 1]
     vec3 edge_u;     // halves of the edges of a rectangle, or radii of a disk; across each other
-    float area;      // of a lamp, as seen from in front
+    float area;      // of a lamp, as seen from in front; of a surface, of all pieces, on one side
     vec3 edge_v;
     uint group;      // of layers
     vec3 radiance;   // from everywhere on it, of a disc from its middle; of a directional light its irradiance, of a point the

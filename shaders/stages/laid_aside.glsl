@@ -19,7 +19,7 @@ uint copied[MOST_PATH_WORDS];
     bool looks_along = SHADOW_RAYS_WALK && LOOKS_ALONG;                                                               \
     bool chooses_light = SHADOW_RAYS_WALK && LIGHTS != LIGHTS_LONE;                                                   \
     bool has_cache = SHADOW_RAYS_WALK && NEE == NEE_CACHED;                                                           \
-    bool meets_lights = MEETS_LIGHTS;                                                                                     \
+    bool meets_lights = MEETS_LIGHTS;                                                                                 \
     bool has_surfaces = HAS_SURFACES, has_parts = SHAPE == SHAPE_MESH, repeats = REPEATS;                             \
     bool has_layers = HAS_LAYERS, has_particles = HAS_PARTICLES, weighs_families = PATHS == PATHS_BOTH;               \
     bool splits = SPLITS;

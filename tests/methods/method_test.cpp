@@ -129,10 +129,19 @@ TEST_CASE("the best unbiased choice is taken where none is named", "[cpu][method
     room.surfaces[0].shape = RectangleSurface{}.triangles();
     CHECK(choose_integrator(room).name == std::string("ratioTracking"));
     CHECK(choose_method(with_preset(room)).by_chance.empty());
+    CHECK(with_preset(room).lights.size() == 1);
+    CHECK(with_preset(with_preset(room)).lights.size() == 1);
+    room.settings.integrator = "bidirectional";
+    CHECK(choose_method(with_preset(room)).paths == PATHS_CAMERA);
+    room.settings.integrator = "deltaTracking";
+    CHECK(with_preset(room).lights.empty());
+    CHECK_THAT(choose_method(with_preset(room)).by_chance, Catch::Contains("of any surface without shadow rays"));
+    room.settings.choices.paths = PATHS_BOTH; // which looks, too
+    CHECK(with_preset(room).lights.size() == 1);
+    room.settings = {};
     room.surfaces[0].shape = PlaneSurface{};
     CHECK(choose_integrator(room).name == std::string("deltaTracking"));
-    CHECK_THAT(choose_method(with_preset(room)).by_chance,
-               Catch::Contains("light of surfaces, for which no shadow ray"));
+    CHECK_THAT(choose_method(with_preset(room)).by_chance, Catch::Contains("light of planes"));
     CHECK(method_of(":flight=weighted", FIELD_GRID).integrator == "cachedRatioTracking:flight=weighted");
     CHECK_NOTHROW(choose_method(Scene{}));
     for (const Integrator& integrator : integrators()) {

@@ -1,4 +1,5 @@
 // Surfaces of any shape that shine: flights meet them, and looks find them.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fmt/format.h>
@@ -78,7 +79,8 @@ const RectangleSurface pane{{-0.2, 0.9, 0.1}, {0.5, 0.1, 0.0}, {0.0, 0.0, 0.4}};
 
 } // namespace
 
-TEST_CASE("a mesh shines as the lamp of its shape does, however looks and flights share it", "[gpu][image][surfaces][shining]") {
+TEST_CASE("a mesh shines as the lamp of its shape does, however looks and flights share it",
+          "[gpu][image][surfaces][shining]") {
     const double sigma_t = GENERATE(0.0, 0.6);
     const Film lamp = render_here(under({shining(pane, {4.0, 3.0, 2.0})}, sigma_t), 1).film;
     Scene mesh = under({shining(mesh_of(pane, 3), {4.0, 3.0, 2.0})}, sigma_t);
@@ -117,7 +119,8 @@ TEST_CASE("meshes that shine are not lit through themselves", "[gpu][image][surf
     check_same_mean(looked, render_here(scene, 2).film, "roof");
 }
 
-TEST_CASE("any number of balls, disks and rectangles that shine are found by looks", "[gpu][image][surfaces][shining]") {
+TEST_CASE("any number of balls, disks and rectangles that shine are found by looks",
+          "[gpu][image][surfaces][shining]") {
     std::vector<Surface> many;
     for (int i = 0; i < 300; ++i) {
         const glm::dvec3 at(0.08 * (i % 20) - 0.8, 0.6 + 0.07 * (i % 4), 0.1 * (i / 20) - 0.7);
@@ -145,8 +148,24 @@ TEST_CASE("shining meshes light as the reference says, with both schedules", "[g
     check_by_both_schedules(scene, "shining meshes");
 }
 
+TEST_CASE("every way to look finds the light of shining meshes", "[gpu][image][surfaces][shining]") {
+    Scene scene =
+        under({shining(mesh_of(pane, 2), {4.0, 3.0, 2.0}, 0.3), shining(round_mesh(5, 0.2), {0.6, 1.2, 2.4})}, 0.5);
+    scene.volumes.front().noise = Noise{1.3, 2, 0.5, 2.0};
+    const Film usual = render_here(scene, 1).film;
+    scene.settings.choices.nee = NEE_TENTATIVE;
+    check_same_mean(render_here(scene, 2).film, usual, "at null collisions");
+    scene.settings.choices.nee.reset();
+    scene.settings.choices.distance = DISTANCE_MIXED;
+    check_same_mean(render_here(scene, 3).film, usual, "from along flights");
+    scene.settings.choices = {};
+    scene.settings.integrator = "decompositionTracking";
+    check_same_mean(render_here(scene, 4).film, usual, "decomposition");
+}
+
 TEST_CASE("particles and paths find the light of shining meshes alike", "[gpu][image][surfaces][shining]") {
     Scene scene = before_smoke({shining(mesh_of(pane, 2), {4.0, 3.0, 2.0}, 0.4)}, {});
+    scene.lights = {PointLight{{0.5, 0.8, 1.2}, Rgb(0.7)}};
     scene.settings.spp = 2048;
     const Film paths = render_here(scene, 1).film;
     for (const char* integrator : {"lightTracing", "bidirectional"}) {
@@ -175,7 +194,11 @@ TEST_CASE("a sensor of flux reads a mesh as the lamp of its shape", "[gpu][image
 }
 
 TEST_CASE("a mesh of no triangle that has area shines on nothing", "[gpu][surfaces][shining]") {
-    TriangleSurface line{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {2.0, 0.0, 0.0}}, {{0, 1, 2}}};
-    Scene scene = under({shining(line, Rgb(1.0))}, 0.5);
-    CHECK(image_mean(render_here(scene, 1).film).value.x == 0.0);
+    const TriangleSurface line{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {2.0, 0.0, 0.0}}, {{0, 1, 2}}};
+    const TriangleSurface dot{{{0.0, 0.0, 0.0}, {1e-18, 0.0, 0.0}, {0.0, 1e-18, 0.0}}, {{0, 1, 2}}};
+    for (const TriangleSurface& mesh : {line, dot}) {
+        const Film film = render_here(under({shining(mesh, Rgb(1.0), 0.0, true)}, 0.5), 1).film;
+        CHECK(image_mean(film).value.x == 0.0);
+        CHECK(*std::min_element(film.samples.begin(), film.samples.end()) == 512);
+    }
 }
