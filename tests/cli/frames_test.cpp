@@ -298,7 +298,7 @@ TEST_CASE("a sequence that is killed again and again has the bits of one that is
     folder.write("turn.xml",
                  "<options><sphere/><noise octaves='4'/><sigma_s>20</sigma_s><width>32</width><height>32</height>"
                  "<camera lookAt='0 0 0' distance='5' azimuth='${= 40*F}' fov='30'/><light y='1' r='3' g='3' b='3'/>"
-                 "<rayPerPixelCount>200</rayPerPixelCount></options>");
+                 "<rayPerPixelCount>100</rayPerPixelCount></options>");
     REQUIRE(folder.vkvol("turn.xml -f 1..6 -o whole.#.exr -q").code == exit_done);
     int kills = 0;
     const int times = thorough() ? 10 : 2;

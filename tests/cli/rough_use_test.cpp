@@ -72,7 +72,7 @@ TEST_CASE("a scene of any name renders, and its report is JSON", "[gpu][command]
 
 TEST_CASE("the first signal ends the wait for a pipe", "[gpu][command]") {
     const Folder folder("");
-    const std::string interrupted = "timeout --preserve-status -s INT 10 ";
+    const std::string interrupted = "timeout --preserve-status -s INT 5 ";
     for (const char* name : {"p.xml", "p.nvdb", "p.exr", "p.png"})
         REQUIRE(mkfifo(folder.file(name).c_str(), 0600) == 0);
     const Run scene = folder.vkvol("p.xml", interrupted);
