@@ -48,14 +48,20 @@ private:
     std::map<std::filesystem::path, Polygons> read_;
 };
 
+// Of a file, to who needs what it is about.
+struct MeshWarnings {
+    std::vector<std::string> of_places, of_normals;
+};
+
 TriangleSurface load(const MeshSurface& mesh, const glm::dmat4& transform, bool closed, MeshFileReader& files,
-                     std::vector<std::string>& place_warnings) {
+                     MeshWarnings& warnings) {
     if (closed) {
         Mesh loaded = load_mesh({{mesh.file}}, transform);
+        warnings.of_normals = std::move(loaded.normal_warnings);
         return {std::move(loaded.vertices), std::move(loaded.triangles), std::move(loaded.normals), {}, true};
     }
     Polygons read = files.of(mesh.file);
-    place_warnings = std::move(read.place_warnings);
+    warnings = {std::move(read.place_warnings), std::move(read.normal_warnings)};
     drop_loose_vertices(read.vertices, read.triangles);
     for (glm::dvec3& vertex : read.vertices)
         vertex = glm::dvec3(transform * glm::dvec4(vertex, 1.0));
@@ -130,11 +136,13 @@ void set_normals(TriangleSurface& mesh, MeshNormals which, const glm::dmat4& tra
 }
 
 void load(const MeshSurface& mesh, Surface& surface, MeshFileReader& files, std::vector<std::string>& warnings) {
-    std::vector<std::string> of_places;
-    TriangleSurface loaded = load(mesh, surface.transform, MeshFileReader::is_closed(surface), files, of_places);
+    MeshWarnings found;
+    TriangleSurface loaded = load(mesh, surface.transform, MeshFileReader::is_closed(surface), files, found);
     set_normals(loaded, mesh.normals, surface.transform);
     if (is_textured(surface.material))
-        warnings.insert(warnings.end(), of_places.begin(), of_places.end());
+        warnings.insert(warnings.end(), found.of_places.begin(), found.of_places.end());
+    if (mesh.normals == MeshNormals::of_file)
+        warnings.insert(warnings.end(), found.of_normals.begin(), found.of_normals.end());
     if (is_textured(surface.material) && loaded.places.empty())
         throw InputError(fmt::format("{}: does not say where on a texture its corners are; export it with texture "
                                      "coordinates (UVs), of a .ply those of vertices, s and t",

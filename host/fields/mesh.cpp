@@ -269,6 +269,7 @@ Mesh load_mesh(const MeshFiles& files, const glm::dmat4& transform) {
         close_polygons(obj, file);
         append(mesh, obj);
         mesh.warnings.insert(mesh.warnings.end(), obj.warnings.begin(), obj.warnings.end());
+        mesh.normal_warnings.insert(mesh.normal_warnings.end(), obj.normal_warnings.begin(), obj.normal_warnings.end());
         if (first)
             mesh.diffuse = obj.diffuse;
         if (obj.several_diffuse || obj.diffuse != mesh.diffuse)

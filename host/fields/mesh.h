@@ -18,6 +18,7 @@ struct Mesh {
     std::vector<glm::mat3> normals;    // of triangles' corners, as columns, as files have them; empty if one has none
     std::optional<Rgb> diffuse;        // Kd of the first face's material
     std::vector<std::string> warnings; // what was understood but is not honoured
+    std::vector<std::string> normal_warnings;
 };
 
 // Welds equal positions and turns bodies that are inside out. InputError, with `name`, for what is not closed or

@@ -258,6 +258,15 @@ std::vector<Corners> of_corners(const std::vector<Value>& values, const std::vec
     return found;
 }
 
+// How many triangles have a corner whose vn is beyond the list; one without vn is at -1.
+std::size_t without_their_normal(const Progress& progress) {
+    const glm::ivec3 end(static_cast<int>(progress.normals.size())), none(-1);
+    const auto is_lost = [&](const glm::ivec3& corners) {
+        return glm::any(glm::lessThan(corners, none)) || glm::any(glm::greaterThanEqual(corners, end));
+    };
+    return std::size_t(std::count_if(progress.of_triangles.begin(), progress.of_triangles.end(), is_lost));
+}
+
 } // namespace
 
 Polygons read_obj(const std::filesystem::path& path) {
@@ -278,6 +287,11 @@ Polygons read_obj(const std::filesystem::path& path) {
                                      path.string()));
     obj.normals = of_corners<glm::mat3>(progress.normals, progress.of_triangles);
     obj.places = of_corners<glm::mat3x2>(progress.places, progress.places_of_triangles);
+    if (const std::size_t lost = without_their_normal(progress))
+        obj.normal_warnings.push_back(
+            fmt::format("{}: {} of its {} triangles name a normal that is not among its {}, and have "
+                        "their face's there; export the mesh again",
+                        path.string(), lost, obj.triangles.size(), progress.normals.size()));
     const glm::ivec3 end(static_cast<int>(progress.places.size()));
     const auto bare = std::count_if(
         progress.places_of_triangles.begin(), progress.places_of_triangles.end(), [&](const glm::ivec3& corners) {

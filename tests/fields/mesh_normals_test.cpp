@@ -110,3 +110,22 @@ TEST_CASE("normals of a .ply file, and of glass", "[cpu][mesh][surfaces]") {
     check_near(ply.normals.at(0)[1], {0.6, 0.0, 0.8});
     check_near(ply.normals.at(0)[2], {0.0, 0.6, 0.8});
 }
+
+TEST_CASE("normals that a file names and does not have are told", "[cpu][mesh][surfaces]") {
+    const TestDirectory directory;
+    const auto warnings = [&](const std::string& text) {
+        Scene scene;
+        scene.surfaces.emplace_back().shape = MeshSurface{directory.write("a.obj", corners + text)};
+        return with_surface_files(scene).warnings;
+    };
+    const std::string normal = "vn 0 0 1\n", rest = "f 1//1 2//1 4//1\n";
+    for (const char* face : {"f 1//1 2//2 3//1\n", "f 1//1 2//-2 3//1\n"}) {
+        const std::vector<std::string> told = warnings(normal + rest + face);
+        CAPTURE(face);
+        REQUIRE(told.size() == 1);
+        CHECK_THAT(told.front(), Catch::Contains("1 of its 2 triangles name a normal that is not among its 1"));
+    }
+    CHECK(warnings("f 1//1 2//1 3//1\n").size() == 1); // there are none
+    for (const char* face : {"f 1//-1 2//1 3//1\n", "f 1 2 3\n", "f 1//1 2 3\n"})
+        CHECK(warnings(normal + rest + face).empty());
+}
