@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <sstream>
 #include <tiny_obj_loader.h>
@@ -151,8 +152,10 @@ void add_face(Progress& progress, const tinyobj::index_t* corners, int count) {
         vertices.push_back(resolve(progress, corners[i].vertex_index));
         places_of_corners.push_back(progress.obj->vertices[vertices.back()]);
     }
-    const auto from_zero = [](int index, std::size_t count) {
-        return index < 0 ? static_cast<int>(count) + index : index - 1;
+    constexpr int beyond = std::numeric_limits<int>::max();
+    const auto from_zero = [](int index, std::size_t count) { // -1: it has none
+        const int counted_back = static_cast<int>(count) + index;
+        return index >= 0 ? index - 1 : counted_back >= 0 ? counted_back : beyond;
     };
     const auto normal = [&](int i) { return from_zero(corners[i].normal_index, progress.normals.size()); };
     const auto place = [&](int i) { return from_zero(corners[i].texcoord_index, progress.places.size()); };
@@ -258,12 +261,10 @@ std::vector<Corners> of_corners(const std::vector<Value>& values, const std::vec
     return found;
 }
 
-// How many triangles have a corner whose vn is beyond the list; one without vn is at -1.
+// How many triangles have a corner whose vn is beyond the list.
 std::size_t without_their_normal(const Progress& progress) {
-    const glm::ivec3 end(static_cast<int>(progress.normals.size())), none(-1);
-    const auto is_lost = [&](const glm::ivec3& corners) {
-        return glm::any(glm::lessThan(corners, none)) || glm::any(glm::greaterThanEqual(corners, end));
-    };
+    const glm::ivec3 end(static_cast<int>(progress.normals.size()));
+    const auto is_lost = [&](const glm::ivec3& corners) { return glm::any(glm::greaterThanEqual(corners, end)); };
     return std::size_t(std::count_if(progress.of_triangles.begin(), progress.of_triangles.end(), is_lost));
 }
 
