@@ -112,12 +112,15 @@ SkyMap make_sky(const RadianceMap& map, const Rgb& scale, SkyMapping mapping) {
         values.push_back((radiance.x + radiance.y + radiance.z) / 3.0);
     }
     std::vector<double> weights = interpolated_means(values, layout), rows;
-    double sum = 0.0;
+    double sum = 0.0, first = 0.0, second = 0.0; // moments of the radiance
     for (int y = 0; y < map.height; ++y) {
         const double angle = layout.solid_angle(y);
         double row = 0.0;
         for (int x = 0; x < map.width; ++x) {
             double& weight = weights[std::size_t(y) * map.width + x];
+            const double value = values[std::size_t(y) * map.width + x];
+            first += angle * value;
+            second += angle * value * value;
             weight *= angle;
             row += weight;
             sky.fluence += angle * Rgb(sky.texels[std::size_t(y) * map.width + x]);
@@ -125,6 +128,7 @@ SkyMap make_sky(const RadianceMap& map, const Rgb& scale, SkyMapping mapping) {
         rows.push_back(row);
         sum += row;
     }
+    sky.unevenness = first > 0.0 ? 4.0 * pi * second / (first * first) : 1.0;
     append(sky.alias, rows);
     for (int y = 0; y < map.height; ++y)
         append(sky.alias, std::span(weights).subspan(std::size_t(y) * map.width, map.width));

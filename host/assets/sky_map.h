@@ -19,6 +19,7 @@ struct SkyMap {
     std::vector<glm::vec4> texels; // radiance; and the density that is drawn with, per steradian (at the horizon)
     std::vector<shared::AliasEntry> alias; // of rows, then of the columns of each row
     Rgb fluence{0.0};                      // integral of the radiance over all directions
+    double unevenness = 1.0;               // mean of the radiance's square over all directions, over that of its mean
     std::size_t mended = 0;                // texels that were negative or not finite
     std::vector<std::string> warnings;     // of the file
 };

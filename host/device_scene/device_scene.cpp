@@ -7,6 +7,7 @@
 
 #include "camera_rays.h"
 #include "emitter_table.h"
+#include "even_sky.h"
 #include "frame_params.h"
 #include "kept_apart.h"
 #include "kernel_constants.h"
@@ -70,6 +71,13 @@ void DeviceScene::make_lights(const Scene& scene, const Method& method, const As
     }
     lights_ = make_light_table(scene, assets, surfaces_, origin_, radius);
     tell_look_densities(lights_, surfaces_);
+    if (is_left_to_flights(scene, method, assets.sky ? &*assets.sky : nullptr)) {
+        if (scene.lights.size() == 1)
+            specialization_[SPEC_MIS] = MIS_PHASE;
+        else
+            leave_sky_to_flights(lights_);
+        text_ += ", an even sky by flights alone";
+    }
     if (method.paths != PATHS_CAMERA)
         keep_apart(lights_.rows, surfaces_);
     frame_.choices = lights_.choices;

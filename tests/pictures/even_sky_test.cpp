@@ -1,0 +1,82 @@
+// Maps of the sky that are nearly even: flights alone find their light.
+#include <catch2/catch.hpp>
+
+#include "even_sky.h"
+#include "shared/constants.h"
+#include "shared/estimators.h"
+#include "support/agreement.h"
+#include "support/images.h"
+#include "support/scenes.h"
+
+using namespace vkvol;
+
+namespace {
+
+// As bright as `top` straight up, as `bottom` straight down, and linear between rows.
+SkyLight gradient(double top, double bottom) {
+    return write_sky(make_map(16, 8, [&](int, int row) { return Rgb(top + (bottom - top) * row / 7.0); }));
+}
+
+Scene cloud_under(std::vector<Light> lights) {
+    Scene scene = scene_of(medium(Sphere{{0.0, 0.0, 0.0}, 1.0}, 2.0, 0.95, 0.6), 2.6, 12);
+    scene.volumes.front().noise = Noise{1.3, 2, 0.5, 2.0};
+    scene.lights = std::move(lights);
+    scene.settings.integrator = "ratioTracking";
+    scene.settings.spp = 128;
+    return scene;
+}
+
+Film render_by(Scene scene, std::optional<int> mis, std::uint32_t seed) {
+    scene.settings.choices.mis = mis;
+    return render_here(scene, seed).film;
+}
+
+} // namespace
+
+TEST_CASE("a map's unevenness is its radiance's mean square over its mean's", "[cpu][lights]") {
+    CHECK(load_sky(write_sky(make_map(8, 4, [](int, int) { return Rgb(3.0, 2.0, 1.0); }))).unevenness == Approx(1.0));
+    // Of half of all directions.
+    const auto half = [](int, int row) { return Rgb(row < 4 ? 2.0 : 0.0); };
+    CHECK(load_sky(write_sky(make_map(16, 8, half))).unevenness == Approx(2.0));
+    // Of a quarter, in a map of equal areas.
+    const auto quarter = [](int column, int row) { return Rgb(row < 4 && column < 4 ? 1.0 : 0.0); };
+    const SkyLight square = write_sky(make_map(8, 8, quarter), SkyMapping::equal_area);
+    CHECK(load_sky(square).unevenness == Approx(4.0));
+}
+
+TEST_CASE("no look goes toward an even sky unless told so", "[gpu][image][lights]") {
+    const Scene even = cloud_under({gradient(2.0, 0.5)}), uneven = cloud_under({gradient(2.0, 0.0)});
+    REQUIRE(load_sky(std::get<SkyLight>(even.lights.front())).unevenness < 1.6);
+    Scene steep = uneven;
+    steep.lights = {write_sky(make_map(16, 8, [](int, int row) { return Rgb(row == 1 ? 9.0 : 0.1); }))};
+    REQUIRE(load_sky(std::get<SkyLight>(steep.lights.front())).unevenness > 1.6);
+    CHECK(same_bits(render_by(even, {}, 1), render_by(even, MIS_PHASE, 1)));
+    CHECK(same_bits(render_by(steep, {}, 1), render_by(steep, MIS_BALANCE, 1)));
+    CHECK_AGREEMENT(agree(render_by(even, {}, 1), render_by(even, MIS_BALANCE, 2), "an even sky"));
+    // Light that is scattered once is found by looks.
+    Scene once = even;
+    once.settings.choices.scattering = SCATTERING_SINGLE;
+    CHECK(same_bits(render_by(once, {}, 1), render_by(once, MIS_BALANCE, 1)));
+}
+
+TEST_CASE("beside an even sky looks go toward the other lights", "[gpu][image][lights]") {
+    const Scene scene =
+        cloud_under({gradient(1.0, 0.4), SunLight{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), Rgb(2.0), 5.0},
+                     PointLight{{1.5, 1.0, 1.0}, Rgb(1.0)}});
+    const Film film = render_by(scene, {}, 1), shared = render_by(scene, MIS_BALANCE, 2);
+    CHECK_AGREEMENT(agree(film, shared, "an even sky, a sun and a point"));
+    CHECK_FALSE(same_bits(film, render_by(scene, MIS_BALANCE, 1)));
+    LightTable table;
+    table.choices = 3;
+    table.rows.resize(4);
+    table.rows[1].kind = LIGHT_MAP;
+    for (const auto& [i, chance] : {std::pair(0, 0.3f), std::pair(1, 0.5f), std::pair(2, 0.2f)})
+        table.rows[std::size_t(i)].chance = chance;
+    leave_sky_to_flights(table);
+    CHECK(table.rows[0].chance == Approx(0.6));
+    CHECK(table.rows[1].chance == 0.0f);
+    CHECK(table.rows[2].chance == Approx(0.4));
+    CHECK(table.rows[1].alias.keep == 0);
+    CHECK(table.rows[0].alias.other != 1);
+    CHECK(table.rows[2].alias.other != 1);
+}
