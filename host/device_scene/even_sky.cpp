@@ -1,15 +1,33 @@
 #include "even_sky.h"
 
 #include "alias_table.h"
+#include "phase_params.h"
+#include "scene_facts.h"
 #include "shared/constants.h"
 
 namespace vkvol {
 
-bool is_left_to_flights(const Scene& scene, const Method& method, const SkyMap* sky) {
-    constexpr double most = 1.6; // measured: tools/results/README.md
+namespace {
+
+// Whether all that scatters does so into few directions, as Henyey and Greenstein's phase function from g = 0.83 on.
+// Then looks are mostly where little is scattered to.
+bool scatters_ahead(const Scene& scene, Media media) {
+    constexpr double least = 5.0; // per steradian
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+        if (can_scatter(scene.volumes[i]) && phase_peak(scene.volumes[i], media[i].phase_nodes) < least)
+            return false;
+    return scene.surfaces.empty();
+}
+
+} // namespace
+
+bool is_left_to_flights(const Scene& scene, Media media, const Method& method, const SkyMap* sky) {
     // Where light is scattered once no flight goes on to meet it; and particles come from all of it.
-    return sky && sky->unevenness < most && !scene.settings.choices.mis && method.nee != NEE_NONE &&
-           method.scattering == SCATTERING_MULTIPLE && method.paths == PATHS_CAMERA;
+    if (!sky || method.mis || method.nee == NEE_NONE || method.scattering != SCATTERING_MULTIPLE ||
+        method.paths != PATHS_CAMERA)
+        return false;
+    const double most = scatters_ahead(scene, media) ? 4.0 : 1.6; // measured: tools/results/README.md
+    return sky->unevenness < most;
 }
 
 void leave_sky_to_flights(LightTable& table) {

@@ -215,7 +215,7 @@ Specialization specialize(const Scene& scene, Media media, const Method& method,
         constants[SPEC_LIGHTS] |= LIGHTS_TABLE;
         constants[SPEC_MATERIALS] = material_bits(scene.surfaces);
     }
-    constants[SPEC_MIS] = method.mis;
+    constants[SPEC_MIS] = method.mis.value_or(MIS_BALANCE);
     constants[SPEC_SENSOR] = sensor_kind(scene.camera);
     const bool is_plain = has_plain_pixels(scene.settings) || scene.camera.projection == Projection::absorption;
     constants[SPEC_PIXEL_FILTER] = is_plain                                          ? PIXEL_EVEN

@@ -215,7 +215,7 @@ void MethodChooser::choose_mis() {
                          std::any_of(lights.begin(), lights.end(), is_shining_surface));
     if (choices_.mis && !shared)
         warn("mis is without effect: no light is found in two ways");
-    method_.mis = shared ? choices_.mis.value_or(MIS_BALANCE) : MIS_BALANCE;
+    method_.mis = shared ? choices_.mis : std::nullopt;
 }
 
 // Looks from along a flight need to know where it is within the medium, of which a mesh has many parts.

@@ -27,7 +27,7 @@ struct Method {
     int free_flight = 0;             // FREE_FLIGHT_...
     int transmittance = 0;           // TRANSMITTANCE_...; unused if nee is NEE_NONE
     int nee = 0;                     // NEE_...
-    int mis = 0;                     // MIS_...; unused where flights meet no light that looks find
+    std::optional<int> mis;          // MIS_...; none: balance, but for even skies, see even_sky.h
     std::optional<int> first_flight; // FIRST_FLIGHT_...; none: kernel_constants.cpp chooses by how thin the media are
     std::optional<int> distance;     // DISTANCE_...; none: kernel_constants.cpp chooses by where the lights are
     int emission_at = 0; // EMISSION_AT_...; a march through the medium adds emission step by step in either case

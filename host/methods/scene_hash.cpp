@@ -385,7 +385,7 @@ std::string scene_hash(const Scene& authored) {
          std::any_of(shining.surfaces.begin(), shining.surfaces.end(), shines)))
         writer.add("looks", method.uses_lights() ? 1 : 0);
     if (method.biases & (bias_flight_steps | bias_shadow_steps))
-        writer.add("mis", glm::dvec3(method.mis, method.nee, method.distance.value_or(-1)));
+        writer.add("mis", glm::dvec3(method.mis.value_or(MIS_BALANCE), method.nee, method.distance.value_or(-1)));
     if (method.biases & bias_shadow_steps)
         writer.add("shadows", method.transmittance);
     if (scene.periodic) {

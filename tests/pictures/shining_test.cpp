@@ -96,6 +96,15 @@ TEST_CASE("a mesh shines as the lamp of its shape does, however looks and flight
     check_same_mean(render_here(mesh, 3).film, lamp, "met by chance");
 }
 
+TEST_CASE("a mesh that shines on both sides is the same turned about", "[gpu][image][surfaces][shining]") {
+    TriangleSurface mesh = mesh_of(pane, 2);
+    const Film film = render_here(under({shining(mesh, {4.0, 3.0, 2.0}, 0.0, true)}, 0.4), 1).film;
+    mesh.turn_about();
+    const Film turned = render_here(under({shining(mesh, {4.0, 3.0, 2.0}, 0.0, true)}, 0.4), 2).film;
+    CHECK_AGREEMENT(agree(turned, film, "turned about"));
+    check_same_mean(turned, film, "turned about");
+}
+
 TEST_CASE("a small mesh that shines in fog is found by looks", "[gpu][image][surfaces][shining]") {
     const RectangleSurface small{{0.0, 0.9, 0.0}, {0.12, 0.0, 0.0}, {0.0, 0.0, 0.12}};
     Scene scene = under({shining(mesh_of(small, 2), Rgb(30.0))}, 0.6);

@@ -228,7 +228,7 @@ TEST_CASE("what a scene's lights ask for", "[cpu][method]") {
     CHECK(method_of("<directional y=\"1\"/><directional x=\"1\"/>").nee == NEE_CACHED);
     CHECK(method_of("<point/>").nee == NEE_COLLISIONS);
     CHECK(method_of("<point/>", "<integrator>cachedRatioTracking</integrator>").nee == NEE_CACHED);
-    CHECK(method_of("<sun y=\"1\"/>").mis == MIS_BALANCE);
+    CHECK(!method_of("<sun y=\"1\"/>").mis);
     const std::string phase = R"(<integrator mis="phase">ratioTracking</integrator>)";
     CHECK(method_of("<sun y=\"1\"/>", phase).mis == MIS_PHASE);
     CHECK(method_of("<point/>", phase).warnings.size() == 1);
