@@ -94,10 +94,7 @@ void MethodChooser::choose_paths() {
     method_.paths = choices_.paths.value_or(preset_.paths);
     // Surfaces of any shape are for paths to find.
     if (method_.paths == PATHS_BOTH && std::all_of(scene_.lights.begin(), scene_.lights.end(), is_shining_surface)) {
-        warn(scene_.lights.empty()
-                 ? "paths are from the camera: without lights there are no particles"
-                 : "paths are from the camera: what shines are meshes, of which particles bring nothing "
-                   "beside paths");
+        warn("paths are from the camera: without lights other than meshes there are no particles");
         method_.paths = PATHS_CAMERA;
     }
     const bool for_particles = scene_.camera.projection == Projection::absorption;
