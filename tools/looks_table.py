@@ -2,25 +2,26 @@
 """Shadow rays to many kinds of light: none where paths find it by themselves (`mis="phase"`), from every collision, and few,
 which correct a cache of transmittances. Efficiency, 1 / (error x seconds), over that of every collision's.
 
-    tools/looks_table.py [--build build] [--spp 64] [--runs 3] [--reference 1024] > tools/results/looks.txt
+    tools/looks_table.py [--build build] [--spp 64] [--runs 5] [--reference 2048] > tools/results/looks.txt
 
-Errors are relMSE against a render of many samples by every collision's shadow rays, less that render's own. Needs NumPy.
-"""
+Errors are mean relative squares of blocks of 4 x 4 pixels against a render of many samples by every collision's shadow rays, less that
+render's own variance; geometric means of the runs, in alternation, with the interval of 95 %. `spikes`: pixels of a render that are more than
+5 standard errors, the median of those about it, above the mean of their eight neighbours, and in the long render are not above them by half
+of that. Needs NumPy."""
 
 import pathlib
 import re
-import sys
+import statistics
 import tempfile
 
 import numpy as np
 
+import block_errors
 import table_runs
+from block_errors import exr
 
 ROOT = table_runs.ROOT
-sys.path.insert(0, str(ROOT / "tools/peers"))
-import exr  # noqa: E402
-
-SIZE = ("--width", "128")
+SIZE = ("--width", "128", "--height", "72")
 
 SUN_TEXEL = (36, 158)  # of 128 x 256
 LIT = {
@@ -56,29 +57,44 @@ def scenes(folder):
         yield name, ROOT / f"scenes/gallery/{name}.xml", False
 
 
-def error(picture, reference):
-    mean, _, _ = exr.read_rgb(picture)
-    right, variance, _ = exr.read_rgb(reference)
-    return float(np.mean(((mean - right) ** 2 - variance) / (right**2 + 0.01)))
+def about(image):
+    """[8, row, column] of the neighbours of all but the outermost."""
+    rows, columns = image.shape
+    return np.stack([image[1 + y:rows - 1 + y, 1 + x:columns - 1 + x] for y in (-1, 0, 1) for x in (-1, 0, 1) if x or y])
+
+
+def spikes(picture, reference):
+    """How many pixels stick out of their neighbours as those of a long render do not, by the mean of the channels."""
+    def sticking_out(path):
+        mean, variance, _ = exr.read_rgb(path)
+        mean, error = mean.mean(axis=2), np.sqrt(variance.mean(axis=2))
+        return mean[1:-1, 1:-1] - about(mean).mean(axis=0), np.median(about(error), axis=0)
+    out, error = sticking_out(picture)
+    confirmed, _ = sticking_out(reference)
+    return int(np.sum((out > 5.0 * error) & (confirmed < 0.5 * out)))
 
 
 def main():
-    options = table_runs.options(__doc__, spp=64, runs=3, reference=1024)
-    vkvol = options.vkvol
+    options = table_runs.options(__doc__, spp=64, runs=5, reference=2048)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         picture, reference = folder / "a.exr", folder / "reference.exr"
-        for number, (case, scene, by_chance) in enumerate(scenes(folder)):
-            report = table_runs.render(vkvol, scene, WAYS["collisions"], 1000, options.reference, reference, *SIZE)
-            if number == 0:
-                print(f"{report['device']['name']}, {report['device']['driver']}; width 128, {options.spp} samples; means of "
-                      f"{options.runs} errors, medians of as many seconds, in alternation")
-                print(f"{'':36} {'phase':>28} {'cached':>28}   over every collision's shadow ray")
-                print(f"{'':36} {'error':>10} {'time':>6} {'efficiency':>10} {'error':>10} {'time':>6} {'efficiency':>10}")
-            ways = {way: name for way, name in WAYS.items() if way != "phase" or by_chance}
-            means = table_runs.in_alternation(options, scene, ways, picture, lambda made: error(made, reference), *SIZE)
-            columns = table_runs.against(means, "collisions")
-            print(f"{case:36}{columns('phase')}{columns('cached')}", flush=True)
+        print(f"{table_runs.driver_of(options.vkvol)}, commit {table_runs.commit_of(options.vkvol)}; 128 x 72, {options.spp} samples, "
+              f"{options.runs} runs\n{'':30}{'spikes':>7}   way     {block_errors.HEAD}  {'spikes':>7}")
+        for case, scene, by_chance in scenes(folder):
+            table_runs.render(options.vkvol, scene, WAYS["collisions"], 1000, options.reference, reference, *SIZE)
+            truth, found_spikes = block_errors.Truth.of(reference), {way: [] for way in WAYS}
+            ways = {way: (options.vkvol, integrator) for way, integrator in WAYS.items() if way != "phase" or by_chance}
+            turn = iter(list(ways) * options.runs)  # as in_alternation goes
+
+            def error(made):
+                found_spikes[next(turn)].append(spikes(made, reference))
+                return truth.relative_error(made)
+            found = block_errors.in_alternation(options, scene, ways, picture, error, *SIZE)
+            for way in ways:
+                if way != "collisions":
+                    print(f"{case:30}{statistics.mean(found_spikes['collisions']):7.1f}   {way:7} "
+                          f"{block_errors.columns(found, way, 'collisions')}  {statistics.mean(found_spikes[way]):7.1f}", flush=True)
 
 
 if __name__ == "__main__":

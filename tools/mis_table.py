@@ -15,13 +15,10 @@ import struct
 import sys
 import tempfile
 
+import numpy as np
+
+import block_errors
 import table_runs
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "peers"))
-import numpy as np  # noqa: E402
-
-import exr  # noqa: E402
-from contest import interval  # noqa: E402
 
 LEAST, CONFIDENCE = 0.7, 0.95
 LIGHTS = {
@@ -75,37 +72,13 @@ def scene_of(light, phase):
     return SCENE.format(phase=phase, light=held)
 
 
-def in_blocks(image, size=4):
-    """Sums over blocks of so many pixels."""
-    rows, columns, channels = image.shape
-    return image.reshape(rows // size, size, columns // size, size, channels).sum(axis=(1, 3))
-
-
-def efficiencies(options, scene, folder):
-    """Of each way, a figure for each run; and the device."""
-    picture, found = folder / "a.exr", {way: [] for way in WAYS}
-
-    def render(way, seed, spp):
-        report = table_runs.render(options.vkvol, scene, f"ratioTracking:distance=flights:mis={way}", seed, spp, picture)
-        mean, variance, _ = exr.read_rgb(picture)
-        return report, in_blocks(mean), in_blocks(variance)
-
-    _, reference, known_to = render("balance", 1000, 32 * options.spp)
-    for run in range(options.runs):
-        for way in WAYS:
-            report, mean, _ = render(way, run + 1, options.spp)
-            error = max(np.sum((mean - reference) ** 2 - known_to) / np.sum(reference ** 2), 1e-12)
-            found[way].append(1 / (error * report["seconds"]["render"]))
-    return found, report["device"]
-
-
 def line_of(found, confidence):
-    log = {way: np.log(values) for way, values in found.items()}
-    best = max(("light", "phase"), key=lambda way: log[way].mean())
-    over = {way: np.exp((log[way] - log[best]).mean()) for way in WAYS}
-    logs = list(log["balance"] - log[best])
-    known = interval(logs, CONFIDENCE)
-    verdict = "LESS" if interval(logs, confidence)["high"] < LEAST else "ok" if over["balance"] >= LEAST else "open"
+    """Of each way the efficiency over that of the better of `light` and `phase`, and the verdict."""
+    best = max(("light", "phase"), key=lambda way: block_errors.ratios(found, way, "balance")[2]["value"])
+    over = {way: block_errors.ratios(found, way, best)[2]["value"] for way in WAYS}
+    known = block_errors.ratios(found, "balance", best)[2]
+    most = block_errors.ratios(found, "balance", best, confidence)[2]["high"]
+    verdict = "LESS" if most < LEAST else "ok" if over["balance"] >= LEAST else "open"
     return " ".join(f"{over[way]:8.3f}" for way in WAYS) + f"   {known['low']:6.3f} {known['high']:6.3f}  {verdict}"
 
 
@@ -121,20 +94,20 @@ def main():
     options.vkvol = str(pathlib.Path(options.build).resolve() / "vkvol")
     lights = {name: xml for name, xml in LIGHTS.items() if options.lights in name}
     confidence = CONFIDENCE ** (1 / (len(LIGHTS) * len(PHASES)))
-    first = True
+    ways = {way: (options.vkvol, f"ratioTracking:distance=flights:mis={way}") for way in WAYS}
+    print(f"{table_runs.driver_of(options.vkvol)}, commit {table_runs.commit_of(options.vkvol)}; geometric means of {options.runs}, in "
+          f"alternation; {options.spp} samples\n{'light':20} {'phase function':14} " + " ".join(f"{way:>8}" for way in WAYS)
+          + "   balance, interval")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         write_maps(folder)
+        scene, picture = folder / "scene.xml", folder / "a.exr"
         for light, light_xml in lights.items():
             for phase, phase_xml in PHASES.items():
-                scene = folder / "scene.xml"
                 scene.write_text(scene_of(light_xml, phase_xml))
-                found, device = efficiencies(options, scene, folder)
-                if first:
-                    print(f"{device['name']}, {device['driver']}, commit {table_runs.commit_of(options.vkvol)}; geometric means of "
-                          f"{options.runs}, in alternation; {options.spp} samples")
-                    print(f"{'light':20} {'phase function':14} " + " ".join(f"{way:>8}" for way in WAYS) + "   balance, interval")
-                    first = False
+                table_runs.render(options.vkvol, scene, ways["balance"][1], 1000, 32 * options.spp, picture)
+                truth = block_errors.Truth.of(picture)
+                found = block_errors.in_alternation(options, scene, ways, picture, truth.error)
                 print(f"{light:20} {phase:14} {line_of(found, confidence)}", flush=True)
 
 

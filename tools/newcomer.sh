@@ -7,9 +7,10 @@
 #     `vkvol demo`, and removed without a trace; not among what is done without words
 #     tar: what `tools/package.sh tar` has made is unpacked in one of any release, and tried; likewise
 #     python: `pip install .` in an environment of its own, and a picture from Python; likewise. PyPI has to be there
+#     schedules: `tools/validate.sh schedules` on that release's driver; likewise. The table is in the output
 #   tools/newcomer.sh --cache DIR          where bare systems are kept; default: ~/.cache/vkvol-newcomer
 #   tools/newcomer.sh --mirror URL         default: http://deb.debian.org/debian
-# Each has a system of its own; but of demo and test, one after the other, the second finds what the first left.
+# Each has a system of its own; but of demo, test and schedules, one after the other, the next finds what the one before left.
 # Needs root, the network and the package debootstrap. What it mounts is in a name space of its own and goes with it.
 set -eu
 source "$(dirname "$0")/setup.sh"
@@ -23,13 +24,13 @@ while [ $# -gt 0 ]; do
     case $1 in
     bookworm | trixie) releases+=("$1") ;;
     root | user) users+=("$1") ;;
-    demo | test | package | tar | python) commands+=("$1") ;;
+    demo | test | package | tar | python | schedules) commands+=("$1") ;;
     --cache | --mirror)
         [ $# -gt 1 ] || die "$1 needs a value"
         [ "$1" = --cache ] && cache=$2 || mirror=$2
         shift
         ;;
-    *) die "'$1' is neither a release (bookworm, trixie), a user (root, user), a command (demo, test, package, tar, python), --cache DIR nor --mirror URL" ;;
+    *) die "'$1' is neither a release (bookworm, trixie), a user (root, user), a command (demo, test, package, tar, python, schedules), --cache DIR nor --mirror URL" ;;
     esac
     shift
 done
@@ -103,6 +104,7 @@ steps() {
     package) package_steps ;;
     tar) tar_steps ;;
     python) python_steps | sed "s/AS_USER/$2/" ;;
+    schedules) echo "cd /home/vkvol && ${2:+$2 }tools/validate.sh schedules" ;;
     *) echo "cd /home/vkvol && ${2:+$2 }tools/$1.sh" ;;
     esac
 }
@@ -168,6 +170,7 @@ attempt() {
     local start=$SECONDS result=ok log=$vkvol_root/out/newcomer-$1-$2-$3.log load row what=tools/$3.sh
     [ "$3" != tar ] || what="package.sh tar"
     [ "$3" != python ] || what="pip install ."
+    [ "$3" != schedules ] || what=schedules
     load=$(cut -d ' ' -f 1 /proc/loadavg)
     say "$1, $2: $what (output in $log)"
     local as=
@@ -213,9 +216,9 @@ for release in "${releases[@]}"; do
     for user in "${users[@]}"; do
         built=
         for command in "${commands[@]}"; do
-            [ -n "$built" ] && [[ $command = demo || $command = test ]] || new_system "$release" "$user"
+            [ -n "$built" ] && [[ $command = demo || $command = test || $command = schedules ]] || new_system "$release" "$user"
             built=
-            [[ $command != demo && $command != test ]] || built=yes
+            [[ $command != demo && $command != test && $command != schedules ]] || built=yes
             attempt "$release" "$user" "$command"
         done
     done

@@ -10,12 +10,14 @@
 #   pbrt        scenes of one feature each against what pbrt-v4 made of them (4 minutes): tools/peers/pbrt_features.py
 #   denoise     the test of tools/denoise with the denoiser (1 minute; likewise)
 #   farm        tools/farm by Open Job Description, Snakemake and Slurm, as far as they are installed (2 minutes)
-#   estimators  the tables of all unbiased combinations of estimators, of the bias of marches, and of transmittances alone
+#   schedules   the table of all integrators, flights and transmittances by both schedules, on whatever driver it is (4 minutes)
+#   estimators  the tables of all unbiased combinations of estimators, of looks and flights under every light, of the bias of marches,
+#               and of transmittances alone
 #   pictures    whole scenes with large grids, rendered by vkvol and by the scalar reference with different seeds, judged by
 #               `vkvol compare` (per-pixel z-test, Sidak-corrected, and a test of the means; a significance of 0.001 per
 #               scene, so that a table of this length raises a false alarm once in a hundred runs)
 # All but `tests` takes about an hour on two cores. Each part ends with a table; fails if anything differs.
-#   tools/validate.sh [--driver NAME] [hard|scenes|crossed|large|tests|python|view|pbrt|denoise|farm|estimators|pictures ...] [FILE.nvdb ...]
+#   tools/validate.sh [--driver NAME] [hard|scenes|crossed|large|tests|python|view|pbrt|denoise|farm|schedules|estimators|pictures ...] [FILE.nvdb ...]
 #       a driver as in tools/test.sh; further grids for pictures: in the thesis' bunny scenes
 set -eu
 source "$(dirname "$0")/setup.sh"
@@ -29,12 +31,12 @@ if [ "${1:-}" = --driver ]; then
 fi
 for argument in "$@"; do
     case $argument in
-    hard | scenes | crossed | large | tests | python | view | pbrt | denoise | farm | estimators | pictures) parts+=("$argument") ;;
+    hard | scenes | crossed | large | tests | python | view | pbrt | denoise | farm | schedules | estimators | pictures) parts+=("$argument") ;;
     *.nvdb) grids+=("$argument") ;;
-    *) die "'$argument' is neither a part (hard, scenes, crossed, large, tests, python, view, pbrt, denoise, farm, estimators, pictures) nor a .nvdb file" ;;
+    *) die "'$argument' is neither a part (hard, scenes, crossed, large, tests, python, view, pbrt, denoise, farm, schedules, estimators, pictures) nor a .nvdb file" ;;
     esac
 done
-[ ${#parts[@]} -gt 0 ] || parts=(hard scenes crossed large tests python view pbrt denoise farm estimators pictures)
+[ ${#parts[@]} -gt 0 ] || parts=(hard scenes crossed large tests python view pbrt denoise farm schedules estimators pictures)
 
 install_packages
 [ -z "$driver" ] || use_driver "$driver"
@@ -112,13 +114,23 @@ run_farm() {
     "$vkvol_root/tools/farm/test.sh" || failed=1
 }
 
-run_estimators() {
-    say "Estimators against each other"
+# print_tables NAME...: which hidden tests print.
+print_tables() {
     local table
-    for table in agreement bias transmittance; do
+    for table in "$@"; do
         (cd "$work" && "$vkvol_root/build/vkvol_tests" "[.${table}_table]" -o "$work/log") >"$work/$table.txt" || failed=1
         cat "$work/$table.txt"
     done
+}
+
+run_schedules() {
+    say "Estimators by both schedules"
+    print_tables schedules
+}
+
+run_estimators() {
+    say "Estimators against each other"
+    print_tables agreement lights bias transmittance
 }
 
 rows=()

@@ -67,7 +67,12 @@ Json occupancy_json(const RenderResult& r) {
 Json plan_json(const Plan& plan) {
     return {{"schedule", name_of(plan.schedule)},
             {"slots", plan.slots},
+            {"waiting", plan.waiting},
+            {"lanes", plan.lanes},
+            {"turns", plan.budget},
             {"steps", plan.steps},
+            {"stepLimit", plan.step_limit},
+            {"copiesInLoops", plan.copies == PathCopies::in_loops},
             {"majorantCell", plan.majorant_cell},
             {"leaps", plan.leaps}};
 }

@@ -30,10 +30,9 @@ void gather_some_light(MediumParams v, Scatterer s, vec3 position, float t, Spec
     vec3 light = drawn.light * scatter_value(s, lane.path.direction, drawn.direction) *
                  (drawn.pdf > 0.0 ? weight_of_look(drawn.pdf, pdf) : 1.0);
 #ifdef SURFACES
-    // Nothing comes through a face from what lies in it, as lamps that are of rough glass themselves: by an eighth of what rays
-    // begin before it, as in nearest.glsl, and of balls also where they bend away from grazing looks.
+    // Nothing comes through a face from what lies in it, as lamps that are of rough glass themselves.
     float beyond = s.is_surface ? -dot(s.bsdf.face, drawn.direction) : 0.0;
-    if (beyond > 0.0 && drawn.distance * beyond <= (row.kind == LIGHT_SPHERE ? 2.0 : 1.125) * s.apart)
+    if (beyond > 0.0 && drawn.distance * beyond <= reach_of_face(row) * s.apart)
         light = vec3(0.0);
 #endif
     if (WEIGHS)

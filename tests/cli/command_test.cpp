@@ -94,6 +94,29 @@ TEST_CASE("summary, report and progress tell one noise, and a black picture has 
     CHECK(nlohmann::json::parse(black_report)["noise"].is_null());
 }
 
+TEST_CASE("the report says how full queues were, and how the render was carried out", "[gpu][command]") {
+    const Folder folder("");
+    const auto report_by = [&](const std::string& schedule) {
+        CHECK(folder.vkvol("ball.xml --spp 4 -q --report r.json --schedule " + schedule).code == exit_done);
+        return nlohmann::json::parse(folder.text("r.json"));
+    };
+    const nlohmann::json staged = report_by("staged"), fused = report_by("fused");
+    for (const char* pass : {"generate", "track", "shadow"})
+        if (const double part = staged["occupancy"].value(pass, -1.0); pass != std::string("shadow") || part >= 0.0) {
+            CAPTURE(pass, part);
+            CHECK(part > 0.0);
+            CHECK(part <= 1.0);
+        }
+    CHECK(staged["occupancy"]["accumulate"].get<double>() > 0.0);
+    CHECK_FALSE(fused["occupancy"].contains("accumulate"));
+    CHECK(staged["plan"]["schedule"] == "staged");
+    CHECK(staged["plan"]["waiting"].get<int>() > 0);
+    CHECK(fused["plan"]["waiting"] == 0);
+    for (const nlohmann::json& report : {staged, fused})
+        for (const char* size : {"slots", "lanes", "turns", "steps", "stepLimit"})
+            CHECK(report["plan"][size].get<int>() > 0);
+}
+
 TEST_CASE("a picture without caps is exact, and --strict is content", "[gpu][command]") {
     const Folder folder("");
     CHECK(folder.vkvol("ball.xml --strict -q").code == exit_done);

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
 #include <memory>
 
 #include "support/images.h"
@@ -122,6 +123,25 @@ TEST_CASE("grids may be rotated, sheared, stretched and mirrored", "[gpu][hard][
     scene.settings.filter = Filter::trilinear;
     scene.settings.spp = 128;
     CHECK_AGREEMENT(agree(render_here(scene, 27).film, render_reference(scene, 28), name + " grid"));
+}
+
+TEST_CASE("models are moved, turned, stretched and mirrored by their transform", "[gpu][invariance]") {
+    // A large body and a small one beside it, so that no turn leaves them as they are.
+    const Mesh bodies =
+        join(make_box({-1.0, -0.5, -0.7}, {0.3, 0.8, 0.6}, 1), make_box({0.6, 0.1, -0.2}, {1.1, 0.7, 0.9}, 1));
+    const glm::dmat4 turn =
+        glm::rotate(glm::translate(glm::dmat4(1.0), {0.2, -0.1, 0.3}), 0.8, glm::normalize(glm::dvec3(1.0, 2.0, -1.0)));
+    const glm::dvec3 scales = GENERATE(glm::dvec3(1.0), glm::dvec3(0.7, 1.3, 0.9), glm::dvec3(-1.0, 1.0, 1.0));
+    const glm::dmat4 transform = glm::scale(turn, scales);
+    Volume moved = medium(write_mesh(bodies), 1.5, 0.9, 0.4);
+    moved.transform = transform;
+    Mesh by_hand = bodies;
+    for (auto& vertex : by_hand.vertices)
+        vertex = glm::dvec3(transform * glm::dvec4(vertex, 1.0));
+    CAPTURE(scales.x, scales.y, scales.z);
+    CHECK_AGREEMENT(agree(render_here(lit(moved, 4.0, 12.0), 1).film,
+                          render_here(lit(medium(write_mesh(by_hand), 1.5, 0.9, 0.4), 4.0, 12.0), 2).film,
+                          "models by a transform"));
 }
 
 // Its author may name any point of a plane. A texture begins at it, and these tiles are 2 wide.

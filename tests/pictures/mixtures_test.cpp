@@ -8,6 +8,7 @@
 #include "support/images.h"
 #include "support/scene_text.h"
 #include "support/scenes.h"
+#include "support/thorough.h"
 
 using namespace vkvol;
 
@@ -37,6 +38,25 @@ TEST_CASE("media of two phase functions on top of each other are one of their mi
             agree(render_here(by(apart, integrator), 2).film,
                   std::string(integrator) == "deltaTracking" ? render_here(by(mixed, integrator), 3).film : expected,
                   integrator));
+}
+
+TEST_CASE("halves of a medium on top of each other are the whole, under every light", "[gpu][image][several][lights]") {
+    const LightsAbout lights;
+    const std::vector<std::pair<std::string, Light>> all = {
+        {"point", lights.point}, {"spot", lights.spot},           {"ball", lights.ball},
+        {"disk", lights.disk},   {"rectangle", lights.rectangle}, {"sun", lights.sun},
+        {"beam", lights.beam},   {"map", write_sky(sunset_map())}};
+    for (const auto& [name, light] : in_turn(all, 0)) {
+        Scene whole = scene_of(smoke(), 5.0, 16, 12.0);
+        whole.lights = {light};
+        whole.background = {0.1, 0.2, 0.4};
+        whole.settings.spp = 256;
+        Scene halves = whole;
+        halves.volumes.push_back(halves.volumes.front());
+        for (Volume& half : halves.volumes)
+            half.density_scale *= 0.5;
+        CHECK_AGREEMENT(agree(render_here(whole, 1).film, render_here(halves, 2).film, "halves, " + name));
+    }
 }
 
 TEST_CASE("boundaries between media are nothing that a path meets", "[gpu][image][several]") {

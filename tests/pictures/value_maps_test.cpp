@@ -132,6 +132,31 @@ TEST_CASE("a transfer function of two values equals two boxes of what it says", 
     CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_here(boxes, 2).film, "two boxes"));
 }
 
+TEST_CASE("a transfer function equals a grid for each of its values", "[gpu][image][value_map]") {
+    // Each with the density of the voxels of that value, and of the colours that the function gives them.
+    const float values[] = {0.1f, 0.3f, 0.6f, 0.9f};
+    const auto level = [](glm::ivec3 i) { return std::size_t(std::min(int(6.0f * cloud_noise(i)), 3)); };
+    GridRecipe whole = cloud_grid();
+    whole.value = [=](glm::ivec3 i) { return values[level(i)]; };
+    Volume mapped = medium(write_grid(whole), 1.0, 1.0, 0.2);
+    mapped.map = tissues();
+    Scene by_map = lit_by_sun(mapped), by_grids = by_map;
+    by_grids.volumes.clear();
+    for (std::size_t k = 0; k < std::size(values); ++k) {
+        const MapPoint point = reference::mapped(tissues(), values[k]);
+        GridRecipe part = whole;
+        part.value = [=](glm::ivec3 i) { return level(i) == k ? 1.0f : 0.0f; };
+        Volume volume = medium(write_grid(part), 1.0, 1.0, 0.2);
+        volume.sigma_s = point.density * point.albedo;
+        volume.sigma_a = point.density * (Rgb(1.0) - point.albedo);
+        volume.Le = point.emission;
+        by_grids.volumes.push_back(volume);
+    }
+    by_map.settings.filter = by_grids.settings.filter = Filter::nearest;
+    by_map.settings.integrator = by_grids.settings.integrator = "ratioTracking";
+    CHECK_AGREEMENT(agree(render_here(by_map, 1).film, render_here(by_grids, 2).film, "a grid for each value"));
+}
+
 TEST_CASE("mapped media among several equal the reference, and their halves the whole", "[gpu][image][value_map]") {
     Scene scene = lit_by_sun(mapped_cloud(tissues()));
     Volume other = mapped_cloud(bumpy_map(), 0.8);

@@ -1,0 +1,128 @@
+// Looks alone, flights alone, and both by their weights find the same light: of everything that shines and has extent,
+// by every phase function and every transmittance. The table of tools/results comes from here, by tools/validate.sh.
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+#include <iostream>
+
+#include "shared/constants.h"
+#include "support/agreement.h"
+#include "support/images.h"
+#include "support/statistics.h"
+#include "support/surface_scenes.h"
+
+using namespace vkvol;
+
+namespace {
+
+struct NamedShine {
+    std::string name;
+    std::vector<Light> lights;
+    std::vector<Surface> surfaces = {};
+};
+
+// About a ball of radius 1, and so wide that flights alone meet them.
+std::vector<NamedShine> wide_lights() {
+    const glm::dvec3 above = glm::normalize(glm::dvec3(0.3, 1.0, 0.5));
+    const RectangleSurface pane{{0.0, 2.0, 0.0}, {1.5, 0.0, 0.0}, {0.0, 0.0, 1.5}}; // its front is below
+    TriangleSurface round = round_mesh(8, 0.8);
+    for (glm::dvec3& vertex : round.vertices)
+        vertex += 2.2 * above;
+    const auto shining = [](SurfaceShape shape, const Rgb& emission) {
+        Surface surface;
+        surface.shape = std::move(shape);
+        surface.material = matte(0.0);
+        surface.emission = emission;
+        return surface;
+    };
+    const auto gradient = [](int, int row) { return Rgb(2.0, 1.5, 1.0) * (8.0 - row) / 4.0; };
+    return {{"sun of 60 degrees", {SunLight{above, {3.0, 2.5, 2.0}, 60.0}}},
+            {"sun of a dark limb", {SunLight{above, {3.0, 2.5, 2.0}, 90.0, 1.0}}},
+            {"map, a gradient", {write_sky(make_map(16, 8, gradient))}},
+            {"map, a sunset", {write_sky(sunset_map())}},
+            {"map of equal areas", {write_sky(square_map(), SkyMapping::equal_area)}},
+            {"ball", {SphereLight{2.2 * above, 0.8, {6.0, 4.0, 3.0}}}},
+            {"disk", {DiskLight{1.8 * above, -above, 1.0, {6.0, 5.0, 4.0}}}},
+            {"rectangle", {RectangleLight{{0.0, -1.6, 0.2}, {0.0, 0.0, 1.2}, {1.2, 0.0, 0.0}, {4.0, 3.0, 5.0}}}},
+            {"pane that shines", {}, {shining(pane, {3.0, 4.0, 5.0})}},
+            {"mesh that shines", {}, {shining(std::move(round), {5.0, 4.0, 3.0})}},
+            {"several",
+             {SunLight{above, Rgb(1.0), 60.0}, SphereLight{-2.2 * above, 0.9, Rgb(2.0)}, write_sky(sunset_map())}}};
+}
+
+Scene smoke_under(const NamedShine& shine, const NamedPhase& phase) {
+    Volume volume = medium(Sphere{{0.0, 0.0, 0.0}, 1.0}, 4.0, 0.9);
+    volume.noise = Noise{1.3, 2, 0.5, 2.0};
+    Scene scene = scene_of(phase.of(volume), 2.2, 7, 12.0, glm::dvec3(0.0), {10.0, 25.0, -5.0});
+    scene.lights = shine.lights;
+    scene.surfaces = shine.surfaces;
+    scene.settings.integrator = "ratioTracking";
+    scene.settings.spp = 1024;
+    return scene;
+}
+
+constexpr std::pair<const char*, int> ways[] = {
+    {"balance", MIS_BALANCE}, {"power", MIS_POWER}, {"light", MIS_LIGHT}, {"phase", MIS_PHASE}};
+constexpr std::pair<const char*, int> shadows[] = {{"ratio", TRANSMITTANCE_RATIO},
+                                                   {"delta", TRANSMITTANCE_DELTA},
+                                                   {"residual", TRANSMITTANCE_RESIDUAL},
+                                                   {"telescoping", TRANSMITTANCE_TELESCOPING}};
+
+// What was compared, and the largest z of pictures' means by all four ways, and of pixels by those that are weighted:
+// a pixel's samples are too few for a normal limit where one technique has to find what it rarely draws.
+struct Row {
+    std::string what;
+    PairwiseAgreement all, weighted;
+};
+
+Row row_of(const std::string& what, const Scene& scene, std::uint32_t seed, std::size_t some_shadows) {
+    const Film expected = render_reference(scene, seed);
+    std::vector<Estimate> all{{"reference", expected}}, weighted = all;
+    for (std::size_t shadow = 0; shadow < some_shadows; ++shadow)
+        for (const auto& [way, mis] : ways) {
+            Scene chosen = scene;
+            chosen.settings.choices.mis = mis;
+            chosen.settings.choices.transmittance = shadows[shadow].second;
+            all.push_back({fmt::format("{}, {}", way, shadows[shadow].first), render_here(chosen, ++seed).film});
+            if (mis == MIS_BALANCE || mis == MIS_POWER)
+                weighted.push_back(all.back());
+        }
+    return {what, compare_all(all), compare_all(weighted)};
+}
+
+} // namespace
+
+TEST_CASE("looks, flights and their mixtures agree under every light", "[.lights_table]") {
+    constexpr double alpha = 0.01; // that any of all the tests fails by chance
+    const std::vector<NamedPhase> phases = all_phases();
+    std::vector<Row> rows;
+    std::uint32_t seed = 1000;
+    for (const NamedShine& shine : wide_lights())
+        for (const NamedPhase& phase : phases) {
+            const bool first = phase.name == phases.front().name; // in whose light all transmittances are compared
+            rows.push_back(row_of(fmt::format("{:<20} {:<24}", shine.name, phase.name), smoke_under(shine, phase),
+                                  seed += 100, first ? std::size(shadows) : 1));
+        }
+    double means = 0.0, pixels = 0.0;
+    for (const Row& row : rows) {
+        means += 3.0 * double(row.all.pairs);
+        pixels += double(row.weighted.tests) - 3.0 * double(row.weighted.pairs);
+    }
+    const double mean_limit = z_limit(alpha / 2.0, means), pixel_limit = z_limit(alpha / 2.0, pixels);
+    std::cout << fmt::format(
+        "mis = balance, power, light and phase, and the reference, which asks all lights and weights nothing: every "
+        "pair.\n"
+        "Means of pictures by t-test, pixels of those weighted by z-test, three channels; {:.0f} and {:.0f} tests, "
+        "significance {} over all (Sidak).\nFor the first phase function with ratio, delta, residual and "
+        "telescoping shadow rays.\n\n{:<20} {:<24} {:>5} {:>18} {:>19}  {}\n",
+        means, pixels, alpha, "light", "phase function", "pairs", "largest mean z", "largest pixel z", "verdict");
+    for (const Row& row : rows) {
+        const bool ok = row.all.mean_z <= mean_limit && row.weighted.pixel_z <= pixel_limit;
+        std::cout << fmt::format("{} {:>5} {:>8.2f} (of {:.2f}) {:>9.2f} (of {:.2f})  {}\n", row.what, row.all.pairs,
+                                 row.all.mean_z, mean_limit, row.weighted.pixel_z, pixel_limit,
+                                 ok ? "agree" : "DIFFER");
+        if (!ok)
+            std::cout << "    mean: " << row.all.mean_pair << "\n    pixel: " << row.weighted.pixel_pair << "\n";
+        CHECK(ok);
+    }
+    std::cout << std::flush;
+}

@@ -1,0 +1,150 @@
+// Every integrator, flight and transmittance by both schedules, against the reference's own. The table of tools/results
+// comes from here, by tools/validate.sh, on whatever driver it is told.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+#include <iostream>
+#include <set>
+
+#include "error.h"
+#include "integrators.h"
+#include "method.h"
+#include "preset.h"
+#include "shared/constants.h"
+#include "shared/estimators.h"
+#include "support/agreement.h"
+#include "support/images.h"
+#include "support/scenes.h"
+#include "support/statistics.h"
+#include "support/test_device.h"
+
+using namespace vkvol;
+
+namespace {
+
+// All that renders this scene as it is asked to, by names: each integrator, and ratioTracking with each flight and each
+// transmittance.
+std::vector<std::pair<std::string, Scene>> ways_to_render(const Scene& scene) {
+    std::vector<std::pair<std::string, Scene>> ways;
+    const auto consider = [&](const std::string& text) {
+        Scene trial = scene;
+        const IntegratorRequest request = parse_integrator(text);
+        trial.settings.integrator = request.name;
+        trial.settings.choices = request.choices;
+        const Integrator& row = *find_integrator(request.name);
+        if (row.origin == Integrator::Origin::thesis_models && std::holds_alternative<GridFile>(scene.volumes[0].shape))
+            return;
+        if (row.nee == NEE_NONE) // which would miss their light, and say so
+            trial.lights.clear();
+        try {
+            if (choose_method(with_preset(trial)).warnings.empty())
+                ways.emplace_back(text, trial);
+        } catch (const InputError&) { // not in this medium
+        }
+    };
+    for (const Integrator& integrator : integrators())
+        consider(integrator.name);
+    for (const char* axis : {"flight", "transmittance"})
+        for (const std::string& choice : find_axis(axis).names)
+            consider(fmt::format("ratioTracking:{}={}", axis, choice));
+    return ways;
+}
+
+// agreement_scenes() of which each has estimators that the others have not.
+std::vector<NamedScene> scenes_of_all() {
+    std::vector<NamedScene> scenes = agreement_scenes();
+    std::erase_if(scenes, [](const NamedScene& named) {
+        return named.name != "sphere, g 0.8" && named.name != "thick cloud" && named.name != "chromatic cloud" &&
+               named.name != "fire";
+    });
+    for (NamedScene& named : scenes)
+        named.scene.settings.spp = 500;
+    // Which the original's integrators for models ask for.
+    Scene mesh = scenes.front().scene;
+    mesh.volumes = {medium(write_mesh(make_box({-0.8, -0.6, -0.7}, {0.7, 0.9, 0.6}, 1)), 2.0, 0.9, 0.3)};
+    scenes.push_back({"mesh", mesh});
+    return scenes;
+}
+
+Film by_schedule(const Scene& scene, Schedule schedule, std::uint32_t seed) {
+    RenderJob job;
+    job.plan.schedule = schedule;
+    return render_here(scene, seed, job).film;
+}
+
+} // namespace
+
+TEST_CASE("all integrators, flights and transmittances agree by both schedules", "[.schedules_table]") {
+    constexpr double alpha = 0.01; // that any of all the tests fails by chance
+    struct Row {
+        std::string scene;
+        std::size_t ways = 0, same = 0; // same: of which both schedules give the same bits
+        PairwiseAgreement worst;
+    };
+    std::vector<Row> rows;
+    std::set<std::string> seen;
+    std::uint32_t seed = 5000;
+    for (const NamedScene& named : scenes_of_all()) {
+        Row& row = rows.emplace_back(Row{named.name, 0, 0, {}});
+        for (const auto& [name, scene] : ways_to_render(named.scene)) {
+            seen.insert(name);
+            // The reference has paths from the camera alone, and leaves to presets what media lack by them.
+            const bool by_paths = find_integrator(scene.settings.integrator)->paths == PATHS_CAMERA;
+            Scene known = with_preset(scene);
+            if (!by_paths)
+                known.settings.integrator = "ratioTracking";
+            const Film expected = render_reference(known, ++seed);
+            const Film fused = by_schedule(scene, Schedule::fused, ++seed);
+            const Film staged = by_schedule(scene, Schedule::staged, seed);
+            const bool same = same_bits(fused, staged);
+            row.ways += 1;
+            row.same += same;
+            CAPTURE(named.name, name);
+            CHECK((same || !test_device().is_cpu()));
+            std::vector<Estimate> estimates{{"reference, " + name, expected}, {"fused, " + name, fused}};
+            if (!same)
+                estimates.push_back({"staged, " + name, staged});
+            const PairwiseAgreement found = compare_all(estimates);
+            row.worst.pairs += found.pairs;
+            row.worst.tests += found.tests;
+            if (!(found.mean_z <= row.worst.mean_z)) {
+                row.worst.mean_z = found.mean_z;
+                row.worst.mean_pair = found.mean_pair;
+            }
+            // A particle's few pixels are far from a normal limit.
+            if (by_paths && !(found.pixel_z <= row.worst.pixel_z)) {
+                row.worst.pixel_z = found.pixel_z;
+                row.worst.pixel_pair = found.pixel_pair;
+            }
+        }
+    }
+    double means = 0.0, pixels = 0.0;
+    for (const Row& row : rows) {
+        means += 3.0 * double(row.worst.pairs);
+        pixels += double(row.worst.tests) - 3.0 * double(row.worst.pairs);
+    }
+    const double mean_limit = z_limit(alpha / 2.0, means), pixel_limit = z_limit(alpha / 2.0, pixels);
+    std::cout << fmt::format(
+        "{}\nEvery integrator, and ratioTracking with every flight and every transmittance, fused and staged, each "
+        "against the reference's own:\nmeans of pictures and pixels, three channels; significance {} over all "
+        "(Sidak). same: by both schedules, bit for bit.\n\n{:<16} {:>5} {:>5} {:>18} {:>19}  {}\n",
+        test_device().info().name + ", " + test_device().info().driver, alpha, "scene", "ways", "same",
+        "largest mean z", "largest pixel z", "verdict");
+    for (const Row& row : rows) {
+        const bool ok = row.worst.mean_z <= mean_limit && row.worst.pixel_z <= pixel_limit;
+        std::cout << fmt::format("{:<16} {:>5} {:>5} {:>8.2f} (of {:.2f}) {:>9.2f} (of {:.2f})  {}\n", row.scene,
+                                 row.ways, row.same, row.worst.mean_z, mean_limit, row.worst.pixel_z, pixel_limit,
+                                 ok ? "agree" : "DIFFER");
+        if (!ok)
+            std::cout << "    mean: " << row.worst.mean_pair << "\n    pixel: " << row.worst.pixel_pair << "\n";
+        CHECK(ok);
+    }
+    std::string missing;
+    for (const Integrator& integrator : integrators())
+        missing += seen.count(integrator.name) ? "" : std::string(" ") + integrator.name;
+    for (const char* axis : {"flight", "transmittance"})
+        for (const std::string& choice : find_axis(axis).names)
+            missing += seen.count(fmt::format("ratioTracking:{}={}", axis, choice)) ? "" : " " + choice;
+    std::cout << fmt::format("\n{} ways; missing:{}\n", seen.size(), missing.empty() ? " none" : missing) << std::flush;
+    CHECK(missing.empty());
+}
