@@ -35,8 +35,8 @@ find "$vkvol_root/scenes" -name '*.xml' -print0 |
 say "Tests ($preset${driver:+, $driver})"
 directory=$vkvol_root/build
 [ "$preset" = release ] || directory=$vkvol_root/build-$preset
-# Software drivers compile kernels on one thread, and some tests wait: a group more than cores, unless ARGS say otherwise;
+# Software drivers compile kernels on one thread, and some tests wait: two groups more than cores, unless ARGS say otherwise;
 # of many cores eight, since some go by time.
 # Drivers keep memory until the process ends: leaks are looked for in our code by other means.
-ASAN_OPTIONS=detect_leaks=0 ctest --test-dir "$directory" --timeout $limit --output-on-failure --parallel $(($(nproc) < 7 ? $(nproc) + 1 : 8)) "$@" || die "tests failed"
+ASAN_OPTIONS=detect_leaks=0 ctest --test-dir "$directory" --timeout $limit --output-on-failure --parallel $(($(nproc) < 7 ? $(nproc) + 2 : 8)) "$@" || die "tests failed"
 say "All tests passed ($((SECONDS - start)) s in all)"

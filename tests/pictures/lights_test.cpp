@@ -141,16 +141,17 @@ TEST_CASE("shadow rays end at a lamp within the medium", "[gpu][lights]") {
     Scene scene = lit_by(volume, 11.0, {PointLight{lamp, Rgb(30.0, 20.0, 10.0)}}, 192);
     scene.settings.integrator = "ratioTracking";
     const Film reference = render_reference(scene, 7);
-    for (const int transmittance : {TRANSMITTANCE_REGULAR, TRANSMITTANCE_DELTA, TRANSMITTANCE_RATIO,
-                                    TRANSMITTANCE_RESIDUAL, TRANSMITTANCE_TELESCOPING})
-        for (const int nee : {NEE_COLLISIONS, NEE_TENTATIVE, NEE_CACHED}) {
-            if (nee != NEE_COLLISIONS && transmittance != TRANSMITTANCE_RATIO)
-                continue;
-            scene.settings.choices.transmittance = transmittance;
-            scene.settings.choices.nee = nee;
-            CHECK_AGREEMENT(agree(render_here(scene, 8).film, reference,
-                                  fmt::format("lamp, transmittance {}, nee {}", transmittance, nee)));
-        }
+    const std::vector<std::pair<int, int>> ways = {
+        {TRANSMITTANCE_REGULAR, NEE_COLLISIONS}, {TRANSMITTANCE_DELTA, NEE_COLLISIONS},
+        {TRANSMITTANCE_RATIO, NEE_COLLISIONS},   {TRANSMITTANCE_RESIDUAL, NEE_COLLISIONS},
+        {TRANSMITTANCE_RATIO, NEE_TENTATIVE},    {TRANSMITTANCE_TELESCOPING, NEE_COLLISIONS},
+        {TRANSMITTANCE_RATIO, NEE_CACHED}};
+    for (const auto& [transmittance, nee] : in_turn(ways, 0)) {
+        scene.settings.choices.transmittance = transmittance;
+        scene.settings.choices.nee = nee;
+        CHECK_AGREEMENT(agree(render_here(scene, 8).film, reference,
+                              fmt::format("lamp, transmittance {}, nee {}", transmittance, nee)));
+    }
 }
 
 // From along flights, in all shapes and with all that a look takes; by free flights alone the same, with more noise.
