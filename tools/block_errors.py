@@ -37,12 +37,16 @@ class Truth:
         return (in_blocks(exr.read_rgb(picture)[0]) - self.sums) ** 2 - self.variances
 
     def error(self, picture):
-        """Mean squared error over the mean square: of bright blocks most."""
-        return max(float(np.sum(self.squares(picture)) / np.sum(self.sums ** 2)), 1e-12)
+        """Mean squared error over the mean square: of bright blocks most. No less than the truth is known to."""
+        return float(max(np.sum(self.squares(picture)), np.sum(self.variances * np.ones_like(self.sums))) / np.sum(self.sums ** 2))
 
     def relative_error(self, picture):
-        """The mean of blocks' relative squared errors: of all alike."""
-        return max(float(np.mean(self.squares(picture) / self.sums ** 2)), 1e-12)
+        """The mean of relative squared errors of all blocks that have a thousandth of the mean: of all alike. No less than they are known to."""
+        lit = self.sums > 1e-3 * self.sums.mean()
+        if not lit.any():
+            sys.exit("the reference is black")
+        known_to = np.mean((self.variances * np.ones_like(self.sums))[lit] / self.sums[lit] ** 2)
+        return float(max(np.mean(self.squares(picture)[lit] / self.sums[lit] ** 2), known_to))
 
 
 def in_alternation(options, scene, ways, picture, error, *more):

@@ -288,7 +288,7 @@ def limit_rows(lab, table, quick):
     driver = (-signal.SIGBUS,) if "SwiftShader" in lab.device else ()
     runs = table.row("ulimit -f", lambda n: limited("fsize", n, [0, 1, *driver]), sizes)
     if died := [run for run in runs if run.code in driver]:
-        table.note(f"{len(died)} ended by the driver, whose kernels are in a file in memory")
+        table.note(f"{len(died)} of {len(runs)} ended by the driver, whose kernels are in a file in memory")
     if lab.sanitized:
         table.skip("ulimit -v", "the sanitizer needs its address space")
         return

@@ -6,7 +6,7 @@
 VKVOL: the program built of these sources after `tools/lights_table.py --make-even SOURCES`, which gives all lights of a copy of them the
 same power and lets the tree go by it alone. Points of powers over three decades, in a cube of fog; paths of any length. Errors are mean
 relative squares of blocks of 4 x 4 pixels against a render of many samples by the tree, less that one's variance; geometric means of the
-runs, in alternation, with the interval of 95 %. `begins`: seconds from the file to the device, of the report. Needs NumPy."""
+runs, in alternation, with the interval of 95 %. `begins`: seconds from the file to the device, of one render's report. Needs NumPy."""
 
 import argparse
 import pathlib
@@ -18,7 +18,7 @@ import numpy as np
 import block_errors
 import table_runs
 
-INTEGRATOR = "ratioTracking"
+INTEGRATOR = "ratioTracking:distance=mixed"  # by free flights alone what is near a point has no variance
 COUNTS = (10, 100, 1000, 10_000, 100_000)
 SCENE = """<options><box width="20" height="20" depth="20"/>{noise}<sigma_a>0.005</sigma_a><sigma_s>0.1</sigma_s>
 <heyneygreenstein_g>0.5</heyneygreenstein_g><camera z="34" fov="34"/><lights>{lights}</lights><width>64</width><height>64</height></options>"""

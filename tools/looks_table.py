@@ -5,9 +5,9 @@ which correct a cache of transmittances. Efficiency, 1 / (error x seconds), over
     tools/looks_table.py [--build build] [--spp 64] [--runs 5] [--reference 2048] > tools/results/looks.txt
 
 Errors are mean relative squares of blocks of 4 x 4 pixels against a render of many samples by every collision's shadow rays, less that
-render's own variance; geometric means of the runs, in alternation, with the interval of 95 %. `spikes`: pixels of a render that are more than
-5 standard errors, the median of those about it, above the mean of their eight neighbours, and in the long render are not above them by half
-of that. Needs NumPy."""
+render's own variance; geometric means of the runs, in alternation, with the interval of 95 %. `spikes`: pixels of a render that are above the
+mean of their eight neighbours by more than 5 standard errors, the median of the neighbours' as the long render knows them for so many samples,
+and in the long render by less than half of that. Needs NumPy."""
 
 import pathlib
 import re
@@ -63,15 +63,15 @@ def about(image):
     return np.stack([image[1 + y:rows - 1 + y, 1 + x:columns - 1 + x] for y in (-1, 0, 1) for x in (-1, 0, 1) if x or y])
 
 
-def spikes(picture, reference):
-    """How many pixels stick out of their neighbours as those of a long render do not, by the mean of the channels."""
+def spikes(picture, reference, fewer):
+    """How many pixels stick out of their neighbours as those of a long render do not, by the mean of the channels. `fewer`: samples than there."""
     def sticking_out(path):
         mean, variance, _ = exr.read_rgb(path)
         mean, error = mean.mean(axis=2), np.sqrt(variance.mean(axis=2))
         return mean[1:-1, 1:-1] - about(mean).mean(axis=0), np.median(about(error), axis=0)
-    out, error = sticking_out(picture)
-    confirmed, _ = sticking_out(reference)
-    return int(np.sum((out > 5.0 * error) & (confirmed < 0.5 * out)))
+    out, _ = sticking_out(picture)
+    confirmed, error = sticking_out(reference)
+    return int(np.sum((out > 5.0 * np.sqrt(fewer) * error) & (confirmed < 0.5 * out)))
 
 
 def main():
@@ -88,7 +88,7 @@ def main():
             turn = iter(list(ways) * options.runs)  # as in_alternation goes
 
             def error(made):
-                found_spikes[next(turn)].append(spikes(made, reference))
+                found_spikes[next(turn)].append(spikes(made, reference, options.reference / options.spp))
                 return truth.relative_error(made)
             found = block_errors.in_alternation(options, scene, ways, picture, error, *SIZE)
             for way in ways:

@@ -2,7 +2,7 @@
 # The README's two commands on a new machine: in a bare Debian (debootstrap's minbase), on what HEAD holds, as root and as a
 # user with sudo. Prints how each ended and what it took, and keeps that in tools/results/newcomer.txt, a row each.
 #   tools/newcomer.sh                      all: on two cores about an hour and a half
-#   tools/newcomer.sh trixie user demo     words choose: bookworm or trixie, root or user, demo, test, package or tar
+#   tools/newcomer.sh trixie user demo     words choose: bookworm or trixie, root or user, demo, test, package, tar, python or schedules
 #     package: that which tools/package.sh has made on this machine is installed in a bare system of the same release, tried by
 #     `vkvol demo`, and removed without a trace; not among what is done without words
 #     tar: what `tools/package.sh tar` has made is unpacked in one of any release, and tried; likewise

@@ -16,7 +16,7 @@
 #   pictures    whole scenes with large grids, rendered by vkvol and by the scalar reference with different seeds, judged by
 #               `vkvol compare` (per-pixel z-test, Sidak-corrected, and a test of the means; a significance of 0.001 per
 #               scene, so that a table of this length raises a false alarm once in a hundred runs)
-# All but `tests` takes about an hour on two cores. Each part ends with a table; fails if anything differs.
+# All but `tests` takes more than an hour on two cores. Each part ends with a table; fails if anything differs.
 #   tools/validate.sh [--driver NAME] [hard|scenes|crossed|large|tests|python|view|pbrt|denoise|farm|schedules|estimators|pictures ...] [FILE.nvdb ...]
 #       a driver as in tools/test.sh; further grids for pictures: in the thesis' bunny scenes
 set -eu

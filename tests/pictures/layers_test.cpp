@@ -193,7 +193,7 @@ TEST_CASE("fog without end equals a box of it that is larger than any path", "[g
     // And so among others, whose cells it goes beyond.
     const Volume cloud = medium(write_grids({cloud_grid()}), 1.0, 0.9, 0.2);
     for (Scene* each : {&scene, &box}) {
-        each->lights = {sunlight()};
+        each->lights = {sunlight(), SphereLight{{-2.0, 0.0, 4.0}, 0.5, Rgb(4.0)}};
         each->volumes.push_back(cloud);
         each->volumes.push_back(medium(Sphere{{6.0, 0.0, 0.0}, 1.5}, 0.6, 0.5));
     }

@@ -142,8 +142,8 @@ TEST_CASE("shadow rays end at a lamp within the medium", "[gpu][lights]") {
     scene.settings.integrator = "ratioTracking";
     const Film reference = render_reference(scene, 7);
     const std::vector<std::pair<int, int>> ways = {
-        {TRANSMITTANCE_REGULAR, NEE_COLLISIONS}, {TRANSMITTANCE_DELTA, NEE_COLLISIONS},
-        {TRANSMITTANCE_RATIO, NEE_COLLISIONS},   {TRANSMITTANCE_RESIDUAL, NEE_COLLISIONS},
+        {TRANSMITTANCE_RATIO, NEE_COLLISIONS},   {TRANSMITTANCE_DELTA, NEE_COLLISIONS},
+        {TRANSMITTANCE_REGULAR, NEE_COLLISIONS}, {TRANSMITTANCE_RESIDUAL, NEE_COLLISIONS},
         {TRANSMITTANCE_RATIO, NEE_TENTATIVE},    {TRANSMITTANCE_TELESCOPING, NEE_COLLISIONS},
         {TRANSMITTANCE_RATIO, NEE_CACHED}};
     for (const auto& [transmittance, nee] : in_turn(ways, 0)) {

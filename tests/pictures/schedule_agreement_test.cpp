@@ -69,7 +69,9 @@ std::vector<NamedScene> scenes_of_all() {
 Film by_schedule(const Scene& scene, Schedule schedule, std::uint32_t seed) {
     RenderJob job;
     job.plan.schedule = schedule;
-    return render_here(scene, seed, job).film;
+    const RenderResult result = render_here(scene, seed, job);
+    CHECK(result.plan.schedule == schedule);
+    return result.film;
 }
 
 } // namespace
@@ -86,7 +88,9 @@ TEST_CASE("all integrators, flights and transmittances agree by both schedules",
     std::uint32_t seed = 5000;
     for (const NamedScene& named : scenes_of_all()) {
         Row& row = rows.emplace_back(Row{named.name, 0, 0, {}});
-        for (const auto& [name, scene] : ways_to_render(named.scene)) {
+        const auto ways = ways_to_render(named.scene);
+        CHECK(ways.size() >= (std::holds_alternative<GridFile>(named.scene.volumes[0].shape) ? 28u : 37u));
+        for (const auto& [name, scene] : ways) {
             seen.insert(name);
             // The reference has paths from the camera alone, and leaves to presets what media lack by them.
             const bool by_paths = find_integrator(scene.settings.integrator)->paths == PATHS_CAMERA;
@@ -106,13 +110,13 @@ TEST_CASE("all integrators, flights and transmittances agree by both schedules",
                 estimates.push_back({"staged, " + name, staged});
             const PairwiseAgreement found = compare_all(estimates);
             row.worst.pairs += found.pairs;
-            row.worst.tests += found.tests;
-            if (!(found.mean_z <= row.worst.mean_z)) {
+            row.worst.tests += by_paths ? found.tests : 3 * found.pairs;
+            if (!std::isnan(row.worst.mean_z) && !(found.mean_z <= row.worst.mean_z)) {
                 row.worst.mean_z = found.mean_z;
                 row.worst.mean_pair = found.mean_pair;
             }
             // A particle's few pixels are far from a normal limit.
-            if (by_paths && !(found.pixel_z <= row.worst.pixel_z)) {
+            if (by_paths && !std::isnan(row.worst.pixel_z) && !(found.pixel_z <= row.worst.pixel_z)) {
                 row.worst.pixel_z = found.pixel_z;
                 row.worst.pixel_pair = found.pixel_pair;
             }

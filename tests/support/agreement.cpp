@@ -144,6 +144,8 @@ std::vector<std::vector<glm::dvec3>> known_variances(const std::vector<Estimate>
     std::vector<std::vector<glm::dvec3>> variances;
     for (const Estimate& estimate : estimates)
         variances.emplace_back(estimate.film.variance.begin(), estimate.film.variance.end());
+    if (estimates.size() < 3)
+        return variances; // of two the median would be the larger
     std::vector<double> all(estimates.size());
     for (std::size_t i = 0; i < variances.front().size(); ++i)
         for (int channel = 0; channel < 3; ++channel) {
@@ -163,7 +165,7 @@ PairwiseAgreement compare_all(const std::vector<Estimate>& estimates) {
     const std::vector<std::vector<glm::dvec3>> variances = known_variances(estimates);
     PairwiseAgreement result;
     const auto worst = [](double z, const std::string& pair, double& most, std::string& whose) {
-        if (!(z <= most)) { // NaN too
+        if (!std::isnan(most) && !(z <= most)) { // NaN too, for good
             most = z;
             whose = pair;
         }

@@ -33,7 +33,7 @@ struct Estimate {
     Film film;
 };
 
-// Every pair, per channel: image means by a t-test, pixels by a z-test.
+// Every pair, per channel: image means by a t-test, pixels by a z-test; of three and more, see known_variances.
 struct PairwiseAgreement {
     std::size_t pairs = 0, tests = 0;
     double mean_z = 0.0, pixel_z = 0.0; // the largest

@@ -13,8 +13,8 @@
 namespace vkvol {
 
 // The scene's samples per pixel with `seed`. The crop of `job` may be left empty: the whole picture. Checks that no
-// step was capped, no majorant violated, no sample lost; and, on software drivers, of every fourth render, that both
-// schedules give the same bits, where `job` chooses none and lets the render come to its end.
+// step was capped, no majorant violated, no sample lost; and, on software drivers, of every fourteenth render, that
+// both schedules give the same bits, where `job` chooses none and lets the render come to its end.
 RenderResult render_here(const Scene& scene, std::uint32_t seed, RenderJob job = {});
 
 Film render_reference(const Scene& scene, std::uint32_t seed);
