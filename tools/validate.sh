@@ -10,8 +10,8 @@
 #   pbrt        scenes of one feature each against what pbrt-v4 made of them (4 minutes): tools/peers/pbrt_features.py
 #   denoise     the test of tools/denoise with the denoiser (1 minute; likewise)
 #   farm        tools/farm by Open Job Description, Snakemake and Slurm, as far as they are installed (2 minutes)
-#   schedules   the table of all integrators, flights and transmittances by both schedules, on whatever driver it is (4 minutes)
-#   estimators  the tables of all unbiased combinations of estimators, of looks and flights under every light, of the bias of marches,
+#   schedules   the table of all integrators, flights and transmittances by both schedules, on whatever driver it is (2 minutes; SwiftShader: 13)
+#   estimators  the tables of all unbiased combinations of estimators, of looks and flights under wide lights, of the bias of marches,
 #               and of transmittances alone
 #   pictures    whole scenes with large grids, rendered by vkvol and by the scalar reference with different seeds, judged by
 #               `vkvol compare` (per-pixel z-test, Sidak-corrected, and a test of the means; a significance of 0.001 per
