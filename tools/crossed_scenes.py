@@ -113,11 +113,11 @@ def apart(a, b):
 
 
 def apart_by_pixel(a, b):
-    """The z of each pixel and channel. What few samples met has no error to go by, and counts as no difference."""
+    """The z of each pixel and channel. What only one of the two has met goes by that one's error: k samples of it, all alike,
+    are sqrt(k) errors from none."""
     (one, e, _), (other, f, _) = a, b
     error = np.sqrt(e + f + (1e-5 * np.maximum(np.abs(one), np.abs(other))) ** 2)
-    rare = (e == 0.0) | (f == 0.0)
-    return np.where(rare, 0.0, np.abs(one - other) / np.maximum(error, 1e-30))
+    return np.where(e + f == 0.0, 0.0, np.abs(one - other) / np.maximum(error, 1e-30))
 
 
 LIMIT = 3.8  # standard errors, of three means: once in some 2000 pairs

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Reads damaged scenes, grids, meshes, images and command lines by the million, in the build with AddressSanitizer and
+# Reads damaged scenes, grids, meshes, images, maps, phase functions and command lines by the million, in the build with AddressSanitizer and
 # UndefinedBehaviorSanitizer, and prints what came of it; about an hour on two cores. Inputs that break a promise are left
 # in the current directory, with the command that replays them (see vkvol_fuzz --help), and make the exit code 1.
 #   tools/fuzz.sh [--seed S] [TARGET=RUNS ...]      in place of the defaults, e.g. scene=5000 grid=100
 set -eu
 source "$(dirname "$0")/setup.sh"
 
-declare -A runs=([scene]=1000000 [pbrt]=200000 [grid]=100000 [vdb]=20000 [mesh]=200000 [image]=100000 [options]=200000)
-order=(scene pbrt grid vdb mesh image options)
+declare -A runs=([scene]=1000000 [pbrt]=200000 [grid]=100000 [vdb]=20000 [mesh]=200000 [image]=100000 [sky]=50000 [phase]=200000 [options]=200000)
+order=(scene pbrt grid vdb mesh image sky phase options)
 seed=1
 while [ $# -gt 0 ]; do
     case $1 in

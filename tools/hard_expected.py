@@ -37,6 +37,16 @@ def slab_transmission(albedo, p, tau, mu0, mu=1.0):
     return albedo * p * mu0 / (mu - mu0) * (exp(-tau / mu) - exp(-tau / mu0))
 
 
+def airlight(sigma_s, sigma_t, g, past, distance, steps=200000):
+    """Radiance scattered once in endless fog about a point of intensity 1 per steradian, which the ray passes by at `past`, `distance` from
+    its origin: over the angle u at the light, t = distance + past tan(u), in which 1 / r^2 dt is du / past."""
+    start = -math.atan(distance / past)
+    h = (pi / 2 - start) / steps
+    angles = (start + (i + 0.5) * h for i in range(steps))
+    return sigma_s / past * h * sum(hg(g, 1 + math.copysign(1, g) * math.sin(u)) * exp(-sigma_t * (distance + past * (math.tan(u) + 1 / math.cos(u))))
+                                    for u in angles)
+
+
 def expint(n, x):
     """Exponential integral E_n: the series of E_1 for x <= 1, else a continued fraction (Abramowitz & Stegun 5.1)."""
     if x == 0:
@@ -207,6 +217,9 @@ FORMULAS = {
     "07-semi-infinite-beam-0.99": lambda: grey(back_along_beam(0.99)),
     "08-single-scattering-reflection": lambda: grey(3 * slab_reflection(0.9, hg(0.5, 1 + 0.6), 1.0, 0.6)),
     "08-single-scattering-transmission": lambda: grey(3 * slab_transmission(0.9, hg(0.5, 1 - 0.6), 1.0, 0.6)),
+    "09-point-in-fog": lambda: grey(airlight(0.3, 0.4, 0.0, 0.05, 5.0)),
+    "09-point-in-fog-forward": lambda: grey(airlight(0.3, 0.4, 0.8, 0.05, 5.0)),
+    "09-point-in-fog-beside": lambda: grey(airlight(0.3, 0.4, 0.0, 0.005, 5.0)),
     "10-chromatic-albedo": lambda: (plane_albedo(0.99), plane_albedo(0.5), 0.0),
     "10-chromatic-extinction": lambda: (exp(-1), exp(-0.25), 1.0),
     "10-chromatic-extinction-closed-form": lambda: (exp(-1), exp(-0.25), 1.0),

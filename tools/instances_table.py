@@ -99,7 +99,7 @@ def main():
             for name, *_ in listed:
                 rows = reports[name]
                 rate = statistics.median(r["perSecond"]["samples"] for r in rows)
-                if "one cloud" in name and "haze" not in name:
+                if "one cloud" in name:
                     alone = rate
                 one = rows[0]
                 counts, memory, media = one["counts"], one["memory"], one.get("media", {})

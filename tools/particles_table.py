@@ -1,57 +1,44 @@
 #!/usr/bin/env python3
 """Particles from the lights, and paths and particles together, against paths from the camera: efficiency, 1 / (error x seconds), over theirs.
 
-    tools/particles_table.py [--build build] [--spp 64] [--runs 3] [--reference 1024] > tools/results/particles.txt
+    tools/particles_table.py [--build build] [--spp 64] [--runs 6] [--reference 1024] > tools/results/particles.txt
 
-All render for as long: at equal samples paths from the camera would miss what they seldom find, and be off by no more than that.
-Errors are relMSE, of a picture's mean squared where that is dark, against a render of many samples by both together, less that
-render's own. The scenes are those of scenes/gallery, 64 pixels wide. Needs NumPy.
+All render for as long: at equal samples paths from the camera would miss what they seldom find. Errors are mean relative squares of blocks
+of 4 x 4 pixels against a render of many samples by both together, less that render's own variance; geometric means of the runs, in
+alternation, with the interval of 95 %. The scenes are those of scenes/gallery, 64 pixels wide. Needs NumPy.
 """
 
-import argparse
 import pathlib
-import sys
 import tempfile
 
-import numpy as np
-
+import block_errors
 import table_runs
-
-ROOT = table_runs.ROOT
-sys.path.insert(0, str(ROOT / "tools/peers"))
-import exr  # noqa: E402
 
 SIZE = ("--width", "64")
 SCENES = ("lantern", "room", "materials", "nebula", "lamps_in_fog")
 CAMERA, LIGHT, BOTH = "ratioTracking", "lightTracing", "bidirectional"
 SMOOTH = ("room", "materials")  # of which particles alone miss what mirrors and glass show
-
-
-def error(picture, reference):
-    mean, _, _ = exr.read_rgb(picture)
-    right, variance, _ = exr.read_rgb(reference)
-    return float(np.mean(((mean - right) ** 2 - variance) / (right**2 + 0.01 * np.mean(right) ** 2)))
+MOST = 1_000_000  # samples: the time ends them
 
 
 def main():
-    options = table_runs.options(__doc__, spp=64, runs=3, reference=1024)
+    options = table_runs.options(__doc__, spp=64, runs=6, reference=1024)
+    print(f"{table_runs.driver_of(options.vkvol)}, commit {table_runs.commit_of(options.vkvol)}; as long as {options.spp} samples of {BOTH} "
+          f"take, {options.runs} runs; over {CAMERA}\n{'':16}{'':14}{block_errors.HEAD}")
     with tempfile.TemporaryDirectory() as name:
         picture, reference = pathlib.Path(name) / "a.exr", pathlib.Path(name) / "reference.exr"
-        for number, scene in enumerate(SCENES):
-            path = ROOT / f"scenes/gallery/{scene}.xml"
-            report = table_runs.render(options.vkvol, path, BOTH, 1000, options.reference, reference, *SIZE)
-            if number == 0:
-                print(f"{report['device']['name']}, {report['device']['driver']}; as long as {options.spp} samples of {BOTH} take; means "
-                      f"of {options.runs} errors, medians of as many seconds, in alternation")
-                print(f"{'':16} {LIGHT:>28} {BOTH:>28}   over {CAMERA}")
-                print(f"{'':16} {'error':>10} {'time':>6} {'efficiency':>10} {'error':>10} {'time':>6} {'efficiency':>10}")
-            ways = {way: way for way in (CAMERA, LIGHT, BOTH) if way != LIGHT or scene not in SMOOTH}
+        for scene in SCENES:
+            path = table_runs.ROOT / f"scenes/gallery/{scene}.xml"
+            table_runs.render(options.vkvol, path, BOTH, 1000, options.reference, reference, *SIZE)
+            truth = block_errors.Truth.of(reference)
             usual = table_runs.render(options.vkvol, path, BOTH, 999, options.spp, picture, *SIZE)["seconds"]["render"]
-            timed = argparse.Namespace(**{**vars(options), "spp": 1_000_000})
-            means = table_runs.in_alternation(timed, path, ways, picture, lambda made: error(made, reference), *SIZE,
-                                              "--time", f"{usual}s")
-            columns = table_runs.against(means, CAMERA)
-            print(f"{scene:16}{columns(LIGHT)}{columns(BOTH)}", flush=True)
+            options.spp, spp = MOST, options.spp
+            ways = {way: (options.vkvol, way) for way in (CAMERA, LIGHT, BOTH) if way != LIGHT or scene not in SMOOTH}
+            found = block_errors.in_alternation(options, path, ways, picture, truth.relative_error, *SIZE, "--time", f"{usual}s")
+            options.spp = spp
+            for way in ways:
+                if way != CAMERA:
+                    print(f"{scene:16}{way:14}{block_errors.columns(found, way, CAMERA)}", flush=True)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,6 @@
 import argparse
 import json
 import pathlib
-import statistics
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -38,23 +37,3 @@ def render(vkvol, scene, integrator, seed, spp, picture, *more):
     subprocess.run([vkvol, scene, "--integrator", integrator, "--seed", str(seed), "--spp", str(spp), "-q", "-o", picture,
                     "--report", report, *more], check=True, capture_output=True)
     return json.loads(report.read_text())
-
-
-def in_alternation(options, scene, ways, picture, error, *more):
-    """For each of `ways`, name: integrator, the mean of options.runs errors and the median of as many seconds. `error`: of `picture`."""
-    found = {way: [] for way in ways}
-    for run in range(options.runs):
-        for way, integrator in ways.items():
-            report = render(options.vkvol, scene, integrator, run + 1, options.spp, picture, *more)
-            found[way].append((error(picture), report["seconds"]["render"]))
-    return {way: (statistics.mean(e for e, _ in rows), statistics.median(s for _, s in rows)) for way, rows in found.items()}
-
-
-def against(means, usual):
-    """Of each way its error and seconds over those of `usual`, and its efficiency; spaces for what was not measured."""
-    def columns(way):
-        if way not in means:
-            return " " * 29
-        more, longer = (a / b for a, b in zip(means[way], means[usual]))
-        return f" {more:10.3g} {longer:6.2f} {1 / (more * longer):10.3g}"
-    return columns

@@ -187,15 +187,23 @@ void frame(Camera& camera, const Picture& picture, const Corners& corners) {
     keep_focus(camera, camera.position - before);
 }
 
+// Around what stands in for media where there are none.
+std::optional<Corners> surface_corners(const Scene& scene) {
+    const std::optional<SurfaceBounds> bounds = bounds_of(with_surface_files(scene).surfaces);
+    return bounds ? std::optional(corners_between(bounds->low, bounds->high)) : std::nullopt;
+}
+
 void frame_medium(Scene& scene, FieldCache& fields) {
     if (reads_flux(scene.camera))
         throw InputError(fmt::format("--frame: <{}> reads flux where the scene has it, and is no camera to be moved; "
                                      "leave --frame out",
                                      projection_name(scene.camera.projection)));
-    const std::optional<Corners> corners = medium_corners(scene, fields);
+    const std::optional<Corners> corners =
+        scene.volumes.empty() ? surface_corners(scene) : medium_corners(scene, fields);
     if (!corners)
         throw InputError(
-            scene.volumes.empty() ? "--frame: the scene has no medium to frame; leave --frame out"
+            scene.volumes.empty() ? "--frame: the scene has no medium to frame, and no surface but planes; leave "
+                                    "--frame out"
             : std::any_of(scene.volumes.begin(), scene.volumes.end(), is_everywhere)
                 ? "--frame: <everywhere> has no box to frame; leave --frame out"
                 : "--frame: the medium holds nothing, or is a grid without voxels, and there is nothing to "
@@ -208,11 +216,9 @@ void frame_medium(Scene& scene, FieldCache& fields) {
 std::string give_camera(Scene& scene, FieldCache& fields) {
     if (scene.has_camera)
         return "";
-    std::optional<Corners> corners = medium_corners(scene, fields);
-    const bool has_media = corners.has_value();
-    if (const std::optional<SurfaceBounds> bounds =
-            has_media ? std::nullopt : bounds_of(with_surface_files(scene).surfaces))
-        corners = corners_between(bounds->low, bounds->high);
+    const std::optional<Corners> of_media = medium_corners(scene, fields);
+    const bool has_media = of_media.has_value();
+    const std::optional<Corners> corners = has_media ? of_media : surface_corners(scene);
     if (!corners)
         return scene.surfaces.empty() ? ""
                                       : "the scene has no <camera>, and nothing that could be framed: it is at the "

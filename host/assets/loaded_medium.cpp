@@ -390,7 +390,8 @@ void load_sky(const SkyLight& sky, SkyCache& skies, Assets& assets) {
     } catch (const InputError& error) {
         throw InputError(sky.place.empty() ? error.what() : fmt::format("{}: {}", sky.place, error.what()));
     }
-    assets.warnings.insert(assets.warnings.end(), assets.sky->warnings.begin(), assets.sky->warnings.end());
+    for (const std::string& warning : assets.sky->warnings)
+        assets.warnings.push_back(sky.place.empty() ? warning : fmt::format("{}: {}", sky.place, warning));
 }
 
 } // namespace

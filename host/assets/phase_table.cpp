@@ -25,6 +25,14 @@ NumberTable read_rows(const std::filesystem::path& file) {
     return rows;
 }
 
+// 0, 1, 2 ..., and the first is 1: moments that stand beside their indices, it may be.
+bool look_like_moments(const NumberTable& rows) {
+    for (std::size_t i = 0; i < rows.lines.size(); ++i)
+        if (rows.numbers[2 * i] != double(i) || std::abs(rows.numbers[2 * i + 1]) > 1.0)
+            return false;
+    return rows.numbers[1] == 1.0;
+}
+
 PhaseTable from_angles(const std::filesystem::path& file, const NumberTable& rows) {
     std::vector<double> angles, values;
     for (std::size_t i = 0; i < rows.lines.size(); ++i) {
@@ -37,11 +45,18 @@ PhaseTable from_angles(const std::filesystem::path& file, const NumberTable& row
         values.push_back(value);
     }
     if (rows.numbers[0] != 0.0 || angles.back() != pi)
-        throw InputError(fmt::format("{}: goes from {:g} to {:g} degrees; values are needed at 0 and at 180, too",
-                                     file.string(), rows.numbers[0], angles.back() / pi * 180.0));
+        throw InputError(
+            fmt::format("{}: goes from {:g} to {:g} degrees; values are needed at 0 and at 180, too{}", file.string(),
+                        rows.numbers[0], angles.back() / pi * 180.0,
+                        look_like_moments(rows) ? "; if these are Legendre moments, leave out their indices" : ""));
     if (*std::max_element(values.begin(), values.end()) == 0.0)
         throw InputError(fmt::format("{}: every value is 0; a phase function scatters somewhere", file.string()));
-    return {make_phase_nodes(angles, values), {}};
+    PhaseTable table{make_phase_nodes(angles, values), {}};
+    if (look_like_moments(rows))
+        table.warnings.push_back(fmt::format("{}: is read as values at 0, 1, 2 ... degrees; if these are Legendre "
+                                             "moments, leave out their indices",
+                                             file.string()));
+    return table;
 }
 
 // Sum of (2 l + 1) moment_l P_l(mu), by the recurrence of Legendre's polynomials.

@@ -170,12 +170,29 @@ struct DistanceTo {
                                  point.x, point.y, point.z));
 }
 
+// Where light without extent comes from.
+std::optional<glm::dvec3> source_of(const Light& light) {
+    if (const auto* point = std::get_if<PointLight>(&light))
+        return point->position;
+    if (const auto* spot = std::get_if<SpotLight>(&light))
+        return spot->position;
+    return std::nullopt;
+}
+
 // Rays from a point in a surface would read what is on both sides of it.
 void check_points(const Scene& scene) {
     for (const glm::dvec3& point : scene.camera.points)
         for (const Surface& surface : scene.surfaces)
             if (std::visit(DistanceTo{point}, surface.shape) <= SURFACE_SPARE)
                 fail_in(surface, point);
+    for (const glm::dvec3& point : scene.camera.points)
+        for (const Light& light : scene.lights)
+            if (const std::optional<glm::dvec3> source = source_of(light);
+                source && glm::distance(*source, point) <= 1e-6 * glm::length(point))
+                throw InputError(
+                    fmt::format("<fluence>: at the point {:g} {:g} {:g} is a <point> or <spot> light, whose "
+                                "fluence there is infinite; move the one or the other",
+                                point.x, point.y, point.z));
 }
 
 } // namespace

@@ -82,7 +82,7 @@ bool same_kernel(const Estimator& x, const Estimator& y) {
     const bool same_steps = !marches(a) || a.jitter == b.jitter;
     return a.scattering == b.scattering && a.free_flight == b.free_flight && a.nee == b.nee && same_shadows &&
            a.emission_at == b.emission_at && a.mis == b.mis && a.distance == b.distance && a.paths == b.paths &&
-           same_filter && same_steps && a.material_colour == b.material_colour;
+           a.first_flight == b.first_flight && same_filter && same_steps && a.material_colour == b.material_colour;
 }
 
 Estimator* find_same(std::vector<Estimator>& list, const Estimator& estimator) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "error.h"
 #include "integrators.h"
@@ -11,15 +12,19 @@ namespace vkvol {
 
 namespace {
 
-// The preset's choice along an axis; emission is at collisions in all of them.
+// The preset's choice along an axis; none: it is made for each scene.
+std::optional<int> choice_of(const Integrator& integrator, const std::string& axis) {
+    return axis == "scattering"      ? std::optional(integrator.scattering)
+           : axis == "flight"        ? std::optional(integrator.free_flight)
+           : axis == "transmittance" ? std::optional(integrator.transmittance)
+           : axis == "nee"           ? std::optional(integrator.nee)
+           : axis == "paths"         ? std::optional(integrator.paths)
+                                     : std::nullopt;
+}
+
 std::string choice_name(const Integrator& integrator, const std::string& axis) {
-    const int id = axis == "scattering"      ? integrator.scattering
-                   : axis == "flight"        ? integrator.free_flight
-                   : axis == "transmittance" ? integrator.transmittance
-                   : axis == "nee"           ? integrator.nee
-                   : axis == "paths"         ? integrator.paths
-                                             : 0;
-    return find_axis(axis).names.at(static_cast<std::size_t>(id));
+    const std::optional<int> id = choice_of(integrator, axis);
+    return id ? find_axis(axis).names.at(static_cast<std::size_t>(*id)) : "by scene";
 }
 
 void print_table() {
@@ -42,6 +47,9 @@ void print_table() {
     for (const Axis& axis : axes())
         tell(stdout, "    {:<14} {}\n", axis.name, fmt::join(axis.names, ", "));
     tell(stdout,
+         "emission, mis, distance and firstFlight suit the scene unless they are asked for: looks share light with\n"
+         "flights by the balance heuristic, but for skies that are nearly even, which are left to flights; looks from\n"
+         "along flights are for lamps in even fog; and first flights are split where media are thin.\n"
          "At constant density, and where the extinction differs between the channels, what fits replaces these;\n"
          "scenes/README.md has the rules.\n");
 }
@@ -51,7 +59,10 @@ void print_json() {
     for (const Integrator& integrator : integrators()) {
         nlohmann::ordered_json entry = {{"name", integrator.name}};
         for (const Axis& axis : axes())
-            entry[axis.name] = choice_name(integrator, axis.name);
+            if (choice_of(integrator, axis.name))
+                entry[axis.name] = choice_name(integrator, axis.name);
+            else
+                entry[axis.name] = nullptr; // made for each scene
         entry["biased"] = integrator.biased;
         entry["parameters"] = integrator.parameters;
         entry["summary"] = integrator.summary;

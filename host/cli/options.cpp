@@ -55,8 +55,9 @@ void add_picture_options(CLI::App& app, RenderOptions& render, RenderTexts& text
                    "position, albedo, transmittance, alpha, normal")
         ->option_text("NAME,NAME...")
         ->group(group);
-    app.add_flag("--alpha", render.alpha,
-                 "Leave out what is behind the media, for compositing: premultiplied, with alpha in EXR and PNG")
+    app.add_flag(
+           "--alpha", render.alpha,
+           "Leave out what is behind the media, for compositing: with alpha in EXR, premultiplied, and PNG, not so")
         ->group(group);
     app.add_option("--up", texts.up, "Of a grid file without a scene: y, or z as Blender has it")
         ->option_text("AXIS [y]")

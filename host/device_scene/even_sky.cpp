@@ -9,12 +9,12 @@ namespace vkvol {
 
 namespace {
 
-// Whether all that scatters does so into few directions, as Henyey and Greenstein's phase function from g = 0.83 on.
-// Then looks are mostly where little is scattered to.
+// Whether all that scatters does so ahead for the most part, whatever peak a small share has. Then looks are mostly
+// where little is scattered to.
 bool scatters_ahead(const Scene& scene, Media media) {
-    constexpr double least = 5.0; // per steradian
+    constexpr double least = 0.83;
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-        if (can_scatter(scene.volumes[i]) && phase_peak(scene.volumes[i], media[i].phase_nodes) < least)
+        if (can_scatter(scene.volumes[i]) && mean_cosine(scene.volumes[i], media[i].phase_nodes) < least)
             return false;
     return scene.surfaces.empty();
 }

@@ -128,6 +128,9 @@ void MethodChooser::choose_flight() {
         throw InputError(fmt::format("{}: analytic flights need constant density, and this medium's varies; use "
                                      "flight delta, or integrator ratioTracking",
                                      method_.integrator));
+    } else if (flight_has(flight, TRAIT_VOXELS) && field_ == FIELD_SUPERPOSITION) {
+        warn("flights are delta: several volumes share no voxels");
+        flight = FREE_FLIGHT_DELTA;
     } else if (flight_has(flight, TRAIT_VOXELS) && field_ != FIELD_GRID) {
         throw InputError(fmt::format("{}: regular flights go from voxel to voxel, and {}; use flight "
                                      "delta, or integrator ratioTracking",
@@ -151,9 +154,7 @@ void MethodChooser::choose_flight() {
 }
 
 const char* MethodChooser::without_voxels() const {
-    return field_ == FIELD_NOISE    ? "noise has none"
-           : field_ == FIELD_LAYERS ? "layers have none"
-                                    : "several volumes share none";
+    return field_ == FIELD_NOISE ? "noise has none" : "layers have none";
 }
 
 // A map of the values between voxels leaves no polynomial of them; of each voxel's own it leaves one.
@@ -242,9 +243,11 @@ void MethodChooser::choose_transmittance() {
             transmittance = TRANSMITTANCE_ANALYTIC;
         return;
     }
-    if (transmittance_has(transmittance, TRAIT_CONTROL) && field_ == FIELD_SUPERPOSITION) {
+    if (transmittance_has(transmittance, TRAIT_CONTROL | TRAIT_VOXELS) && field_ == FIELD_SUPERPOSITION) {
         if (method_.nee != NEE_NONE)
-            warn("transmittance is by ratio tracking: several volumes have no control density");
+            warn(transmittance_has(transmittance, TRAIT_VOXELS)
+                     ? "transmittance is by ratio tracking: several volumes share no voxels"
+                     : "transmittance is by ratio tracking: several volumes have no control density");
         transmittance = TRANSMITTANCE_RATIO;
     }
     if (transmittance_has(transmittance, TRAIT_VOXELS) && field_ == FIELD_GRID && bends_voxels()) {

@@ -6,6 +6,7 @@
 #include <exception>
 #include <functional>
 #include <future>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -69,6 +70,15 @@ struct MediaFigures {
     std::uint32_t most_listed = 0;       // in one of them
 };
 
+// What there is of lights, and how they are looked for.
+struct LightFigures {
+    std::map<std::string, std::uint64_t> kinds; // how many, by the names of kind_of()
+    bool tree = false;                          // one of those that have a place is chosen by where the look is from
+    int map_width = 0, map_height = 0;          // of the sky; 0: there is none
+    double map_unevenness = 0.0;                // see SkyMap
+    std::uint64_t mended_texels = 0;            // of it
+};
+
 struct RenderResult {
     Film film;
     RenderCounts counts;
@@ -87,6 +97,7 @@ struct RenderResult {
     double load_seconds = 0, upload_seconds = 0, pipeline_seconds = 0, render_seconds = 0;
     std::uint64_t device_bytes = 0; // of all buffers
     MediaFigures media;
+    LightFigures lights;
     bool time_is_over = false;              // which ended it
     std::exception_ptr failure;             // what ended it early, between batches; the film is whole
     MediumOutline outline;                  // to explain the picture by

@@ -8,6 +8,7 @@
 #include "estimator_traits.h"
 #include "frame_params.h"
 #include "kernel_constants.h"
+#include "light_table.h"
 #include "phase_params.h"
 #include "pilot_paths.h"
 #include "preset.h"
@@ -48,6 +49,20 @@ MediaFigures figures_of(const Assets& assets) {
         figures.cells = assets.superposition->entries();
         figures.listed = assets.superposition->listed();
         figures.most_listed = assets.superposition->most_overlaps;
+    }
+    return figures;
+}
+
+LightFigures figures_of_lights(const Scene& scene, const SkyMap* sky) {
+    LightFigures figures;
+    for (const Light& light : scene.lights)
+        ++figures.kinds[kind_of(light)];
+    figures.tree = (lights_kind(scene) & LIGHTS_TREE) != 0;
+    if (sky) {
+        figures.map_width = sky->width;
+        figures.map_height = sky->height;
+        figures.map_unevenness = sky->unevenness;
+        figures.mended_texels = sky->mended;
     }
     return figures;
 }
@@ -157,6 +172,7 @@ void Session::load() {
         return method_.material_colour && medium.mesh && medium.mesh->diffuse;
     };
     result_.media = figures_of(assets);
+    result_.lights = figures_of_lights(scene_, assets.sky ? &*assets.sky : nullptr);
     const Specialization specialization = specialize(scene_, assets.media, method_, whole_of(assets));
     find_wish(assets, specialization);
     result_.plan = plan_by(wish_.schedule);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <set>
 
 #include "camera_view.h"
 #include "kernel_constants.h"
@@ -112,23 +113,37 @@ Answer no_light(const Evidence& e) {
            "b=\"1\"/>";
 }
 
+bool are_all_beams(const std::vector<Light>& lights) {
+    return std::all_of(lights.begin(), lights.end(),
+                       [](const Light& light) { return std::holds_alternative<DirectionalLight>(light); });
+}
+
+// The lights' kinds, each once.
+std::string kinds_of(const std::vector<Light>& lights) {
+    std::set<std::string> kinds;
+    for (const Light& light : lights)
+        kinds.insert(fmt::format("<{}>", kind_of(light)));
+    return fmt::format("{}", fmt::join(kinds, ", "));
+}
+
 Answer light_unseen(const Evidence& e) {
     const Volume* volume = lone_volume(e.authored);
     if (e.odd != Odd::black || !volume || e.authored.lights.empty() || !is_dark_around(e) || e.emits)
         return {};
+    const bool are_beams = are_all_beams(e.authored.lights);
+    const std::string seen = (are_beams ? std::string("a <light>") : kinds_of(e.authored.lights)) +
+                             " is seen by what the medium scatters of it alone";
     if (volume->sigma_s == Rgb(0.0))
-        return "a <light> is seen by what the medium scatters of it alone, and sigma_s is 0; raise sigma_s, or add a "
-               "<backgroundColor> to see the medium against";
+        return seen + ", and sigma_s is 0; raise sigma_s, or add a <backgroundColor> to see the medium against";
     if (e.scene.settings.max_depth == 0u)
-        return "a <light> is seen by what the medium scatters of it alone, and maxDepth is 0; raise maxDepth or leave "
-               "it out";
+        return seen + ", and maxDepth is 0; raise maxDepth or leave it out";
     if (e.method.scattering == SCATTERING_NONE)
-        return fmt::format("a <light> is seen by what the medium scatters of it alone, and {} scatters nothing; use "
-                           "--integrator ratioTracking",
-                           e.method.integrator);
-    return fmt::format("nothing gives light but the <light>, a point infinitely far away that no path of {} meets by "
-                       "chance; use --integrator ratioTracking, or add a <backgroundColor>",
-                       e.method.integrator);
+        return fmt::format("{}, and {} scatters nothing; use --integrator ratioTracking", seen, e.method.integrator);
+    const std::string sources = are_beams ? std::string("the <light>, a point infinitely far away that")
+                                          : kinds_of(e.authored.lights) + ", which";
+    return fmt::format("nothing gives light but {} no path of {} meets by chance; use --integrator ratioTracking, or "
+                       "add a <backgroundColor>",
+                       sources, e.method.integrator);
 }
 
 Answer no_medium(const Evidence& e) {

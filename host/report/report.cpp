@@ -55,6 +55,18 @@ Json media_json(const MediaFigures& m) {
     return json;
 }
 
+Json lights_json(const LightFigures& l) {
+    Json json{{"kinds", Json::object()}, {"tree", l.tree}, {"map", nullptr}};
+    for (const auto& [kind, number] : l.kinds)
+        json["kinds"][kind] = number;
+    if (l.map_width > 0)
+        json["map"] = {{"width", l.map_width},
+                       {"height", l.map_height},
+                       {"unevenness", l.map_unevenness},
+                       {"mendedTexels", l.mended_texels}};
+    return json;
+}
+
 // Share of the slots that were in each pass's queue when it began, on average.
 Json occupancy_json(const RenderResult& r) {
     Json json = Json::object();
@@ -278,6 +290,7 @@ std::string make_report(const RenderRequest& request, const Scene& scene, const 
         {"tentativeCollisions",
          static_cast<double>(result.counts.real_collisions + result.counts.null_collisions) / seconds}};
     report["media"] = media_json(result.media);
+    report["lights"] = lights_json(result.lights);
     report["plan"] = plan_json(result.plan);
     report["occupancy"] = occupancy_json(result);
     report["laneUse"] = {{"track", result.counts.lane_use()}};

@@ -7,6 +7,26 @@ namespace vkvol {
 
 using std::numbers::pi;
 
+namespace {
+
+struct Kind {
+    const char* operator()(const DirectionalLight&) const { return "directional"; }
+    const char* operator()(const SunLight&) const { return "sun"; }
+    const char* operator()(const PointLight&) const { return "point"; }
+    const char* operator()(const SpotLight&) const { return "spot"; }
+    const char* operator()(const SkyLight& sky) const { return sky.daylight ? "daylight" : "sky"; }
+    const char* operator()(const SphereLight&) const { return "sphere"; }
+    const char* operator()(const DiskLight&) const { return "disk"; }
+    const char* operator()(const RectangleLight&) const { return "rectangle"; }
+    const char* operator()(const SurfaceLight&) const { return "surface"; }
+};
+
+} // namespace
+
+const char* kind_of(const Light& light) {
+    return std::visit(Kind{}, light);
+}
+
 std::optional<glm::dvec3> place_of(const Light& light) {
     if (const auto* point = std::get_if<PointLight>(&light))
         return point->position;

@@ -134,6 +134,9 @@ struct SkyLight {
 using Light = std::variant<DirectionalLight, SunLight, PointLight, SpotLight, SkyLight, SphereLight, DiskLight,
                            RectangleLight, SurfaceLight>;
 
+// The name of the element that makes it; of a surface that shines, `surface`.
+const char* kind_of(const Light& light);
+
 inline const std::string& group_of(const Light& light) {
     return std::visit([](const auto& kind) -> const std::string& { return kind.group; }, light);
 }

@@ -169,6 +169,18 @@ TEST_CASE("integrators that come to one kernel are measured once, and all their 
     }
 }
 
+TEST_CASE("a bench measures first flights that are drawn and that are split apart", "[gpu][bench]") {
+    const Folder folder;
+    std::ofstream(folder.file("smoke.xml"))
+        << R"(<options><sphere/><noise/><sigma_s>0.3</sigma_s><light y="1" r="3" g="3" b="3"/>
+        <camera z="5"/><width>16</width><height>16</height></options>)";
+    const Run run = folder.vkvol(
+        "bench smoke.xml --time 1s --integrators ratioTracking:firstFlight=split,ratioTracking:firstFlight=drawn");
+    CAPTURE(run.text);
+    REQUIRE(run.code == exit_done);
+    CHECK(folder.json("smoke.bench.json")["estimators"].size() == 2);
+}
+
 TEST_CASE("a bench that is too short claims nothing", "[gpu][bench]") {
     const Folder folder;
     REQUIRE(folder.vkvol("ball.xml --spp 64 --seed 9 -o reference.exr -q").code == exit_done);

@@ -9,6 +9,7 @@
 #include "error.h"
 #include "image_io.h"
 #include "support/command_folder.h"
+#include "support/scenes.h"
 #include "test_paths.h"
 
 using namespace vkvol;
@@ -170,6 +171,30 @@ TEST_CASE("--trace writes no picture that was not asked for", "[gpu][command]") 
         CAPTURE(wrong);
         CHECK(folder.vkvol(std::string("ball.xml ") + wrong).code == exit_bad_input);
     }
+}
+
+TEST_CASE("a report tells what lights there are, and a warning of a map where the scene asks for it",
+          "[gpu][command]") {
+    const Folder folder("");
+    RadianceMap map{4, 2, std::vector<glm::vec3>(8, glm::vec3(1.0f)), 0};
+    map.texels[3].y = -1.0f;
+    std::filesystem::copy_file(write_sky(map).file, folder.file("map.exr"));
+    folder.write("lit.xml", R"(<options><sphere/><sigma_s>1</sigma_s><lights>
+        <sky>map.exr</sky><point x="3" multiplier="9"/><sphere y="4" radius="0.5"/><point x="-3"/></lights>
+        <camera z="5"/><width>8</width><height>8</height><rayPerPixelCount>1</rayPerPixelCount></options>)");
+    const Run run = folder.vkvol("lit.xml --report lit.json");
+    CAPTURE(run.text);
+    REQUIRE(run.code == exit_done);
+    CHECK_THAT(run.text, Contains("lit.xml:2:9: ") && Contains("1 texels were negative or not finite"));
+    const auto lights = nlohmann::json::parse(folder.text("lit.json")).at("lights");
+    CHECK(lights.at("kinds") == nlohmann::json{{"sky", 1}, {"point", 2}, {"sphere", 1}});
+    CHECK(lights.at("tree") == true);
+    CHECK(lights.at("map").at("width") == 4);
+    CHECK(lights.at("map").at("height") == 2);
+    CHECK(lights.at("map").at("mendedTexels") == 1);
+    CHECK(lights.at("map").at("unevenness") > 1.0);
+    REQUIRE(folder.vkvol("ball.xml --report ball.json").code == exit_done);
+    CHECK(nlohmann::json::parse(folder.text("ball.json")).at("lights").at("map").is_null());
 }
 
 TEST_CASE("a crop that can be read in two ways says which was taken", "[gpu][command]") {

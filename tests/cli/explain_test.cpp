@@ -118,6 +118,15 @@ TEST_CASE("pictures without light are explained", "[gpu][explain]") {
     check({lit_ball, "r=\"5\" g=\"5\" b=\"5\"", "r=\"1e-6\" g=\"1e-6\" b=\"1e-6\"", "black", "dim", "--exposure "});
 }
 
+TEST_CASE("lights that are not seen are called by their names", "[gpu][explain]") {
+    const std::string point = "<lights><point x=\"2\" multiplier=\"9\"/></lights>";
+    check({with(lit_ball, light, point), sigma_s, "<sigma_s>0</sigma_s>", "black", "lightUnseen",
+           "<point> is seen by what the medium scatters of it alone, and sigma_s is 0"});
+    const std::string lamps = "<lights><point x=\"2\" multiplier=\"9\"/><sphere y=\"6\" multiplier=\"9\"/></lights>";
+    check({with(lit_ball, light, lamps), lamps, lamps + "<integrator>deltaTracking</integrator>", "black",
+           "lightUnseen", "nothing gives light but <point>, <sphere>, which no path of deltaTracking meets by chance"});
+}
+
 TEST_CASE("pictures that miss the medium are explained", "[gpu][explain]") {
     check({lit_ball, camera, "<camera z=\"5\" yaw=\"180\" fov=\"30\"/>", "black", "missed",
            "is behind the camera: the camera at (0, 0, 5) looks along ("});
@@ -391,6 +400,9 @@ TEST_CASE("of the hard scenes those that show nothing are explained, and no othe
         {"04-furnace-box", "furnace"},
         {"04-furnace-grid", "furnace"},
         {"04-furnace-sphere", "furnace"},
+        {"09-point-in-fog", "inside"}, // all pixels are alike
+        {"09-point-in-fog-beside", "overexposed"},
+        {"09-point-in-fog-forward", "inside"},
         {"13-empty-grid", "noMedium"},
         {"13-zero-density", "noMedium"},
         {"19-ray-in-border-face", "indistinct"},

@@ -10,8 +10,9 @@
 namespace vkvol::fuzz {
 
 const std::vector<Target*>& targets() {
-    static const std::vector<Target*> all = {&scene_target(), &pbrt_target(),  &grid_target(),   &vdb_target(),
-                                             &mesh_target(),  &image_target(), &options_target()};
+    static const std::vector<Target*> all = {&scene_target(), &pbrt_target(),  &grid_target(),
+                                             &vdb_target(),   &mesh_target(),  &image_target(),
+                                             &sky_target(),   &phase_target(), &options_target()};
     return all;
 }
 

@@ -50,6 +50,8 @@ Target& vdb_target();
 Target& mesh_target();
 Target& image_target();
 Target& options_target();
+Target& sky_target();
+Target& phase_target();
 
 // Where the scene files lie.
 std::filesystem::path source_directory();

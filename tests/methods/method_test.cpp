@@ -194,7 +194,12 @@ TEST_CASE("several media have no voxels and no control density in common", "[cpu
         scene.volumes.push_back(scene.volumes.front());
         return choose_method(with_preset(scene));
     };
-    CHECK_THROWS_WITH(method("regularTracking"), Catch::Contains("several volumes share none; use flight delta"));
+    const Method regular = method("regularTracking");
+    CHECK(regular.free_flight == FREE_FLIGHT_DELTA);
+    CHECK(regular.transmittance == TRANSMITTANCE_RATIO);
+    REQUIRE(regular.warnings.size() == 2);
+    CHECK_THAT(regular.warnings[0], Catch::Contains("flights are delta: several volumes share no voxels"));
+    CHECK_THAT(regular.warnings[1], Catch::Contains("by ratio tracking: several volumes share no voxels"));
     const Method flights = method("ratioTracking:flight=decomposition");
     CHECK(flights.free_flight == FREE_FLIGHT_DELTA);
     CHECK_THAT(warning_of(flights), Catch::Contains("flights are delta: several volumes have no control density"));

@@ -59,6 +59,13 @@ TEST_CASE("no look goes toward an even sky unless told so", "[gpu][image][lights
     CHECK(same_bits(render_by(half, {}, 1), render_by(half, MIS_BALANCE, 1)));
     half.volumes.front().g = 0.9;
     CHECK(same_bits(render_by(half, {}, 1), render_by(half, MIS_PHASE, 1)));
+    // Of what is even but for one part in a hundred, a peak.
+    Scene peaked = half;
+    peaked.volumes.front().g = 0.0;
+    peaked.volumes.front().phase = PhaseFunction::double_henyey_greenstein;
+    peaked.volumes.front().phase_details.g2 = 0.95;
+    peaked.volumes.front().phase_details.share = 0.01;
+    CHECK(same_bits(render_by(peaked, {}, 1), render_by(peaked, MIS_BALANCE, 1)));
     half.surfaces.emplace_back();
     CHECK(same_bits(render_by(half, {}, 1), render_by(half, MIS_BALANCE, 1)));
     // Light that is scattered once is found by looks.

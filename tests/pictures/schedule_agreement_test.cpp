@@ -16,6 +16,7 @@
 #include "support/images.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
+#include "support/surface_scenes.h"
 #include "support/test_device.h"
 
 using namespace vkvol;
@@ -63,6 +64,14 @@ std::vector<NamedScene> scenes_of_all() {
     Scene mesh = scenes.front().scene;
     mesh.volumes = {medium(write_mesh(make_box({-0.8, -0.6, -0.7}, {0.7, 0.9, 0.6}, 1)), 2.0, 0.9, 0.3)};
     scenes.push_back({"mesh", mesh});
+    // What these are for one directional light.
+    const auto [point, spot, ball, disk, rectangle, sun, beam] = LightsAbout{};
+    Scene lit = scenes.front().scene;
+    lit.lights = {point, spot, ball, disk, rectangle, sun, beam, write_sky(sunset_map())};
+    scenes.push_back({"all lights", lit});
+    Scene surfaces = rough_still_life();
+    surfaces.settings.spp = 300;
+    scenes.push_back({"surfaces", surfaces});
     return scenes;
 }
 
@@ -89,7 +98,8 @@ TEST_CASE("all integrators, flights and transmittances agree by both schedules",
     for (const NamedScene& named : scenes_of_all()) {
         Row& row = rows.emplace_back(Row{named.name, 0, 0, {}});
         const auto ways = ways_to_render(named.scene);
-        CHECK(ways.size() >= (std::holds_alternative<GridFile>(named.scene.volumes[0].shape) ? 28u : 37u));
+        const bool is_grid = std::holds_alternative<GridFile>(named.scene.volumes[0].shape);
+        CHECK(ways.size() >= (is_grid ? 28u : named.scene.surfaces.empty() ? 37u : 12u));
         for (const auto& [name, scene] : ways) {
             seen.insert(name);
             // The reference has paths from the camera alone, and leaves to presets what media lack by them.

@@ -6,12 +6,14 @@
 #include <functional>
 #include <numbers>
 
+#include "daylight.h"
 #include "phase_params.h"
 #include "phase_table.h"
 #include "shared/constants.h"
 #include "support/agreement.h"
 #include "support/images.h"
 #include "support/scenes.h"
+#include "support/surface_scenes.h"
 #include "support/test_sky.h"
 #include "support/thorough.h"
 #include "tests/reference/phase.h"
@@ -68,21 +70,22 @@ struct From {
 };
 using Around = std::function<std::vector<From>(const glm::dvec3&)>;
 
-// From midpoints of parts of the light, or of all directions.
-Around around(const Light& light) {
-    constexpr int parts = 12, rows = 48;
-    if (std::holds_alternative<SkyLight>(light)) {
-        std::vector<From> sky;
-        for (int row = 0; row < rows; ++row)
-            for (int column = 0; column < 2 * rows; ++column) {
-                const double y = 1.0 - (2.0 * row + 1.0) / rows, turn = pi * (column + 0.5) / rows;
-                const double across = std::sqrt(1.0 - y * y);
-                const glm::dvec3 direction(across * std::cos(turn), y, across * std::sin(turn));
-                sky.push_back({direction, Rgb(4.0 * pi * gradient(direction))});
-            }
-        return [sky](const glm::dvec3&) { return sky; };
-    }
-    return [light](const glm::dvec3& p) {
+// From midpoints of all directions.
+Around around(const std::function<Rgb(const glm::dvec3&)>& sky, int rows) {
+    std::vector<From> all;
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < 2 * rows; ++column) {
+            const double y = 1.0 - (2.0 * row + 1.0) / rows, turn = pi * (column + 0.5) / rows;
+            const double across = std::sqrt(1.0 - y * y);
+            const glm::dvec3 direction(across * std::cos(turn), y, across * std::sin(turn));
+            all.push_back({direction, 4.0 * pi * sky(direction)});
+        }
+    return [all](const glm::dvec3&) { return all; };
+}
+
+// From midpoints of parts of a light.
+Around around(const Light& light, int parts) {
+    return [light, parts](const glm::dvec3& p) {
         std::vector<From> from;
         for (int k = 0; k < parts * parts; ++k) {
             const auto found =
@@ -116,53 +119,131 @@ Rgb scattered_once(const reference::Medium& medium, const Around& around, const 
     return medium.albedo * sum;
 }
 
-struct NamedLight {
+struct LoneLight {
     const char* name;
-    Light light;
+    std::vector<Light> lights;
+    Around around;
+    std::vector<Surface> surfaces = {};
+    Rgb background{0.0};
 };
 
-std::vector<NamedLight> lone_lights() {
+LoneLight lone(const char* name, const Light& light, int parts) {
+    return {name, {light}, around(light, parts)};
+}
+
+// Cut into parts x parts, a sky into rows of twice as many.
+std::vector<LoneLight> lone_lights(int parts, int rows) {
     const glm::dvec3 up = glm::normalize(glm::dvec3(1.0, 2.0, 0.5));
     const glm::dvec3 aside = glm::normalize(glm::dvec3(3.0, -2.0, -1.0));
-    return {{"directional", DirectionalLight{up, {3.0, 2.0, 1.0}}},
-            {"sun", SunLight{up, {3.0, 2.5, 2.0}, 8.0}},
-            {"wide sun of a dark limb", SunLight{up, {3.0, 2.5, 2.0}, 100.0, 1.0}},
-            {"point", PointLight{{3.0, 2.5, 1.0}, {20.0, 10.0, 5.0}}},
-            {"spot", SpotLight{{0.0, 4.0, 2.0}, glm::normalize(glm::dvec3(0.0, -2.0, -1.0)), Rgb(60.0), 60.0, 1.0}},
-            {"ball", SphereLight{{2.5, 2.5, 1.0}, 1.0, {4.0, 3.0, 2.0}}},
-            {"disk", DiskLight{{-3.0, 2.0, 1.0}, aside, 1.0, {4.0, 5.0, 6.0}}},
-            {"rectangle", RectangleLight{{0.0, -2.5, 1.0}, {0.0, 0.0, 0.8}, {1.5, 0.0, 0.0}, {5.0, 4.0, 6.0}}},
-            {"sky", gradient_sky(SkyMapping::equirectangular)},
-            {"square sky", gradient_sky(SkyMapping::equal_area)}};
+    const RectangleLight below{{0.0, -2.5, 1.0}, {0.0, 0.0, 0.8}, {1.5, 0.0, 0.0}, {5.0, 4.0, 6.0}};
+    Surface pane;
+    pane.shape = RectangleSurface{below.center, below.edge_u, below.edge_v};
+    pane.material = matte(0.0);
+    pane.emission = below.radiance;
+    SkyLight day;
+    day.daylight = Daylight{up, 4.0, 0.3};
+    const auto of_day = reference::load_sky({write_sky(make_daylight(*day.daylight))});
+    const auto day_sky = [of_day](const glm::dvec3& direction) { return of_day->radiance(direction); };
+    const auto sky = [](const glm::dvec3& direction) { return Rgb(gradient(direction)); };
+    return {lone("directional", DirectionalLight{up, {3.0, 2.0, 1.0}}, parts),
+            lone("sun", SunLight{up, {3.0, 2.5, 2.0}, 8.0}, parts),
+            lone("wide sun of a dark limb", SunLight{up, {3.0, 2.5, 2.0}, 100.0, 1.0}, parts),
+            lone("point", PointLight{{3.0, 2.5, 1.0}, {20.0, 10.0, 5.0}}, parts),
+            lone("spot", SpotLight{{0.0, 4.0, 2.0}, glm::normalize(glm::dvec3(0.0, -2.0, -1.0)), Rgb(60.0), 60.0, 1.0},
+                 parts),
+            lone("ball", SphereLight{{2.5, 2.5, 1.0}, 1.0, {4.0, 3.0, 2.0}}, parts),
+            lone("disk", DiskLight{{-3.0, 2.0, 1.0}, aside, 1.0, {4.0, 5.0, 6.0}}, parts),
+            lone("rectangle", below, parts),
+            {"pane that shines", {}, around(below, parts), {pane}},
+            {"sky", {gradient_sky(SkyMapping::equirectangular)}, around(sky, rows)},
+            {"square sky", {gradient_sky(SkyMapping::equal_area)}, around(sky, rows)},
+            {"daylight", {day}, around(day_sky, rows)},
+            {"even sky", {}, around([](const glm::dvec3&) { return Rgb(2.0, 1.0, 3.0); }, rows), {}, {2.0, 1.0, 3.0}}};
+}
+
+void light_by(const LoneLight& lone, Scene& scene) {
+    scene.lights = lone.lights;
+    scene.surfaces = lone.surfaces;
+    scene.background = lone.background;
+}
+
+RenderJob job_by(Schedule schedule) {
+    RenderJob job;
+    job.plan.schedule = schedule;
+    return job;
+}
+
+// The reference's map of a day is one that is read from a file.
+Scene for_the_reference(Scene scene) {
+    for (Light& light : scene.lights)
+        if (auto* sky = std::get_if<SkyLight>(&light); sky && sky->daylight)
+            *sky = write_sky(make_daylight(*sky->daylight));
+    return scene;
+}
+
+// Each by one schedule, here and by the reference, whose rays find light by chance; all by both if thorough.
+void check_means_of(Scene scene, const std::vector<Rgb>& means, std::size_t turn, const std::string& name) {
+    for (const Schedule schedule : in_turn<Schedule>({Schedule::fused, Schedule::staged}, turn, 2))
+        CHECK_AGREEMENT(agree_with_means(render_here(scene, 21, job_by(schedule)).film, means, name));
+    if (reads_flux(scene.camera))
+        scene.settings.spp *= 8;
+    else if (!scene.surfaces.empty()) // which its paths seldom meet
+        return;
+    CHECK_AGREEMENT(agree_with_means(render_reference(for_the_reference(scene), 22), means, name + ", the reference"));
 }
 
 } // namespace
 
 TEST_CASE("light that each light scatters once equals the quadrature, in thin and in thick fog",
           "[gpu][lights][closed_form]") {
-    for (const NamedLight& lone : in_turn(lone_lights(), 0, 2))
-        for (const double sigma_t : {0.1, 3.0}) {
+    std::size_t turn = 0;
+    for (const LoneLight& lone : lone_lights(12, 30)) {
+        ++turn;
+        for (const double sigma_t : in_turn<double>({0.1, 3.0}, turn, 2)) {
             Scene scene = scene_of(medium(Box{{0, 0, 0}, 2.0 * half_edges}, sigma_t, 0.9, 0.4), 1.2, 8, 20.0,
                                    glm::dvec3(0.0), {10.0, -20.0, 0.0});
-            scene.lights = {lone.light};
+            light_by(lone, scene);
             scene.holds_out = true;
             scene.settings.max_depth = 1;
             scene.settings.spp = 2048;
             const reference::Medium fog = reference::load(scene.volumes.front(), Filter::trilinear);
-            const Around light = around(lone.light);
             std::vector<Rgb> expected;
             for (int pixel = 0; pixel < 64; ++pixel) {
                 Rgb sum(0.0);
                 for (int k = 0; k < 4; ++k)
-                    sum += 0.25 * scattered_once(fog, light,
+                    sum += 0.25 * scattered_once(fog, lone.around,
                                                  reference::camera_ray(scene.camera, scene.picture,
                                                                        pixel % 8 + 0.25 + 0.5 * (k % 2),
                                                                        pixel / 8 + 0.25 + 0.5 * (k / 2))); // NOLINT
                 expected.push_back(sum);
             }
-            CHECK_AGREEMENT(agree_with_means(render_here(scene, 21).film, expected,
-                                             fmt::format("{}, {} per unit", lone.name, sigma_t)));
+            check_means_of(scene, expected, turn / 2, fmt::format("{}, {} per unit", lone.name, sigma_t));
         }
+    }
+}
+
+// What is left of it at points in a box that absorbs: the mean over directions of its light, times exp of the way out.
+TEST_CASE("each light's shadow in a slab that absorbs is its closed form", "[gpu][lights][flux][closed_form]") {
+    std::size_t turn = 0;
+    for (const LoneLight& lone : lone_lights(48, 192)) {
+        Scene scene;
+        scene.camera.projection = Projection::fluence;
+        scene.camera.points = {{0.0, 0.0, -0.4}, {0.7, -0.9, 0.1}, {-0.8, 0.5, 0.3}, {0.2, 0.95, -0.1}};
+        scene.camera.position = scene.camera.points.front();
+        scene.picture = {4, 1, 0.0, 0.0, 4.0, 1.0};
+        scene.volumes = {medium(Box{{0, 0, 0}, 2.0 * half_edges}, 1.2, 0.0)};
+        light_by(lone, scene);
+        scene.settings.spp = thorough() ? 1 << 14 : 1 << 12;
+        std::vector<Rgb> expected;
+        for (const glm::dvec3& point : scene.camera.points) {
+            Rgb sum(0.0);
+            const std::vector<From> all = lone.around(point);
+            for (const From& from : all)
+                sum += std::exp(-1.2 * way_out(point, from.direction)) * from.light;
+            expected.push_back(sum / double(all.size()));
+        }
+        check_means_of(scene, expected, ++turn, fmt::format("shadow, {}", lone.name));
+    }
 }
 
 // Of a sky L = 1 + a (n . w) any phase function of mean cosine g scatters 1 + a g (n . d) toward where a ray along d

@@ -65,6 +65,8 @@ Rgb lamps_seen(const World& world, const Ray& ray, Rng& rng) {
 }
 
 Rgb light_from_beyond(const World& world, const glm::dvec3& direction, bool at_camera) {
+    if (at_camera && world.scene.holds_out)
+        return Rgb(0.0);
     Rgb L = world.scene.background;
     if (world.sky)
         L += world.sky->radiance(direction);

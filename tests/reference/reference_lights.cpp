@@ -203,7 +203,7 @@ std::optional<Sky> load_sky(const std::vector<vkvol::Light>& lights) {
             for (int y = 0; y < sky.height; ++y)
                 for (int x = 0; x < sky.width; ++x) {
                     float texel[3];
-                    image.getpixel(x, y, 0, texel, 3);
+                    image.getpixel(authored->mirror ? sky.width - 1 - x : x, y, 0, texel, 3);
                     sky.texels.push_back(Rgb(texel[0], texel[1], texel[2]) * authored->scale);
                 }
             return sky;

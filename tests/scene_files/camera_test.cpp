@@ -185,6 +185,19 @@ TEST_CASE("each kind of medium is framed by its box", "[cpu][xml]") {
     CHECK_THROWS_WITH(frame_medium(nothing, fields), Contains("no medium to frame"));
 }
 
+TEST_CASE("surfaces are framed where there are no media", "[cpu][camera][xml]") {
+    FieldCache fields;
+    const std::string media = R"(<sphere x="3" radius="2"/><camera z="90"/>)",
+                      surfaces = R"(<surfaces><sphere x="3" radius="2"/></surfaces><camera z="90"/>)";
+    Scene medium = parse(media), surface = parse(surfaces);
+    frame_medium(medium, fields);
+    frame_medium(surface, fields);
+    CHECK(surface.camera.position.z < 20.0);
+    CHECK(surface.camera.position == medium.camera.position);
+    Scene floor = parse(R"(<surfaces><plane/></surfaces><camera y="2"/>)");
+    CHECK_THROWS_WITH(frame_medium(floor, fields), Contains("no surface but planes"));
+}
+
 TEST_CASE("a scene without a camera gets one that frames all its media", "[cpu][camera][xml]") {
     const std::string media = R"(<sphere x="40"/><volumes><volume><box y="-9" width="4"/></volume></volumes>)";
     const auto parse = [](const std::string& elements) {

@@ -11,6 +11,7 @@
 #include "support/scenes.h"
 
 using namespace vkvol;
+using Catch::Contains;
 
 namespace {
 
@@ -109,4 +110,15 @@ TEST_CASE("Legendre moments are summed", "[cpu][phase]") {
         REQUIRE(node.value == Approx(exact).epsilon(1e-5));
     }
     CHECK(load_phase_table(write_text("1\n.6\n.2\n")).warnings.size() == 1);
+}
+
+TEST_CASE("moments that stand beside their indices are not angles without a word", "[cpu][phase][xml]") {
+    std::string text;
+    for (int l = 0; l <= 180; ++l)
+        text += fmt::format("{} {:.6g}\n", l, std::pow(0.85, l));
+    const PhaseTable table = load_phase_table(write_text(text));
+    REQUIRE(table.warnings.size() == 1);
+    CHECK_THAT(table.warnings.front(), Contains("leave out their indices"));
+    CHECK_THROWS_WITH(load_phase_table(write_text("0 1\n1 0.85\n2 0.72\n")), Contains("leave out their indices"));
+    CHECK(load_phase_table(write_text("0 2\n90 1\n180 1\n")).warnings.empty());
 }
