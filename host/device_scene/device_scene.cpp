@@ -72,10 +72,7 @@ void DeviceScene::make_lights(const Scene& scene, const Method& method, const As
     lights_ = make_light_table(scene, assets, surfaces_, origin_, radius);
     tell_look_densities(lights_, surfaces_);
     if (is_left_to_flights(scene, assets.media, method, assets.sky ? &*assets.sky : nullptr)) {
-        if (scene.lights.size() == 1)
-            specialization_[SPEC_MIS] = MIS_PHASE;
-        else
-            leave_sky_to_flights(lights_);
+        leave_sky_to_flights(lights_);
         text_ += ", an even sky by flights alone";
     }
     if (method.paths != PATHS_CAMERA)

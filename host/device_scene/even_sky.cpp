@@ -11,12 +11,11 @@ namespace {
 
 // Whether all that scatters does so ahead for the most part, whatever peak a small share has. Then looks are mostly
 // where little is scattered to.
-bool scatters_ahead(const Scene& scene, Media media) {
-    constexpr double least = 0.83;
+bool scatters_ahead(const Scene& scene, Media media, double least) {
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         if (can_scatter(scene.volumes[i]) && mean_cosine(scene.volumes[i], media[i].phase_nodes) < least)
             return false;
-    return scene.surfaces.empty();
+    return true;
 }
 
 } // namespace
@@ -26,8 +25,19 @@ bool is_left_to_flights(const Scene& scene, Media media, const Method& method, c
     if (!sky || method.mis || method.nee == NEE_NONE || method.scattering != SCATTERING_MULTIPLE ||
         method.paths != PATHS_CAMERA)
         return false;
-    const double most = scatters_ahead(scene, media) ? 4.0 : 1.6; // measured: tools/results/README.md
-    return sky->unevenness < most;
+    // Measured: tools/results/README.md. Where no other light asks for looks, none costs anything.
+    if (!scene.surfaces.empty())
+        return sky->unevenness < 1.6;
+    if (scene.lights.size() == 1)
+        return sky->unevenness < (scatters_ahead(scene, media, 0.75) ? 6.0 : 2.1);
+    return sky->unevenness < (scatters_ahead(scene, media, 0.83) ? 4.0 : 1.6);
+}
+
+Method without_idle_looks(const Scene& scene, Media media, const Method& method, const SkyMap* sky) {
+    Method without = method;
+    if (scene.lights.size() == 1 && is_left_to_flights(scene, media, method, sky))
+        without.nee = NEE_NONE;
+    return without;
 }
 
 void leave_sky_to_flights(LightTable& table) {

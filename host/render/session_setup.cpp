@@ -6,6 +6,7 @@
 
 #include "error.h"
 #include "estimator_traits.h"
+#include "even_sky.h"
 #include "frame_params.h"
 #include "kernel_constants.h"
 #include "light_table.h"
@@ -172,11 +173,13 @@ void Session::load() {
         return method_.material_colour && medium.mesh && medium.mesh->diffuse;
     };
     result_.media = figures_of(assets);
-    result_.lights = figures_of_lights(scene_, assets.sky ? &*assets.sky : nullptr);
-    const Specialization specialization = specialize(scene_, assets.media, method_, whole_of(assets));
+    const SkyMap* const sky = assets.sky ? &*assets.sky : nullptr;
+    result_.lights = figures_of_lights(scene_, sky);
+    const Method method = without_idle_looks(scene_, assets.media, method_, sky);
+    const Specialization specialization = specialize(scene_, assets.media, method, whole_of(assets));
     find_wish(assets, specialization);
     result_.plan = plan_by(wish_.schedule);
-    device_scene_.emplace(device_, commands_, scene_, method_, assets, job_.crop, job_.seed,
+    device_scene_.emplace(device_, commands_, scene_, method, assets, job_.crop, job_.seed,
                           result_.plan.most_grid_bytes, result_.plan.most_texel_bytes);
     if (is_first)
         make_film();
@@ -192,7 +195,8 @@ void Session::load() {
         result_.biased = method_.biased;
     if (result_.by_chance.empty())
         result_.by_chance = method_.by_chance;
-    result_.specialization = device_scene_->text();
+    result_.specialization =
+        device_scene_->text() + (method.nee == method_.nee ? "" : ", an even sky by flights alone");
     result_.trace_origin = device_scene_->origin();
     keep(assets);
     if (is_first)
