@@ -117,7 +117,7 @@ def apart_by_pixel(a, b):
     are sqrt(k) errors from none."""
     (one, e, _), (other, f, _) = a, b
     error = np.sqrt(e + f + (1e-5 * np.maximum(np.abs(one), np.abs(other))) ** 2)
-    return np.where(e + f == 0.0, 0.0, np.abs(one - other) / np.maximum(error, 1e-30))
+    return np.abs(one - other) / np.maximum(error, 1e-30)
 
 
 LIMIT = 3.8  # standard errors, of three means: once in some 2000 pairs

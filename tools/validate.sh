@@ -11,8 +11,8 @@
 #   denoise     the test of tools/denoise with the denoiser (1 minute; likewise)
 #   farm        tools/farm by Open Job Description, Snakemake and Slurm, as far as they are installed (2 minutes)
 #   schedules   the table of all integrators, flights and transmittances by both schedules, on whatever driver it is (2 minutes; SwiftShader: 13)
-#   estimators  the tables of all unbiased combinations of estimators, of looks and flights under wide lights, of the bias of marches,
-#               and of transmittances alone
+#   estimators  the tables of all unbiased combinations of estimators, of looks and flights under wide lights, of particles, of the bias of
+#               marches, and of transmittances alone
 #   pictures    whole scenes with large grids, rendered by vkvol and by the scalar reference with different seeds, judged by
 #               `vkvol compare` (per-pixel z-test, Sidak-corrected, and a test of the means; a significance of 0.001 per
 #               scene, so that a table of this length raises a false alarm once in a hundred runs)
@@ -130,7 +130,7 @@ run_schedules() {
 
 run_estimators() {
     say "Estimators against each other"
-    print_tables agreement lights bias transmittance
+    print_tables agreement lights particles bias transmittance
 }
 
 rows=()

@@ -188,7 +188,7 @@ void check_points(const Scene& scene) {
     for (const glm::dvec3& point : scene.camera.points)
         for (const Light& light : scene.lights)
             if (const std::optional<glm::dvec3> source = source_of(light);
-                source && glm::distance(*source, point) <= 1e-6 * glm::length(point))
+                source && glm::distance(*source, point) <= 1e-12 * glm::length(point))
                 throw InputError(
                     fmt::format("<fluence>: at the point {:g} {:g} {:g} is a <point> or <spot> light, whose "
                                 "fluence there is infinite; move the one or the other",

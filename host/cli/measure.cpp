@@ -1,8 +1,11 @@
 #include "measure.h"
 
 #include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <fmt/format.h>
 #include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
@@ -112,6 +115,41 @@ std::string as_csv(const std::vector<Values>& rows) {
     return text;
 }
 
+// Not "007", nor "inf": what a number would not be written as, but a key's value may be.
+bool is_plain(const std::string& number) {
+    const std::size_t first = number.find_first_not_of('-');
+    return first != std::string::npos && std::isdigit(static_cast<unsigned char>(number[first])) &&
+           !(number[first] == '0' && first + 1 < number.size() &&
+             std::isdigit(static_cast<unsigned char>(number[first + 1])));
+}
+
+// An object for each row: numbers, null for what is not known, and else texts.
+std::string as_json(const std::vector<Values>& rows) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        nlohmann::ordered_json object = nlohmann::ordered_json::object();
+        for (std::size_t k = 0; k < rows[i].size(); ++k) {
+            const std::string& word = rows[i][k];
+            double number = 0.0;
+            const char* const end = word.data() + word.size();
+            const auto [read, error] = std::from_chars(word.data(), end, number);
+            if (word.empty())
+                object[rows[0][k]] = nullptr;
+            else if (error == std::errc() && read == end && is_plain(word))
+                object[rows[0][k]] = number;
+            else
+                object[rows[0][k]] = word;
+        }
+        list.push_back(std::move(object));
+    }
+    return list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+// As the table's file wants it.
+std::string as_file(const std::filesystem::path& file, const std::vector<Values>& rows) {
+    return file_ending(file) == ".json" ? as_json(rows) : as_csv(rows);
+}
+
 // In columns, for reading.
 std::string as_text(const std::vector<Values>& rows) {
     std::vector<std::size_t> widths(rows.front().size(), 0);
@@ -161,8 +199,9 @@ void of_values(const std::vector<Sweep>& sweeps, const Values& values, const Spe
 void check_output(const MeasureOptions& options, const Scene& scene) {
     if (!options.output)
         return;
-    if (file_ending(*options.output) != ".csv" && !is_special(*options.output))
-        throw InputError(fmt::format("{}: measure writes a table; expected .csv", options.output->string()));
+    const std::string ending = file_ending(*options.output);
+    if (ending != ".csv" && ending != ".json" && !is_special(*options.output))
+        throw InputError(fmt::format("{}: measure writes a table; expected .csv or .json", options.output->string()));
     FileUses uses;
     uses.reads("the scene", options.request.scene);
     uses.reads_files_of(scene);
@@ -194,7 +233,7 @@ void write(const MeasureOptions& options, const std::vector<Values>& rows) {
         return;
     }
     try {
-        write_text(*options.output, as_csv(rows));
+        write_text(*options.output, as_file(*options.output, rows));
     } catch (const RenderError& error) {
         put(stdout, as_csv(rows));
         throw RenderError(fmt::format("{}; the readings are on standard output instead", error.what()));
@@ -206,7 +245,7 @@ bool keep(const MeasureOptions& options, const std::vector<Values>& rows) {
     if (!options.output || is_special(*options.output) || rows.empty())
         return false;
     try {
-        write_text(*options.output, as_csv(rows));
+        write_text(*options.output, as_file(*options.output, rows));
         return true;
     } catch (const RenderError& error) {
         tell(stderr, "vkvol: warning: {}; tried again after the next reading\n", error.what());

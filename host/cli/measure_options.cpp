@@ -52,8 +52,8 @@ void add_options(CLI::App& app, MeasureOptions& measure, MeasureTexts& texts) {
     RenderRequest& request = measure.request;
     app.add_option("scene", request.scene, "Scene file, see scenes/README.md, or a scene of pbrt-v4")
         ->option_text("SCENE.xml|SCENE.pbrt|FILE.nvdb|FILE.vdb");
-    app.add_option("-o,--output", texts.output, "Write the table as .csv in place of printing it")
-        ->option_text("FILE.csv")
+    app.add_option("-o,--output", texts.output, "Write the table as .csv or .json in place of printing it")
+        ->option_text("FILE.csv|FILE.json")
         ->group("Picture");
     add_size_options(app, request);
     app.add_flag("--mean", measure.means, "The mean of the picture in place of all its pixels")->group("Picture");

@@ -38,8 +38,9 @@ struct RenderTexts {
 
 void add_picture_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
     const char* group = "Picture";
-    add_list(app, "-o,--output", texts.outputs,
-             "Where to write, .exr, .png or .csv, what <absorption> reads also .nvdb; may be given several times")
+    add_list(
+        app, "-o,--output", texts.outputs,
+        "Where to write, .exr, .png or .csv, what <absorption> reads also .nvdb or .vdb; may be given several times")
         ->option_text("FILE [SCENE.exr and SCENE.png here]")
         ->group(group);
     add_size_options(app, render);

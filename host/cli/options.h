@@ -96,7 +96,7 @@ struct MeasureOptions {
     RenderRequest request; // whose defines are among the sweeps
     std::vector<Sweep> sweeps;
     std::optional<std::filesystem::path> bands;  // a table of them, whose weighted sum is each reading
-    std::optional<std::filesystem::path> output; // .csv; else the table is printed
+    std::optional<std::filesystem::path> output; // .csv or .json; else the table is printed
     bool means = false;                          // of pictures, in place of all pixels
     bool quiet = false;
 };

@@ -48,7 +48,7 @@ FileUses check_files(const RenderOptions& options, const RenderScene& loaded, co
         uses.writes("the report", *options.report, "--report");
     uses.check();
     for (const std::filesystem::path& output : options.outputs)
-        if (is_reading_grid(output))
+        if (is_grid_file(output))
             check_grid_file(output, loaded.scene.camera, options.crop.has_value());
         else
             check_writable(output);

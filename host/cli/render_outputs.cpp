@@ -64,8 +64,8 @@ void RenderOutputs::write(const Device& device, const RenderResult& result, cons
                           [](const std::filesystem::path& output) { return file_ending(output) == ".exr"; });
     for (const std::filesystem::path& output : outputs)
         try {
-            if (is_reading_grid(output))
-                write_text(output, reading_grid(result.film, scene_.camera));
+            if (is_grid_file(output))
+                write_text(output, reading_grid(result.film, scene_.camera, output));
             else
                 write_image(output, result.film, metadata, shown.tone.mapping);
             append(written, ", ", output.string());

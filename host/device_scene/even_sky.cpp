@@ -12,21 +12,25 @@ namespace {
 // Whether all that scatters does so ahead for the most part, whatever peak a small share has. Then looks are mostly
 // where little is scattered to.
 bool scatters_ahead(const Scene& scene, Media media, double least) {
+    bool any = false;
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-        if (can_scatter(scene.volumes[i]) && mean_cosine(scene.volumes[i], media[i].phase_nodes) < least)
-            return false;
-    return true;
+        if (can_scatter(scene.volumes[i])) {
+            any = true;
+            if (mean_cosine(scene.volumes[i], media[i].phase_nodes) < least)
+                return false;
+        }
+    return any;
 }
 
 } // namespace
 
 bool is_left_to_flights(const Scene& scene, Media media, const Method& method, const SkyMap* sky) {
     // Where light is scattered once no flight goes on to meet it; and particles come from all of it.
-    if (!sky || method.mis || method.nee == NEE_NONE || method.scattering != SCATTERING_MULTIPLE ||
-        method.paths != PATHS_CAMERA)
+    if (!sky || method.mis || scene.settings.choices.nee || method.nee == NEE_NONE ||
+        method.scattering != SCATTERING_MULTIPLE || method.paths != PATHS_CAMERA)
         return false;
     // Measured: tools/results/README.md. Where no other light asks for looks, none costs anything.
-    if (!scene.surfaces.empty())
+    if (!scene.surfaces.empty() || reads_flux(scene.camera)) // which have no narrow view
         return sky->unevenness < 1.6;
     if (scene.lights.size() == 1)
         return sky->unevenness < (scatters_ahead(scene, media, 0.75) ? 6.0 : 2.1);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <fmt/format.h>
+#include <set>
 #include <utility>
 
 #include "error.h"
@@ -56,8 +57,12 @@ MediaFigures figures_of(const Assets& assets) {
 
 LightFigures figures_of_lights(const Scene& scene, const SkyMap* sky) {
     LightFigures figures;
+    std::set<int> bodies; // of surfaces that shine: on both sides they are two lights
     for (const Light& light : scene.lights)
-        ++figures.kinds[kind_of(light)];
+        if (const int body = body_of(light); body == no_body)
+            ++figures.kinds[kind_of(light)];
+        else if (bodies.insert(body).second)
+            ++figures.kinds["surface"];
     figures.tree = (lights_kind(scene) & LIGHTS_TREE) != 0;
     if (sky) {
         figures.map_width = sky->width;

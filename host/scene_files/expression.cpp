@@ -14,6 +14,7 @@
 #include "keyed_values.h"
 #include "nearest_name.h"
 #include "number_text.h"
+#include "planck_band.h"
 
 namespace vkvol {
 
@@ -57,6 +58,7 @@ const std::array functions = {
              "2 to 16 numbers"},
     Function{"max", 2, any_number_of, [](const Arguments& a) { return *std::max_element(a.begin(), a.end()); },
              "2 to 16 numbers"},
+    Function{"planck", 3, 3, planck_band, "kelvin > 0, and the wavelengths of a band in micrometres, 0 <= from < to"},
     Function{"linear", 3, 1 + 2 * most_keys, linear_keys, keys_text},
     Function{"spline", 3, 1 + 2 * most_keys, spline_keys, keys_text}};
 

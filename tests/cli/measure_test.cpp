@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
 
@@ -212,4 +213,36 @@ TEST_CASE("what is wrong with one of many values says which", "[gpu][command]") 
     // What is read more than once cannot come through a pipe.
     CHECK_THAT(folder.script("cat glow.xml | \"$vkvol\" measure /dev/stdin -D sigma=1 -D glow=1").text,
                Contains("/dev/stdin: a pipe is read once, but measure"));
+}
+
+TEST_CASE("a table of readings as JSON has its numbers, and null for what is not known", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("glow.xml", ball);
+    const auto table = [&](const std::string& options) {
+        const Run run = folder.vkvol("measure glow.xml -D sigma=0.5,2 -D glow=1 " + options);
+        CAPTURE(run.text);
+        REQUIRE(run.code == exit_done);
+    };
+    table("--spp 64 -o table.json");
+    const auto json = nlohmann::json::parse(folder.text("table.json"));
+    table("--spp 64 -o table.csv");
+    const auto lines = lines_of(folder.text("table.csv"));
+    REQUIRE(json.size() == 4);
+    REQUIRE(lines.size() == 5);
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t k = 0; k < lines[0].size(); ++k)
+            CHECK(json[i].at(lines[0][k]).get<double>() == std::stod(lines[i + 1][k]));
+    table("--spp 1 -o one.json");
+    CHECK(nlohmann::json::parse(folder.text("one.json"))[0].at("standardError.R").is_null());
+    // Values of keys are texts where they are no plain numbers.
+    folder.write("named.xml", R"(<options><sphere/><sigma_a>1</sigma_a><sigma_s>0</sigma_s><medium r="$glow"/>
+        <integrator>$name</integrator><fluence>0 0 0</fluence></options>)");
+    REQUIRE(folder.vkvol("measure named.xml -D name=ratioTracking -D glow=1,01 --spp 4 -o named.json").code ==
+            exit_done);
+    const auto named = nlohmann::json::parse(folder.text("named.json"));
+    CHECK(named[0].at("name") == "ratioTracking");
+    CHECK(named[0].at("glow") == 1.0);
+    CHECK(named[1].at("glow") == "01");
+    CHECK_THAT(folder.vkvol("measure glow.xml -D sigma=1 -D glow=1 -o table.exr").text,
+               Contains("expected .csv or .json"));
 }

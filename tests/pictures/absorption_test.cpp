@@ -6,6 +6,8 @@
 #include <fstream>
 #include <numbers>
 
+#include "density_field.h"
+#include "error.h"
 #include "method.h"
 #include "preset.h"
 #include "reading_grid.h"
@@ -66,7 +68,7 @@ TEST_CASE("what voxels absorb in a furnace, and the grid of it", "[gpu][counted]
             means.push_back(4.0 * pi * volume.sigma_a * double(recipe.value({x, dims.y - 1 - y % dims.y, y / dims.y})));
     const Film film = render_here(scene, 1).film;
     CHECK_AGREEMENT(agree_with_means(film, means, fmt::format("furnace, {}", chromatic)));
-    const std::string bytes = reading_grid(film, scene.camera);
+    const std::string bytes = reading_grid(film, scene.camera, "a.nvdb");
     if (!chromatic) {
         const std::filesystem::path file = std::filesystem::path(write_text("")).replace_extension(".nvdb");
         std::ofstream(file, std::ios::binary) << bytes;
@@ -75,7 +77,47 @@ TEST_CASE("what voxels absorb in a furnace, and the grid of it", "[gpu][counted]
         CHECK(glm::distance(place, scene.camera.cell_low({3, 2, 1}) + 0.25) < 1e-12);
         CHECK(grid.voxel({3, 2, 1}) == film.mean[std::size_t(1 * dims.y + 0) * 5 + 3].x);
         CHECK(grid.voxel({4, 0, 3}) == film.mean[std::size_t(3 * dims.y + 2) * 5 + 4].x);
+        const reference::Grid errors = reference::load_grid(file, "absorbed_error");
+        CHECK(errors.voxel({4, 0, 3}) == std::sqrt(film.variance[std::size_t(3 * dims.y + 2) * 5 + 4].x));
     }
+}
+
+TEST_CASE("what is absorbed is one grid as .nvdb and as .vdb", "[cpu][counted]") {
+    Camera camera;
+    camera.projection = Projection::absorption;
+    camera.cells = {3, 2, 2};
+    camera.edges = {3.0, 1.0, 2.0};
+    camera.position = {1.0, -2.0, 0.5};
+    Film film;
+    film.picture_width = 3;
+    film.picture_height = 4;
+    film.crop = {0, 3, 0, 4};
+    for (int i = 0; i < 12; ++i) {
+        film.mean.emplace_back(float(i) / 8.0f);
+        film.variance.emplace_back(float(i) / 64.0f);
+        film.samples.push_back(9);
+    }
+    const bool is_colored = GENERATE(false, true);
+    if (is_colored)
+        film.mean[7].y = 3.0f;
+    for (const char* ending : {".nvdb", ".vdb"}) {
+        CAPTURE(ending, is_colored);
+        const std::filesystem::path file = std::filesystem::path(write_text("")).replace_extension(ending);
+        std::ofstream(file, std::ios::binary) << reading_grid(film, camera, file);
+        const DensityField absorbed = load_density_field(GridFile{file, "absorbed"}, GridValues::numbers_or_colors),
+                           error = load_density_field(GridFile{file, "absorbed_error"}, GridValues::numbers_or_colors);
+        CHECK(glm::distance(glm::dvec3(absorbed.index_to_world * glm::dvec4(2.0, 1.0, 1.0, 1.0)),
+                            camera.cell_low({2, 1, 1}) + 0.5 * camera.cell_size()) < 1e-6);
+        for (int i = 0; i < 12; ++i) {
+            const glm::ivec3 cell = camera.cell_of_pixel(i % 3, i / 3);
+            CHECK(absorbed.color(cell) == film.mean[std::size_t(i)]);
+            CHECK(error.color(cell) == glm::sqrt(film.variance[std::size_t(i)]));
+        }
+    }
+    film.samples[3] = 1; // whose error is not known
+    const std::filesystem::path file = std::filesystem::path(write_text("")).replace_extension(".vdb");
+    std::ofstream(file, std::ios::binary) << reading_grid(film, camera, file);
+    CHECK_THROWS_AS(load_density_field(GridFile{file, "absorbed_error"}), InputError);
 }
 
 TEST_CASE("absorption amid several media with surfaces, beneath lights of all kinds", "[gpu][counted]") {

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "even_sky.h"
+#include "method.h"
 #include "shared/constants.h"
 #include "shared/estimators.h"
 #include "support/agreement.h"
@@ -54,7 +55,7 @@ TEST_CASE("no look goes toward an even sky unless told so", "[gpu][image][lights
     REQUIRE(load_sky(std::get<SkyLight>(even.lights.front())).unevenness < 1.6);
     Scene steep = even;
     steep.lights = {write_sky(make_map(16, 8, [](int, int row) { return Rgb(row == 1 ? 9.0 : 0.1); }))};
-    REQUIRE(load_sky(std::get<SkyLight>(steep.lights.front())).unevenness > 1.6);
+    REQUIRE(load_sky(std::get<SkyLight>(steep.lights.front())).unevenness > 2.1);
     CHECK(same_bits(render_by(even, {}, 1), render_without_looks(even, 1)));
     CHECK_THAT(render_here(even, 1).specialization, Catch::Contains("an even sky by flights alone"));
     CHECK(same_bits(render_by(steep, {}, 1), render_by(steep, MIS_BALANCE, 1)));
@@ -103,4 +104,38 @@ TEST_CASE("beside an even sky looks go toward the other lights", "[gpu][image][l
     CHECK(table.rows[1].alias.keep == 0);
     CHECK(table.rows[0].alias.other != 1);
     CHECK(table.rows[2].alias.other != 1);
+}
+
+TEST_CASE("how even a sky must be depends on what scatters, what else shines and who reads", "[cpu][lights]") {
+    Scene cloud = cloud_under({gradient(2.0, 0.5)});
+    const std::vector<LoadedMedium> none(1);
+    const auto most = [&](const Scene& scene) { // the largest unevenness that is left to flights, to 0.1
+        SkyMap sky;
+        const Method method = choose_method(scene);
+        for (sky.unevenness = 0.95; is_left_to_flights(scene, none, method, &sky); sky.unevenness += 0.1)
+            ;
+        return sky.unevenness - 0.05;
+    };
+    CHECK(most(cloud) == Approx(2.1));
+    Scene ahead = cloud;
+    ahead.volumes.front().g = 0.8;
+    CHECK(most(ahead) == Approx(6.0));
+    Scene lit = ahead;
+    lit.lights.emplace_back(PointLight{{3.0, 0.0, 0.0}, Rgb(1.0)});
+    CHECK(most(lit) == Approx(1.6));
+    lit.volumes.front().g = 0.85;
+    CHECK(most(lit) == Approx(4.0));
+    Scene floor = ahead;
+    floor.surfaces.emplace_back();
+    CHECK(most(floor) == Approx(1.6));
+    Scene reading = ahead;
+    reading.camera.projection = Projection::fluence;
+    reading.camera.points = {glm::dvec3(0.0)};
+    CHECK(most(reading) == Approx(1.6));
+    Scene told = ahead;
+    told.settings.choices.nee = NEE_COLLISIONS;
+    CHECK(most(told) < 1.0);
+    told = ahead;
+    told.settings.choices.mis = MIS_BALANCE;
+    CHECK(most(told) < 1.0);
 }

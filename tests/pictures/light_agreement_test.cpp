@@ -3,13 +3,11 @@
 // table.
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <iostream>
 
 #include "method.h"
 #include "shared/constants.h"
 #include "support/agreement.h"
 #include "support/images.h"
-#include "support/statistics.h"
 #include "support/surface_scenes.h"
 
 using namespace vkvol;
@@ -69,14 +67,9 @@ constexpr std::pair<const char*, int> shadows[] = {{"ratio", TRANSMITTANCE_RATIO
                                                    {"residual", TRANSMITTANCE_RESIDUAL},
                                                    {"telescoping", TRANSMITTANCE_TELESCOPING}};
 
-// What was compared, and the largest z of pictures' means by all four ways, and of pixels by those that are weighted:
-// a pixel's samples are too few for a normal limit where one technique has to find what it rarely draws.
-struct Row {
-    std::string what;
-    PairwiseAgreement all, weighted;
-};
-
-Row row_of(const std::string& what, const Scene& scene, std::uint32_t seed, std::size_t some_shadows) {
+// Means of pictures by all four ways, pixels by those that are weighted: a pixel's samples are too few for a normal
+// limit where one technique has to find what it rarely draws.
+AgreementRow row_of(const std::string& what, const Scene& scene, std::uint32_t seed, std::size_t some_shadows) {
     const Film expected = render_reference(scene, seed);
     std::vector<Estimate> all{{"reference", expected}}, weighted = all;
     for (std::size_t shadow = 0; shadow < some_shadows; ++shadow)
@@ -95,9 +88,8 @@ Row row_of(const std::string& what, const Scene& scene, std::uint32_t seed, std:
 } // namespace
 
 TEST_CASE("looks, flights and their mixtures agree under every light", "[.lights_table]") {
-    constexpr double alpha = 0.01; // that any of all the tests fails by chance
     const std::vector<NamedPhase> phases = all_phases();
-    std::vector<Row> rows;
+    std::vector<AgreementRow> rows;
     std::uint32_t seed = 1000;
     for (const NamedShine& shine : wide_lights())
         for (const NamedPhase& phase : phases) {
@@ -105,27 +97,9 @@ TEST_CASE("looks, flights and their mixtures agree under every light", "[.lights
             rows.push_back(row_of(fmt::format("{:<20} {:<24}", shine.name, phase.name), smoke_under(shine, phase),
                                   seed += 100, first ? std::size(shadows) : 1));
         }
-    double means = 0.0, pixels = 0.0;
-    for (const Row& row : rows) {
-        means += 3.0 * double(row.all.pairs);
-        pixels += double(row.weighted.tests) - 3.0 * double(row.weighted.pairs);
-    }
-    const double mean_limit = z_limit(alpha / 2.0, means), pixel_limit = z_limit(alpha / 2.0, pixels);
-    std::cout << fmt::format(
+    check_rows(
         "mis = balance, power, light and phase, and the reference, which asks all lights and weights nothing: every "
-        "pair.\n"
-        "Means of pictures by t-test, pixels of those weighted by z-test, three channels; {:.0f} and {:.0f} tests, "
-        "significance {} over all (Sidak).\nFor the first phase function with ratio, delta, residual and "
-        "telescoping shadow rays.\n\n{:<20} {:<24} {:>5} {:>18} {:>19}  {}\n",
-        means, pixels, alpha, "light", "phase function", "pairs", "largest mean z", "largest pixel z", "verdict");
-    for (const Row& row : rows) {
-        const bool ok = row.all.mean_z <= mean_limit && row.weighted.pixel_z <= pixel_limit;
-        std::cout << fmt::format("{} {:>5} {:>8.2f} (of {:.2f}) {:>9.2f} (of {:.2f})  {}\n", row.what, row.all.pairs,
-                                 row.all.mean_z, mean_limit, row.weighted.pixel_z, pixel_limit,
-                                 ok ? "agree" : "DIFFER");
-        if (!ok)
-            std::cout << "    mean: " << row.all.mean_pair << "\n    pixel: " << row.weighted.pixel_pair << "\n";
-        CHECK(ok);
-    }
-    std::cout << std::flush;
+        "pair; pixels of those that are weighted. For the\nfirst phase function with ratio, delta, residual and "
+        "telescoping shadow rays.",
+        fmt::format("{:<20} {:<24}", "light", "phase function"), rows, 0.01);
 }

@@ -146,6 +146,23 @@ TEST_CASE("particles, paths and both show the same", "[gpu][particles]") {
         check(c, turn++);
 }
 
+// tools/validate.sh prints the table. Pixels to which few particles come are far from a normal limit.
+TEST_CASE("paths, particles, both together and the reference agree, each with each", "[.particles_table]") {
+    std::vector<AgreementRow> rows;
+    std::uint32_t seed = 100;
+    for (const ParticleCase& c : particle_cases()) {
+        std::vector<Estimate> all{{"reference", render_reference(c.scene, ++seed)}};
+        for (const char* integrator : {"ratioTracking", "bidirectional"})
+            all.push_back({integrator, render_here(by(c.scene, integrator), ++seed).film});
+        const PairwiseAgreement pixels = compare_all(all);
+        all.push_back({"lightTracing", render_here(by(c.scene, "lightTracing"), ++seed).film});
+        rows.push_back({fmt::format("{:<42}", c.name), compare_all(all), pixels});
+    }
+    check_rows(
+        "ratioTracking, lightTracing, bidirectional and the reference: every pair; pixels of all but lightTracing.",
+        fmt::format("{:<42}", "scene"), rows, 0.01);
+}
+
 // Which paths find by looks, and where they leave, weighed against particles each time.
 TEST_CASE("paths and particles share the light of a sky, in smoke and on what is before it", "[gpu][particles]") {
     RadianceMap map{8, 4, {}, 0};

@@ -86,17 +86,12 @@ Film by_schedule(const Scene& scene, Schedule schedule, std::uint32_t seed) {
 } // namespace
 
 TEST_CASE("all integrators, flights and transmittances agree by both schedules", "[.schedules_table]") {
-    constexpr double alpha = 0.01; // that any of all the tests fails by chance
-    struct Row {
-        std::string scene;
-        std::size_t ways = 0, same = 0; // same: of which both schedules give the same bits
-        PairwiseAgreement worst;
-    };
-    std::vector<Row> rows;
+    std::vector<AgreementRow> rows;
     std::set<std::string> seen;
     std::uint32_t seed = 5000;
     for (const NamedScene& named : scenes_of_all()) {
-        Row& row = rows.emplace_back(Row{named.name, 0, 0, {}});
+        std::size_t same_bits_by_both = 0;
+        PairwiseAgreement worst;
         const auto ways = ways_to_render(named.scene);
         const bool is_grid = std::holds_alternative<GridFile>(named.scene.volumes[0].shape);
         CHECK(ways.size() >= (is_grid ? 28u : named.scene.surfaces.empty() ? 37u : 12u));
@@ -111,48 +106,30 @@ TEST_CASE("all integrators, flights and transmittances agree by both schedules",
             const Film fused = by_schedule(scene, Schedule::fused, ++seed);
             const Film staged = by_schedule(scene, Schedule::staged, seed);
             const bool same = same_bits(fused, staged);
-            row.ways += 1;
-            row.same += same;
+            same_bits_by_both += same;
             CAPTURE(named.name, name);
             CHECK((same || !test_device().is_cpu()));
             std::vector<Estimate> estimates{{"reference, " + name, expected}, {"fused, " + name, fused}};
             if (!same)
                 estimates.push_back({"staged, " + name, staged});
             const PairwiseAgreement found = compare_all(estimates);
-            row.worst.pairs += found.pairs;
-            row.worst.tests += by_paths ? found.tests : 3 * found.pairs;
-            if (!std::isnan(row.worst.mean_z) && !(found.mean_z <= row.worst.mean_z)) {
-                row.worst.mean_z = found.mean_z;
-                row.worst.mean_pair = found.mean_pair;
+            worst.pairs += found.pairs;
+            worst.tests += by_paths ? found.tests : 3 * found.pairs;
+            if (!std::isnan(worst.mean_z) && !(found.mean_z <= worst.mean_z)) {
+                worst.mean_z = found.mean_z;
+                worst.mean_pair = found.mean_pair;
             }
             // A particle's few pixels are far from a normal limit.
-            if (by_paths && !std::isnan(row.worst.pixel_z) && !(found.pixel_z <= row.worst.pixel_z)) {
-                row.worst.pixel_z = found.pixel_z;
-                row.worst.pixel_pair = found.pixel_pair;
+            if (by_paths && !std::isnan(worst.pixel_z) && !(found.pixel_z <= worst.pixel_z)) {
+                worst.pixel_z = found.pixel_z;
+                worst.pixel_pair = found.pixel_pair;
             }
         }
+        rows.push_back({fmt::format("{:<16} {:>5} {:>5}", named.name, ways.size(), same_bits_by_both), worst, worst});
     }
-    double means = 0.0, pixels = 0.0;
-    for (const Row& row : rows) {
-        means += 3.0 * double(row.worst.pairs);
-        pixels += double(row.worst.tests) - 3.0 * double(row.worst.pairs);
-    }
-    const double mean_limit = z_limit(alpha / 2.0, means), pixel_limit = z_limit(alpha / 2.0, pixels);
-    std::cout << fmt::format(
-        "{}\nEvery integrator, and ratioTracking with every flight and every transmittance, fused and staged, each "
-        "against the reference's own:\nmeans of pictures and pixels, three channels; significance {} over all "
-        "(Sidak). same: by both schedules, bit for bit.\n\n{:<16} {:>5} {:>5} {:>18} {:>19}  {}\n",
-        test_device().info().name + ", " + test_device().info().driver, alpha, "scene", "ways", "same",
-        "largest mean z", "largest pixel z", "verdict");
-    for (const Row& row : rows) {
-        const bool ok = row.worst.mean_z <= mean_limit && row.worst.pixel_z <= pixel_limit;
-        std::cout << fmt::format("{:<16} {:>5} {:>5} {:>8.2f} (of {:.2f}) {:>9.2f} (of {:.2f})  {}\n", row.scene,
-                                 row.ways, row.same, row.worst.mean_z, mean_limit, row.worst.pixel_z, pixel_limit,
-                                 ok ? "agree" : "DIFFER");
-        if (!ok)
-            std::cout << "    mean: " << row.worst.mean_pair << "\n    pixel: " << row.worst.pixel_pair << "\n";
-        CHECK(ok);
-    }
+    check_rows("Every integrator, and ratioTracking with every flight and every transmittance, fused and staged, each "
+               "against the reference's own. same: by both schedules, bit for bit.",
+               fmt::format("{:<16} {:>5} {:>5}", "scene", "ways", "same"), rows, 0.01);
     std::string missing;
     for (const Integrator& integrator : integrators())
         missing += seen.count(integrator.name) ? "" : std::string(" ") + integrator.name;

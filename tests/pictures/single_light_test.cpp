@@ -161,7 +161,10 @@ std::vector<LoneLight> lone_lights(int parts, int rows) {
             {"even sky", {}, around([](const glm::dvec3&) { return Rgb(2.0, 1.0, 3.0); }, rows), {}, {2.0, 1.0, 3.0}}};
 }
 
+// Maps by looks and flights, though they are so even that flights alone are the default.
 void light_by(const LoneLight& lone, Scene& scene) {
+    if (std::string(lone.name).ends_with("sky") && !lone.lights.empty())
+        scene.settings.choices.mis = MIS_BALANCE;
     scene.lights = lone.lights;
     scene.surfaces = lone.surfaces;
     scene.background = lone.background;

@@ -65,8 +65,6 @@ Rgb lamps_seen(const World& world, const Ray& ray, Rng& rng) {
 }
 
 Rgb light_from_beyond(const World& world, const glm::dvec3& direction, bool at_camera) {
-    if (at_camera && world.scene.holds_out)
-        return Rgb(0.0);
     Rgb L = world.scene.background;
     if (world.sky)
         L += world.sky->radiance(direction);
@@ -159,7 +157,7 @@ Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng
     if (!world.others.empty() || !world.scene.surfaces.empty())
         return radiance_by_race(world, ray, rng);
     if (!world.medium)
-        return light_from_beyond(world, ray.direction, true);
+        return world.scene.holds_out ? Rgb(0.0) : light_from_beyond(world, ray.direction, true);
     if (marches_through(world.method))
         return march_through(world, ray, rng);
     const Medium& medium = *world.medium;
@@ -170,6 +168,8 @@ Rgb radiance(const World& world, Ray ray, double exponential, double select, Rng
         const bool last = method.scattering == SCATTERING_NONE || (settings.max_depth && depth == *settings.max_depth);
         const Flight flight = gathering_flight(world, ray, exponential, select, beta, !last, rng, L);
         beta = flight.beta;
+        if (!flight.t && depth == 0 && world.scene.holds_out)
+            return L;
         if (!flight.t)
             return L + beta * light_from_beyond(world, ray.direction, depth == 0);
         ray.origin = ray.at(*flight.t);
@@ -254,7 +254,7 @@ Rgb trace_path(const World& world, int x, int y, std::uint32_t sample, std::uint
     const Ray ray =
         camera_ray(world.scene.camera, world.scene.picture, x + 0.5 + aside.x, y + 0.5 + aside.y, lens.x(), lens.y());
     const Rgb lamps = lamps_seen(world, ray, rng);
-    return lamps + radiance(world, ray, draw.exponential(2), draw.select(), rng);
+    return (world.scene.holds_out ? Rgb(0.0) : lamps) + radiance(world, ray, draw.exponential(2), draw.select(), rng);
 }
 
 } // namespace reference

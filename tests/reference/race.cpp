@@ -74,6 +74,8 @@ Rgb radiance_by_race(const World& world, Ray ray, Rng& rng) {
         const std::optional<Collision> collision = nearest_collision(world, ray, rng);
         if (sees_all && depth > 0)
             L += beta * lamps_seen(world, ray, rng);
+        if (!collision && !hit && depth == 0 && world.scene.holds_out)
+            return L;
         if (!collision && !hit)
             return L + beta * light_from_beyond(world, ray.direction, sees_all);
         const bool collides = collision && !(hit && hit->t < collision->t);

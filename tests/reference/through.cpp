@@ -39,7 +39,7 @@ Rgb march_through(const World& world, const Ray& ray, Rng& rng) {
     if (world.method.free_flight == FREE_FLIGHT_ANALYTIC) {
         for (const Interval& interval : support(medium, ray))
             pass(0.5 * (interval.t0 + interval.t1), interval.length());
-        return L + beta * light_from_beyond(world, ray.direction, true);
+        return world.scene.holds_out ? L : L + beta * light_from_beyond(world, ray.direction, true);
     }
 
     const Step step = [&](double t, double length) {
@@ -63,7 +63,7 @@ Rgb march_through(const World& world, const Ray& ray, Rng& rng) {
         for_each_adaptive_step(medium, ray, march.optical_step, step);
     else
         for_each_step(medium, ray, march.step, step);
-    return L + beta * light_from_beyond(world, ray.direction, true);
+    return world.scene.holds_out ? L : L + beta * light_from_beyond(world, ray.direction, true);
 }
 
 } // namespace reference

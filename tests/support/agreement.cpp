@@ -1,9 +1,11 @@
 #include "agreement.h"
 
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
+#include <iostream>
 
 #include "error.h"
 #include "integrators.h"
@@ -12,6 +14,7 @@
 #include "scenes.h"
 #include "shared/constants.h"
 #include "statistics.h"
+#include "test_device.h"
 
 namespace vkvol {
 
@@ -174,6 +177,7 @@ PairwiseAgreement compare_all(const std::vector<Estimate>& estimates) {
         for (std::size_t b = a + 1; b < estimates.size(); ++b) {
             const Film &one = estimates[a].film, &other = estimates[b].film;
             const std::string pair = estimates[a].name + " / " + estimates[b].name;
+            const std::optional<glm::dvec3> of_one = variance_of_sum(one), of_other = variance_of_sum(other);
             for (int channel = 0; channel < 3; ++channel) {
                 double difference = 0.0, variance = 0.0, scale = 0.0;
                 for (std::size_t i = 0; i < one.pixel_count(); ++i) {
@@ -186,6 +190,8 @@ PairwiseAgreement compare_all(const std::vector<Estimate>& estimates) {
                     variance += double(one.variance[i][channel]) + other.variance[i][channel]; // many pixels: known
                     scale += size;
                 }
+                if (of_one && of_other) // pixels need not be independent
+                    variance = (*of_one)[channel] + (*of_other)[channel];
                 const double excess = std::max(std::abs(difference) - rounding * scale, 0.0);
                 worst(excess == 0.0 ? 0.0 : excess / std::sqrt(variance), pair, result.mean_z, result.mean_pair);
                 result.tests += one.pixel_count() + 1;
@@ -193,6 +199,30 @@ PairwiseAgreement compare_all(const std::vector<Estimate>& estimates) {
             ++result.pairs;
         }
     return result;
+}
+
+void check_rows(const std::string& about, const std::string& heading, const std::vector<AgreementRow>& rows,
+                double alpha) {
+    double means = 0.0, pixels = 0.0;
+    for (const AgreementRow& row : rows) {
+        means += 3.0 * double(row.means.pairs);
+        pixels += double(row.pixels.tests) - 3.0 * double(row.pixels.pairs);
+    }
+    const double mean_limit = z_limit(alpha / 2.0, means), pixel_limit = z_limit(alpha / 2.0, pixels);
+    std::cout << fmt::format("{}, {}\n{}\nMeans of pictures and pixels, three channels; {:.0f} and {:.0f} tests, "
+                             "significance {} over all (Sidak).\n\n{} {:>5} {:>18} {:>19}  verdict\n",
+                             test_device().info().name, test_device().info().driver, about, means, pixels, alpha,
+                             heading, "pairs", "largest mean z", "largest pixel z");
+    for (const AgreementRow& row : rows) {
+        const bool ok = row.means.mean_z <= mean_limit && row.pixels.pixel_z <= pixel_limit; // NaN is not
+        std::cout << fmt::format("{} {:>5} {:>8.2f} (of {:.2f}) {:>9.2f} (of {:.2f})  {}\n", row.what, row.means.pairs,
+                                 row.means.mean_z, mean_limit, row.pixels.pixel_z, pixel_limit,
+                                 ok ? "agree" : "DIFFER");
+        if (!ok)
+            std::cout << "    mean: " << row.means.mean_pair << "\n    pixel: " << row.pixels.pixel_pair << "\n";
+        CHECK(ok);
+    }
+    std::cout << std::flush;
 }
 
 double z_limit(double alpha, double tests) {

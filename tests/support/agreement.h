@@ -41,6 +41,18 @@ struct PairwiseAgreement {
 };
 PairwiseAgreement compare_all(const std::vector<Estimate>& estimates);
 
+// One row of a table: what was compared, by the means of pictures and by pixels, which may be of fewer estimates. The
+// two are those of one comparison unless told otherwise.
+struct AgreementRow {
+    std::string what;
+    PairwiseAgreement means, pixels;
+};
+
+// Prints `about` and the rows under `heading`, each with its largest z and the limits by which all together fail by
+// chance with probability alpha, half of it for means, half for pixels; and checks them.
+void check_rows(const std::string& about, const std::string& heading, const std::vector<AgreementRow>& rows,
+                double alpha);
+
 // Two-sided limit of |z| if `tests` tests together are to fail by chance with probability alpha (Sidak).
 double z_limit(double alpha, double tests);
 

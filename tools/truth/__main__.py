@@ -63,7 +63,7 @@ def main():
                 continue
             start = time.time()
             rows, samples = reader.read_to(case, chosen.share, chosen.least)
-            verdicts = judge.judge(case, rows)
+            verdicts = judge.judge(case, rows, reader.mean_error)
             found += verdicts
             seconds, figures = groups.get(case.name, (0.0, 0))
             groups[case.name] = seconds + time.time() - start, figures + len(verdicts)

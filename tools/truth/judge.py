@@ -35,13 +35,13 @@ def scatter(case, rows):
     return min(math.sqrt(max(0.0, sum(x * x for x in rough) / (6.0 * len(rough)) - own)), most)
 
 
-def judge(case, rows):
-    """Of each figure, and of their mean where that is published."""
+def judge(case, rows, mean_error):
+    """Of each figure, and of their mean, of that error, where it is published."""
     less = case.less or [0.0] * len(rows)
     slacks = case.slack or [scatter(case, rows)] * len(rows)
     found = [Verdict(case, label, case.scale * mean - known, case.scale * error, published, slack)
              for label, (mean, error), published, slack, known in zip(case.labels, rows, case.published, slacks, less, strict=True)]
     if case.mean:
         n = len(found)
-        found.append(Verdict(case, "mean", sum(v.reading for v in found) / n, math.sqrt(sum(v.error**2 for v in found)) / n, *case.mean))
+        found.append(Verdict(case, "mean", sum(v.reading for v in found) / n, case.scale * mean_error, *case.mean))
     return found

@@ -19,11 +19,12 @@ class Reader:
     def __init__(self, vkvol, folder, schedule):
         self.vkvol, self.folder, self.schedule = vkvol, pathlib.Path(folder), schedule
         self.count, self.report = 0, None
+        self.mean_error = math.inf  # of the mean over what was read last
 
     def read(self, scene, samples, seed, is_map=False, options=()):
         """Of each column its mean and standard error, or of each pixel: of the middle channel, since all are alike. Of one column it
-        is the picture's mean, whose error the report knows. Pixels of several are taken for independent; those that count particles are not:
-        each is in one of them, so that the errors stated of such fluxes are too large, and a z of them too small."""
+        is the picture's mean, whose error the report knows, as it does that of the mean over several. Pixels of one column are taken for
+        independent; those that count particles are not: each is in one of them, so that the errors stated of columns are some too large."""
         self.count += 1
         file = self.folder / f"case{self.count}.xml"
         table, report = file.with_suffix(".csv"), file.with_suffix(".json")
@@ -38,10 +39,11 @@ class Reader:
             for row in csv.DictReader(stream):
                 place = int(row["row"]) if is_map else 0, int(row["column"])
                 columns.setdefault(place, []).append((float(row["G"]), float(row["standardError.G"] or "inf")))
+        mean = json.loads(report.read_text())["mean"]
+        errors = mean["standardError"]  # none of a single sample; 0 where nothing varies
+        self.mean_error = errors[1] if errors and errors[1] is not None else math.inf
         if len(columns) == 1:
-            mean = json.loads(report.read_text())["mean"]
-            errors = mean["standardError"] # none of a single sample; 0 where nothing varies
-            return [(mean["value"][1], errors[1] if errors and errors[1] is not None else math.inf)]
+            return [(mean["value"][1], self.mean_error)]
         return [(sum(mean for mean, _ in column) / len(column), math.sqrt(sum(error**2 for _, error in column)) / len(column))
                 for _, column in sorted(columns.items())]
 
@@ -53,7 +55,12 @@ class Reader:
         wanted = [max(share * slack, least * abs(value), case.least * usual) / case.scale
                   for slack, value in zip(case.slack or [0.0] * len(case.published), case.published)]
         while True:
-            rows = mean_of([self.read(scene, samples, seed + 50 * i, case.is_map) for i, scene in enumerate([case.scene, *case.others])])
+            readings, means = [], []
+            for i, scene in enumerate([case.scene, *case.others]):
+                readings.append(self.read(scene, samples, seed + 50 * i, case.is_map))
+                means.append(self.mean_error)
+            rows = mean_of(readings)
+            self.mean_error = math.hypot(*means) / len(means)
             # Of maps a few pixels are noisier by chance.
             short = (statistics.mean if case.is_map else max)((error / goal) ** 2 for (_, error), goal in zip(rows, wanted))
             if short <= 1.0 or samples >= MOST_SAMPLES:
