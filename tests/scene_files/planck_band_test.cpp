@@ -27,10 +27,7 @@ double by_sums(double kelvin, double from, double to) {
 
 } // namespace
 
-// Fractions below wavelength times temperature, as Siegel and Howell's "Thermal Radiation Heat Transfer" prints them.
-TEST_CASE("bands have the printed fractions of a black body", "[cpu][emission][xml]") {
-    CHECK(part(1000.0, 0.0, 2.4) == Approx(0.140256).epsilon(3e-5)); // printed with an older constant
-    CHECK(part(300.0, 0.0, 12.0) == Approx(0.403607).epsilon(3e-5));
+TEST_CASE("bands are integrals of Planck's law", "[cpu][emission][xml]") {
     CHECK(part(300.0, 0.0, 1e7) == Approx(1.0).epsilon(1e-9));
     for (const double kelvin : {2.7, 200.0, 288.0, 1500.0, 6000.0})
         for (const auto& [from, to] :
