@@ -17,14 +17,15 @@ namespace {
 
 const Rgb bright{0.9, 0.8, 0.7}, dark{0.1, 0.2, 0.05};
 
-// A slab above y = 0 in a domain four across, and a sensor above it that looks down, of a row of pixels.
+// A slab above y = 0 in a domain four across, and a sensor just above the ground that looks down on it, of a row of
+// pixels: from afar stripes are one grey.
 Scene slab_in_domain() {
     Scene scene;
     scene.volumes = {medium(Box{{0.0, 1.0, 0.0}, {4.0, 1.0, 4.0}}, 0.8, 0.9, 0.5)};
     scene.periodic = Periodic{{-2.0, 0.0, -2.0}, {2.0, 0.0, 2.0}};
     scene.lights = {DirectionalLight{glm::normalize(glm::dvec3(1.0, 1.5, 0.3)), {3.0, 2.0, 1.0}}};
     scene.camera.projection = Projection::irradiance;
-    scene.camera.position = {0.0, 2.0, 0.0};
+    scene.camera.position = {0.0, 0.1, 0.0};
     look_along(scene.camera, {0.0, -1.0, 0.0}, {0.0, 0.0, 1.0});
     scene.camera.size = {4.0, 4.0};
     scene.picture = {8, 1, 0.0, 0.0, 8.0, 1.0};
