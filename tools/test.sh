@@ -2,6 +2,7 @@
 # Installs what is missing, builds, with warnings as errors, and runs every test on the devices there are (Mesa's software
 # driver where there is no GPU).
 #   tools/test.sh              the release build
+#   tools/test.sh --long       and what takes long besides: proofs of what shorter tests have found every known error of
 #   tools/test.sh --sanitize   host code under AddressSanitizer and UndefinedBehaviorSanitizer
 #   tools/test.sh --driver D   on a software driver: lavapipe or swiftshader (fetched; several times slower)
 #   tools/test.sh ... ARGS     further arguments go to ctest, e.g. -R density
@@ -10,9 +11,11 @@ source "$(dirname "$0")/setup.sh"
 
 preset=release
 driver=
+labels=(-LE long)
 while true; do
     case ${1:-} in
     --sanitize) preset=sanitize ;;
+    --long) labels=() ;;
     --driver)
         driver=${2:?--driver needs a name: lavapipe or swiftshader}
         shift
@@ -38,5 +41,5 @@ directory=$vkvol_root/build
 # Software drivers compile kernels on one thread, and some tests wait: two groups more than cores, unless ARGS say otherwise;
 # of many cores eight, since some go by time.
 # Drivers keep memory until the process ends: leaks are looked for in our code by other means.
-ASAN_OPTIONS=detect_leaks=0 ctest --test-dir "$directory" --timeout $limit --output-on-failure --parallel $(($(nproc) < 7 ? $(nproc) + 2 : 8)) "$@" || die "tests failed"
+ASAN_OPTIONS=detect_leaks=0 ctest --test-dir "$directory" --timeout $limit --output-on-failure --parallel $(($(nproc) < 7 ? $(nproc) + 2 : 8)) "${labels[@]}" "$@" || die "tests failed"
 say "All tests passed ($((SECONDS - start)) s in all)"

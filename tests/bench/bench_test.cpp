@@ -103,7 +103,7 @@ void check_estimator(const nlohmann::json& estimator, const Folder& folder) {
 
 } // namespace
 
-TEST_CASE("a bench writes what it measured, as JSON, CSV and pictures", "[gpu][bench]") {
+TEST_CASE("a bench writes what it measured, as JSON, CSV and pictures", "[gpu][bench][long]") {
     const Folder folder;
     const Run run = folder.vkvol("bench ball.xml --time 2s --integrators ratioTracking,ratioTracking:flight=delta");
     CAPTURE(run.text);
@@ -149,7 +149,7 @@ TEST_CASE("a bench writes what it measured, as JSON, CSV and pictures", "[gpu][b
 }
 
 // In a homogeneous medium all these flights and transmittances are closed forms.
-TEST_CASE("integrators that come to one kernel are measured once, and all their names told", "[gpu][bench]") {
+TEST_CASE("integrators that come to one kernel are measured once, and all their names told", "[gpu][bench][long]") {
     const Folder folder;
     const char* names[] = {"ratioTracking", "deltaTrackingNEE", "residualRatioTracking", "weightedTracking"};
     const Run run = folder.vkvol(
@@ -205,7 +205,7 @@ TEST_CASE("a bench that is too short claims nothing", "[gpu][bench]") {
     CHECK_THAT(run.text, !Contains("times the efficiency"));
 }
 
-TEST_CASE("a reference is kept, read again, and rendered anew if it is damaged", "[gpu][bench]") {
+TEST_CASE("a reference is kept, read again, and rendered anew if it is damaged", "[gpu][bench][long]") {
     const Folder folder;
     const std::string command = "bench ball.xml --time 1s --integrators ratioTracking -q";
     const auto is_cached = [&] {
@@ -235,7 +235,7 @@ TEST_CASE("a reference is kept, read again, and rendered anew if it is damaged",
     CHECK(read_exr(used()).samples.front() > 1);
 }
 
-TEST_CASE("a bench against a given reference checks what that shows", "[gpu][bench]") {
+TEST_CASE("a bench against a given reference checks what that shows", "[gpu][bench][long]") {
     const Folder folder;
     REQUIRE(folder.vkvol("ball.xml --spp 64 --seed 9 -o reference.exr -q").code == exit_done);
     REQUIRE(folder.vkvol("ball.xml --spp 1 -o one.exr -q").code == exit_done);
@@ -280,7 +280,7 @@ TEST_CASE("bench refuses command lines that make no sense", "[gpu][bench][option
     }
 }
 
-TEST_CASE("an interrupted bench writes what there is", "[gpu][bench]") {
+TEST_CASE("an interrupted bench writes what there is", "[gpu][bench][long]") {
     const Folder folder;
     REQUIRE(folder.vkvol("ball.xml --spp 64 --seed 9 -o reference.exr -q").code == exit_done);
     // After ten measured renders of many.

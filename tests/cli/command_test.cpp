@@ -44,7 +44,7 @@ TEST_CASE("voxels that are no density are counted, and --strict fails", "[gpu][c
     CHECK(folder.vkvol(scene + " -o unclean.exr --strict").code == exit_caps_hit);
 }
 
-TEST_CASE("paths that would not end are counted as missing", "[gpu][command][hard]") {
+TEST_CASE("paths that would not end are counted as missing", "[gpu][command][hard][long]") {
     const Folder folder("");
     // Most paths come out again soon; one in hundreds wanders, at some forty null collisions a scattering.
     std::ofstream(folder.file("slow.xml"))

@@ -68,7 +68,7 @@ TEST_CASE("the driver compiles a kernel once", "[gpu][command]") {
 }
 
 // A lane knows nothing of its neighbours.
-TEST_CASE("the driver's lanes change no bit", "[gpu][command]") {
+TEST_CASE("the driver's lanes change no bit", "[gpu][command][long]") {
     if (test_device().info().name.find("llvmpipe") == std::string::npos) {
         WARN("skipped: it is about Mesa's lavapipe");
         return;

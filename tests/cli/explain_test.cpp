@@ -225,7 +225,7 @@ const std::string lit_grid = with(lit_ball, "<sphere/>", "");
 
 } // namespace
 
-TEST_CASE("grids that show nothing are explained", "[gpu][explain]") {
+TEST_CASE("grids that show nothing are explained", "[gpu][explain][long]") {
     CHECK(explanation_of(lit_grid, grid(full)).cause == "");
     // A shaft through the middle, 0.8 across, and a camera that sees nothing else.
     const auto shaft = [](glm::ivec3 i) { return std::abs(i.x + 0.5) < 4 && std::abs(i.y + 0.5) < 4 ? 0.0f : 1.0f; };
@@ -366,7 +366,7 @@ TEST_CASE("what is seen may be white before black", "[gpu][explain]") {
     CHECK_THAT(white.text, Contains("of the pixels that are not black clip: ") && Contains("--exposure -"));
 }
 
-TEST_CASE("pictures that show something need no explanation", "[gpu][explain]") {
+TEST_CASE("pictures that show something need no explanation", "[gpu][explain][long]") {
     const std::string sun_and_sky = "<backgroundColor r=\"0.12\" g=\"0.26\" b=\"0.56\"/>"
                                     "<light x=\"0.74\" y=\"0.5\" z=\"-0.4\" r=\"6\" g=\"5.5\" b=\"4.7\"/>";
     SceneOverrides cloud;
@@ -392,7 +392,7 @@ TEST_CASE("pictures that show something need no explanation", "[gpu][explain]") 
 }
 
 // What the derivations of some say is black, or all background: rightly so.
-TEST_CASE("of the hard scenes those that show nothing are explained, and no other", "[gpu][explain]") {
+TEST_CASE("of the hard scenes those that show nothing are explained, and no other", "[gpu][explain][long]") {
     const std::map<std::string, std::string> bare = {
         {"01-absorbing-slab-closed-form-17", "absorbsAll"},
         {"01-absorbing-slab-closed-form-87", "absorbsAll"},

@@ -271,7 +271,7 @@ TEST_CASE("a sequence that is gone on with passes over the frames that are there
     CHECK_THAT(scene.vkvol("ball.xml -f 1..2 -o p.#.png --resume").text, !Contains("is there"));
 }
 
-TEST_CASE("a report that tells of a failure is no frame's", "[gpu][command]") {
+TEST_CASE("a report that tells of a failure is no frame's", "[gpu][command][long]") {
     const Turntable scene("${= 0.5*$F}");
     REQUIRE(scene.vkvol("ball.xml -f 1..2 -o a.#.exr -q").code == exit_done);
     CHECK_THAT(scene.vkvol("ball.xml -f 1..3 -o a.#.exr --resume --dry-run").text,
@@ -293,7 +293,7 @@ TEST_CASE("a frame without a picture ends its sequence by name", "[gpu][command]
     CHECK_THAT(nothing.text, Contains("frame 7 has no picture: 0 of 3 frames are done"));
 }
 
-TEST_CASE("a sequence that is killed again and again has the bits of one that is not", "[gpu][command]") {
+TEST_CASE("a sequence that is killed again and again has the bits of one that is not", "[gpu][command][long]") {
     const Folder folder("");
     folder.write("turn.xml",
                  "<options><sphere/><noise octaves='4'/><sigma_s>20</sigma_s><width>32</width><height>32</height>"
@@ -333,7 +333,7 @@ TEST_CASE("a file that a late frame lacks is missed before the first one is rend
     CHECK_THAT(measured.text, Contains("m.2.obj: no such file"));
 }
 
-TEST_CASE("grids of a sequence go by its frames", "[gpu][command]") {
+TEST_CASE("grids of a sequence go by its frames", "[gpu][command][long]") {
     const Folder folder("");
     folder.write("grid.xml", "<options><densityField>none.nvdb</densityField><sigma_a>0.1</sigma_a><width>8</width>"
                              "<height>8</height><rayPerPixelCount>2</rayPerPixelCount>"

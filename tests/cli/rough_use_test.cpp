@@ -70,7 +70,7 @@ TEST_CASE("a scene of any name renders, and its report is JSON", "[gpu][command]
     }
 }
 
-TEST_CASE("the first signal ends the wait for a pipe", "[gpu][command]") {
+TEST_CASE("the first signal ends the wait for a pipe", "[gpu][command][long]") {
     const Folder folder("");
     const std::string interrupted = "timeout --preserve-status -s INT 5 ";
     for (const char* name : {"p.xml", "p.nvdb", "p.exr", "p.png"})
@@ -152,7 +152,7 @@ TEST_CASE("a layer of alpha changes no PNG", "[gpu][command]") {
     CHECK(folder.text("d.png") == folder.text("c.png"));
 }
 
-TEST_CASE("a reader who has seen enough is no error", "[gpu][command]") {
+TEST_CASE("a reader who has seen enough is no error", "[gpu][command][long]") {
     const Folder folder("");
     REQUIRE(folder.vkvol("ball.xml -q -o a.exr").code == exit_done);
     for (const char* trap : {"", "trap '' PIPE; "})

@@ -62,7 +62,7 @@ MediumRecipe flight_recipe(MediumKind kind, int free_flight, Filter filter, doub
 
 } // namespace
 
-TEST_CASE("unbiased flights follow the optical depth in every medium", "[gpu][free_flight]") {
+TEST_CASE("unbiased flights follow the optical depth in every medium", "[gpu][free_flight][long]") {
     struct Case {
         MediumKind kind;
         Filter filter;
@@ -204,7 +204,7 @@ double escape_error(int flight, MediumKind kind, double step) {
 
 // The midpoint rule is of order 2 where the density is smooth: halving the step divides errors by 4, up to terms of the
 // next order, which are a quarter as large with each halving; 2.8 to 5.7 is an order of 2 within a half.
-TEST_CASE("marches converge with the square of their step", "[gpu][free_flight]") {
+TEST_CASE("marches converge with the square of their step", "[gpu][free_flight][long]") {
     const int flight = GENERATE(FREE_FLIGHT_MARCH, FREE_FLIGHT_ADAPTIVE);
     const double first = escape_error(flight, MediumKind::noise_sphere, 0.4);
     const double second = escape_error(flight, MediumKind::noise_sphere, 0.2);
@@ -220,7 +220,7 @@ TEST_CASE("marches converge with the square of their step", "[gpu][free_flight]"
 // With jitter the optical depth of a step has the right mean, and a variance of the order of step^4. With steps so
 // short no bias shows: along 10 units a density that changes by 2 per voxel of 0.5 units makes e^(variance / 2) - 1 <
 // 1e-6.
-TEST_CASE("marches with tiny steps are as good as unbiased", "[gpu][free_flight]") {
+TEST_CASE("marches with tiny steps are as good as unbiased", "[gpu][free_flight][long]") {
     const int flight = GENERATE(FREE_FLIGHT_MARCH, FREE_FLIGHT_ADAPTIVE);
     const MediumKind kind =
         GENERATE(MediumKind::grid, MediumKind::noise_sphere, MediumKind::cubes, MediumKind::noise_cubes);
@@ -232,7 +232,7 @@ TEST_CASE("marches with tiny steps are as good as unbiased", "[gpu][free_flight]
                   significance_of(2 * 4 * 2));
 }
 
-TEST_CASE("leaps over empty cells change no flight and no shadow", "[gpu][free_flight]") {
+TEST_CASE("leaps over empty cells change no flight and no shadow", "[gpu][free_flight][long]") {
     const int flight = GENERATE(FREE_FLIGHT_ADAPTIVE, FREE_FLIGHT_DELTA, FREE_FLIGHT_WEIGHTED,
                                 FREE_FLIGHT_DECOMPOSITION, FREE_FLIGHT_SPECTRAL);
     CAPTURE(flight);

@@ -52,7 +52,7 @@ TEST_CASE("Rayleigh's phase function integrates to 1, and twice is its convoluti
     }
 }
 
-TEST_CASE("a cloud that scatters by Rayleigh's phase function equals the reference's", "[gpu][phase][agreement]") {
+TEST_CASE("a cloud that scatters by Rayleigh's phase function equals the reference's", "[gpu][phase][agreement][long]") {
     static const GridFile file = write_grid(cloud_grid());
     Scene scene = scene_of(medium(file, 2.0, 0.9, 0.0), 13.0, 16);
     scene.volumes.back().phase = PhaseFunction::rayleigh;

@@ -102,7 +102,7 @@ TEST_CASE("unbiased transmittance has the mean of the quadrature in every medium
     }
 }
 
-TEST_CASE("chromatic transmittance has the mean of the quadrature in every channel", "[gpu][transmittance]") {
+TEST_CASE("chromatic transmittance has the mean of the quadrature in every channel", "[gpu][transmittance][long]") {
     const Rgb sigma_t = GENERATE(Rgb(0.3, 0.6, 1.0), Rgb(1.0, 0.0, 0.5));
     const int estimator =
         GENERATE(TRANSMITTANCE_ANALYTIC, TRANSMITTANCE_REGULAR, TRANSMITTANCE_MARCH, TRANSMITTANCE_DELTA,

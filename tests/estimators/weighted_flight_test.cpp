@@ -84,7 +84,7 @@ TEST_CASE("delta and decomposition tracking lose what exceeds the majorants", "[
     CHECK(escaped / count > T + 10.0 * std::sqrt(T * (1.0 - T) / count));
 }
 
-TEST_CASE("in chromatic media every channel has its own distribution of flights", "[gpu][free_flight][chromatic]") {
+TEST_CASE("in chromatic media every channel has its own distribution of flights", "[gpu][free_flight][chromatic][long]") {
     struct Case {
         int flight;
         MediumKind kind;

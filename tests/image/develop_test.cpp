@@ -187,7 +187,7 @@ TEST_CASE("what glows is shown by a curve that keeps its colour, and that is sai
     CHECK(tone("exr.json").is_null());
 }
 
-TEST_CASE("develop gives the picture that the render gave, bit for bit", "[gpu][command]") {
+TEST_CASE("develop gives the picture that the render gave, bit for bit", "[gpu][command][long]") {
     const Folder folder;
     for (const char* scene : {"lit", "fire"})
         for (const char* tone : {"", "--tonemap aces", "--tonemap reinhard", "--exposure -1.3", "--exposure auto",
@@ -200,7 +200,7 @@ TEST_CASE("develop gives the picture that the render gave, bit for bit", "[gpu][
         }
 }
 
-TEST_CASE("develop gives another picture where it is told to, and says so", "[gpu][command]") {
+TEST_CASE("develop gives another picture where it is told to, and says so", "[gpu][command][long]") {
     const Folder folder;
     REQUIRE(folder.vkvol("fire.xml -q -o a.exr -o a.png --exposure 2").code == exit_done);
     REQUIRE(folder.vkvol("fire.xml -q -o c.png --tonemap aces --exposure -1").code == exit_done);

@@ -141,7 +141,7 @@ TEST_CASE("a converted pbrt scene is the picture of the pbrt scene, bit for bit"
               .code == 0);
 }
 
-TEST_CASE("all of scenes/pbrt is rendered, and converted to the same bits", "[gpu][pbrt]") {
+TEST_CASE("all of scenes/pbrt is rendered, and converted to the same bits", "[gpu][pbrt][long]") {
     const Folder folder("");
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(VKVOL_SOURCE_DIR "/scenes/pbrt"))
@@ -160,7 +160,7 @@ TEST_CASE("all of scenes/pbrt is rendered, and converted to the same bits", "[gp
     }
 }
 
-TEST_CASE("pbrt scenes on the command line", "[gpu][pbrt]") {
+TEST_CASE("pbrt scenes on the command line", "[gpu][pbrt][long]") {
     const Folder folder("");
     folder.write("a.pbrt", ball);
     folder.write("b.pbrt", ball + "Material \"diffuse\" MediumInterface \"\"\nShape \"curve\"\n");

@@ -120,7 +120,7 @@ TEST_CASE("what is absorbed is one grid as .nvdb and as .vdb", "[cpu][counted]")
     CHECK_THROWS_AS(load_density_field(GridFile{file, "absorbed_error"}), InputError);
 }
 
-TEST_CASE("absorption amid several media with surfaces, beneath lights of all kinds", "[gpu][counted]") {
+TEST_CASE("absorption amid several media with surfaces, beneath lights of all kinds", "[gpu][counted][long]") {
     const LightsAbout lights;
     Scene scene = absorption({0.0, 0.0, 0.0}, glm::dvec3(1.2), {8, 8, 8}, 1024);
     scene.volumes = {medium(Sphere{{0.0, 0.0, 0.0}, 1.5}, 0.5, 0.6, 0.3),

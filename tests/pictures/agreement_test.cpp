@@ -89,7 +89,7 @@ TEST_CASE("each estimator equals the reference's own", "[gpu][agreement]") {
     }
 }
 
-TEST_CASE("a control density is lit from null collisions too", "[gpu][agreement]") {
+TEST_CASE("a control density is lit from null collisions too", "[gpu][agreement][long]") {
     // The haze between the spikes is the control: most collisions are certain, and no density is looked up there.
     Scene scene = agreement_scenes()[5].scene;
     scene.settings.spp = 256;

@@ -120,7 +120,7 @@ TEST_CASE("layers leave the picture its bits, and sum up to it", "[gpu][image][a
     }
 }
 
-TEST_CASE("distances drawn for a light's sake are in layers, too", "[gpu][image][aovs]") {
+TEST_CASE("distances drawn for a light's sake are in layers, too", "[gpu][image][aovs][long]") {
     Scene scene = scene_of(medium(Sphere{{0.0, 0.0, 0.0}, 3.0}, 0.3, 0.8), 7.0, 16);
     PointLight lamp{{0.0, 2.0, 0.5}, Rgb(20.0)};
     lamp.group = "lamp";
@@ -188,7 +188,7 @@ TEST_CASE("what a medium sends out is in its layer", "[gpu][image][aovs]") {
     check_sum(shared, {"medium.red_smoke"});
 }
 
-TEST_CASE("what is behind the media is held out for compositing", "[gpu][image][aovs]") {
+TEST_CASE("what is behind the media is held out for compositing", "[gpu][image][aovs][long]") {
     Scene scene = busy("ratioTracking", 32);
     scene.layers = everything;
     const Film with = render_here(scene, 3).film;
@@ -213,7 +213,7 @@ TEST_CASE("what is behind the media is held out for compositing", "[gpu][image][
     CHECK_AGREEMENT(agree(over, whole, "over a plate"));
 }
 
-TEST_CASE("surfaces that shine are before a plate", "[gpu][image][aovs]") {
+TEST_CASE("surfaces that shine are before a plate", "[gpu][image][aovs][long]") {
     Scene scene = busy("ratioTracking", 64);
     scene.volumes.clear();
     scene.lights.clear();

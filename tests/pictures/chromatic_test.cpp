@@ -28,7 +28,7 @@ Film channel_of(Film film, int channel) {
 
 // Where the extinction is the same in all channels: where it differs, weights do, too (tools/results/README.md).
 TEST_CASE("a channel of a cloud of coloured albedo is a grey one's, with at most twice its variance",
-          "[gpu][agreement]") {
+          "[gpu][agreement][long]") {
     const Rgb albedo(0.99, 0.5, 0.0);
     Scene scene = scene_of(medium(write_grid(cloud_grid()), 2.0, 0.9, 0.3), 11.0, 16);
     scene.lights = {sunlight(Rgb(3.0))};

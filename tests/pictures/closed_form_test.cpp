@@ -60,7 +60,7 @@ std::vector<double> everywhere(const Scene& scene, double p) {
 
 // 64 x 64 points per pixel are at most 0.15 standard errors off, at the silhouette of the densest sphere, and 0.01 in
 // the mean.
-TEST_CASE("absorbing shapes transmit exp(-tau) and emit Le (1 - exp(-tau))", "[gpu][hard][closed_form]") {
+TEST_CASE("absorbing shapes transmit exp(-tau) and emit Le (1 - exp(-tau))", "[gpu][hard][closed_form][long]") {
     const double tau = GENERATE(0.1, 1.0, 10.0);
     const bool emits = GENERATE(false, true);
     for (const auto& shape :
@@ -206,7 +206,7 @@ TEST_CASE("a semi-infinite medium reflects as Chandrasekhar says", "[gpu][hard][
 
 // Every pixel meets the medium in a good part of its samples, so that the normal limit holds. The integrand varies
 // over voxels, of which a pixel sees less than one: 2 x 2 points are exact to some 1e-3.
-TEST_CASE("single scattering equals the quadrature", "[gpu][hard][closed_form]") {
+TEST_CASE("single scattering equals the quadrature", "[gpu][hard][closed_form][long]") {
     const auto check = [](const Volume& volume, double width, const std::vector<Filter>& filters) {
         Scene scene = scene_of(volume, width, 20, 20.0, glm::dvec3(0.0), {10.0, -20.0, 0.0});
         scene.settings.spp = 512;
@@ -233,7 +233,7 @@ TEST_CASE("single scattering equals the quadrature", "[gpu][hard][closed_form]")
 }
 
 // A lone voxel v is a hat of area v h under trilinear lookup along an axis, and a step of the same area under nearest.
-TEST_CASE("a lone voxel absorbs as its hat", "[gpu][hard][closed_form]") {
+TEST_CASE("a lone voxel absorbs as its hat", "[gpu][hard][closed_form][long]") {
     const Filter filter = GENERATE(Filter::nearest, Filter::trilinear, Filter::stochastic);
     constexpr double value = 3.0, h = 0.5, sigma = 0.8;
     GridRecipe spike{{-9, -9, -9}, {9, 9, 9}, [](glm::ivec3 i) { return i == glm::ivec3(0) ? float(value) : 0.0f; }};
@@ -268,7 +268,7 @@ TEST_CASE("what is seen through a box is so under a majorant a million times its
 }
 
 // tau = sigma v N h along an axis, wherever between the outermost voxel centres: on centres, faces and edges alike.
-TEST_CASE("a constant grid has the optical depth of its voxels", "[gpu][hard][closed_form]") {
+TEST_CASE("a constant grid has the optical depth of its voxels", "[gpu][hard][closed_form][long]") {
     const Filter filter = GENERATE(Filter::nearest, Filter::trilinear, Filter::stochastic);
     GridRecipe grid{{-3, 2, 5}, {6, 11, 14}, [](glm::ivec3) { return 2.0f; }};
     grid.linear = glm::dmat3(0.25);

@@ -139,7 +139,7 @@ std::vector<CountedCase> domains() {
 
 } // namespace
 
-TEST_CASE("particles counted are the flux that rays from the sensor read", "[gpu][counted]") {
+TEST_CASE("particles counted are the flux that rays from the sensor read", "[gpu][counted][long]") {
     for (const CountedCase& c : in_turn(counted_cases(), 0))
         check_counts(c.scene, c.name);
 }
@@ -266,7 +266,7 @@ TEST_CASE("particles are counted behind glass", "[gpu][counted]") {
 }
 
 // Fluxes out of the top and the ground, and what is absorbed between, each by its own render.
-TEST_CASE("what comes into a domain leaves it, or stays", "[gpu][counted]") {
+TEST_CASE("what comes into a domain leaves it, or stays", "[gpu][counted][long]") {
     const LightsAbout lights;
     Scene scene = about_clouds(false, {lights.beam, lights.sun});
     scene.volumes.front().sigma_s *= Rgb(1.0, 0.9, 0.8); // of an extinction that differs between the channels
@@ -312,7 +312,7 @@ TEST_CASE("a sensor that looks up at the sun reads it, however high", "[gpu][cou
         }
 }
 
-TEST_CASE("particles counted have the same bits however they are worked on", "[gpu][counted]") {
+TEST_CASE("particles counted have the same bits however they are worked on", "[gpu][counted][long]") {
     for (Scene scene : {counted_cases()[2].scene, domains()[5].scene}) {
         scene.settings.spp = 40;
         scene = by(scene, "lightTracing");

@@ -116,7 +116,7 @@ TEST_CASE("what goes through is alpha, and layers sum up to the picture", "[gpu]
     CHECK(variance_of(through) < 0.1 * variance_of(passed));
 }
 
-TEST_CASE("where and what first collisions of split flights are", "[gpu][first_flight][aovs]") {
+TEST_CASE("where and what first collisions of split flights are", "[gpu][first_flight][aovs][long]") {
     for (const char* name : {"thick cloud", "noise in a mesh"})
         for (const NamedScene& named : agreement_scenes()) {
             if (named.name != name)

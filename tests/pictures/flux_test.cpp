@@ -58,7 +58,7 @@ SkyLight half_sky() {
 
 } // namespace
 
-TEST_CASE("uniform radiance is read as pi and as 4 pi of it, exactly", "[gpu][image][flux]") {
+TEST_CASE("uniform radiance is read as pi and as 4 pi of it, exactly", "[gpu][image][flux][long]") {
     for (const bool in_furnace : {false, true})
         for (Scene scene : {rectangle({1.0, 2.0, 3.0}, {1.0, -1.0, 0.5}, {2.0, 1.0}, 4, 16),
                             at_points({{0.0, 0.0, 0.0}, {5.0, 0.0, 1.0}}, 16)}) {
@@ -154,7 +154,7 @@ TEST_CASE("light with an extent is read however it is found", "[gpu][image][flux
 }
 
 // What the solutions have of energy shows how far they are off: 1e-4 of it, a fortieth of a picture's standard error.
-TEST_CASE("irradiance above and below a conservative slab", "[gpu][image][hard][flux]") {
+TEST_CASE("irradiance above and below a conservative slab", "[gpu][image][hard][flux][long]") {
     const double tau = GENERATE(1.0, 5.0, 10.0);
     const int cells = tau < 2.0 ? 200 : 800;
     const reference::SlabSolution beam = reference::slab_in_beam(1.0, tau, 1.0, cells);
@@ -179,7 +179,7 @@ TEST_CASE("irradiance above and below a conservative slab", "[gpu][image][hard][
 
 // The sum over the times that light goes to and fro between slab and ground: of the slab, R and T are for the beam, R'
 // and T' for even light, from either side.
-TEST_CASE("a slab over a ground has the flux of the adding formula", "[gpu][image][hard][flux]") {
+TEST_CASE("a slab over a ground has the flux of the adding formula", "[gpu][image][hard][flux][long]") {
     const double tau = GENERATE(1.0, 5.0), albedo = GENERATE(0.9, 1.0), ground = 0.3;
     const reference::SlabSolution beam = reference::slab_in_beam(albedo, tau, 1.0, 400);
     const reference::SlabSolution even = reference::slab_in_half_sky(albedo, tau, 400);
@@ -248,7 +248,7 @@ TEST_CASE("fluence within a slab in a beam", "[gpu][image][hard][flux]") {
     CHECK_AGREEMENT(agree_with_means(render_here(scene, 5).film, means, "fluence within a slab"));
 }
 
-TEST_CASE("fluence amid a ball that glows", "[gpu][image][flux]") {
+TEST_CASE("fluence amid a ball that glows", "[gpu][image][flux][long]") {
     const double radius = GENERATE(0.5, 2.0, 5.0), albedo = GENERATE(0.0, 0.6, 0.95);
     if (albedo == 0.0)
         CHECK(reference::fluence_amid_ball(albedo, radius, 400) ==
@@ -291,7 +291,7 @@ TEST_CASE("a panorama's mean over directions is fluence / 4 pi", "[gpu][image][f
     }
 }
 
-TEST_CASE("flux equals the reference's", "[gpu][image][flux]") {
+TEST_CASE("flux equals the reference's", "[gpu][image][flux][long]") {
     const std::vector<Light> far = {sunlight({3.0, 2.5, 1.5})};
     const std::vector<Light> all = {
         sunlight(),
@@ -321,7 +321,7 @@ TEST_CASE("flux equals the reference's", "[gpu][image][flux]") {
     }
 }
 
-TEST_CASE("flux among several media equals the reference's", "[gpu][image][flux]") {
+TEST_CASE("flux among several media equals the reference's", "[gpu][image][flux][long]") {
     Scene scene = at_points({{0.0, 0.0, 0.0}, {2.0, -1.0, 1.0}}, 1 << 14);
     scene.volumes = {medium(write_grid(cloud_grid()), 1.0, 0.7, 0.4), medium(Sphere{{1.0, 0.0, 0.0}, 2.0}, 0.5, 0.9)};
     scene.lights = {sunlight(), SphereLight{{4.5, 5.5, 2.0}, 1.2, {14.0, 10.0, 6.0}}};

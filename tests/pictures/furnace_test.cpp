@@ -49,7 +49,7 @@ TEST_CASE("a homogeneous furnace shows its background exactly", "[gpu][hard][fur
     check_equals_background(furnace(medium(Box{{0.1, 0.2, -0.1}, {1.0, 2.0, 1.5}}, 3.0, 1.0, g)));
 }
 
-TEST_CASE("a furnace with a grid shows its background exactly", "[gpu][hard][furnace]") {
+TEST_CASE("a furnace with a grid shows its background exactly", "[gpu][hard][furnace][long]") {
     const double g = GENERATE(0.0, 0.8, -0.8);
     const Storage storage = GENERATE(Storage::float32, Storage::fp8);
     const Filter filter = GENERATE(Filter::nearest, Filter::trilinear, Filter::stochastic);

@@ -74,7 +74,7 @@ TEST_CASE("a ground by a map is the ground of its pieces where a domain repeats"
 }
 
 // Looks toward the sky end at mirrors, and flights that are thrown back find it.
-TEST_CASE("an eighth between three mirrors is the whole", "[gpu][surfaces][lights]") {
+TEST_CASE("an eighth between three mirrors is the whole", "[gpu][surfaces][lights][long]") {
     const auto symmetric = [](int column, int row) {
         const double up = std::abs(row - 7.5) / 7.5, across = std::abs((column + 16) % 16 - 7.5) / 7.5;
         return Rgb(0.3 + 2.0 * up, 0.5, 0.2 + across);
@@ -180,7 +180,7 @@ void check_energy(const ClosedCase& c, const char* integrator) {
 } // namespace
 
 // R + T + A of closed cases, fluxes by particles and by paths.
-TEST_CASE("what a domain reflects, lets through and absorbs is what comes in", "[gpu][periodic][counted][surfaces]") {
+TEST_CASE("what a domain reflects, lets through and absorbs is what comes in", "[gpu][periodic][counted][surfaces][long]") {
     int turn = 0;
     for (const ClosedCase& c : closed_cases())
         for (const char* integrator : in_turn<const char*>({"lightTracing", "ratioTracking"}, turn++, 2))

@@ -82,7 +82,7 @@ TEST_CASE("hard scenes have the means that they derive", "[gpu][hard][hard_scene
 }
 
 // What has one closed form has it whatever the estimators.
-TEST_CASE("a constant grid scatters as its closed form whatever the integrator", "[gpu][hard][hard_scenes]") {
+TEST_CASE("a constant grid scatters as its closed form whatever the integrator", "[gpu][hard][hard_scenes][long]") {
     Scene scene = load_hard_scene(VKVOL_SOURCE_DIR "/scenes/hard/32-constant-grid-scattering.xml");
     scene.settings.spp = 64;
     const std::vector<const char*> integrators = {

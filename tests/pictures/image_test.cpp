@@ -50,12 +50,12 @@ TEST_CASE("homogeneous media equal the reference", "[gpu][image]") {
     check_both(picture_of(medium(Box{{0.1, 0.2, 0.0}, {1.0, 2.0, 1.5}}, 3.0, 0.9, 0.5), 3.0, 256), "box");
 }
 
-TEST_CASE("a thin cloud equals the reference", "[gpu][image]") {
+TEST_CASE("a thin cloud equals the reference", "[gpu][image][long]") {
     check_both(cloud(thin, 0.95), "thin cloud");
     check(cloud(thin, 1.0), "thin white cloud", {"ratioTracking"});
 }
 
-TEST_CASE("a thick cloud equals the reference", "[gpu][image]") {
+TEST_CASE("a thick cloud equals the reference", "[gpu][image][long]") {
     check_both(cloud(thick, 0.95), "thick cloud");
     check(cloud(thick, 1.0, 0.8, 96), "thick white cloud", {"ratioTracking"});
 }
@@ -81,7 +81,7 @@ TEST_CASE("roulette changes no mean", "[gpu][image]") {
     }
 }
 
-TEST_CASE("an emitting cloud equals the reference", "[gpu][image]") {
+TEST_CASE("an emitting cloud equals the reference", "[gpu][image][long]") {
     Scene scene = cloud(thick, 0.5);
     scene.volumes.front().Le = {5.0, 2.0, 0.5};
     check_both(scene, "emitting cloud");
@@ -105,7 +105,7 @@ TEST_CASE("every filter equals the reference", "[gpu][image]") {
     }
 }
 
-TEST_CASE("quantised grids equal the reference", "[gpu][image]") {
+TEST_CASE("quantised grids equal the reference", "[gpu][image][long]") {
     for (const Storage storage : {Storage::fp4, Storage::fp8, Storage::fp16, Storage::fpn}) {
         Scene scene = cloud(thick, 0.9);
         scene.volumes.front().shape = write_grid(cloud_grid(storage));
@@ -122,7 +122,7 @@ TEST_CASE("delta and ratio tracking agree without a light", "[gpu][image]") {
     CHECK_AGREEMENT(agree(delta, render_here(scene, 4).film, "delta and ratio tracking"));
 }
 
-TEST_CASE("majorants change no mean", "[gpu][image]") {
+TEST_CASE("majorants change no mean", "[gpu][image][long]") {
     Scene scene = cloud(thick, 0.9);
     const Film usual = render_here(scene, 5).film;
     std::uint32_t seed = 6;

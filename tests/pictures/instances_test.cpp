@@ -95,7 +95,7 @@ TEST_CASE("instances of a grid equal the reference's copies", "[gpu][image][seve
 }
 
 TEST_CASE("a file and its copy give the same bits as the file twice, but take twice its memory",
-          "[gpu][image][several]") {
+          "[gpu][image][several][long]") {
     const GridFile file = write_grids({cloud_grid()}), copy = write_grids({cloud_grid()});
     REQUIRE(file.path != copy.path);
     Scene once = lit_scene(cluster(file), 5.0, 12.0);

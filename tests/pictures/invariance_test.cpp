@@ -36,7 +36,7 @@ Scene scaled_ball(double scale) {
 
 } // namespace
 
-TEST_CASE("a medium of density zero is no medium, bit for bit", "[gpu][hard][invariance]") {
+TEST_CASE("a medium of density zero is no medium, bit for bit", "[gpu][hard][invariance][long]") {
     Scene nothing = lit(medium(Sphere{}, 0.0, 0.0), 2.0, 5.0);
     nothing.volumes.clear();
     const Film empty = render_here(nothing, 20).film;
@@ -56,7 +56,7 @@ TEST_CASE("a medium of density zero is no medium, bit for bit", "[gpu][hard][inv
 }
 
 // Nearest lookup makes it a box that ends half a voxel beyond the outermost voxel centres.
-TEST_CASE("a constant grid is a homogeneous box", "[gpu][hard][invariance]") {
+TEST_CASE("a constant grid is a homogeneous box", "[gpu][hard][invariance][long]") {
     GridRecipe grid{{2, -4, 5}, {11, 3, 10}, [](glm::ivec3) { return 2.0f; }};
     grid.linear = glm::dmat3(0.2);
     grid.translation = -center_of(grid);

@@ -24,7 +24,7 @@ std::vector<Rgb> everywhere(const Film& film, const Rgb& value) {
 
 } // namespace
 
-TEST_CASE("alpha of a homogeneous slab is 1 - exp(-tau)", "[gpu][image][aovs]") {
+TEST_CASE("alpha of a homogeneous slab is 1 - exp(-tau)", "[gpu][image][aovs][long]") {
     const double tau = GENERATE(0.1, 1.0, 5.0);
     Scene scene = beam(slab(tau, 0.7), 3.0, 512);
     scene.layers = layer_alpha | layer_transmittance | layer_depth;

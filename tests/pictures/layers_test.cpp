@@ -184,7 +184,7 @@ TEST_CASE("nothing is seen through fog without end but its own glow", "[gpu][lay
     }
 }
 
-TEST_CASE("fog without end equals a box of it that is larger than any path", "[gpu][image][layers]") {
+TEST_CASE("fog without end equals a box of it that is larger than any path", "[gpu][image][layers][long]") {
     Scene scene = lit_from_above(endless_fog(0.25, 0.8));
     scene.lights = {PointLight{{1.0, 2.0, 3.0}, Rgb(30.0)}, SphereLight{{-2.0, 0.0, 4.0}, 0.5, Rgb(4.0)}};
     Scene box = scene;
@@ -249,7 +249,7 @@ TEST_CASE("lamps in air that thins with height are looked at from along flights"
     CHECK(noise(along) < 0.6 * noise(render_here(scene, 1).film));
 }
 
-TEST_CASE("parts of a medium that is everywhere are the whole", "[gpu][image][layers]") {
+TEST_CASE("parts of a medium that is everywhere are the whole", "[gpu][image][layers][long]") {
     for (const Volume& whole : {atmosphere(0.8, 0.9), table(0.8, 0.9), endless_fog(0.2, 0.7)}) {
         const Scene alone = lit_from_above(whole);
         Scene parts = alone;

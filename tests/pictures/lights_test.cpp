@@ -115,7 +115,7 @@ TEST_CASE("every light equals the reference's, in a ball and in a mesh", "[gpu][
 }
 
 // Software drivers read tables and skies as texels, unless they are too large. (GPUs do not.)
-TEST_CASE("lights are the same as texels and as storage", "[gpu][lights]") {
+TEST_CASE("lights are the same as texels and as storage", "[gpu][lights][long]") {
     if (!test_device().is_cpu())
         return;
     RenderJob storage;
@@ -130,7 +130,7 @@ TEST_CASE("lights are the same as texels and as storage", "[gpu][lights]") {
 }
 
 // Shadow rays to a lamp in the midst end there, in every estimator. A hole around the lamp keeps the variance finite.
-TEST_CASE("shadow rays end at a lamp within the medium", "[gpu][lights]") {
+TEST_CASE("shadow rays end at a lamp within the medium", "[gpu][lights][long]") {
     GridRecipe shell = cloud_grid();
     const auto value = shell.value;
     shell.value = [value](glm::ivec3 i) {
@@ -293,7 +293,7 @@ TEST_CASE("single scattering from lamps equals the quadrature", "[gpu][lights][c
 }
 
 // Looks are weighted by phase_eval and flights drawn by phase_sample: their sum tells whether these agree.
-TEST_CASE("a furnace of a map of ones, of every phase function", "[gpu][lights][furnace][phase]") {
+TEST_CASE("a furnace of a map of ones, of every phase function", "[gpu][lights][furnace][phase][long]") {
     const SkyLight ones = write_sky(make_map(8, 4, [](int, int) { return Rgb(1.0, 0.5, 2.0); }));
     for (const NamedPhase& phase : in_turn(all_phases(), 0, 3)) {
         Scene scene = lit_by(phase.of(medium(cloud_file(), 1.0, 1.0)), 11.0, {ones}, 64);
@@ -306,7 +306,7 @@ TEST_CASE("a furnace of a map of ones, of every phase function", "[gpu][lights][
     }
 }
 
-TEST_CASE("looks and flights find the same light, by every phase function", "[gpu][lights][agreement][phase]") {
+TEST_CASE("looks and flights find the same light, by every phase function", "[gpu][lights][agreement][phase][long]") {
     const SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {5.0, 4.0, 3.0}, 60.0};
     std::uint32_t seed = 70;
     for (const NamedPhase& phase : all_phases()) {
@@ -329,7 +329,7 @@ TEST_CASE("looks and flights find the same light, by every phase function", "[gp
 }
 
 // What is scattered from all directions alike is what comes from all of them.
-TEST_CASE("a furnace of a map of ones", "[gpu][lights][furnace]") {
+TEST_CASE("a furnace of a map of ones", "[gpu][lights][furnace][long]") {
     const SkyLight ones = write_sky(make_map(8, 4, [](int, int) { return Rgb(1.0, 0.5, 2.0); }));
     for (const double g : {0.0, 0.9, -0.7})
         for (const int mis : {MIS_BALANCE, MIS_POWER, MIS_LIGHT, MIS_PHASE}) {
@@ -347,7 +347,7 @@ TEST_CASE("a furnace of a map of ones", "[gpu][lights][furnace]") {
         }
 }
 
-TEST_CASE("a sky is seen where no medium is", "[gpu][lights]") {
+TEST_CASE("a sky is seen where no medium is", "[gpu][lights][long]") {
     Scene scene = lit_by(cloud(), 40.0,
                          {sunset(), SunLight{glm::normalize(glm::dvec3(-1.0, 0.2, -2.0)), Rgb(2.0), 20.0, 0.8}}, 64);
     scene.camera.fov = 120.0;
@@ -458,7 +458,7 @@ TEST_CASE("no lamp of many is lost, however long a lane works", "[gpu][lights]")
     }
 }
 
-TEST_CASE("looks and flights find the same light", "[gpu][lights][agreement]") {
+TEST_CASE("looks and flights find the same light", "[gpu][lights][agreement][long]") {
     const SunLight sun{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {5.0, 4.0, 3.0}, 60.0, 0.8};
     for (const double g : {0.85, 0.0}) {
         if (!thorough() && g == 0.0)

@@ -13,7 +13,7 @@
 using namespace vkvol;
 
 TEST_CASE("media of two phase functions on top of each other are one of their mixture",
-          "[gpu][image][several][phase]") {
+          "[gpu][image][several][phase][long]") {
     const LightsAbout lights;
     Volume whole = medium(Sphere{{0.2, -0.1, 0.0}, 1.4}, 1.6, 0.9, 0.8);
     whole.phase = PhaseFunction::double_henyey_greenstein;
@@ -40,7 +40,7 @@ TEST_CASE("media of two phase functions on top of each other are one of their mi
                   integrator));
 }
 
-TEST_CASE("halves of a medium on top of each other are the whole, under every light", "[gpu][image][several][lights]") {
+TEST_CASE("halves of a medium on top of each other are the whole, under every light", "[gpu][image][several][lights][long]") {
     const LightsAbout lights;
     const std::vector<std::pair<std::string, Light>> all = {
         {"point", lights.point}, {"spot", lights.spot},           {"ball", lights.ball},

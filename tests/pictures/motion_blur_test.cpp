@@ -194,7 +194,7 @@ TEST_CASE("a box that passes covers for its time", "[motion]") {
     }
 }
 
-TEST_CASE("a sample sees its moment", "[motion]") {
+TEST_CASE("a sample sees its moment", "[motion][long]") {
     const Scene scene = parse_at(all_that_moves, 0);
     for (const std::uint32_t sample : {0u, 5u, 17u, 70u}) {
         RenderJob job;
@@ -437,7 +437,7 @@ TEST_CASE("a lens that opens has sharp what it had before --frame moved its came
 }
 
 // The reference at times that are drawn one by one.
-TEST_CASE("what moves agrees with the reference", "[motion]") {
+TEST_CASE("what moves agrees with the reference", "[motion][long]") {
     const Scene scene = parse_at(all_that_moves, 0);
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> time(scene.motion_blur->open, scene.motion_blur->close);

@@ -59,7 +59,7 @@ TEST_CASE("how a picture is rendered may move, and what begins at 0 has no gap",
 }
 
 // The same moments, as two frames have them.
-TEST_CASE("a filter and a longest path move like all else", "[gpu][motion]") {
+TEST_CASE("a filter and a longest path move like all else", "[gpu][motion][long]") {
     const std::string rest = R"(<box width="2" height="2" depth="2"/><sigma_a>.1</sigma_a><sigma_s>1</sigma_s>
         <backgroundColor r=".2" g=".5" b=".1"/><light x="1" y="1" z="1" r="1" g="1" b="1"/><camera z="5" fov="40"/>
         <width>12</width><height>8</height><rayPerPixelCount>64</rayPerPixelCount>)";

@@ -42,7 +42,7 @@ TEST_CASE("a pane of glass moves what is behind it by Snell's law", "[gpu][image
     }
 }
 
-TEST_CASE("a square lamp above a floor has its form factor", "[gpu][image][surfaces][lights]") {
+TEST_CASE("a square lamp above a floor has its form factor", "[gpu][image][surfaces][lights][long]") {
     // Of half its edge above a point, (4 / pi) (1 / sqrt 2) atan(1 / sqrt 2) = 0.5541 of the light that would come from
     // all above. From the floor's patch of a hundredth the mean is less by less than a ten thousandth.
     const double share = 4.0 / pi * std::atan(1.0 / std::sqrt(2.0)) / std::sqrt(2.0);

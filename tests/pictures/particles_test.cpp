@@ -216,7 +216,7 @@ TEST_CASE("particles of a light far away are as fine as those of a near one", "[
 }
 
 // Splats are as bright as what is seen from a three-thousandth of a scene's size, lit by a lamp as near to the ground.
-TEST_CASE("particles light what is small in a large scene", "[gpu][particles]") {
+TEST_CASE("particles light what is small in a large scene", "[gpu][particles][long]") {
     Scene scene =
         before_smoke({}, {PointLight{{0.5, 4.0, -20.0}, Rgb(1.0)}}); // by a lamp, which a larger ground changes little
     scene.volumes.clear();

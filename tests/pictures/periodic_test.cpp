@@ -165,7 +165,7 @@ TEST_CASE("how often a ray is moved across costs it an ulp each time", "[gpu][im
         CHECK(pixel.x == Approx(std::exp(-depth)).epsilon(0.004 * 0.5 + 3e-4));
 }
 
-TEST_CASE("domains that repeat equal the reference's, unfolded", "[gpu][image][periodic]") {
+TEST_CASE("domains that repeat equal the reference's, unfolded", "[gpu][image][periodic][long]") {
     std::vector<std::pair<std::string, Scene>> all;
     Scene scene = above(thin_cloud());
     all.emplace_back("a cloud", scene);
@@ -221,7 +221,7 @@ TEST_CASE("air that is turned reaches as far as air that is not", "[cpu][periodi
     }
 }
 
-TEST_CASE("all unbiased estimators agree where a domain repeats", "[gpu][image][periodic][hard]") {
+TEST_CASE("all unbiased estimators agree where a domain repeats", "[gpu][image][periodic][hard][long]") {
     Scene scene = above(thin_cloud());
     scene.volumes.front().Le = Rgb(0.2);
     const Film reference = render_reference(scene, 2);
@@ -278,7 +278,7 @@ TEST_CASE("what is flat repeats as well", "[gpu][image][periodic][surfaces]") {
     CHECK(std::abs(mean_of(render_here(scene, 1).film) - 0.25) < 4.0 * error); // one in 16,000
 }
 
-TEST_CASE("both schedules go through a domain that repeats alike", "[gpu][image][periodic][determinism]") {
+TEST_CASE("both schedules go through a domain that repeats alike", "[gpu][image][periodic][determinism][long]") {
     Scene scene = above(thin_cloud());
     scene.settings.spp = 16;
     Scene solid = scene;
@@ -352,7 +352,7 @@ TEST_CASE("media that hold nothing keep no path in a domain that repeats", "[gpu
         CHECK(pixel.x == Approx(1.0));
 }
 
-TEST_CASE("a domain that repeats and holds nothing shows what is beyond", "[gpu][image][periodic]") {
+TEST_CASE("a domain that repeats and holds nothing shows what is beyond", "[gpu][image][periodic][long]") {
     Scene scene = scene_of(medium(Box{{0.0, 0.0, 0.0}, {2.0, 1.0, 2.0}}, 0.0, 0.0), 2.0, 4);
     scene.periodic = Periodic{{-1.0, 0.0, -1.0}, {1.0, 0.0, 1.0}};
     scene.background = {1.0, 2.0, 0.5};
@@ -394,7 +394,7 @@ TEST_CASE("domains that repeat in scene files", "[cpu][xml][periodic]") {
 }
 
 // As much of a beam goes from one direction into another as the other way.
-TEST_CASE("radiances of a domain that repeats are reciprocal", "[gpu][image][periodic]") {
+TEST_CASE("radiances of a domain that repeats are reciprocal", "[gpu][image][periodic][long]") {
     const glm::dvec3 steep(0.6, 0.8, 0.0), flat(-std::sqrt(0.75), 0.5, 0.0);
     const auto reflected = [&](glm::dvec3 sun, glm::dvec3 view) {
         Scene scene = above(thin_cloud());

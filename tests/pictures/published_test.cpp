@@ -50,7 +50,7 @@ void check_flux(Scene scene, double height, bool down, double expected, const st
 
 // van de Hulst, "Multiple Light Scattering" (1980), table 12: radiance over mu0 at mu = 0.5, the sun's irradiance
 // across itself being pi.
-TEST_CASE("van de Hulst's slab that scatters evenly", "[gpu][image][published]") {
+TEST_CASE("van de Hulst's slab that scatters evenly", "[gpu][image][published][long]") {
     for (const auto& [mu0, value] : {std::pair{1.0, .28616}, {.7, .34188}, {.3, .45353}}) {
         Scene scene = slab_scene(2.0, 0.8);
         scene.lights = {DirectionalLight{toward(mu0), Rgb(pi)}};
@@ -63,7 +63,7 @@ TEST_CASE("van de Hulst's slab that scatters evenly", "[gpu][image][published]")
     }
 }
 
-TEST_CASE("printed fluxes of slabs", "[gpu][image][published]") {
+TEST_CASE("printed fluxes of slabs", "[gpu][image][published][long]") {
     Scene forward = slab_scene(2.0, 0.9, 0.75); // van de Hulst, as quoted by Wang, Jacques and Zheng, "MCML" (1995)
     forward.lights = {DirectionalLight{up_y, Rgb(1.0)}};
     check_flux(forward, 1e-3, false, .09739, "forward, up");
@@ -89,7 +89,7 @@ TEST_CASE("printed fluxes of slabs", "[gpu][image][published]") {
 
 // I3RC phase 1, case 1 (Cahalan et al. 2005), experiment 1: 32 columns over 0.5 km, of optical depth 2 and 18, the sun
 // overhead. The consensus scatters by 0.1 % and 0.06 % of each.
-TEST_CASE("the step cloud's columns", "[gpu][image][published][hard]") {
+TEST_CASE("the step cloud's columns", "[gpu][image][published][hard][long]") {
     constexpr double reflected[] = {0.27859, 0.26712, 0.25531, 0.24542, 0.23761, 0.23207, 0.22805, 0.22592,
                                     0.22597, 0.22796, 0.23176, 0.23787, 0.24578, 0.25563, 0.26676, 0.27939,
                                     0.32332, 0.36758, 0.39589, 0.41544, 0.43034, 0.44028, 0.44675, 0.45022,

@@ -76,7 +76,7 @@ Drawn drawn_within(const RenderSettings& settings, double x) {
 
 } // namespace
 
-TEST_CASE("lenses equal the reference's", "[gpu][image][sensors]") {
+TEST_CASE("lenses equal the reference's", "[gpu][image][sensors][long]") {
     Scene scene = glowing_cloud(25.0);
     scene.camera.lens = lens(3.0, 15.0);
     check_against_reference(scene, "focused before the cloud");
@@ -89,7 +89,7 @@ TEST_CASE("lenses equal the reference's", "[gpu][image][sensors]") {
     check_against_reference(scene, "from afar");
 }
 
-TEST_CASE("other projections equal the reference's", "[gpu][image][sensors]") {
+TEST_CASE("other projections equal the reference's", "[gpu][image][sensors][long]") {
     Scene scene = glowing_cloud(25.0);
     scene.camera.projection = Projection::orthographic;
     scene.camera.view_height = 9.0;
@@ -104,7 +104,7 @@ TEST_CASE("other projections equal the reference's", "[gpu][image][sensors]") {
     check_against_reference(scene, "around a camera within");
 }
 
-TEST_CASE("filters of pixels equal the reference's", "[gpu][image][sensors]") {
+TEST_CASE("filters of pixels equal the reference's", "[gpu][image][sensors][long]") {
     Scene scene = glowing_cloud(25.0);
     for (const PixelFilter filter : all_filters) {
         scene.settings.pixel_filter = filter;

@@ -105,7 +105,7 @@ TEST_CASE("a mesh that shines on both sides is the same turned about", "[gpu][im
     check_same_mean(turned, film, "turned about");
 }
 
-TEST_CASE("a small mesh that shines in fog is found by looks", "[gpu][image][surfaces][shining]") {
+TEST_CASE("a small mesh that shines in fog is found by looks", "[gpu][image][surfaces][shining][long]") {
     const RectangleSurface small{{0.0, 0.9, 0.0}, {0.12, 0.0, 0.0}, {0.0, 0.0, 0.12}};
     Scene scene = under({shining(mesh_of(small, 2), Rgb(30.0))}, 0.6);
     const Film looked = render_here(scene, 1).film;
@@ -129,7 +129,7 @@ TEST_CASE("meshes that shine are not lit through themselves", "[gpu][image][surf
 }
 
 TEST_CASE("any number of balls, disks and rectangles that shine are found by looks",
-          "[gpu][image][surfaces][shining]") {
+          "[gpu][image][surfaces][shining][long]") {
     std::vector<Surface> many;
     for (int i = 0; i < 300; ++i) {
         const glm::dvec3 at(0.08 * (i % 20) - 0.8, 0.6 + 0.07 * (i % 4), 0.1 * (i / 20) - 0.7);
@@ -149,7 +149,7 @@ TEST_CASE("any number of balls, disks and rectangles that shine are found by loo
     CHECK(variance_beside(looked, looked) < 0.5 * variance_beside(met, looked));
 }
 
-TEST_CASE("shining meshes light as the reference says, with both schedules", "[gpu][image][surfaces][shining]") {
+TEST_CASE("shining meshes light as the reference says, with both schedules", "[gpu][image][surfaces][shining][long]") {
     Scene scene = under(
         {shining(mesh_of(pane, 2), {4.0, 3.0, 2.0}, 0.3, true), shining(round_mesh(6, 0.25), {0.6, 1.2, 2.4}, 0.5)},
         0.5);
@@ -157,7 +157,7 @@ TEST_CASE("shining meshes light as the reference says, with both schedules", "[g
     check_by_both_schedules(scene, "shining meshes");
 }
 
-TEST_CASE("every way to look finds the light of shining meshes", "[gpu][image][surfaces][shining]") {
+TEST_CASE("every way to look finds the light of shining meshes", "[gpu][image][surfaces][shining][long]") {
     Scene scene =
         under({shining(mesh_of(pane, 2), {4.0, 3.0, 2.0}, 0.3), shining(round_mesh(5, 0.2), {0.6, 1.2, 2.4})}, 0.5);
     scene.volumes.front().noise = Noise{1.3, 2, 0.5, 2.0};
@@ -172,7 +172,7 @@ TEST_CASE("every way to look finds the light of shining meshes", "[gpu][image][s
     check_same_mean(render_here(scene, 4).film, usual, "decomposition");
 }
 
-TEST_CASE("particles and paths find the light of shining meshes alike", "[gpu][image][surfaces][shining]") {
+TEST_CASE("particles and paths find the light of shining meshes alike", "[gpu][image][surfaces][shining][long]") {
     Scene scene = before_smoke({shining(mesh_of(pane, 2), {4.0, 3.0, 2.0}, 0.4)}, {});
     scene.lights = {PointLight{{0.5, 0.8, 1.2}, Rgb(0.7)}};
     scene.settings.spp = 2048;

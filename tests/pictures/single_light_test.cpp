@@ -198,7 +198,7 @@ void check_means_of(Scene scene, const std::vector<Rgb>& means, std::size_t turn
 } // namespace
 
 TEST_CASE("light that each light scatters once equals the quadrature, in thin and in thick fog",
-          "[gpu][lights][closed_form]") {
+          "[gpu][lights][closed_form][long]") {
     std::size_t turn = 0;
     for (const LoneLight& lone : lone_lights(12, 30)) {
         ++turn;
@@ -226,7 +226,7 @@ TEST_CASE("light that each light scatters once equals the quadrature, in thin an
 }
 
 // What is left of it at points in a box that absorbs: the mean over directions of its light, times exp of the way out.
-TEST_CASE("each light's shadow in a slab that absorbs is its closed form", "[gpu][lights][flux][closed_form]") {
+TEST_CASE("each light's shadow in a slab that absorbs is its closed form", "[gpu][lights][flux][closed_form][long]") {
     std::size_t turn = 0;
     for (const LoneLight& lone : lone_lights(48, 192)) {
         Scene scene;
@@ -251,7 +251,7 @@ TEST_CASE("each light's shadow in a slab that absorbs is its closed form", "[gpu
 
 // Of a sky L = 1 + a (n . w) any phase function of mean cosine g scatters 1 + a g (n . d) toward where a ray along d
 // comes from.
-TEST_CASE("a furnace of a gradient, of every phase function", "[gpu][lights][furnace][phase]") {
+TEST_CASE("a furnace of a gradient, of every phase function", "[gpu][lights][furnace][phase][long]") {
     // So thin that what is scattered twice, and lost on the way, is below 1e-3 of it.
     constexpr double sigma_t = 5e-5;
     const std::array<SkyLight, 2> skies{gradient_sky(SkyMapping::equirectangular),

@@ -154,7 +154,7 @@ TEST_CASE("splats are as fine in units of any length", "[gpu][particles]") {
         CHECK(mean(length) == Approx(usual).epsilon(1e-3)); // the same paths
 }
 
-TEST_CASE("negative estimates are splats too", "[gpu][particles]") {
+TEST_CASE("negative estimates are splats too", "[gpu][particles][long]") {
     Scene scene = small_picture(smoke(), 4.0, {PointLight{{1.2, 1.9, 1.5}, {12.0, 9.0, 6.0}}});
     scene.settings.march.shadow_step = 0.7;
     const Film reference = render_reference(scene, 2);

@@ -155,7 +155,7 @@ TEST_CASE("fog darkens a sunlit floor by both ways through it", "[gpu][image][su
 }
 
 TEST_CASE("no sun shines through a triangle, a disk or a ball, nor a point through what it touches",
-          "[gpu][surfaces]") {
+          "[gpu][surfaces][long]") {
     Scene scene = from_above(0.1, 8);
     scene.settings.spp = 16;
     scene.settings.integrator = "ratioTracking";
@@ -337,7 +337,7 @@ TEST_CASE("lamps do not hide themselves, however flat they are seen", "[gpu][ima
     CHECK_AGREEMENT(agree(render_here(scene, 2).film, without, "a body"));
 }
 
-TEST_CASE("lamps in a face of rough glass do not shine through it", "[gpu][image][surfaces]") {
+TEST_CASE("lamps in a face of rough glass do not shine through it", "[gpu][image][surfaces][long]") {
     Scene scene = empty_scene();
     scene.surfaces = {ball_surface(frosted(MaterialKind::dielectric, 0.4), {0.0, 0.0, 0.0}, 1.0)};
     scene.lights = {SphereLight{{0.0, 0.0, 0.0}, 1.0, Rgb(1.0)}};

@@ -208,7 +208,7 @@ TEST_CASE("no ray leaves a closed mesh", "[gpu][image][surfaces]") {
     }
 }
 
-TEST_CASE("surfaces among media equal the reference, by both schedules", "[gpu][image][surfaces]") {
+TEST_CASE("surfaces among media equal the reference, by both schedules", "[gpu][image][surfaces][long]") {
     const Scene scene = still_life();
     if (thorough())
         check_by_both_schedules(scene, "still life");
@@ -253,7 +253,7 @@ TEST_CASE("light comes out of what it may be in for ever", "[gpu][image][surface
     check_everywhere(room, Rgb(0.0), 0.0);
 }
 
-TEST_CASE("surfaces among media are the same for every estimator", "[gpu][image][surfaces]") {
+TEST_CASE("surfaces among media are the same for every estimator", "[gpu][image][surfaces][long]") {
     Scene scene = still_life();
     scene.settings.spp = 96;
     const Film expected = render_here(scene, 1).film;

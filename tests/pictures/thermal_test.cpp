@@ -34,7 +34,7 @@ double radiance(double S, double near, double far, double beyond) {
 
 } // namespace
 
-TEST_CASE("air whose Planck function is linear in depth has its closed form's radiance", "[gpu][layers][closed_form]") {
+TEST_CASE("air whose Planck function is linear in depth has its closed form's radiance", "[gpu][layers][closed_form][long]") {
     const double below = planck_band({290.0, 8.0, 12.0}), above = planck_band({230.0, 8.0, 12.0});
     for (const double angle : {90.0, 40.0}) { // with the horizon
         const double S = tau / std::sin(glm::radians(angle));

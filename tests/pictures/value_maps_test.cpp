@@ -75,7 +75,7 @@ TEST_CASE("mapped values equal the reference", "[gpu][image][value_map]") {
         check_against_reference(each, name);
 }
 
-TEST_CASE("a map of each voxel equals a grid that holds what it makes of them", "[gpu][image][value_map]") {
+TEST_CASE("a map of each voxel equals a grid that holds what it makes of them", "[gpu][image][value_map][long]") {
     GridRecipe baked = cloud_grid();
     baked.value = [](glm::ivec3 i) { return float(reference::mapped(bumpy_map(), cloud_noise(i)).density); };
     Scene map = lit_by_sun(mapped_cloud(bumpy_map(), 1.5));
@@ -91,7 +91,7 @@ TEST_CASE("a map of each voxel equals a grid that holds what it makes of them", 
     }
 }
 
-TEST_CASE("a map that only multiplies equals a factor of the density", "[gpu][image][value_map]") {
+TEST_CASE("a map that only multiplies equals a factor of the density", "[gpu][image][value_map][long]") {
     ValueMap twice;
     twice.points = {{0.0, 0.0}};
     twice.rise = 2.0;
@@ -104,7 +104,7 @@ TEST_CASE("a map that only multiplies equals a factor of the density", "[gpu][im
         CHECK_AGREEMENT(agree(render_here(lit_by_sun(mapped_cloud(map, 1.5)), 1).film, expected, "factor"));
 }
 
-TEST_CASE("a transfer function of two values equals two boxes of what it says", "[gpu][image][value_map]") {
+TEST_CASE("a transfer function of two values equals two boxes of what it says", "[gpu][image][value_map][long]") {
     GridRecipe halves{{0, 0, 0}, {7, 7, 7}, nullptr};
     halves.value = [](glm::ivec3 i) { return i.x < 4 ? 0.25f : 0.75f; };
     halves.linear = glm::dmat3(0.5);
@@ -132,7 +132,7 @@ TEST_CASE("a transfer function of two values equals two boxes of what it says", 
     CHECK_AGREEMENT(agree(render_here(scene, 1).film, render_here(boxes, 2).film, "two boxes"));
 }
 
-TEST_CASE("a transfer function equals a grid for each of its values", "[gpu][image][value_map]") {
+TEST_CASE("a transfer function equals a grid for each of its values", "[gpu][image][value_map][long]") {
     // Each with the density of the voxels of that value, and of the colours that the function gives them.
     const float values[] = {0.1f, 0.3f, 0.6f, 0.9f};
     const auto level = [](glm::ivec3 i) { return std::size_t(std::min(int(6.0f * cloud_noise(i)), 3)); };

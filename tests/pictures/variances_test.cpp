@@ -54,7 +54,7 @@ TEST_CASE("a lamp beside a searchlight that passes by is found", "[gpu][variance
 }
 
 TEST_CASE("lamps that a surface or a sensor has behind it take no looks from those before it",
-          "[gpu][variances][lights]") {
+          "[gpu][variances][lights][long]") {
     std::string lamps = "<lights><point y='3'/>";
     for (int i = 0; i < 100; ++i)
         lamps += fmt::format("<point x='{}' y='-0.5' z='{}'/>", i % 10 - 4.5, i / 10 - 4.5);
@@ -103,7 +103,7 @@ TEST_CASE("a thin even glow is seen by every sample", "[gpu][variances][emission
                  0.97) < 0.5);
 }
 
-TEST_CASE("each of several media glows wherever any is met", "[gpu][variances][several]") {
+TEST_CASE("each of several media glows wherever any is met", "[gpu][variances][several][long]") {
     // A hundredth of what paths meet glows. Left to which one they meet: 100. All of it is met, and brings its part.
     const auto media = [](const char* thick) {
         return fmt::format("<volumes><volume><box width='4' height='4' depth='4'/><sigma_a {}/><sigma_s>0</sigma_s>"
@@ -178,7 +178,7 @@ TEST_CASE("films in several buffers have as many particles for each row", "[gpu]
 }
 
 TEST_CASE("a control density above rough noise does not make weights that grow with the way",
-          "[gpu][variances][noise]") {
+          "[gpu][variances][noise][long]") {
     // Of 10 to 80 mean free paths with densities far below half of their bound: 50 times the variance of ratio
     // tracking.
     const auto by = [](const char* integrator) {

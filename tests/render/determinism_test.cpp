@@ -98,7 +98,7 @@ TEST_CASE("the sizes of the machine change no bit", "[gpu][determinism]") {
 }
 
 // Devices need not take more than 128 MiB as one buffer, and Mesa's software driver does not.
-TEST_CASE("there are no more paths than have room in one buffer", "[gpu][determinism]") {
+TEST_CASE("there are no more paths than have room in one buffer", "[gpu][determinism][long]") {
     const Scene scene = glowing_cloud(2);
     RenderJob job = with_tuning(most_slots, 64, 16, 1), usual;
     job.plan.schedule = usual.plan.schedule = GENERATE(Schedule::fused, Schedule::staged);
@@ -108,7 +108,7 @@ TEST_CASE("there are no more paths than have room in one buffer", "[gpu][determi
 }
 
 // On GPUs other kernels have other roundings.
-TEST_CASE("how paths get to memory changes no bit", "[gpu][determinism]") {
+TEST_CASE("how paths get to memory changes no bit", "[gpu][determinism][long]") {
     if (!test_device().is_cpu())
         return;
     Scene scene = glowing_cloud();
@@ -448,7 +448,7 @@ TEST_CASE("noise is not looked at before what is rare can have been met", "[gpu]
     CHECK(result.film.variance.front().x > 0.0f);
 }
 
-TEST_CASE("all samples are taken, though a driver's loops end after 65535 iterations", "[gpu][determinism]") {
+TEST_CASE("all samples are taken, though a driver's loops end after 65535 iterations", "[gpu][determinism][long]") {
     Scene scene;
     RenderJob job;
     SECTION("of a background") {

@@ -58,7 +58,7 @@ Checkpoint last_checkpoint(const Scene& scene) {
 
 } // namespace
 
-TEST_CASE("under a map, lamps and what shines a render goes on with the same bits", "[gpu][checkpoint][surfaces]") {
+TEST_CASE("under a map, lamps and what shines a render goes on with the same bits", "[gpu][checkpoint][surfaces][long]") {
     const Schedule schedule = GENERATE(Schedule::fused, Schedule::staged);
     const Scene scene = lit_scene(6);
     RenderJob job = job_by(schedule);
@@ -149,7 +149,7 @@ TEST_CASE("under a map, lamps and what shines two ranges of samples are one run"
     CHECK(worse == 0);
 }
 
-TEST_CASE("a path is followed under a map, lamps and what shines", "[gpu][trace][surfaces]") {
+TEST_CASE("a path is followed under a map, lamps and what shines", "[gpu][trace][surfaces][long]") {
     const auto [integrator, schedule] = GENERATE(std::pair<std::string, Schedule>("ratioTracking", Schedule::staged),
                                                  std::pair<std::string, Schedule>("ratioNEE", Schedule::fused));
     Scene scene = lit_scene(1);

@@ -111,7 +111,7 @@ Specialization with(std::initializer_list<std::pair<int, int>> changes) {
 
 } // namespace
 
-TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "[gpu][specialization]") {
+TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "[gpu][specialization][long]") {
     const std::set<int> always = {BINDING_FRAME,       BINDING_PATHS,  BINDING_FILM,
                                   BINDING_QUEUE_ITEMS, BINDING_QUEUES, BINDING_COUNTERS};
     const auto touches = [&](std::initializer_list<std::pair<int, int>> changes, std::set<int> more) {

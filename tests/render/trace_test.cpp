@@ -33,7 +33,7 @@ RenderResult one_sample(Scene scene, int x, int y, std::uint32_t sample, bool tr
 
 } // namespace
 
-TEST_CASE("a followed path gathers the radiance of its sample, bit by bit", "[gpu][trace]") {
+TEST_CASE("a followed path gathers the radiance of its sample, bit by bit", "[gpu][trace][long]") {
     const std::string integrator = GENERATE("ratioTracking", "cachedRatioTracking", "ratioNEE", "deltaTracking",
                                             "weightedTracking", "regularTracking");
     const bool chromatic = GENERATE(false, true);
@@ -72,7 +72,7 @@ TEST_CASE("a followed path is printed", "[gpu][trace]") {
                Catch::Contains("radiance 0.3 0.5 0.9"));
 }
 
-TEST_CASE("each kind of vertex of a followed path has a name", "[gpu][trace]") {
+TEST_CASE("each kind of vertex of a followed path has a name", "[gpu][trace][long]") {
     Scene scene = sunlit_cloud(24, 1);
     scene.surfaces.emplace_back().shape = BallSurface{{0.0, 0.0, 0.0}, 1.5};
     scene.settings.integrator = "bidirectional";

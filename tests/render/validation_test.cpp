@@ -42,7 +42,7 @@ TEST_CASE("validation is silent for homogeneous media and for none", "[gpu][vali
     check_silent(nothing);
 }
 
-TEST_CASE("validation is silent for every type of grid", "[gpu][validation]") {
+TEST_CASE("validation is silent for every type of grid", "[gpu][validation][long]") {
     const std::vector<Storage> storages(std::begin(all_storages), std::end(all_storages));
     const Storage storage = GENERATE_REF(from_range(in_turn(storages, 0)));
     CAPTURE(storage_name(storage));

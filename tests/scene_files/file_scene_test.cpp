@@ -139,7 +139,7 @@ TEST_CASE("is a scene beside a picture still as it was made?", "[cpu][method]") 
     CHECK_NOTHROW(parse_scene(scene, "s.xml"));
 }
 
-TEST_CASE("a density file is rendered, and the scene beside its picture gives the same bits", "[gpu][command]") {
+TEST_CASE("a density file is rendered, and the scene beside its picture gives the same bits", "[gpu][command][long]") {
     const Folder folder;
     const Run run = folder.vkvol("cloud.nvdb --spp 2 --width 64");
     CAPTURE(run.text);
@@ -160,7 +160,7 @@ TEST_CASE("a density file is rendered, and the scene beside its picture gives th
     CHECK(same_pixels(folder.file("b.exr"), folder.file("c.exr")));
 }
 
-TEST_CASE("a made scene finds its file through links, and is framed as it says", "[gpu][command]") {
+TEST_CASE("a made scene finds its file through links, and is framed as it says", "[gpu][command][long]") {
     const Folder folder;
     std::filesystem::create_directories(folder.file("real/deep"));
     std::filesystem::create_directory_symlink("real/deep", folder.file("link"));
@@ -177,7 +177,7 @@ TEST_CASE("a made scene finds its file through links, and is framed as it says",
     CHECK_FALSE(std::filesystem::exists(folder.file("cloud.xml")));
 }
 
-TEST_CASE("init writes a scene to start from, and over nothing", "[gpu][command]") {
+TEST_CASE("init writes a scene to start from, and over nothing", "[gpu][command][long]") {
     const Folder folder;
     CHECK_THAT(folder.vkvol("init").text, Contains("scene.xml: vkvol scene.xml renders it"));
     const std::string first = text_of(folder.file("scene.xml"));
@@ -208,7 +208,7 @@ TEST_CASE("a scene that init writes to a stream finds its grid wherever it comes
     CHECK(folder.vkvol("elsewhere/a.xml -q --width 16 --spp 1 -o a.exr").code == exit_done);
 }
 
-TEST_CASE("a scene that its user has changed is never overwritten", "[gpu][command]") {
+TEST_CASE("a scene that its user has changed is never overwritten", "[gpu][command][long]") {
     const Folder folder;
     const std::string render = "cloud.nvdb --spp 1 --width 16 -q";
     REQUIRE(folder.vkvol(render).code == exit_done);

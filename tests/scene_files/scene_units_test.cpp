@@ -36,7 +36,7 @@ std::string unit_complaint(const std::string& rest) {
 
 } // namespace
 
-TEST_CASE("a slab that absorbs lets through what Beer's law says, as a part", "[gpu][xml]") {
+TEST_CASE("a slab that absorbs lets through what Beer's law says, as a part", "[gpu][xml][long]") {
     const Film film =
         render_here(slab(std::string("<sigma_a>0.7</sigma_a><sigma_s>0</sigma_s><units>transmittance</units>"
                                      "<irradiance y=\"-1\" lookAt=\"0 0 0\" width=\"1\" height=\"1\"/>") +
