@@ -111,12 +111,13 @@ run_denoise() {
 
 run_farm() {
     say "tools/farm"
-    "$vkvol_root/tools/farm/test.sh" || failed=1
+    "$vkvol_root/tools/farm/farm_check.sh" || failed=1
 }
 
 # print_tables NAME...: which hidden tests print.
 print_tables() {
     local table
+    echo "commit $(git -C "$vkvol_root" describe --always --dirty=+ --exclude='*' 2>/dev/null || echo unknown)"
     for table in "$@"; do
         (cd "$work" && "$vkvol_root/build/vkvol_tests" "[.${table}_table]" -o "$work/log") >"$work/$table.txt" || failed=1
         cat "$work/$table.txt"

@@ -13,12 +13,12 @@ namespace vkvol {
 namespace {
 
 // What less than a thousandth of the pixels say is a firefly or a speck.
-bool few(std::size_t count, const FilmLook& look) {
+bool few(std::size_t count, const FilmGlance& look) {
     return 1000 * count <= look.pixels;
 }
 
 // By what it shows alone; that it is nothing but noise is asked later, of pictures from within a medium.
-std::optional<Odd> oddity(const FilmLook& look, const Scene& scene, const Tone& tone) {
+std::optional<Odd> oddity(const FilmGlance& look, const Scene& scene, const Tone& tone) {
     if (2 * look.unsampled > look.pixels)
         return Odd::unfinished;
     const bool has_screen = tone.pixels > 0;
@@ -108,7 +108,7 @@ Rgb background_shown(const Scene& scene) {
 
 std::optional<Explanation> explain(const Scene& authored, const RenderResult& result, const Tone& tone) {
     const Scene scene = with_preset(authored);
-    const FilmLook seen = first_glance(result.film, background_shown(scene), tone.mapping);
+    const FilmGlance seen = first_glance(result.film, background_shown(scene), tone.mapping);
     const Crop& crop = result.film.crop;
     const bool is_whole = crop.x1 - crop.x0 == scene.picture.width && crop.y1 - crop.y0 == scene.picture.height;
     if (!authored.surfaces.empty() && seen.brightest == 0.0 && seen.unsampled == 0 && is_whole &&

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "film_look.h"
+#include "film_glance.h"
 #include "session.h"
 #include "sight.h"
 #include "tone_choice.h"
@@ -15,7 +15,7 @@ struct Explanation {
     std::string picture; // what is wrong with it: "unfinished", "black", "background", "white" or "noise"
     std::string cause;   // a word for it, as in the README
     std::string text;    // one line: what the picture is, why, and the remedy
-    std::optional<FilmLook> look;
+    std::optional<FilmGlance> look;
     std::optional<Sight> sight; // if there is a medium
 };
 

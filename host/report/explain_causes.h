@@ -24,7 +24,7 @@ struct Evidence {
     bool emits = false; // the medium, by whatever
     // Known once it is rendered; null before, when the picture is black for certain.
     const RenderResult* result = nullptr;
-    const FilmLook* look = nullptr;
+    const FilmGlance* look = nullptr;
     const Sight* sight = nullptr; // null also if there is no medium
     const Tone* tone = nullptr;   // null also if there is no screen
 };

@@ -1,4 +1,4 @@
-"""The farm's scripts beside stand-ins for sbatch and vkvol; tools/farm/test.sh has them run by the real ones."""
+"""The farm's scripts beside stand-ins for sbatch and vkvol; tools/farm/farm_check.sh has them run by the real ones."""
 import os
 import pathlib
 import re

@@ -6,7 +6,7 @@
 
 namespace vkvol {
 
-struct FilmLook {
+struct FilmGlance {
     std::size_t pixels = 0;
     std::size_t unsampled = 0; // pixels without a sample
     std::size_t shown = 0;     // that are not black on the screen
@@ -15,7 +15,7 @@ struct FilmLook {
 };
 
 // `mapping`: of the screen.
-FilmLook first_glance(const Film& film, const glm::dvec3& background, const ToneMapping& mapping);
+FilmGlance first_glance(const Film& film, const glm::dvec3& background, const ToneMapping& mapping);
 
 // Whether noise explains all that pixels differ by, by the ratio of the variance between them to their own. Its
 // expectation is 1 then; a picture that shows something is far above. Of single samples nobody knows: false.

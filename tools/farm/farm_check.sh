@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs the farm files here, on a small scene, and kills a part amid its work: whether it is rendered again and nothing else is,
 # and whether the pictures have the bits of plain renders.
-#   tools/farm/test.sh [openjd|snakemake|slurm ...]
+#   tools/farm/farm_check.sh [openjd|snakemake|slurm ...]
 #   --need     what is not installed is an error, and not passed over
 # openjd is PyPI's openjd-cli; snakemake and slurm-wlm are packages of Debian. Slurm is started as a farm of one node, which needs
 # root, and ended again.
@@ -15,7 +15,7 @@ for word in "$@"; do
     case $word in
     openjd | snakemake | slurm) kinds+=("$word") ;;
     --need) need=yes ;;
-    *) echo "test.sh: '$word' is neither openjd, snakemake, slurm nor --need" >&2; exit 2 ;;
+    *) echo "farm_check.sh: '$word' is neither openjd, snakemake, slurm nor --need" >&2; exit 2 ;;
     esac
 done
 [ ${#kinds[@]} -gt 0 ] || kinds=(openjd snakemake slurm)

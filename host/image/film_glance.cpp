@@ -1,4 +1,4 @@
-#include "film_look.h"
+#include "film_glance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@ double luminance(const glm::dvec3& color) {
 
 } // namespace
 
-FilmLook first_glance(const Film& film, const glm::dvec3& background, const ToneMapping& mapping) {
-    FilmLook look;
+FilmGlance first_glance(const Film& film, const glm::dvec3& background, const ToneMapping& mapping) {
+    FilmGlance look;
     look.pixels = film.pixel_count();
     const double faintest = faintest_radiance(mapping);
     const double tolerance = std::max({background.x, background.y, background.z}) / 255.0;
