@@ -86,7 +86,7 @@ class Writer:
         return "".join(f'<{name} unit="world" r="{r}" g="{g}" b="{b}"/>' for name, (r, g, b) in names)
 
     def medium(self, alone):
-        shapes = ["sphere", "box", "noise", "layers", "layers", "grid", "grid", "grid"] + (["models"] if alone else []) + (["everywhere"] if self.some(0.3) else [])
+        shapes = ["sphere", "box", "noise", "layers", "layers", "grid", "grid", "grid", "models"] + (["everywhere"] if self.some(0.3) else [])
         shape = self.r.choice(shapes)
         text, first, transfer = "", "", False
         if shape in ("sphere", "noise"):

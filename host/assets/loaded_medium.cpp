@@ -364,7 +364,12 @@ void Loader::load_phase_nodes(const Volume& volume, LoadedMedium& loaded) {
 
 void Loader::load_models(const Volume& volume, const MeshFiles& files, LoadedMedium& loaded) {
     loaded.mesh = load_mesh(files, volume.transform);
-    loaded.bvh = build_bvh(*loaded.mesh, box_center(*loaded.mesh));
+    const glm::dvec3 middle = box_center(*loaded.mesh);
+    const bool has_matter = (volume.sigma_a + volume.sigma_s) * volume.density_scale != Rgb(0.0);
+    if (is_superposition(scene_) && has_matter)
+        loaded.inside = std::make_shared<const InsideLattice>(make_inside_lattice(corners_about(*loaded.mesh, middle)));
+    else
+        loaded.bvh = build_bvh(*loaded.mesh, middle);
     if (method_.material_colour)
         loaded.warnings.insert(loaded.warnings.end(), loaded.mesh->warnings.begin(), loaded.mesh->warnings.end());
     if (method_.material_colour && !loaded.mesh->diffuse)

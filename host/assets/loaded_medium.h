@@ -10,6 +10,7 @@
 #include "bvh.h"
 #include "density_field.h"
 #include "field_cache.h"
+#include "inside_lattice.h"
 #include "majorant_grid.h"
 #include "method.h"
 #include "sky_map.h"
@@ -38,8 +39,9 @@ struct LoadedMedium {
     SharedArray<shared::MapKnot> map_knots;     // of a map from the grid's values; all of a scene's are as long
     bool is_layered = false;                    // whose majorants are across layers: see layers.h
     std::optional<Mesh> mesh;
-    std::optional<Bvh> bvh;            // about the middle of the mesh
-    std::vector<std::string> warnings; // what the scene asks for and its files do not hold
+    std::optional<Bvh> bvh;                      // about the middle of the mesh, which is alone
+    std::shared_ptr<const InsideLattice> inside; // of a mesh among several media, likewise
+    std::vector<std::string> warnings;           // what the scene asks for and its files do not hold
 };
 
 // Those it has.

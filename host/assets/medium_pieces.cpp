@@ -71,6 +71,8 @@ const Pieces& PieceStore::of(const Volume& volume, const LoadedMedium& loaded, d
     if (loaded.is_layered)
         return of_grid(loaded, 0);
     const double density = volume.noise ? noise_bound(*volume.noise) : 1.0;
+    if (loaded.inside)
+        return of_mesh(*loaded.inside, density * scale_, level_for(loaded.inside->edge, finest, most_grid_levels));
     return of_shape(std::holds_alternative<Sphere>(volume.shape), density * scale_,
                     level_for(size, finest, most_shape_levels));
 }
@@ -84,6 +86,20 @@ const Pieces& PieceStore::of_grid(const LoadedMedium& loaded, int level) {
         levels.emplace_back(cells, pieces_of_cells(*cells, loaded.field ? index_base(*loaded.field) : glm::ivec3(0)));
     }
     return levels[std::size_t(level)].second;
+}
+
+const Pieces& PieceStore::of_mesh(const InsideLattice& inside, double bound, int level) {
+    const auto [found, is_new] = meshes_.try_emplace({&inside, bound, level});
+    if (!is_new)
+        return found->second;
+    MajorantGrid cells = inside.cells;
+    for (int i = 0; i < level; ++i)
+        cells = merge_cells(cells);
+    found->second = pieces_of_cells(cells, glm::ivec3(0));
+    found->second.half *= inside.edge;
+    for (Pieces::Piece& piece : found->second.parts)
+        piece = {inside.low + inside.edge * piece.middle, bound};
+    return found->second;
 }
 
 const Pieces& PieceStore::of_shape(bool is_ball, double bound, int level) {

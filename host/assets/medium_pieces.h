@@ -39,11 +39,13 @@ public:
 
 private:
     const Pieces& of_grid(const LoadedMedium& loaded, int level);
+    const Pieces& of_mesh(const InsideLattice& inside, double bound, int level);
     const Pieces& of_shape(bool is_ball, double bound, int level);
 
     double scale_;
     // By level: from one to the next their edges are twice as long.
     std::map<const MajorantGrid*, std::vector<std::pair<std::shared_ptr<const MajorantGrid>, Pieces>>> grids_;
+    std::map<std::tuple<const InsideLattice*, double, int>, Pieces> meshes_;
     std::map<std::tuple<bool, double, int>, Pieces> shapes_;
 };
 

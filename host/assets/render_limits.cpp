@@ -201,11 +201,6 @@ void check_scene_limits(const Scene& scene) {
     if (scene.periodic)
         check_periodic(scene);
     check_points(scene);
-    const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
-    if (is_superposition(scene) && any_medium(scene, is_mesh))
-        throw InputError(
-            "models beside other volumes are not rendered by this version; keep them alone, or put spheres, "
-            "boxes and grids in their place");
     const auto is_map = [](const Light& light) { return std::holds_alternative<SkyLight>(light); };
     if (std::count_if(scene.lights.begin(), scene.lights.end(), is_map) > 1)
         throw InputError("a scene with several maps of the sky is not rendered by this version; keep one");

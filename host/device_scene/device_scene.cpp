@@ -91,7 +91,7 @@ void DeviceScene::make_lights(const Scene& scene, const Method& method, const As
 void DeviceScene::upload_media(const Scene& scene, const Method& method, const Assets& assets,
                                std::uint64_t most_texel_bytes) {
     media_ = make_media(scene, assets.media, method, origin_);
-    const OverlapWords overlaps = overlap_words(media_, *assets.superposition);
+    const OverlapWords overlaps = overlap_words(media_, assets.media, *assets.superposition);
     frame_.overlaps = overlaps.places;
     frame_.media[0].density = overlaps.grid;
     buffers_.upload_media(device_, commands_, media_, overlaps.words, most_texel_bytes);

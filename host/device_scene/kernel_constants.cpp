@@ -114,7 +114,7 @@ void specialize_media(const Scene& scene, Media media, const Superposition& whol
                       Specialization& constants) {
     constants[SPEC_LEAPS] = whole.cells.leaps ? 1 : 0;
     std::set<const std::byte*> grids;
-    bool first = true;
+    bool first = true, has_model = false;
     for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
         const shared::MediumKinds kinds = kinds_of(scene.volumes[i], media[i], method);
         if (kinds.shape == SHAPE_NONE)
@@ -126,11 +126,14 @@ void specialize_media(const Scene& scene, Media media, const Superposition& whol
         for (std::size_t k = 0; k < its.size(); ++k)
             constants[k] = first || its[k] == constants[k] ? its[k] : EACH;
         constants[SPEC_SHAPE] = SHAPE_BOX;
+        has_model = has_model || kinds.shape == SHAPE_MESH;
         first = false;
         if (media[i].field)
             grids.insert(media[i].field->bytes.data());
     }
     constants[SPEC_MEMBER_GRID] = grids.size() > 1 ? EACH : 0;
+    if (has_model && constants[SPEC_MEMBER_SHAPE] == EACH)
+        constants[SPEC_MEMBER_SHAPE] = EACH_OR_MODEL;
     constants[SPEC_CELL_BITS] = whole.bits;
 }
 

@@ -16,32 +16,43 @@ template <class Row> void append(std::vector<std::uint32_t>& words, const Row& r
     std::memcpy(words.data() + words.size() - count, &row, sizeof row);
 }
 
+bool has_grid(const shared::MediumParams& row) {
+    return row.kinds.field == FIELD_GRID && row.kinds.shape != SHAPE_NONE;
+}
+
 } // namespace
 
-OverlapWords overlap_words(std::span<const shared::MediumParams> rows, const Superposition& whole) {
+OverlapWords overlap_words(std::span<const shared::MediumParams> rows, Media media, const Superposition& whole) {
     constexpr std::uint32_t texels = sizeof(shared::MemberRow) / 16;
     OverlapWords result{};
     std::map<std::uint32_t, std::uint32_t> grid_rows; // by where the grid is, their first texels
     std::vector<shared::GridRow> grids;
-    for (const shared::MediumParams& row : rows) {
+    for (const shared::MediumParams& row : rows)
+        if (has_grid(row) &&
+            grid_rows.try_emplace(row.density.first_word, texels * (rows.size() + grids.size())).second)
+            grids.push_back({row.density, {}});
+    std::vector<std::uint32_t> meshes;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const shared::MediumParams& row = rows[i];
         shared::MemberRow member{};
-        for (int i = 0; i < 3; ++i)
-            member.to_medium[i] = row.to_medium[i];
+        for (int k = 0; k < 3; ++k)
+            member.to_medium[k] = row.to_medium[k];
         member.sigma_t = row.sigma_t;
         member.kinds = static_cast<std::uint32_t>(row.kinds.shape | row.kinds.field << 8 | row.kinds.grid_type << 16 |
                                                   row.kinds.map << 24);
         member.first_knot = row.first_knot;
-        if (row.kinds.field == FIELD_GRID && row.kinds.shape != SHAPE_NONE) {
-            const auto next = static_cast<std::uint32_t>(texels * (rows.size() + grids.size()));
-            const auto [found, is_new] = grid_rows.try_emplace(row.density.first_word, next);
-            if (is_new)
-                grids.push_back({row.density, {}});
-            member.grid = found->second;
+        if (has_grid(row))
+            member.grid = grid_rows.at(row.density.first_word);
+        if (row.kinds.shape == SHAPE_MESH) {
+            member.grid = static_cast<std::uint32_t>(4 * texels * (rows.size() + grids.size()) + meshes.size());
+            const std::vector<std::uint32_t>& words = media[i].inside->words;
+            meshes.insert(meshes.end(), words.begin(), words.end());
         }
         append(result.words, member);
     }
     for (const shared::GridRow& grid : grids)
         append(result.words, grid);
+    result.words.insert(result.words.end(), meshes.begin(), meshes.end());
     if (!grids.empty())
         result.grid = grids.front().grid;
     result.places.bricks = static_cast<std::uint32_t>(result.words.size());

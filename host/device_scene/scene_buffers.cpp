@@ -111,8 +111,8 @@ void SceneBuffers::upload_alone(const Device& device, Commands& commands, const 
 void SceneBuffers::upload_media(const Device& device, Commands& commands, const std::vector<shared::MediumParams>& rows,
                                 const std::vector<std::uint32_t>& overlaps, std::uint64_t most_texel_bytes) {
     check_size(device, "the volumes", bytes_of(rows).size(), "leave some out");
-    check_size(device, "the lists of which volumes are where", bytes_of(overlaps).size(),
-               "leave volumes out, or let fewer lie in one another");
+    check_size(device, "the lists of which volumes are where, with the faces of their models,",
+               bytes_of(overlaps).size(), "leave volumes out, let fewer lie in one another, or decimate models");
     make_buffer(device, commands, media_, "media", bytes_of(rows));
     make_buffer(device, commands, overlaps_, "lists of media", bytes_of(overlaps));
     find_texels(most_texel_bytes);

@@ -123,19 +123,16 @@ BoxTree build_box_tree(std::span<const BvhBox> boxes) {
 }
 
 Bvh build_bvh(const Mesh& mesh, glm::dvec3 origin) {
-    std::vector<std::array<glm::vec3, 3>> corners(mesh.triangles.size());
+    const std::vector<glm::vec3> corners = corners_about(mesh, origin);
     std::vector<BvhBox> boxes(mesh.triangles.size());
     for (std::size_t i = 0; i < corners.size(); ++i)
-        for (int corner = 0; corner < 3; ++corner) {
-            corners[i][corner] = mesh.vertices[mesh.triangles[i][corner]] - origin;
-            boxes[i].add(corners[i][corner]);
-        }
+        boxes[i / 3].add(corners[i]);
     BoxTree tree = build_box_tree(boxes);
     Bvh bvh;
     bvh.nodes = std::move(tree.nodes);
-    bvh.triangles.reserve(3 * corners.size());
+    bvh.triangles.reserve(corners.size());
     for (const std::uint32_t i : tree.order)
-        bvh.triangles.insert(bvh.triangles.end(), corners[i].begin(), corners[i].end());
+        bvh.triangles.insert(bvh.triangles.end(), corners.begin() + 3 * i, corners.begin() + 3 * i + 3);
     return bvh;
 }
 

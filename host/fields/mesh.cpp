@@ -255,6 +255,15 @@ void close_polygons(Polygons& polygons, const std::string& name) {
     turn_outward(polygons, std::move(bodies));
 }
 
+std::vector<glm::vec3> corners_about(const Mesh& mesh, const glm::dvec3& origin) {
+    std::vector<glm::vec3> corners;
+    corners.reserve(3 * mesh.triangles.size());
+    for (const glm::uvec3& triangle : mesh.triangles)
+        for (int corner = 0; corner < 3; ++corner)
+            corners.push_back(mesh.vertices[triangle[corner]] - origin);
+    return corners;
+}
+
 Mesh load_mesh(const MeshFiles& files, const glm::dmat4& transform) {
     if (files.paths.empty())
         throw InputError("a mesh needs at least one .obj or .ply file; name it in the scene");

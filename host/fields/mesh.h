@@ -29,6 +29,9 @@ void drop_loose_vertices(std::vector<glm::dvec3>& vertices, std::vector<glm::uve
 // For each vertex one at the same position, the same for all of them there.
 std::vector<std::uint32_t> welded_vertices(const std::vector<glm::dvec3>& vertices);
 
+// Three of each triangle, as single precision knows them from `origin`, world space.
+std::vector<glm::vec3> corners_about(const Mesh& mesh, const glm::dvec3& origin);
+
 // Reads all files, with the .mtl files they name beside them, and welds equal positions within each. Bodies that are
 // inside out are turned. InputError for what is not closed, encloses nothing, or is not readable.
 // `transform`: of all of them.

@@ -27,6 +27,15 @@ bool has_grid(const std::filesystem::path& file, const std::string& grid) {
     }
 }
 
+bool is_closed(const std::filesystem::path& file) {
+    try {
+        load_mesh({{file}});
+        return true;
+    } catch (const InputError&) { // then it holds none of several media; of one alone, whoever renders it says so
+        return false;
+    }
+}
+
 // Whether a closed mesh has the point within, by the solid angle that it takes up there (van Oosterom and Strackee
 // 1983).
 bool has_within(const std::filesystem::path& file, const glm::dmat4& transform, const glm::dvec3& point) {
@@ -176,7 +185,7 @@ std::optional<PbrtTranslator::Region> PbrtTranslator::region_of(const PbrtShape&
     const glm::dmat4 transform = world_ * thing.transform;
     if (thing.type == "sphere" && is_whole_ball_or_disk(thing, glm::dmat4(1.0)))
         return Region{"sphere", "", transform * glm::dmat4(glm::dmat3(thing.parameters->number("radius", 1.0)))};
-    if (thing.type == "plymesh" && media_count_ <= 1)
+    if (thing.type == "plymesh" && (media_count_ <= 1 || is_closed(scene_.folder / thing.parameters->text("filename"))))
         return Region{"", file_name(thing), transform};
     if (thing.type == "trianglemesh" || thing.type == "bilinearmesh")
         if (const std::optional<glm::dmat4> box = as_box(read_triangles(thing)))
@@ -188,8 +197,8 @@ std::optional<PbrtTranslator::Region> PbrtTranslator::region_within(const PbrtSh
     std::optional<Region> region = region_of(shape);
     if (!region)
         note(shape.thing.place,
-             fmt::format("\"{}\" encloses medium \"{}\", which is left out: of shapes a whole sphere, a box or, of a "
-                         "scene's only medium, a plymesh can hold it",
+             fmt::format("\"{}\" encloses medium \"{}\", which is left out: of shapes a whole sphere, a box or a "
+                         "plymesh that is closed can hold it",
                          shape.thing.type, medium));
     return region;
 }

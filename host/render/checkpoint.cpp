@@ -163,6 +163,8 @@ RenderIdentity identify(const shared::FrameParams& frame, const Specialization& 
         add(std::span(medium.blackbody.begin(), medium.blackbody.end()));
         add(std::span(medium.phase_nodes.begin(), medium.phase_nodes.end()));
         digest.add_all(medium.map_knots);
+        if (medium.inside)
+            digest.add_all(medium.inside->words);
         if (medium.bvh)
             digest.add_all(medium.bvh->triangles);
     }

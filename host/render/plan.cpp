@@ -20,9 +20,9 @@ constexpr std::uint32_t most_iterations = 65535;
 // Iterations, at most, of all loops in a turn that are not unrolled. Every step has up to four places for a sum over
 // octaves, or media, which all lanes of a group pass under a mask: a flight's look-up, emission along it, and two of a
 // shadow ray that marches in several sets of samples; and a look from along a flight has one.
-std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
+std::uint64_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
     constexpr std::uint32_t triangle = 2, node = 1 + (MESH_LEAF + 1) + MESH_LEAF * triangle;
-    std::uint32_t iterations = 2 + (steps + 1);
+    std::uint64_t iterations = 2 + (steps + 1);
     if (loops.mesh)
         iterations += 2 + 1 + MESH_NODES_PER_TURN * node;
     if (loops.surfaces) // planes when a segment begins, also beyond a seam, then a search, in which what is met is
@@ -32,11 +32,13 @@ std::uint32_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
         iterations += 3 * (MOST_FACETS + 1);
     const std::uint32_t octaves = loops.octaves > 0 ? loops.octaves + 1 : 0;
     const std::uint32_t search = loops.halvings > 0 ? loops.halvings + 1 : 0;
-    const std::uint32_t of_one = octaves + search;
-    const std::uint32_t look_up = loops.media > 0 ? 1 + loops.media * (1 + of_one) : of_one;
+    const std::uint64_t of_one = octaves + search;
+    const std::uint64_t of_models =
+        std::uint64_t{std::min(loops.models, loops.media)} * (1 + (1 + triangle) * loops.faces);
+    const std::uint64_t look_up = loops.media > 0 ? 1 + loops.media * (1 + of_one) + of_models : of_one;
     iterations += (4 * steps + 1) * look_up + 4 * search; // colours are looked up at collisions
     if (loops.media > 0)                                  // where all of them glow, or absorb, too
-        iterations += look_up + loops.media * std::max(4u, 2 * steps) * search;
+        iterations += look_up + loops.media * std::uint64_t{std::max(4u, 2 * steps)} * search;
     // A record is begun and added, and lights in the sky are noted one by one.
     const std::uint32_t records = loops.layers > 0 ? 2 * (loops.layers + 1) + loops.lights : 0;
     return iterations + loops.phase + loops.lights + records;
@@ -52,7 +54,8 @@ static_assert(WORDS_AT_ONCE == 4 && MOST_PATH_WORDS % WORDS_AT_ONCE == 0); // as
 std::uint32_t longest_budget(const LoopSizes& loops, const Plan& plan) {
     const std::uint32_t copy = plan.copies == PathCopies::in_loops ? copy_iterations : 0;
     const std::uint32_t in_burst = plan.schedule == Schedule::staged ? (copy + STAGED_BURST - 1) / STAGED_BURST : 0;
-    return std::clamp((most_iterations - copy) / (turn_iterations(loops, plan.steps) + in_burst), 1u, 1024u);
+    const std::uint64_t turns = (most_iterations - copy) / (turn_iterations(loops, plan.steps) + in_burst);
+    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(turns, 1, 1024));
 }
 
 // Samples of a pixel that one lane loops over: the sky's, and those added to the film.
@@ -102,7 +105,8 @@ Plan make_plan(const Device& device, const LoopSizes& loops, std::uint64_t pixel
     if (device.is_cpu() && turn_iterations(loops, plan.steps) > most)
         throw InputError(
             fmt::format("{} volumes overlap somewhere, and software drivers end sums over so many, and the "
-                        "octaves of their noise, before they are done; leave some out, or render on a GPU",
+                        "octaves of their noise or faces of their models, before they are done; leave some out, or "
+                        "render on a GPU",
                         loops.media));
     const std::uint32_t longest = longest_budget(loops, plan);
     plan.budget = std::min(pick(wish.budget, wide ? 32u : longest), longest);

@@ -226,6 +226,8 @@ void Session::find_wish(const Assets& assets, const Specialization& specializati
         const Volume& volume = scene_.volumes[i];
         const LoadedMedium& medium = assets.media[i];
         loops_.mesh = loops_.mesh || medium.bvh;
+        loops_.models += medium.inside ? 1 : 0;
+        loops_.faces = std::max(loops_.faces, medium.inside ? medium.inside->longest : 0u);
         loops_.phase = std::max(loops_.phase, phase_iterations(volume, medium.phase_nodes));
         loops_.octaves = std::max(loops_.octaves, volume.noise ? std::uint32_t(volume.noise->octaves) : 0u);
         if (wish_.steps == 0)

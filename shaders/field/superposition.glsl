@@ -4,6 +4,7 @@
 #ifndef SUPERPOSITION_GLSL
 #define SUPERPOSITION_GLSL
 #include "field/density.glsl"
+#include "field/inside.glsl"
 #include "majorants/cells.glsl"
 #include "lib/rng.glsl"
 #include "shapes/shape.glsl"
@@ -46,11 +47,15 @@ float extinction_of(MediumParams v, uint row, vec3 position, vec3 tap) {
     vec3 p = vec3(dot(uintBitsToFloat(member_texel(4u * row)), at), dot(uintBitsToFloat(member_texel(4u * row + 1u)), at),
                   dot(uintBitsToFloat(member_texel(4u * row + 2u)), at));
     uvec4 rest = member_texel(4u * row + 3u); // see MemberRow
-    const int shape = MEMBER_SHAPE == EACH ? int(rest.y & 255u) : MEMBER_SHAPE;
+    const int shape = MEMBER_SHAPE < 0 ? int(rest.y & 255u) : MEMBER_SHAPE;
     const int field = MEMBER_FIELD == EACH ? int(rest.y >> 8u & 255u) : MEMBER_FIELD;
     const int type = GRID_TYPE == EACH ? int(rest.y >> 16u & 255u) : GRID_TYPE;
     const int map = MAP == EACH ? int(rest.y >> 24u) : MAP;
     bool inside = shape == SHAPE_SPHERE ? dot(p, p) < 1.0 : all(lessThanEqual(abs(p), vec3(1.0)));
+    if (HAS_MODELS) {
+        if (shape == SHAPE_MESH)
+            inside = inside_mesh(rest.z, p);
+    }
     float found = 1.0;
     if (field == FIELD_NOISE) {
         found = noise_density(media[row].noise, row, media[row].extent * p);

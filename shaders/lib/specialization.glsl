@@ -89,6 +89,7 @@ const bool HAS_SURFACES = false;
 #ifdef SEVERAL
 #define KIND(CONSTANT, v, kind) (CONSTANT == EACH ? v.kinds.kind : CONSTANT)
 const bool SEVERAL_MEDIA = true;
+const bool HAS_MODELS = (int(MEMBER_SHAPE == SHAPE_MESH) | int(MEMBER_SHAPE == EACH_OR_MODEL)) != 0; // among others
 const bool HAS_CELLS = SHAPE != SHAPE_NONE; // of majorants
 const bool LAYERED = false;  // by itself
 #else

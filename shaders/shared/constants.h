@@ -109,11 +109,19 @@
 
 // Value of a constant in which several media differ: each has its own, in its row.
 #define EACH -1
+#define EACH_OR_MODEL -2 // a shape, and some are meshes
 
 #define SHAPE_NONE 0 // background only
 #define SHAPE_SPHERE 1
 #define SHAPE_BOX 2 // of a grid too
 #define SHAPE_MESH 3
+
+// Words at the head of a mesh among several media, after the lowest corner of its cubes: see host/assets/inside_lattice.h.
+#define INSIDE_PER_UNIT 3 // 1 / edge of a cube
+#define INSIDE_DIMS 4     // cubes
+#define INSIDE_CORNERS 7  // where those of the triangles are
+#define INSIDE_REACH 8    // what coordinates differ by, at most
+#define INSIDE_HEAD 9
 
 #define FIELD_CONSTANT 0 // density 1
 #define FIELD_NOISE 1

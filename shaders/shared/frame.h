@@ -157,7 +157,7 @@ struct MemberRow {
     vec4 to_medium[3]; // as in MediumParams
     float sigma_t;     // likewise
     uint kinds;        // SHAPE_... | FIELD_... << 8 | GRID_... << 16 | MAP_... << 24
-    uint grid;         // the first texel of its GridRow
+    uint grid;         // the first texel of its GridRow; of a mesh the first of its words, see inside.glsl
     uint first_knot;   // as in MediumParams
 };
 

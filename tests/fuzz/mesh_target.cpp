@@ -110,6 +110,8 @@ public:
         scene.volumes.front().shape = MeshFiles{{file}};
         if (random.one_in(2))
             scene.settings.integrator = "densitySampling";
+        if (random.one_in(2)) // among other media
+            scene.volumes.emplace_back().shape = Sphere{};
         use_scene(scene);
     }
 

@@ -124,6 +124,17 @@ void check_loaded(const LoadedMedium& loaded) {
     }
     for (const glm::vec4& color : loaded.blackbody)
         expect_radiance(color, "a black body is out of range");
+    if (loaded.inside) {
+        const std::vector<std::uint32_t>& words = loaded.inside->words;
+        const std::size_t cubes = loaded.inside->cells.bounds.size(), corners = words[INSIDE_CORNERS];
+        for (std::size_t i = 0; i < cubes; ++i)
+            if (const std::size_t record = words[INSIDE_HEAD + i]; record > 1) {
+                expect(record + 5 + words[record] <= corners, "a cube's list ends beyond all");
+                for (std::size_t k = 0; k < words[record]; ++k)
+                    expect(corners + 9 * (std::size_t{words[record + 5 + k]} + 1) <= words.size(),
+                           "a triangle is not there");
+            }
+    }
     if (loaded.bvh)
         for (const glm::vec3& corner : loaded.bvh->triangles)
             expect_finite(corner, "a corner of a triangle is not finite");

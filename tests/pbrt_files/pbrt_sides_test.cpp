@@ -6,6 +6,7 @@
 #include "support/scene_text.h"
 #include "support/scenes.h"
 #include "support/test_directory.h"
+#include "test_paths.h"
 
 using namespace vkvol;
 using Catch::Contains;
@@ -177,6 +178,23 @@ TEST_CASE("pbrt's media that are not rendered as in pbrt are named", "[cpu][pbrt
     REQUIRE(fog("LightSource \"distant\"").warnings.size() == 1);
     CHECK_THAT(fog("LightSource \"distant\"").warnings[0], Contains("medium \"a\" has no end"));
     CHECK(fog("LightSource \"point\"").warnings.empty());
+}
+
+TEST_CASE("a closed mesh of a file holds any of pbrt's media", "[cpu][pbrt]") {
+    const TestDirectory directory;
+    const std::filesystem::path open = directory.write(
+        "open.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement "
+        "face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    const auto mesh = [](const std::string& file) {
+        return " Shape \"plymesh\" \"string filename\" \"" + file + "\" ";
+    };
+    const std::string closed = "MediumInterface \"a\" \"\"" + mesh(VKVOL_SOURCE_DIR "/tests/pbrt_features/pyramid.ply");
+    const std::string ball = "MediumInterface \"b\" \"\"" + sided_ball;
+    CHECK(absorbs(closed + ball) == std::vector{1.0, 2.0});
+    CHECK(absorbs(closed + closed + ball) == std::vector{1.0, 1.0, 2.0});
+    check_noted("MediumInterface \"a\" \"\"" + mesh(open.string()) + ball,
+                "\"plymesh\" encloses medium \"a\", which is left out");
 }
 
 TEST_CASE("a grid about pbrt's camera is one of its media", "[cpu][pbrt]") {

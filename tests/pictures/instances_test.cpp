@@ -149,7 +149,7 @@ TEST_CASE("a thousand instances are read, bounded and uploaded once", "[cpu][sev
         listed[whole.overlaps[i]] = true;
     CHECK(std::count(listed.begin(), listed.end(), true) == 1000);
     const auto rows = make_media(scene, assets.media, method, render_origin(scene, assets.media, &whole));
-    const OverlapWords words = overlap_words(rows, whole);
+    const OverlapWords words = overlap_words(rows, assets.media, whole);
     CHECK(words.places.bricks == 1001 * 16); // a row each, and one of the grid
     CHECK(words.grid.first_word == 0);
 }

@@ -191,7 +191,7 @@ std::vector<Interval> support(const Medium& medium, const Ray& ray) {
     else if (const auto* box = std::get_if<vkvol::Box>(&medium.shape))
         parts = {intersect(*box, medium.unmoved(ray))};
     else if (const auto* mesh = std::get_if<Mesh>(&medium.shape))
-        parts = intersect(*mesh, ray);
+        parts = intersect(*mesh, medium.unmoved(ray));
     else if (medium.unbounded())
         parts = {{0.0, std::numeric_limits<double>::infinity()}};
     else
