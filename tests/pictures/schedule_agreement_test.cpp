@@ -68,6 +68,7 @@ std::vector<NamedScene> scenes_of_all() {
     const auto [point, spot, ball, disk, rectangle, sun, beam] = LightsAbout{};
     Scene lit = scenes.front().scene;
     lit.lights = {point, spot, ball, disk, rectangle, sun, beam, write_sky(sunset_map())};
+    lit.settings.spp = 2000; // of 500 a pixel whose light is one lamp, seldom chosen, is far from a normal limit
     scenes.push_back({"all lights", lit});
     Scene surfaces = rough_still_life();
     surfaces.settings.spp = 300;
@@ -94,7 +95,7 @@ TEST_CASE("all integrators, flights and transmittances agree by both schedules",
         PairwiseAgreement worst;
         const auto ways = ways_to_render(named.scene);
         const bool is_grid = std::holds_alternative<GridFile>(named.scene.volumes[0].shape);
-        CHECK(ways.size() >= (is_grid ? 28u : named.scene.surfaces.empty() ? 37u : 12u));
+        CHECK(ways.size() >= (is_grid ? 28u : named.scene.surfaces.empty() ? 37u : 5u));
         for (const auto& [name, scene] : ways) {
             seen.insert(name);
             // The reference has paths from the camera alone, and leaves to presets what media lack by them.
