@@ -216,15 +216,16 @@ void MethodChooser::choose_mis() {
     method_.mis = shared ? choices_.mis : std::nullopt;
 }
 
-// Looks from along a flight need to know where it is within the medium, of which a mesh has many parts.
+// Looks from along a flight need to know where it is within the medium, of which a mesh, if it is alone, has many
+// parts.
 void MethodChooser::choose_distance() {
     const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
     const bool could =
         method_.paths == PATHS_CAMERA && method_.nee != NEE_NONE && method_.scattering != SCATTERING_NONE &&
-        !any_medium(scene_, is_mesh) &&
+        (is_superposition(scene_) || !any_medium(scene_, is_mesh)) &&
         (has_lamps_of_surfaces(scene_) || std::any_of(scene_.lights.begin(), scene_.lights.end(), has_place));
     if (choices_.distance && !could)
-        warn("distance is without effect: it is for lights that have a place, and not in models");
+        warn("distance is without effect: it is for lights that have a place, and not in models alone");
     method_.distance = could ? choices_.distance : DISTANCE_FLIGHTS;
 }
 
