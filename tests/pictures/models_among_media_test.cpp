@@ -89,12 +89,21 @@ TEST_CASE("a model of a box among other media is that box", "[gpu][image][severa
     CHECK_AGREEMENT(agree(render_here(model, 1).film, render_here(box, 2).film, "from within"));
 }
 
-TEST_CASE("a plate much thinner than its cubes is that plate", "[gpu][image][several][mesh]") {
-    const glm::dvec3 low(-1.5, -0.03, -1.4), high(1.4, 0.03, 1.5);
-    const Scene box = among_others(lit(medium(Box{0.5 * (low + high), high - low}, 12.0, 0.5)));
-    Scene model = box;
-    model.volumes.front().shape = write_mesh(box_mesh(low, high));
-    CHECK_AGREEMENT(agree(render_here(model, 1).film, render_here(box, 2).film, "a plate"));
+TEST_CASE("plates much thinner than the cubes of their mesh are those plates", "[gpu][image][several][mesh]") {
+    // Both in one layer of cubes, whose points lie between them.
+    const glm::dvec3 low(-1.5, -0.09, -1.4), high(1.4, -0.06, 1.5), up(0.0, 0.15, 0.0);
+    const Volume plate = medium(Box{0.5 * (low + high), high - low}, 12.0, 0.5);
+    Scene boxes = lit(plate);
+    boxes.volumes.push_back(plate);
+    boxes.volumes.back().shape = Box{0.5 * (low + high) + up, high - low};
+    Mesh both = box_mesh(low, high);
+    const Mesh upper = box_mesh(low + up, high + up);
+    for (const glm::uvec3& triangle : upper.triangles)
+        both.triangles.push_back(triangle + static_cast<std::uint32_t>(both.vertices.size()));
+    both.vertices.insert(both.vertices.end(), upper.vertices.begin(), upper.vertices.end());
+    Scene model = lit(plate);
+    model.volumes.front().shape = write_mesh(both);
+    CHECK_AGREEMENT(agree(render_here(among_others(model), 1).film, render_here(boxes, 2).film, "plates"));
 }
 
 TEST_CASE("a small model beside grids is that box", "[gpu][image][several][mesh]") {
