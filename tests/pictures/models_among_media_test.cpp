@@ -90,14 +90,15 @@ TEST_CASE("a model of a box among other media is that box", "[gpu][image][severa
 }
 
 TEST_CASE("plates much thinner than the cubes of their mesh are those plates", "[gpu][image][several][mesh]") {
-    // Both in one layer of cubes, whose points lie between them.
-    const glm::dvec3 low(-1.5, -0.09, -1.4), high(1.4, -0.06, 1.5), up(0.0, 0.15, 0.0);
+    // Both in one layer of cubes, whose points lie between them, in the middle.
+    const glm::dvec3 low(-1.5, -0.09, -1.4), high(1.4, -0.06, 1.5), upper_low(-1.5, 0.03, -1.4),
+        upper_high(1.4, 0.09, 1.5);
     const Volume plate = medium(Box{0.5 * (low + high), high - low}, 12.0, 0.5);
     Scene boxes = lit(plate);
     boxes.volumes.push_back(plate);
-    boxes.volumes.back().shape = Box{0.5 * (low + high) + up, high - low};
+    boxes.volumes.back().shape = Box{0.5 * (upper_low + upper_high), upper_high - upper_low};
     Mesh both = box_mesh(low, high);
-    const Mesh upper = box_mesh(low + up, high + up);
+    const Mesh upper = box_mesh(upper_low, upper_high);
     for (const glm::uvec3& triangle : upper.triangles)
         both.triangles.push_back(triangle + static_cast<std::uint32_t>(both.vertices.size()));
     both.vertices.insert(both.vertices.end(), upper.vertices.begin(), upper.vertices.end());
