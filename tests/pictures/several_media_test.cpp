@@ -109,7 +109,7 @@ void keep_green_and_blue(std::vector<Volume> volumes, const std::string& name) {
 } // namespace
 
 TEST_CASE("halves of a medium on top of each other are the whole, in every way to render them",
-          "[gpu][image][several][long]") {
+          "[gpu][image][several]") {
     std::size_t turn = 0;
     const auto check = [&](const std::string& name, const Scene& whole) {
         const Film expected = render_here(whole, 1).film;

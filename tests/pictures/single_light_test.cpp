@@ -198,7 +198,7 @@ void check_means_of(Scene scene, const std::vector<Rgb>& means, std::size_t turn
 } // namespace
 
 TEST_CASE("light that each light scatters once equals the quadrature, in thin and in thick fog",
-          "[gpu][lights][closed_form][long]") {
+          "[gpu][lights][closed_form]") {
     std::size_t turn = 0;
     for (const LoneLight& lone : lone_lights(12, 30)) {
         ++turn;

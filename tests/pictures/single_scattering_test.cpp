@@ -42,7 +42,7 @@ double noise_of(const Scene& scene, const Film& film) {
 } // namespace
 
 TEST_CASE("what is scattered once of a sun or a sky is the reference's, by whatever directions are drawn",
-          "[gpu][lights][long]") {
+          "[gpu][lights]") {
     const std::pair<std::string, Light> lights[] = {
         {"sun", SunLight{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {3.0, 2.5, 2.0}, 8.0}},
         {"sun of more than half of all directions",
@@ -63,7 +63,7 @@ TEST_CASE("what is scattered once of a sun or a sky is the reference's, by whate
 }
 
 TEST_CASE("droplets scatter a sky, and a wide sun before the camera, once and with little noise",
-          "[gpu][variances][lights][long]") {
+          "[gpu][variances][lights]") {
     // Drawn from the lights alone 14 and 1.3: a few looks in a thousand go where droplets scatter most.
     for (const auto& [light, most] :
          {std::pair<Light, double>{write_sky(sunset_map()), 0.3},

@@ -54,7 +54,7 @@ TEST_CASE("a lamp beside a searchlight that passes by is found", "[gpu][variance
 }
 
 TEST_CASE("lamps that a surface or a sensor has behind it take no looks from those before it",
-          "[gpu][variances][lights][long]") {
+          "[gpu][variances][lights]") {
     std::string lamps = "<lights><point y='3'/>";
     for (int i = 0; i < 100; ++i)
         lamps += fmt::format("<point x='{}' y='-0.5' z='{}'/>", i % 10 - 4.5, i / 10 - 4.5);
@@ -178,7 +178,7 @@ TEST_CASE("films in several buffers have as many particles for each row", "[gpu]
 }
 
 TEST_CASE("a control density above rough noise does not make weights that grow with the way",
-          "[gpu][variances][noise][long]") {
+          "[gpu][variances][noise]") {
     // Of 10 to 80 mean free paths with densities far below half of their bound: 50 times the variance of ratio
     // tracking.
     const auto by = [](const char* integrator) {

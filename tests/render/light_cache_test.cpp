@@ -95,7 +95,7 @@ TEST_CASE("the cache knows the depth of a uniform block to a cell of the lattice
 }
 
 TEST_CASE("few collisions look at the light, and the picture is the same whatever reads the cache",
-          "[gpu][light_cache][determinism][long]") {
+          "[gpu][light_cache][determinism]") {
     Scene scene = scene_of(medium(write_grid(cloud_grid()), 4.0, 0.99, 0.3), 11.0, 24);
     scene.lights = {sunlight()};
     if (GENERATE(false, true))
