@@ -69,9 +69,10 @@ class Writer:
 
     def phase(self):
         g = self.number(-0.8, 0.8)
-        kind = self.r.choice(["", "", "rayleigh", "doubleHenyeyGreenstein", "draine", "droplets", "table"])
+        kind = self.r.choice(["", "", "rayleigh", "doubleHenyeyGreenstein", "draine", "droplets", "fournierForand", "table"])
         more = {"doubleHenyeyGreenstein": f'second="{self.number(-0.8, 0.8)}" share="{self.number(0, 1)}"',
                 "draine": f'alpha="{self.number(0, 5)}"', "droplets": f'diameter="{self.number(0.3, 3)}"',
+                "fournierForand": f'index="{self.number(1.02, 1.3)}" backscatter="{self.number(0.1, 0.4)}"',
                 "rayleigh": f'depolarization="{self.number(0, 0.5)}"', "table": 'file="phase.txt"'}.get(kind, "")
         text = f"<phase {more}>{kind}</phase>" if kind else ""
         return text + (f"<heyneygreenstein_g>{g}</heyneygreenstein_g>" if kind in ("", "doubleHenyeyGreenstein", "draine") else "")

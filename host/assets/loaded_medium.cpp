@@ -152,7 +152,8 @@ private:
     // By the bytes of grid and velocities, seconds, and whether it goes on.
     std::map<std::tuple<const std::byte*, const std::byte*, double, bool>, DensityField> drifted_;
     std::map<std::pair<double, double>, SharedArray<glm::vec4>> blackbodies_;
-    std::map<std::string, SharedArray<shared::PhaseNode>> phases_; // by their file
+    std::map<std::tuple<PhaseFunction, std::string, double, double>, SharedArray<shared::PhaseNode>>
+        phases_; // by what they are made of
     std::set<std::string> said_;
 };
 
@@ -350,11 +351,13 @@ void Loader::load_grid(const Volume& volume, const GridFile& file, LoadedMedium&
 }
 
 void Loader::load_phase_nodes(const Volume& volume, LoadedMedium& loaded) {
-    if (volume.phase != PhaseFunction::table)
+    if (volume.phase != PhaseFunction::table && volume.phase != PhaseFunction::fournier_forand)
         return;
-    SharedArray<shared::PhaseNode>& nodes = phases_[volume.phase_details.file.native()];
+    const PhaseDetails& details = volume.phase_details;
+    SharedArray<shared::PhaseNode>& nodes =
+        phases_[{volume.phase, details.file.native(), details.index, details.backscatter}];
     if (nodes.empty()) {
-        PhaseTable table = load_phase_table(volume.phase_details.file);
+        PhaseTable table = phase_table(volume);
         nodes = std::move(table.nodes);
         for (std::string& warning : table.warnings)
             warn(loaded, std::move(warning));

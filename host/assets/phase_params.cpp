@@ -82,7 +82,7 @@ std::uint32_t phase_iterations(const Volume& volume, std::span<const shared::Pha
     constexpr std::uint32_t drawn = 1 + 2 + 2 + 1, evaluated = 1 + 8 + 8 + 4, newton_steps = 10;
     if (volume.phase == PhaseFunction::draine || volume.phase == PhaseFunction::droplets)
         return drawn * (newton_steps + 1);
-    if (volume.phase == PhaseFunction::table)
+    if (!nodes.empty())
         return (drawn + evaluated) * static_cast<std::uint32_t>(std::bit_width(nodes.size()) + 1);
     return 0;
 }
@@ -101,7 +101,8 @@ double phase_peak(const Volume& volume, std::span<const shared::PhaseNode> nodes
         return 3.0 * henyey_greenstein_peak(params.g);
     case PhaseFunction::droplets:
         return std::max(henyey_greenstein_peak(params.g), 3.0 * henyey_greenstein_peak(params.g2));
-    case PhaseFunction::table: {
+    case PhaseFunction::table:
+    case PhaseFunction::fournier_forand: {
         float peak = 0.0f;
         for (const shared::PhaseNode& node : nodes)
             peak = std::max(peak, node.value);
@@ -127,6 +128,7 @@ double mean_cosine(const Volume& volume, std::span<const shared::PhaseNode> node
         return std::lerp(fit.g, draine_mean_cosine(fit.g2, fit.alpha), fit.share);
     }
     case PhaseFunction::table:
+    case PhaseFunction::fournier_forand:
         return table_mean_cosine(nodes);
     case PhaseFunction::henyey_greenstein:
         break;

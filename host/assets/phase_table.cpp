@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "error.h"
+#include "fournier_forand.h"
 #include "number_table.h"
 
 namespace vkvol {
@@ -161,6 +162,15 @@ PhaseTable load_phase_table(const std::filesystem::path& file) {
     if (!(table.nodes.back().share > 0.0f)) // all of it between angles that are one in single precision
         throw InputError(fmt::format("{}: scatters nowhere; give values above 0 at more angles", file.string()));
     return table;
+}
+
+PhaseTable phase_table(const Volume& volume) {
+    const PhaseDetails& details = volume.phase_details;
+    if (volume.phase == PhaseFunction::table)
+        return load_phase_table(details.file);
+    if (volume.phase == PhaseFunction::fournier_forand)
+        return {fournier_forand_nodes(details.index, details.backscatter), {}};
+    return {};
 }
 
 } // namespace vkvol

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scene.h"
 #include "shared/frame.h"
 
 namespace vkvol {
@@ -19,6 +20,9 @@ struct PhaseTable {
 // one number a line, the Legendre moments: means of P_0 = 1, P_1, P_2, ... of the cosine. "#" begins a comment. Throws
 // InputError, which names the line.
 PhaseTable load_phase_table(const std::filesystem::path& file);
+
+// Of a phase function that kernels have as a table; of others none.
+PhaseTable phase_table(const Volume& volume);
 
 // Linear in the cosine between the given angles [radians, from 0 to pi, rising], and of integral 1. Some value is above
 // 0.

@@ -82,12 +82,16 @@ static_assert(int(PhaseFunction::henyey_greenstein) == PHASE_HENYEY_GREENSTEIN &
               int(PhaseFunction::draine) == PHASE_DRAINE && int(PhaseFunction::droplets) == PHASE_DROPLETS &&
               int(PhaseFunction::table) == PHASE_TABLE);
 
+int phase_kind(PhaseFunction phase) {
+    return phase == PhaseFunction::fournier_forand ? PHASE_TABLE : static_cast<int>(phase);
+}
+
 shared::MediumKinds kinds_of(const Volume& volume, const LoadedMedium& loaded, const Method& method) {
     shared::MediumKinds kinds{};
     kinds.shape = shape_kind(volume, loaded);
     kinds.field = density_kind(volume, loaded);
     kinds.grid_type = loaded.field ? loaded.field->type : GRID_FLOAT;
-    kinds.phase = static_cast<int>(volume.phase);
+    kinds.phase = phase_kind(volume.phase);
     kinds.emission = kinds.shape != SHAPE_NONE ? emission_kind(volume, loaded, method) : EMISSION_NONE;
     kinds.temperature_type = loaded.temperature ? loaded.temperature->type : GRID_FLOAT;
     kinds.albedo = loaded.albedo ? ALBEDO_GRID : ALBEDO_CONSTANT;

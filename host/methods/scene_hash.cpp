@@ -108,6 +108,10 @@ void add_phase(Writer& writer, const Volume& volume) {
         writer.add("diameter", details.diameter);
     if (volume.phase == PhaseFunction::table)
         add_file(writer, details.file);
+    if (volume.phase == PhaseFunction::fournier_forand) {
+        writer.add("index", details.index);
+        writer.add("backscatter", details.backscatter);
+    }
 }
 
 void add_map(Writer& writer, const ValueMap& map) {

@@ -185,8 +185,16 @@ struct Layers {
     double reference = 0.0;    // height of density 1
 };
 
-// As PHASE_... of shaders/shared/constants.h.
-enum class PhaseFunction { henyey_greenstein, rayleigh, double_henyey_greenstein, draine, droplets, table };
+// As PHASE_... of shaders/shared/constants.h; the last is a table to kernels.
+enum class PhaseFunction {
+    henyey_greenstein,
+    rayleigh,
+    double_henyey_greenstein,
+    draine,
+    droplets,
+    table,
+    fournier_forand
+};
 
 // What phase functions have besides g, those that have it.
 struct PhaseDetails {
@@ -196,6 +204,8 @@ struct PhaseDetails {
     double diameter = 10.0;          // droplets: micrometres, in [0.01, 50]
     double depolarization = 0.0;     // Rayleigh: in [0, 6/7], of unpolarised light scattered by a right angle, the
                                      // intensities along and across the plane of scattering, one over the other
+    double index = 1.1;              // Fournier and Forand: of refraction, relative to water's, in [1.001, 1.6]
+    double backscatter = 0.0183;     // Fournier and Forand: part that goes backward, in [0.0001, 0.49]
     std::filesystem::path file = {}; // table
 };
 

@@ -17,9 +17,13 @@ struct PhaseKind {
 };
 
 // As PhaseFunction.
-const std::vector<PhaseKind> phase_kinds = {
-    {"henyeyGreenstein", {}}, {"rayleigh", {"depolarization"}, false}, {"doubleHenyeyGreenstein", {"second", "share"}},
-    {"draine", {"alpha"}},    {"droplets", {"diameter"}, false},       {"table", {"file", "baseDir"}, false}};
+const std::vector<PhaseKind> phase_kinds = {{"henyeyGreenstein", {}},
+                                            {"rayleigh", {"depolarization"}, false},
+                                            {"doubleHenyeyGreenstein", {"second", "share"}},
+                                            {"draine", {"alpha"}},
+                                            {"droplets", {"diameter"}, false},
+                                            {"table", {"file", "baseDir"}, false},
+                                            {"fournierForand", {"index", "backscatter"}, false}};
 
 constexpr Limits asymmetry{-1, 1, false, false, "a number between -1 and 1, both excluded"};
 constexpr double sharpest = 0.99999; // single precision still has 1 - g to a hundredth
@@ -70,6 +74,10 @@ void SceneReader::read_phase(Volume& volume) const {
                                               {0.01, 50, true, true, "a diameter from 0.01 to 50 micrometres"});
     details.depolarization = phase.attribute_number("depolarization", details.depolarization,
                                                     {0.0, 6.0 / 7.0, true, true, "a number from 0 to 6/7"});
+    details.index = phase.attribute_number("index", details.index,
+                                           {1.001, 1.6, true, true, "an index of refraction from 1.001 to 1.6"});
+    details.backscatter = phase.attribute_number("backscatter", details.backscatter,
+                                                 {0.0001, 0.49, true, true, "a part from 0.0001 to 0.49"});
     if (volume.phase == PhaseFunction::table) {
         if (!phase.has("file"))
             phase.fail("<phase> table names no file; write e.g. file=\"droplets.txt\"");

@@ -268,9 +268,7 @@ TEST_CASE("a furnace of a gradient, of every phase function", "[gpu][lights][fur
         scene.settings.integrator = "ratioTracking";
         scene.settings.choices.first_flight = FIRST_FLIGHT_SPLIT;
         scene.settings.choices.nee = NEE_COLLISIONS;
-        const auto nodes = phase.kind == PhaseFunction::table ? load_phase_table(phase.details.file).nodes
-                                                              : std::vector<shared::PhaseNode>{};
-        const double g = mean_cosine(phase.of(Volume{}), nodes);
+        const double g = mean_cosine(phase.of(Volume{}), phase_table(phase.of(Volume{})).nodes);
         const reference::Medium fog = reference::load(scene.volumes.front(), scene.settings.filter);
         constexpr int across = 6;
         std::vector<Rgb> expected;

@@ -35,6 +35,8 @@ void load_phase(const vkvol::Volume& volume, Medium& medium) {
     medium.g2 = volume.phase_details.g2;
     medium.share = volume.phase_details.share;
     medium.alpha = volume.phase_details.alpha;
+    medium.index = volume.phase_details.index;
+    medium.backscatter = volume.phase_details.backscatter;
     if (volume.phase == vkvol::PhaseFunction::rayleigh) { // as (1 + d) + (1 - d) mu^2
         const double d = volume.phase_details.depolarization;
         medium.share = 2.0 * (1.0 - d) / (2.0 + d);
@@ -219,6 +221,8 @@ double phase_eval(const Medium& medium, double mu) {
         return std::lerp(hg_eval(medium.g, mu), draine_eval(medium.g2, medium.alpha, mu), medium.share);
     case table:
         return table_eval(medium.table, mu);
+    case fournier_forand:
+        return fournier_forand_eval(medium.index, medium.backscatter, mu);
     case henyey_greenstein:
         break;
     }
@@ -257,6 +261,8 @@ double sample_cosine(const Medium& medium, double u) {
         return second ? draine_sample_cosine(medium.g2, medium.alpha, rest) : hg_sample_cosine(medium.g, rest);
     case table:
         return table_sample_cosine(medium.table, u);
+    case fournier_forand:
+        return fournier_forand_sample_cosine(medium.index, medium.backscatter, u);
     case henyey_greenstein:
         break;
     }

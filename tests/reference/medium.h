@@ -22,6 +22,7 @@ struct Medium {
     ColorGrid albedo_grid; // multiplies it; or empty
     vkvol::ValueMap map;   // of the grid's values, or of heights above the bottom of layers; or none
     vkvol::PhaseFunction phase = vkvol::PhaseFunction::henyey_greenstein;
+    double index = 1.0, backscatter = 0.0; // Fournier and Forand's
     double g = 0.0;
     double g2 = 0.0, share = 0.0, alpha = 0.0; // of a second function and its part
     std::vector<TableNode> table;

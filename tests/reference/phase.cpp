@@ -136,6 +136,49 @@ double table_sample_cosine(const std::vector<TableNode>& table, double u) {
     return by_halving(below, u);
 }
 
+namespace {
+
+// The papers' delta: by the square of an angle's chord, 2 sin(angle / 2).
+double ff_delta(double index, double chord_squared) {
+    return chord_squared / (3.0 * (index - 1.0) * (index - 1.0));
+}
+
+// A chord squared at which the papers' quotients are not 0 / 0.
+double ff_chord_squared(double index, double mu) {
+    const double chord_squared = 2.0 * std::max(1.0 - mu, 1e-10);
+    return std::abs(1.0 - ff_delta(index, chord_squared)) < 1e-5 ? chord_squared * (1.0 + 2e-5) : chord_squared;
+}
+
+} // namespace
+
+// From Mobley, Sundman and Boss's statement of the part that goes backward, solved for the exponent.
+double fournier_forand_exponent(double index, double backscatter) {
+    const double delta = ff_delta(index, 2.0);
+    return -std::log(1.0 + 2.0 * backscatter * (delta - 1.0)) / std::log(delta);
+}
+
+double fournier_forand_eval(double index, double backscatter, double mu) {
+    using std::pow;
+    const double nu = fournier_forand_exponent(index, backscatter), u2 = ff_chord_squared(index, mu), delta = ff_delta(index, u2),
+                 delta_180 = ff_delta(index, 4.0);
+    return (nu * (1.0 - delta) - (1.0 - pow(delta, nu)) +
+            4.0 / u2 * (delta * (1.0 - pow(delta, nu)) - nu * (1.0 - delta))) /
+               (4.0 * pi * (1.0 - delta) * (1.0 - delta) * pow(delta, nu)) +
+           (1.0 - pow(delta_180, nu)) / (16.0 * pi * (delta_180 - 1.0) * pow(delta_180, nu)) * (3.0 * mu * mu - 1.0);
+}
+
+double fournier_forand_share(double index, double backscatter, double mu) {
+    using std::pow;
+    const double nu = fournier_forand_exponent(index, backscatter), u2 = ff_chord_squared(index, mu), delta = ff_delta(index, u2),
+                 delta_180 = ff_delta(index, 4.0);
+    return (1.0 - pow(delta, nu + 1.0) - u2 / 4.0 * (1.0 - pow(delta, nu))) / ((1.0 - delta) * pow(delta, nu)) +
+           (1.0 - pow(delta_180, nu)) / (8.0 * (delta_180 - 1.0) * pow(delta_180, nu)) * mu * (1.0 - mu * mu);
+}
+
+double fournier_forand_sample_cosine(double index, double backscatter, double u) {
+    return by_halving([&](double mu) { return 1.0 - fournier_forand_share(index, backscatter, mu); }, u);
+}
+
 glm::dvec3 hg_sample(double g, const glm::dvec3& direction, double u, double v) {
     return turned(direction, hg_sample_cosine(g, u), v);
 }

@@ -42,6 +42,13 @@ std::vector<TableNode> normalised(std::vector<TableNode> table); // [1/sr]
 double table_eval(const std::vector<TableNode>& table, double mu);
 double table_sample_cosine(const std::vector<TableNode>& table, double u); // by halving
 
+// Fournier and Forand's [1/sr], and the part of the light that goes below an angle of cosine mu, as their papers state
+// them. Without bound towards mu = 1: there as at 1e-10 from it.
+double fournier_forand_exponent(double index, double backscatter); // (3 - the power of the sizes) / 2
+double fournier_forand_eval(double index, double backscatter, double mu);
+double fournier_forand_share(double index, double backscatter, double mu);
+double fournier_forand_sample_cosine(double index, double backscatter, double u); // by halving
+
 // The direction of cosine mu to `direction` and azimuth 2 pi v.
 glm::dvec3 turned(const glm::dvec3& direction, double mu, double v);
 

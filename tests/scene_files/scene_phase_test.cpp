@@ -44,6 +44,10 @@ TEST_CASE("phase functions of every kind are read", "[cpu][xml]") {
     CHECK(two.phase_details.share == 0.2);
     CHECK(volume_of(R"(<phase alpha="3">draine</phase>)").phase_details.alpha == 3.0);
     CHECK(volume_of(R"(<phase diameter="15">droplets</phase>)").phase_details.diameter == 15.0);
+    const PhaseDetails water =
+        volume_of(R"(<phase index="1.2" backscatter=".03">fournierForand</phase>)").phase_details;
+    CHECK(water.index == 1.2);
+    CHECK(water.backscatter == 0.03);
     const Volume table = volume_of(R"(<phase file="a/bow.txt">table</phase>)");
     CHECK(table.phase == PhaseFunction::table);
     CHECK(table.phase_details.file.filename() == "bow.txt");
@@ -57,6 +61,8 @@ TEST_CASE("phase functions that make no sense are refused", "[cpu][xml]") {
           R"(<phase diameter="0">droplets</phase>)", R"(<phase diameter="51">droplets</phase>)",
           R"(<phase share="1.1">doubleHenyeyGreenstein</phase>)", R"(<phase second="1">doubleHenyeyGreenstein</phase>)",
           R"(<phase second=".999999">doubleHenyeyGreenstein</phase>)", "<phase>table</phase>",
+          R"(<phase index="1">fournierForand</phase>)", R"(<phase index="1.7">fournierForand</phase>)",
+          R"(<phase backscatter="0">fournierForand</phase>)", R"(<phase backscatter=".5">fournierForand</phase>)",
           R"(<phase alpha="1">droplets</phase>)", R"(<phase g=".5">henyeyGreenstein</phase>)"}) {
         CAPTURE(phase);
         CHECK_THROWS_AS(volume_of(phase), InputError);

@@ -195,7 +195,8 @@ std::vector<NamedPhase> all_phases() {
             {"droplets 1", droplets, 0.0, water(1.0)},
             {"droplets 3", droplets, 0.0, water(3.0)},
             {"droplets 20", droplets, 0.0, water(20.0)},
-            {"table", table, 0.0, PhaseDetails{.file = bow}}};
+            {"table", table, 0.0, PhaseDetails{.file = bow}},
+            {"fournierForand", fournier_forand, 0.0, PhaseDetails{.index = 1.05, .backscatter = 0.1}}};
 }
 
 Scene absorption(glm::dvec3 middle, glm::dvec3 edges, glm::ivec3 cells, std::uint32_t spp) {
