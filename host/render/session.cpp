@@ -23,6 +23,7 @@ constexpr double preview_allowance = 0.3;     // and seconds for the first of th
 constexpr double preview_growth = 0.15;       // of the time so far, between two: noise has fallen by a fifteenth then
 constexpr double patience = 5.0;              // seconds, for paths that will not end
 constexpr double least_samples = 16.0;        // per pixel, before noise is checked
+constexpr std::uint64_t fused_samples_at_first = 1u << 18; // of all pixels
 constexpr double surely_black = 1 << 22; // samples of all pixels: a picture without any light by then will have none
 
 void add_counts(RenderCounts& total, const shared::Counters& c) {
@@ -143,10 +144,13 @@ RenderResult& Session::result() {
     return result_;
 }
 
-// A staged render has a path in each slot from the beginning.
+// A staged render has a path in each slot from the beginning; a fused one is worth its beginning and its end, and takes
+// a second or so where paths are long.
 std::uint32_t Session::first_batch() const {
     const std::uint64_t pixels = std::uint64_t{bands_.front().rows} * width();
-    const std::uint64_t wanted = result_.plan.schedule == Schedule::staged ? 8 * result_.plan.slots / pixels : 1;
+    const std::uint64_t samples =
+        result_.plan.schedule == Schedule::staged ? 8ull * result_.plan.slots : fused_samples_at_first;
+    const std::uint64_t wanted = samples / pixels;
     return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, 1, most_batch_));
 }
 

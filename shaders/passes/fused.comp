@@ -52,13 +52,14 @@ void main() {
         lane.record = slot;
         sums = film[lane.path.pixel];
     }
-    for (uint i = 0u; i < push.budget; i += BURST) {
+    const uint burst = min(BURST, 4u * (push.sample_end - push.sample_begin)); // of few samples a pixel is soon done
+    for (uint i = 0u; i < push.budget; i += burst) {
         if (lane.todo == TODO_TAKE) {
             if (!pop_item(QUEUE_TRACK, slot))
                 break;
             begin_pixel(slot, lane, sums);
         }
-        uint turns = min(BURST, push.budget - i);
+        uint turns = min(burst, push.budget - i);
         tally.room += turns * uint(STEPS);
         for (uint k = 0u; k < turns; ++k)
             turn_of_pixel(v, lane, rng, sums, tally);
