@@ -59,7 +59,7 @@ private:
 std::vector<shared::PhaseNode> fournier_forand_nodes(double index, double backscatter) {
     const FournierForand phase(index, backscatter);
     // Of the first segment the end, and the value at 0 by which it scatters what the closed form does there.
-    constexpr double nearest = 1e-9, ratio = 1.01, even_from = 0.1, even_step = 1e-3;
+    constexpr double nearest = 1e-9, ratio = 1.01, even_from = 0.4, even_step = 4e-3;
     std::vector<double> angles{0.0}, values{phase.share(nearest) / (pi * nearest) - phase.value(nearest)};
     for (double x = nearest; x < 2.0; x = std::min(x < even_from ? ratio * x : x + even_step, 2.0)) {
         angles.push_back(2.0 * std::asin(std::sqrt(0.5 * x)));

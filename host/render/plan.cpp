@@ -17,7 +17,8 @@ namespace {
 // without a word.
 constexpr std::uint32_t most_iterations = 65535;
 
-// Iterations, at most, of all loops in a turn that are not unrolled. Every step has up to four places for a sum over
+// Iterations, at most, of all loops in a turn that are not unrolled: of turns and bursts of four, which end too, less
+// than two. Every step has up to four places for a sum over
 // octaves, or media, which all lanes of a group pass under a mask: a flight's look-up, emission along it, and two of a
 // shadow ray that marches in several sets of samples; and a look from along a flight has one.
 std::uint64_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {

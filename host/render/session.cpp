@@ -23,7 +23,6 @@ constexpr double preview_allowance = 0.3;     // and seconds for the first of th
 constexpr double preview_growth = 0.15;       // of the time so far, between two: noise has fallen by a fifteenth then
 constexpr double patience = 5.0;              // seconds, for paths that will not end
 constexpr double least_samples = 16.0;        // per pixel, before noise is checked
-constexpr std::uint64_t fused_samples_at_first = 1u << 18; // of all pixels
 constexpr double surely_black = 1 << 22; // samples of all pixels: a picture without any light by then will have none
 
 void add_counts(RenderCounts& total, const shared::Counters& c) {
@@ -144,22 +143,27 @@ RenderResult& Session::result() {
     return result_;
 }
 
-// A staged render has a path in each slot from the beginning; a fused one is worth its beginning and its end, and takes
-// a second or so where paths are long.
+// A staged render has a path in each slot from the beginning. Of a fused one few samples of each pixel are worth a
+// batch's beginning and end, unless a whole picture is wanted soon; so few that a user can stop them even if they are
+// slow.
 std::uint32_t Session::first_batch() const {
     const std::uint64_t pixels = std::uint64_t{bands_.front().rows} * width();
-    const std::uint64_t samples =
-        result_.plan.schedule == Schedule::staged ? 8ull * result_.plan.slots : fused_samples_at_first;
-    const std::uint64_t wanted = samples / pixels;
+    const bool is_urgent = job_.preview || job_.time_limit || !followers_.empty() || method_.paths != PATHS_CAMERA;
+    std::uint64_t wanted = 1;
+    if (result_.plan.schedule == Schedule::staged)
+        wanted = 8 * result_.plan.slots / pixels;
+    else if (!is_urgent)
+        wanted = std::min<std::uint64_t>((1u << 18) / pixels, 4);
     return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, 1, most_batch_));
 }
 
 // Long enough that its tail, when few paths are left in flight, matters little, and that lanes have many samples of
-// a pixel; short enough for the user.
+// a pixel; short enough for the user: a second, by what the last took.
 std::uint32_t Session::next_batch(std::uint32_t batch, double seconds) const {
     if (seconds > 4.0)
         return std::max(batch / 2, 1u);
-    return std::min(batch * (seconds < 0.1 ? 8 : seconds < 1.0 ? 2 : 1), most_batch_);
+    const double growth = seconds < 0.1 ? std::min(0.8 / seconds, 64.0) : seconds < 1.0 ? 2.0 : 1.0;
+    return static_cast<std::uint32_t>(std::min(batch * growth, double(most_batch_)));
 }
 
 void Session::check_resume(std::uint32_t samples) const {

@@ -60,7 +60,8 @@ void check_variety(const std::vector<AheadOutput>& ends, Segment segment) {
 
 } // namespace
 
-TEST_CASE("steps of split flights found ahead are those taken one at a time", "[gpu][free_flight][first_flight]") {
+TEST_CASE("steps of split flights found ahead are those taken one at a time",
+          "[gpu][free_flight][first_flight][long]") {
     const bool chromatic = GENERATE(false, true);
     MediumRecipe recipe;
     recipe.filter = Filter::stochastic;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
+#include <numeric>
 
 #include "fournier_forand.h"
 #include "kernel_constants.h"
@@ -131,7 +132,9 @@ TEST_CASE("phase functions of every kind integrate to 1, and have the mean cosin
 TEST_CASE("directions are drawn from phase functions of every kind as these are evaluated", "[gpu][phase]") {
     constexpr std::uint32_t count = 1 << 18;
     constexpr int bins = 64;
-    for (const NamedPhase& phase : all_phases()) {
+    std::vector<NamedPhase> phases = all_phases();
+    phases.push_back({"fournierForand, sharp", PhaseFunction::fournier_forand}); // too much so to be compared in clouds
+    for (const NamedPhase& phase : phases) {
         const reference::Medium medium = medium_of(phase);
         std::vector<shared::ScatterInput> inputs;
         for (std::uint32_t i = 0; i < count; ++i)
@@ -143,6 +146,8 @@ TEST_CASE("directions are drawn from phase functions of every kind as these are 
         over_cosines(bins * 2000, [&](double mu, double weight) {
             expected[std::size_t(bin(1.0 - mu))] += count * 2.0 * pi * reference::phase_eval(medium, mu) * weight;
         });
+        // Midpoints do not do where a peak has no bound: the first bin has the rest.
+        expected.front() = count - std::accumulate(expected.begin() + 1, expected.end(), 0.0);
         for (const auto& [i, o] : [&] {
                  std::vector<std::pair<std::size_t, shared::ScatterOutput>> all;
                  for (const shared::ScatterOutput& output : scatter(phase, inputs))
@@ -155,7 +160,7 @@ TEST_CASE("directions are drawn from phase functions of every kind as these are 
             REQUIRE(o.drawn_eval > 0.0f);
         }
         CAPTURE(phase.name);
-        CHECK(chi_square_test_p(observed, expected) > sidak(1e-3, double(all_phases().size())));
+        CHECK(chi_square_test_p(observed, expected) > sidak(1e-3, double(phases.size())));
     }
 }
 
@@ -254,8 +259,12 @@ TEST_CASE("particles in water have the sizes that are published for what they sc
     struct Row {
         double index, power, backscatter;
     };
-    for (const Row& row : {Row{1.021, 3.0742, 0.0001}, {1.04, 3.201, 0.001}, {1.08, 3.483, 0.01}, {1.175, 4.065, 0.1},
-                           {1.15, 4.874, 0.4}, {1.1, 3.5835, 0.0183}}) {
+    for (const Row& row : {Row{1.021, 3.0742, 0.0001},
+                           {1.04, 3.201, 0.001},
+                           {1.08, 3.483, 0.01},
+                           {1.175, 4.065, 0.1},
+                           {1.15, 4.874, 0.4},
+                           {1.1, 3.5835, 0.0183}}) {
         CAPTURE(row.index, row.power, row.backscatter);
         CHECK(3.0 - 2.0 * reference::fournier_forand_exponent(row.index, row.backscatter) ==
               Approx(row.power).epsilon(1e-3));

@@ -63,7 +63,7 @@ void scale_majorants(TestGrid& grid, float scale) {
 
 } // namespace
 
-TEST_CASE("ratio tracking has the mean of the quadrature on 1000 random rays", "[gpu][transmittance]") {
+TEST_CASE("ratio tracking has the mean of the quadrature on 1000 random rays", "[gpu][transmittance][long]") {
     const Filter filter = GENERATE(Filter::trilinear, Filter::stochastic);
     const float scale = GENERATE(1.0f, 4.0f);
     GridRecipe recipe = rough_recipe();
@@ -135,7 +135,7 @@ TEST_CASE("homogeneous transmittance is exp(-tau), to the end of the floats", "[
         CHECK(T.mean() == Approx(std::exp(-1.4)).epsilon(16 * 0x1p-23));
 }
 
-TEST_CASE("a constant grid of N voxels is N voxels thick", "[gpu][transmittance][hard]") {
+TEST_CASE("a constant grid of N voxels is N voxels thick", "[gpu][transmittance][hard][long]") {
     const Filter filter = GENERATE(Filter::trilinear, Filter::stochastic, Filter::nearest);
     const float scale = GENERATE(1.0f, 3.0f);
     const int N = GENERATE(1, 5, 16);

@@ -37,7 +37,7 @@ double square(const FilmPixel& p, int channel) {
 
 } // namespace
 
-TEST_CASE("33 million samples of value 1 have the mean 1 exactly", "[gpu][film][hard]") {
+TEST_CASE("33 million samples of value 1 have the mean 1 exactly", "[gpu][film][hard][long]") {
     // A plain float sum stalls at 2^24.
     KernelRunner runner(film_sum_spv);
     std::vector<FilmInput> pixels(1);

@@ -166,7 +166,7 @@ TEST_CASE("layers are what scenes of their own show", "[gpu][image][aovs]") {
     CHECK_AGREEMENT(agree(sum, unscattered, "light that was not scattered"));
 }
 
-TEST_CASE("what a medium sends out is in its layer", "[gpu][image][aovs]") {
+TEST_CASE("what a medium sends out is in its layer", "[gpu][image][aovs][long]") {
     Volume red = medium(Sphere{{0.0, 0.0, 0.0}, 2.0}, 0.5, 0.0),
            blue = medium(Box{{1.0, 0.5, 0.3}, Rgb(3.0)}, 0.4, 0.0);
     red.Le = {1.0, 0.5, 0.0};

@@ -208,7 +208,7 @@ TEST_CASE("particles counted above, below and amid slabs", "[gpu][counted]") {
 }
 
 // Also what comes to it again and again. Rays from just above it read as much.
-TEST_CASE("a sensor in the plane of the ground counts what comes to the ground", "[gpu][counted]") {
+TEST_CASE("a sensor in the plane of the ground counts what comes to the ground", "[gpu][counted][long]") {
     const double tau = 1.0, ground = 0.6;
     const reference::SlabSolution beam = reference::slab_in_beam(0.9, tau, 1.0, 400);
     const reference::SlabSolution even = reference::slab_in_half_sky(0.9, tau, 400);

@@ -160,7 +160,7 @@ TEST_CASE("rays through layers of a table have the sum of its slabs", "[gpu][ima
     check_transmittance(two, sigma_t * slabs / std::sin(glm::radians(35.0)), "two tables");
 }
 
-TEST_CASE("nothing is seen through fog without end but its own glow", "[gpu][layers]") {
+TEST_CASE("nothing is seen through fog without end but its own glow", "[gpu][layers][long]") {
     Volume volume = endless_fog(0.3, 0.0);
     volume.Le = {2.0, 1.0, 0.5};
     Scene scene = lit_from_above(volume);

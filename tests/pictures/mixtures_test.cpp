@@ -40,7 +40,8 @@ TEST_CASE("media of two phase functions on top of each other are one of their mi
                   integrator));
 }
 
-TEST_CASE("halves of a medium on top of each other are the whole, under every light", "[gpu][image][several][lights][long]") {
+TEST_CASE("halves of a medium on top of each other are the whole, under every light",
+          "[gpu][image][several][lights][long]") {
     const LightsAbout lights;
     const std::vector<std::pair<std::string, Light>> all = {
         {"point", lights.point}, {"spot", lights.spot},           {"ball", lights.ball},
@@ -59,7 +60,7 @@ TEST_CASE("halves of a medium on top of each other are the whole, under every li
     }
 }
 
-TEST_CASE("boundaries between media are nothing that a path meets", "[gpu][image][several]") {
+TEST_CASE("boundaries between media are nothing that a path meets", "[gpu][image][several][long]") {
     // Twenty boxes in one another, then as many side by side, of one medium alone.
     const std::string view =
         "<camera z='9' projection='orthographic' viewHeight='1'/><width>4</width><height>4</height>";

@@ -12,7 +12,7 @@
 using namespace vkvol;
 using std::numbers::pi;
 
-TEST_CASE("a pane of glass moves what is behind it by Snell's law", "[gpu][image][surfaces]") {
+TEST_CASE("a pane of glass moves what is behind it by Snell's law", "[gpu][image][surfaces][long]") {
     // A pane of thickness t, turned by a, moves what is seen through it by t sin a (1 - cos a / sqrt(n^2 - sin^2 a)):
     // an edge of light, by 12 columns of a hundredth of a unit. What went to and fro within the pane is a three
     // hundredth.

@@ -380,7 +380,7 @@ TEST_CASE("lamps that lie on a large ball shine before it", "[gpu][particles]") 
 }
 
 // So far away that rounding knows nothing of the side from which it is seen.
-TEST_CASE("a distant lamp is shared out by particles and paths", "[gpu][particles]") {
+TEST_CASE("a distant lamp is shared out by particles and paths", "[gpu][particles][long]") {
     Scene scene = small_picture(medium(Sphere{{0.0, 0.0, 0.0}, 1.5}, 1.5, 0.9), 4.0,
                                 {SphereLight{{600.0, 700.0, 400.0}, 1e-4, Rgb(1e13)}});
     scene.background = Rgb(0.0);

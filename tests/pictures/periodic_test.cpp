@@ -254,7 +254,8 @@ TEST_CASE("a domain that holds the same twice is the same", "[gpu][image][period
 }
 
 // Where the domain begins is for its author to say.
-TEST_CASE("a domain may be moved by its own size, and its camera by any number of them", "[gpu][image][periodic]") {
+TEST_CASE("a domain may be moved by its own size, and its camera by any number of them",
+          "[gpu][image][periodic][long]") {
     const Scene scene = above(thin_cloud());
     const Film film = render_here(scene, 1).film;
     Scene far = scene;

@@ -141,7 +141,7 @@ TEST_CASE("a medium cut along an oblique plane is the whole", "[gpu][image][seve
     CHECK_AGREEMENT(agree(render_here(cut, 1).film, render_here(alone, 2).film, "cut"));
 }
 
-TEST_CASE("volumes that are moved equal the reference", "[gpu][image][several]") {
+TEST_CASE("volumes that are moved equal the reference", "[gpu][image][several][long]") {
     const glm::dmat4 map = glm::translate(glm::dmat4(1.0), glm::dvec3(0.2, -0.3, 0.4)) * turned(0.8, {1.0, -2.0, 0.5}) *
                            glm::scale(glm::dmat4(1.0), glm::dvec3(1.3, -0.5, 0.8));
     Volume ball = noisy_ball();

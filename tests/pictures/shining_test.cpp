@@ -85,6 +85,8 @@ TEST_CASE("a mesh shines as the lamp of its shape does, however looks and flight
     const Film lamp = render_here(under({shining(pane, {4.0, 3.0, 2.0})}, sigma_t), 1).film;
     Scene mesh = under({shining(mesh_of(pane, 3), {4.0, 3.0, 2.0})}, sigma_t);
     for (const int mis : {MIS_BALANCE, MIS_POWER, MIS_LIGHT, MIS_PHASE}) {
+        if (sigma_t == 0.0 && mis != MIS_BALANCE && !thorough())
+            continue;
         mesh.settings.choices.mis = mis;
         const Film film = render_here(mesh, 2).film;
         if (mis != MIS_PHASE) // by which most pixels meet it once in thousands of samples
@@ -202,7 +204,7 @@ TEST_CASE("a sensor of flux reads a mesh as the lamp of its shape", "[gpu][image
     }
 }
 
-TEST_CASE("a mesh of no triangle that has area shines on nothing", "[gpu][surfaces][shining]") {
+TEST_CASE("a mesh of no triangle that has area shines on nothing", "[gpu][surfaces][shining][long]") {
     const TriangleSurface line{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {2.0, 0.0, 0.0}}, {{0, 1, 2}}};
     const TriangleSurface dot{{{0.0, 0.0, 0.0}, {1e-18, 0.0, 0.0}, {0.0, 1e-18, 0.0}}, {{0, 1, 2}}};
     for (const TriangleSurface& mesh : {line, dot}) {

@@ -260,7 +260,7 @@ TEST_CASE("looks from along flights find the same light beside surfaces", "[gpu]
 }
 
 // Behind a wall that parts the fog there is all of the light, and before it none.
-TEST_CASE("looks from along flights do not go through walls", "[gpu][image][surfaces]") {
+TEST_CASE("looks from along flights do not go through walls", "[gpu][image][surfaces][long]") {
     Scene scene;
     scene.volumes = {box_of_fog(0.5, 0.9)};
     scene.lights = {PointLight{{0.0, 0.0, -1.0}, Rgb(10.0)}};

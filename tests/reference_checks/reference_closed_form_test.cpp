@@ -121,7 +121,7 @@ TEST_CASE("single scattering in a grid", "[cpu][reference]") {
     CHECK(std::abs(z) < 4.0);
 }
 
-TEST_CASE("a semi-infinite medium", "[cpu][reference]") {
+TEST_CASE("a semi-infinite medium", "[cpu][reference][long]") {
     // Row 7, Chandrasekhar. The medium is a cube of 2000 mean free paths, seen along the normal of a face.
     struct Case {
         double albedo, plane_albedo, reflection;

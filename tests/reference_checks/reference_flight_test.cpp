@@ -98,7 +98,7 @@ TEST_CASE("neither majorant cells nor the filter move a flight's collisions", "[
     check_weights(sample, FREE_FLIGHT_ADAPTIVE, Rgb(1.0), 10000);
 }
 
-TEST_CASE("depth-sampled flights weight channels of different extinction", "[cpu][reference]") {
+TEST_CASE("depth-sampled flights weight channels of different extinction", "[cpu][reference][long]") {
     struct Case {
         Kind kind;
         int free_flight;

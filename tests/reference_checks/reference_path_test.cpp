@@ -137,7 +137,7 @@ TEST_CASE("single scattering of every flight has the mean of the quadrature", "[
     }
 }
 
-TEST_CASE("all flights and shadow rays see the same multiple scattering", "[cpu][reference]") {
+TEST_CASE("all flights and shadow rays see the same multiple scattering", "[cpu][reference][long]") {
     const bool chromatic = GENERATE(false, true);
     Sample sample = make_sample(chromatic ? Kind::chromatic_grid : Kind::rough_grid);
     sample.medium.g = 0.4;

@@ -72,7 +72,6 @@ TEST_CASE("a render resumed from any of its checkpoints has the same bits", "[gp
     RenderJob job;
     job.plan.schedule = schedule;
     job.plan.slots = 64;           // few, so that every checkpoint finds pixels left
-    job.plan.most_batch = 4;       // and several batches
     job.plan.submit_seconds = 0.0; // a round each, however fast the device
     job.plan.most_film_bytes = band_rows * 32 * sizeof(shared::FilmPixel);
     const RenderResult whole = render_part(scene, job);
@@ -136,7 +135,6 @@ TEST_CASE("a checkpoint that there is no memory for is left out, and told of onc
     const Scene scene = sunlit_cloud(32, 9);
     RenderJob job;
     job.plan.submit_seconds = 0.0;
-    job.plan.most_batch = 4;
     const RenderResult whole = render_part(scene, job);
     int asked = 0;
     job.checkpoint_seconds = 0.0;

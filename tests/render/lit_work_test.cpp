@@ -58,7 +58,8 @@ Checkpoint last_checkpoint(const Scene& scene) {
 
 } // namespace
 
-TEST_CASE("under a map, lamps and what shines a render goes on with the same bits", "[gpu][checkpoint][surfaces][long]") {
+TEST_CASE("under a map, lamps and what shines a render goes on with the same bits",
+          "[gpu][checkpoint][surfaces][long]") {
     const Schedule schedule = GENERATE(Schedule::fused, Schedule::staged);
     const Scene scene = lit_scene(6);
     RenderJob job = job_by(schedule);
@@ -107,7 +108,7 @@ TEST_CASE("a checkpoint is continued under its own lights alone", "[gpu][checkpo
     CHECK_THROWS_WITH(part_of(other, rest), Catch::Contains("--resume: the checkpoint is of"));
 }
 
-TEST_CASE("under a map, lamps and what shines tiles are parts of the whole", "[gpu][determinism][surfaces]") {
+TEST_CASE("under a map, lamps and what shines tiles are parts of the whole", "[gpu][determinism][surfaces][long]") {
     const Scene scene = lit_scene(5);
     const Film whole = part_of(scene, job_by(Schedule::fused)).film;
     RenderJob job = job_by(Schedule::staged);

@@ -167,7 +167,7 @@ TEST_CASE("a kernel touches the buffers of what its scene has, and no others", "
     CHECK(specialise(fused_full_spv, sky).bindings == texels);
 }
 
-TEST_CASE("every feature costs instructions only where a scene has it", "[gpu][specialization]") {
+TEST_CASE("every feature costs instructions only where a scene has it", "[gpu][specialization][long]") {
     const auto count = [](std::initializer_list<std::pair<int, int>> changes) {
         return specialise(fused_spv, with(changes)).instructions;
     };
