@@ -212,9 +212,12 @@ void Loader::load_temperature(const Volume& volume, const GridFile& file, Loaded
     const bool by_kelvin = emission.model == TemperatureEmission::Model::blackbody;
     DensityField field =
         field_of(volume, file.beside(emission.grid), by_kelvin ? GridValues::numbers : GridValues::numbers_or_colors);
+    loaded.largest_temperature = field.active_voxels > 0 ? largest_value(field) : 0.0f;
+    if (field.active_voxels == 0 || (loaded.largest_temperature <= 0.0f && !by_kelvin))
+        warn(loaded, fmt::format("{}: \"{}\" has no value above 0: <emission> is without effect", file.path.string(),
+                                 emission.grid));
     if (field.active_voxels == 0)
         return;
-    loaded.largest_temperature = largest_value(field);
     if (by_kelvin)
         load_blackbody(emission, file, loaded);
     loaded.temperature = std::move(field);

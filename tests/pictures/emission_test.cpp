@@ -161,6 +161,18 @@ TEST_CASE("a file without a temperature grid does not glow, and says so", "[gpu]
     CHECK(mean_of(result.film) == 0.0);
 }
 
+TEST_CASE("a temperature grid that is cold throughout does not glow, and says so", "[gpu][emission]") {
+    GridRecipe heat = cloud_grid();
+    heat.value = [](glm::ivec3) { return 0.0f; };
+    heat.name = "temperature";
+    Scene scene = scene_of(medium(write_grids({cloud_grid(), heat}), 2.0, 0.5), 11.0, 8);
+    scene.volumes.front().temperature.color = Rgb(1.0);
+    const RenderResult result = render_here(scene, 1);
+    REQUIRE(result.warnings.size() == 1);
+    CHECK_THAT(result.warnings.front(), Catch::Contains("no value above 0"));
+    CHECK(mean_of(result.film) == 0.0);
+}
+
 TEST_CASE("emission in scene files", "[cpu][emission]") {
     const Scene scene = parse_scene(R"(<options><densityField baseDir="">f.nvdb</densityField>
         <emission r="1" g=".5" multiplier="2" model="blackbody" grid="heat" temperatureScale="600"
