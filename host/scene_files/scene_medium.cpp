@@ -58,6 +58,7 @@ void SceneReader::read_coefficients(Volume& volume) const {
     volume.albedo_grid = albedo_grid(is_grid);
     read_map(volume);
     read_layers(volume);
+    warn_of_glow_without_absorption(volume);
 
     const XmlElement path_density = one("lightRayDensityMultiplier");
     const XmlElement shadow_density = one("shadowRayDensityMultiplier");
@@ -168,6 +169,15 @@ CoefficientUnit SceneReader::unit(const XmlElement& sigma_a, const XmlElement& s
                                  "(unit=\"voxel\" is the default)",
                                  sigma_a.place()));
     return sigma_a.exists() ? a : s;
+}
+
+void SceneReader::warn_of_glow_without_absorption(const Volume& volume) const {
+    if (volume.sigma_a != Rgb(0.0) || has_albedo_of_place(volume))
+        return;
+    for (const auto& [name, radiance] : {std::pair{"medium", volume.Le}, {"emission", volume.temperature.color}})
+        if (radiance != Rgb(0.0))
+            one(name).warn(
+                fmt::format("<{}> is without effect: what is absorbed is what glows, and sigma_a is 0", name));
 }
 
 void SceneReader::warn_without_volume() const {

@@ -118,6 +118,7 @@ private:
     std::optional<Expected> expected() const;
     Rgb channels(const XmlElement& element, const char* attribute, const Limits& limits, const Rgb& fallback) const;
     void warn_without_volume() const;
+    void warn_of_glow_without_absorption(const Volume& volume) const;
     void warn_of_what_is_in_no_volume() const;
     void read_without_effect() const;
     void read_bookkeeping() const;

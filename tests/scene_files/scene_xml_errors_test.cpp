@@ -31,6 +31,7 @@ TEST_CASE("what is not rendered is said, with its place", "[cpu][xml]") {
     CHECK_THAT(warning("<shadowRayDensityMultiplier>4</shadowRayDensityMultiplier>"),
                Catch::Contains("lightRayDensityMultiplier, 1"));
     CHECK_THAT(warning(R"(<emission r="1" multiplier="5"/>)"), Catch::Contains("no temperature grid"));
+    CHECK_THAT(warning(R"(<sigma_a>0</sigma_a><medium r="1"/>)"), Catch::Contains("sigma_a is 0"));
     CHECK_THAT(warning("<diffuseRebounds><rebound>5</rebound></diffuseRebounds>"), Catch::Contains("without effect"));
     CHECK_THAT(warning("<fileName>x.png</fileName>"), Catch::Contains("-o"));
     CHECK_THAT(warning("<intersectionHandler>diffuse</intersectionHandler>"), Catch::Contains("<integrator>"));
@@ -195,9 +196,8 @@ TEST_CASE("what is in no volume is said", "[cpu][xml]") {
     const Scene scene = parse("<sigma_s>4</sigma_s>" + volumes);
     CHECK(scene.volumes.size() == 1);
     CHECK(warns(scene, "it is in no volume"));
-    for (const char* element :
-         {"<layers scaleHeight='1'/>", "<transferFunction/>", "<emission r='1'/>", "<phase>x</phase>",
-          "<lightRayDensityMultiplier>2</lightRayDensityMultiplier>"}) {
+    for (const char* element : {"<layers scaleHeight='1'/>", "<transferFunction/>", "<emission r='1'/>",
+                                "<phase>x</phase>", "<lightRayDensityMultiplier>2</lightRayDensityMultiplier>"}) {
         CAPTURE(element);
         CHECK(warns(parse(element + volumes), "it is in no volume"));
     }
