@@ -71,7 +71,8 @@ std::vector<NamedScene> scenes_of_all() {
     lit.settings.spp = 2000; // of 500 a pixel whose light is one lamp, seldom chosen, is far from a normal limit
     scenes.push_back({"all lights", lit});
     Scene surfaces = rough_still_life();
-    surfaces.settings.spp = 1000; // likewise
+    surfaces.settings.spp = 1000;        // likewise
+    surfaces.settings.march.step = 0.02; // the reference of surfaces does not march
     scenes.push_back({"surfaces", surfaces});
     return scenes;
 }

@@ -19,7 +19,8 @@ using vkvol::Rgb;
 
 Rgb transmittance(const World& world, const Ray& ray, Rng& rng) {
     const Method& method = world.method;
-    if (nearest_surface(world.scene.surfaces, ray))
+    // A lamp's body, which is where the ray ends, hides nothing of it.
+    if (nearest_surface(world.scene.surfaces, {ray.origin, ray.direction, ray.reach * (1.0 - 1e-9)}))
         return Rgb(0.0);
     if (!world.medium)
         return Rgb(1.0);
