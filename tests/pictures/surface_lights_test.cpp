@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
+#include "preset.h"
 #include "shared/constants.h"
 #include "support/agreement.h"
 #include "support/images.h"
@@ -278,6 +279,23 @@ TEST_CASE("looks from along flights do not go through walls", "[gpu][image][surf
     CHECK(image_mean(render_here(scene, 1).film).value == glm::dvec3(0.0));
     scene.surfaces.front().shape = RectangleSurface{{0.0, 0.0, -2.0}, {99.0, 0.0, 0.0}, {0.0, 99.0, 0.0}};
     CHECK(image_mean(render_here(scene, 2).film).value.x > 0.01);
+}
+
+// Rays that go to a lamp end at its body, by rounding before it or behind.
+TEST_CASE("the reference's lamps with bodies give what lamps without give", "[cpu][surfaces]") {
+    const DiskSurface disk{{0.3, 3.0, 0.2}, glm::normalize(glm::dvec3(-0.1, -1.0, -0.2)), 0.5};
+    Surface surface;
+    surface.shape = disk;
+    surface.material = matte(0.2);
+    surface.emission = {5.0, 4.0, 3.0};
+    Scene scene = scene_of(medium(Sphere{{0.0, 0.0, 0.0}, 1.0}, 1.0, 0.9), 2.5, 8);
+    scene.settings.integrator = "ratioTracking";
+    scene.settings.choices.scattering = SCATTERING_SINGLE;
+    scene.settings.spp = 256;
+    Scene without = scene;
+    scene.surfaces = {surface};
+    without.lights = {DiskLight{disk.center, disk.normal, disk.radius, surface.emission}};
+    CHECK_AGREEMENT(agree(render_reference(with_preset(scene), 1), render_reference(without, 2), "lamp with a body"));
 }
 
 TEST_CASE("surfaces that shine are lamps with bodies", "[gpu][image][surfaces]") {
