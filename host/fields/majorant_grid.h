@@ -44,8 +44,8 @@ MajorantGrid choose_majorant_grid(const DensityField& field, const PilotScene& s
 // A control density for each cell of `grid` (whose bounds are the densities' own, not scaled), with the bound of what
 // the density differs from it: the least value in the cell, or, where the rest would be optically thin across the whole
 // grid, the mean (Novak et al., "Residual Ratio Tracking", 2014). A control c that the density s may be below makes
-// weights that grow exponentially: their mean square exceeds the transmittance's by exp of the integral of (s - c)^2 / rest.
-// `sigma_t`: extinction at density 1 per voxel; 0: the least value everywhere, a lower bound.
+// weights that grow exponentially: their mean square exceeds the transmittance's by exp of the integral of (s - c)^2 /
+// rest. `sigma_t`: extinction at density 1 per voxel; 0: the least value everywhere, a lower bound.
 std::vector<shared::ControlCell> make_controls(const DensityField& field, const MajorantGrid& grid, double sigma_t,
                                                const ValueMap& map = {});
 
