@@ -84,6 +84,12 @@ build() {
     if [[ "${1:-}" == -D* ]]; then
         setting=$1
         shift
+    elif [ -z "${CXX:-}" ]; then
+        # As tools/test.sh has it, or that would compile anew what another script has. Elsewhere no new compiler's warning
+        # shall keep anybody from a picture.
+        case $(system ID) in
+        "debian 12" | "debian 13") setting=-DVKVOL_WERROR=ON ;;
+        esac
     fi
     say "Building ($preset)"
     # Files that were named on the command line are where they were.

@@ -41,8 +41,23 @@ double directed_share(double depolarization) {
     return (1.0 - c) / (1.0 + 2.0 * c);
 }
 
+double henyey_greenstein(double g, double mu) {
+    return (1.0 - g * g) / (4.0 * std::numbers::pi * std::pow(1.0 + g * g - 2.0 * g * mu, 1.5));
+}
+
+double draine(double g, double alpha, double mu) {
+    return henyey_greenstein(g, mu) * (1.0 + alpha * mu * mu) / (1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0);
+}
+
 double draine_mean_cosine(double g, double alpha) {
     return g * (1.0 + alpha * (3.0 + 2.0 * g * g) / 5.0) / (1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0);
+}
+
+double table_value(std::span<const shared::PhaseNode> nodes, double mu) {
+    const float x = static_cast<float>(1.0 - mu);
+    const auto after = std::ranges::upper_bound(nodes.begin() + 1, nodes.end() - 1, x, {}, &shared::PhaseNode::x);
+    const shared::PhaseNode &a = *std::prev(after), &b = *after;
+    return std::lerp(a.value, b.value, std::clamp((x - a.x) / (b.x - a.x), 0.0f, 1.0f));
 }
 
 // Mean cosine of densities that are linear between nodes: 2 pi times the integral of (1 - x) value.
@@ -85,6 +100,26 @@ std::uint32_t phase_iterations(const Volume& volume, std::span<const shared::Pha
     if (!nodes.empty())
         return (drawn + evaluated) * static_cast<std::uint32_t>(std::bit_width(nodes.size()) + 1);
     return 0;
+}
+
+double phase_value(const Volume& volume, std::span<const shared::PhaseNode> nodes, double mu) {
+    const shared::PhaseParams p = phase_params(volume, nodes);
+    switch (volume.phase) {
+    case PhaseFunction::rayleigh: // whose mean of mu^2 is 1/3
+        return std::lerp(1.0, 0.75 * (1.0 + mu * mu), double(p.share)) / (4.0 * std::numbers::pi);
+    case PhaseFunction::double_henyey_greenstein:
+        return std::lerp(henyey_greenstein(p.g, mu), henyey_greenstein(p.g2, mu), double(p.share));
+    case PhaseFunction::draine:
+        return draine(p.g, p.alpha, mu);
+    case PhaseFunction::droplets:
+        return std::lerp(henyey_greenstein(p.g, mu), draine(p.g2, p.alpha, mu), double(p.share));
+    case PhaseFunction::table:
+    case PhaseFunction::fournier_forand:
+        return table_value(nodes, mu);
+    case PhaseFunction::henyey_greenstein:
+        break;
+    }
+    return henyey_greenstein(p.g, mu);
 }
 
 double phase_peak(const Volume& volume, std::span<const shared::PhaseNode> nodes) {

@@ -15,6 +15,9 @@ shared::PhaseParams phase_params(const Volume& volume, std::span<const shared::P
 // may draw a direction to scatter, and some to lamps, suns and maps from either end of a flight, and from along it.
 std::uint32_t phase_iterations(const Volume& volume, std::span<const shared::PhaseNode> nodes);
 
+// The function's value [1 / sr], mu being the cosine between the directions of travel before and after.
+double phase_value(const Volume& volume, std::span<const shared::PhaseNode> nodes, double mu);
+
 // At least the function's largest value [1 / sr]; of mixtures, and Draine's, it may be a few times that.
 double phase_peak(const Volume& volume, std::span<const shared::PhaseNode> nodes);
 

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 #include <set>
 
 #include "camera_view.h"
 #include "kernel_constants.h"
+#include "phase_params.h"
+#include "phase_table.h"
 #include "scene_facts.h"
 #include "shared/constants.h"
 #include "view_advice.h"
@@ -299,24 +302,23 @@ glm::dvec3 light_direction(const Evidence& e) {
     return sun ? sun->direction : glm::dvec3(0.0);
 }
 
-// What Henyey and Greenstein's phase function makes of light that goes straight from the light to the camera, to that
-// of isotropic scattering.
-double phase_to_camera(const Evidence& e, double g) {
-    const double mu = glm::dot(light_direction(e), e.sight->forward); // of the angle of scattering
-    return (1.0 - g * g) / std::pow(1.0 + g * g - 2.0 * g * mu, 1.5);
-}
-
 Answer phase_peak(const Evidence& e) {
     const Volume* volume = lone_volume(e.scene);
-    if (e.odd != Odd::black || !volume || !e.sight || !sees_light(e) || e.emits)
+    if (e.odd != Odd::black || !volume || !e.sight || !sees_light(e) || e.emits || !only_directional(e.scene.lights))
         return {};
-    const double g = volume->g;
-    if (volume->phase != PhaseFunction::henyey_greenstein || std::abs(g) < 0.8 || phase_to_camera(e, g) > 0.05 ||
-        !only_directional(e.scene.lights))
+    if (volume->phase == PhaseFunction::table) // of a file, which may be gone by now
         return {};
-    return fmt::format("the medium scatters the light past the camera: with heyneygreenstein_g {:g}, {:.1g} of what "
-                       "it would be by even scattering comes this way; lower it, or let the light shine {} the camera",
-                       g, phase_to_camera(e, g), g > 0.0 ? "towards" : "from behind");
+    const std::vector<shared::PhaseNode> nodes = phase_table(*volume).nodes;
+    const double mu = glm::dot(light_direction(e), e.sight->forward); // straight from the light to the camera
+    const double to_even = 4.0 * std::numbers::pi * phase_value(*volume, nodes, mu);
+    if (to_even > 0.05)
+        return {};
+    const bool is_lone_lobe = volume->phase == PhaseFunction::henyey_greenstein;
+    return fmt::format("the medium scatters the light past the camera: with {}, {:.1g} of what it would be by even "
+                       "scattering comes this way; {}, or let the light shine {} the camera",
+                       is_lone_lobe ? fmt::format("heyneygreenstein_g {:g}", volume->g) : "its phase function", to_even,
+                       is_lone_lobe ? "lower it" : "take a broader one",
+                       mean_cosine(*volume, nodes) > 0.0 ? "towards" : "from behind");
 }
 
 Answer backlit(const Evidence& e) {

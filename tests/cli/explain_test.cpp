@@ -198,6 +198,10 @@ TEST_CASE("peaked phase functions that pass the camera by are explained", "[gpu]
              "<sigma_a>0.5</sigma_a><sigma_s>2</sigma_s>", "<sigma_a>0</sigma_a><sigma_s>0.05</sigma_s>");
     check({before, "<sphere/>", "<sphere/><heyneygreenstein_g>0.99</heyneygreenstein_g>", "black", "phasePeak",
            "heyneygreenstein_g 0.99"});
+    const char* others[] = {"<heyneygreenstein_g>0.99</heyneygreenstein_g><phase alpha=\"1\">draine</phase>",
+                            "<phase index=\"1.05\" backscatter=\"0.0003\">fournierForand</phase>"};
+    for (const char* other : others)
+        check({before, "<sphere/>", std::string("<sphere/>") + other, "black", "phasePeak", "its phase function"});
 }
 
 namespace {

@@ -129,6 +129,23 @@ TEST_CASE("phase functions of every kind integrate to 1, and have the mean cosin
     }
 }
 
+TEST_CASE("the host's values of phase functions are the reference's", "[cpu][phase]") {
+    for (const NamedPhase& phase : all_phases()) {
+        const reference::Medium medium = medium_of(phase);
+        const Volume volume = phase.of(Volume{});
+        const std::vector<shared::PhaseNode> nodes = phase_table(volume).nodes;
+        over_cosines(1000, [&](double mu, double) {
+            if (mu > 1.0 - 1e-9 && phase.kind == PhaseFunction::fournier_forand)
+                return; // spread out
+            CAPTURE(phase.name, mu);
+            const double exact = reference::phase_eval(medium, mu), value = phase_value(volume, nodes, mu);
+            // Four roundings of 1 + g^2 - 2 g mu, 3e-5 at least, to the power of 3/2.
+            const double known = nodes.empty() ? 1e-10 : 24 * ulp + between_nodes(phase);   // as a kernel's, of a table
+            CHECK(value == Approx(exact).epsilon(known).margin(nodes.empty() ? 0.0 : ulp)); // where it begins from 0
+        });
+    }
+}
+
 TEST_CASE("directions are drawn from phase functions of every kind as these are evaluated", "[gpu][phase]") {
     constexpr std::uint32_t count = 1 << 18;
     constexpr int bins = 64;

@@ -123,7 +123,7 @@ TEST_CASE("media of a colour in each voxel add up to pbrt's", "[cpu][pbrt]") {
 }
 
 // The reference knows media of one density; their colours differ from multiples of one by less than noise shows.
-TEST_CASE("media of a colour in each voxel are rendered as one of as many densities", "[gpu][pbrt]") {
+TEST_CASE("media of a colour in each voxel are rendered as one of as many densities", "[gpu][pbrt][long]") {
     const TestDirectory directory;
     const glm::dvec3 absorbed(1.0, 0.4, 0.2), scattered(0.6, 0.9, 1.2);
     std::string densities = "\"float density\" [";

@@ -252,7 +252,7 @@ TEST_CASE("where a path is laid aside changes nothing", "[gpu][determinism]") {
             flights[flight] = transmittances[transmittance] = true;
             each_once.push_back(combination);
         }
-        for (const Combination& combination : in_turn(each_once, turn++)) {
+        for (const Combination& combination : in_turn(each_once, turn++, 4)) {
             // Where flights rest while shadow rays are sent more has to survive: in fire; the rest sends them at
             // collisions.
             Scene scene = with(named.scene, combination);

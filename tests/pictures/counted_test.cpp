@@ -240,7 +240,7 @@ TEST_CASE("a sensor in the plane of the ground counts what comes from far away",
 
 // A piece of ground 10,000 wide to each side keeps rays off itself by 0.08, of which a sensor of 1000 in it knows
 // nothing.
-TEST_CASE("a sensor in wide ground counts what begins above it", "[gpu][counted]") {
+TEST_CASE("a sensor in wide ground counts what begins above it", "[gpu][counted][long]") {
     const Scene scene = parse("<periodic x='-1e4 1e4' z='-1e4 1e4'/><surfaces><rectangle lookAt='0 1 0' width='2e4' "
                               "height='2e4'/></surfaces><light y='1' r='1' g='1' b='1'/><irradiance lookAt='0 1 0' "
                               "width='1000' height='1000'/><integrator>lightTracing</integrator><width>8</width>"
@@ -251,7 +251,7 @@ TEST_CASE("a sensor in wide ground counts what begins above it", "[gpu][counted]
     CHECK(std::abs(mean.value.x - 1.0) < 4.0 * mean.standard_error->x);
 }
 
-TEST_CASE("particles are counted behind glass", "[gpu][counted]") {
+TEST_CASE("particles are counted behind glass", "[gpu][counted][long]") {
     Scene scene = sensor({0.0, -2.0, 0.0}, up_y, {6.0, 6.0}, 1, 1 << 12);
     scene.surfaces = {surface_of(left_ball, MaterialKind::dielectric, 0.0)};
     scene.surfaces.front().shape = BallSurface{{0.0, 0.0, 0.0}, 0.7};

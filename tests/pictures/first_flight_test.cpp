@@ -171,7 +171,7 @@ TEST_CASE("thin matter lit from aside is no noisier than thicker matter", "[gpu]
     CHECK(spread(0.01) < 4.0 * spread(0.5));
 }
 
-TEST_CASE("an even glow leaves no noise, wherever flights are split", "[gpu][first_flight][furnace]") {
+TEST_CASE("an even glow leaves no noise, wherever flights are split", "[gpu][first_flight][furnace][long]") {
     Scene scene = dark_wisp();
     scene.lights.clear();
     scene.background = Rgb(1.0);

@@ -210,7 +210,7 @@ TEST_CASE("a sample sees its moment", "[motion][long]") {
 }
 
 // As the grid, the glow and the albedo that it has at the moment of the sample.
-TEST_CASE("a sample sees grids drifted", "[motion]") {
+TEST_CASE("a sample sees grids drifted", "[motion][long]") {
     GridRecipe wind = cloud_grid();
     wind.name = "v";
     wind.first -= 12;

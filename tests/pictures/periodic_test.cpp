@@ -321,7 +321,7 @@ TEST_CASE("depths count from the eye, however many domains are between", "[gpu][
         CHECK(pixel.x == Approx(10.0 / std::sin(glm::radians(20.0))).epsilon(1e-3));
 }
 
-TEST_CASE("a level ray through nothing is cut after a million domains, and counted", "[gpu][periodic]") {
+TEST_CASE("a level ray through nothing is cut after a million domains, and counted", "[gpu][periodic][long]") {
     Scene scene;
     scene.volumes = {medium(Sphere{{0.0, 0.5, 0.0}, 0.1}, 1.0, 0.5), medium(Sphere{{0.0, -0.5, 0.0}, 0.1}, 1.0, 0.5)};
     scene.periodic = Periodic{{-1.0, 0.0, -1.0}, {1.0, 0.0, 1.0}};

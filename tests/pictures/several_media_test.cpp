@@ -129,7 +129,7 @@ TEST_CASE("halves of a medium on top of each other are the whole, in every way t
     check("cloud", lit_scene(dense_cloud(), 11.0));
 }
 
-TEST_CASE("a medium cut along an oblique plane is the whole", "[gpu][image][several]") {
+TEST_CASE("a medium cut along an oblique plane is the whole", "[gpu][image][several][long]") {
     const glm::dmat4 turn = turned(0.7, {1.0, 1.0, 0.4});
     Volume whole = medium(Box{{0.0, 0.0, 0.0}, {2.0, 2.0, 2.0}}, 1.5, 0.9, 0.4);
     whole.transform = turn;

@@ -42,7 +42,7 @@ double noise_of(const Scene& scene, const Film& film) {
 } // namespace
 
 TEST_CASE("what is scattered once of a sun or a sky is the reference's, by whatever directions are drawn",
-          "[gpu][lights]") {
+          "[gpu][lights][long]") {
     const std::pair<std::string, Light> lights[] = {
         {"sun", SunLight{glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {3.0, 2.5, 2.0}, 8.0}},
         {"sun of more than half of all directions",

@@ -42,7 +42,7 @@ TEST_CASE("no lamp of two thousand above a floor is lost, however long a lane wo
     CHECK(same_bits(render_here(scene, 1).film, render_here(scene, 1, briefly).film));
 }
 
-TEST_CASE("looks and flights share a map of the sky on surfaces as in matter", "[gpu][image][surfaces]") {
+TEST_CASE("looks and flights share a map of the sky on surfaces as in matter", "[gpu][image][surfaces][long]") {
     Scene scene = empty_scene();
     scene.lights = {write_sky(make_map(8, 4, [](int, int) { return Rgb(1.0); }))};
     scene.surfaces = {ball_surface(white(MaterialKind::diffuse)),
@@ -136,7 +136,7 @@ TEST_CASE("a floor under a lamp has the form factor of a disk", "[gpu][image][su
     CHECK(looked_for.variance.front().x < 0.01 * albedo * albedo * p / scene.settings.spp);
 }
 
-TEST_CASE("fog darkens a sunlit floor by both ways through it", "[gpu][image][surfaces]") {
+TEST_CASE("fog darkens a sunlit floor by both ways through it", "[gpu][image][surfaces][long]") {
     // Absorbing fog of height 1 above a floor: albedo / pi E cos(sun) exp(-tau / cos(sun)) exp(-tau).
     const double tau = 0.7, albedo = 0.5;
     const glm::dvec3 sun = glm::normalize(glm::dvec3(0.5, 1.0, -0.3));

@@ -96,7 +96,7 @@ TEST_CASE("the cache of light knows the colours that several media take away", "
                  0.97) < 6.0);
 }
 
-TEST_CASE("a thin even glow is seen by every sample", "[gpu][variances][emission]") {
+TEST_CASE("a thin even glow is seen by every sample", "[gpu][variances][emission][long]") {
     // One of 50 flights collides there: 50. What is left is what chords and second collisions differ by.
     CHECK(spread("<sphere/><sigma_a>0.01</sigma_a><sigma_s>0.01</sigma_s><medium r='1' g='1' b='1'/><camera z='4' "
                  "fov='10'/>",

@@ -15,6 +15,7 @@
 #include "support/scenes.h"
 #include "support/surface_scenes.h"
 #include "support/test_device.h"
+#include "support/thorough.h"
 
 using namespace vkvol;
 
@@ -63,6 +64,8 @@ TEST_CASE("a render resumed from any of its checkpoints has the same bits", "[gp
     const std::size_t band_rows = GENERATE(0u, 10u); // the film in one buffer, or in several
     const Schedule schedule = GENERATE(Schedule::fused, Schedule::staged);
     const Schedule resumed_by = GENERATE(Schedule::fused, Schedule::staged);
+    if ((band_rows > 0) != (resumed_by == Schedule::staged) && !thorough())
+        return; // each goes on from what either has kept, of one film or of bands
     Scene scene = sunlit_cloud(32, 9);
     if (band_rows > 0) {
         scene.volumes.push_back(medium(Sphere{{0.0, 0.0, 0.0}, 3.0}, 0.5, 0.5));
