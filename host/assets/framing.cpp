@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "camera_view.h"
+#include "decimals.h"
 #include "error.h"
 #include "layers.h"
 #include "loaded_medium.h"
@@ -232,10 +233,11 @@ std::string give_camera(Scene& scene, FieldCache& fields) {
     const glm::dvec3 forward = -camera_rotation(scene.camera)[2];
     const double distance = glm::dot(middle_of(*corners) - scene.camera.position, forward);
     const glm::dvec3 target = scene.camera.position + distance * forward;
-    return fmt::format("the scene has no <camera>: this one frames its {}, <camera lookAt=\"{:.6g} {:.6g} {:.6g}\" "
-                       "distance=\"{:.6g}\" azimuth=\"{:g}\" elevation=\"{:g}\" fov=\"{:g}\"/>",
-                       has_media ? "media" : "surfaces", target.x, target.y, target.z, distance, orbit.azimuth,
-                       orbit.elevation, scene.camera.fov);
+    const auto text = [decimals = decimals_for(diagonal_of(*corners))](double v) { return short_text(v, decimals); };
+    return fmt::format("the scene has no <camera>: this one frames its {}, <camera lookAt=\"{} {} {}\" distance=\"{}\" "
+                       "azimuth=\"{:g}\" elevation=\"{:g}\" fov=\"{:g}\"/>",
+                       has_media ? "media" : "surfaces", text(target.x), text(target.y), text(target.z), text(distance),
+                       orbit.azimuth, orbit.elevation, scene.camera.fov);
 }
 
 } // namespace vkvol

@@ -37,17 +37,20 @@ std::vector<InputFile> input_files(const Scene& scene, bool with_materials) {
     return files;
 }
 
+void SeenFiles::see(const InputFile& input) {
+    std::error_code error; // what is not there is for whoever reads it to tell
+    const Stamp stamp{std::filesystem::file_size(input.file, error),
+                      std::filesystem::last_write_time(input.file, error)};
+    const auto [seen, is_new] = stamps_.try_emplace(input.file, stamp);
+    if (!is_new && seen->second != stamp && !error)
+        throw InputError(fmt::format("{}: {} was changed while it was rendered, and what came before has it as it was; "
+                                     "render anew",
+                                     input.file.string(), input.what));
+}
+
 void SeenFiles::see(const Scene& scene) {
-    for (const InputFile& input : input_files(scene, false)) {
-        std::error_code error; // what is not there is for whoever reads it to tell
-        const Stamp stamp{std::filesystem::file_size(input.file, error),
-                          std::filesystem::last_write_time(input.file, error)};
-        const auto [seen, is_new] = stamps_.try_emplace(input.file, stamp);
-        if (!is_new && seen->second != stamp && !error)
-            throw InputError(fmt::format("{}: {} was changed while it was rendered, and other moments have it as it "
-                                         "was; render anew",
-                                         input.file.string(), input.what));
-    }
+    for (const InputFile& input : input_files(scene, false))
+        see(input);
 }
 
 } // namespace vkvol

@@ -23,7 +23,8 @@ std::vector<InputFile> input_files(const Scene& scene, bool with_materials);
 // Files as they were when they were first seen, for what reads them again and again.
 class SeenFiles {
 public:
-    // Throws InputError if one of the scene's, but for materials of models, has changed since.
+    // Throw InputError if it has changed since; of a scene, any of its files but for materials of models.
+    void see(const InputFile& input);
     void see(const Scene& scene);
 
 private:

@@ -341,7 +341,7 @@ void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media
             fmt::format("{}the extinction, {:.3g} per world unit, is too thin to be <everywhere>; expected "
                         "at least {:g}, or a <box>",
                         place, largest(all), thinnest));
-    if (is_lossless(lost, endless) && !scene.settings.max_depth && scattering != SCATTERING_SINGLE)
+    if (is_lossless(lost, endless) && !scene.settings.max_depth && scattering == SCATTERING_MULTIPLE)
         throw InputError(endless_place +
                          "a medium that is <everywhere> and absorbs nothing keeps its paths for ever; raise "
                          "sigma_a, or give a <maxDepth>");
@@ -355,7 +355,7 @@ void check_way_out(const Scene& scene, const std::vector<LoadedMedium>& media, i
                std::max({color.x, color.y, color.z}) < 1.0;
     };
     const auto is_coloured = [](const LoadedMedium& medium) { return medium.mesh && medium.mesh->diffuse; };
-    if (has_way_out || scene.settings.max_depth || scattering == SCATTERING_SINGLE ||
+    if (has_way_out || scene.settings.max_depth || scattering != SCATTERING_MULTIPLE ||
         std::any_of(media.begin(), media.end(), is_coloured) ||
         std::any_of(scene.surfaces.begin(), scene.surfaces.end(), absorbs))
         return;

@@ -1,6 +1,7 @@
 #include "number_table.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 #include <optional>
@@ -52,9 +53,13 @@ void read_row(const std::filesystem::path& file, const NumberTableForm& form, in
         fail_line(file, line, fmt::format("more than {} lines; thin it out", form.most_rows));
 }
 
+// No number, nor what a program writes where it has none.
 bool is_heading(const std::vector<std::string>& words) {
-    return std::none_of(words.begin(), words.end(),
-                        [](const std::string& word) { return number_of(word).has_value(); });
+    return std::none_of(words.begin(), words.end(), [](std::string word) {
+        std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
+        word.erase(0, word.find_first_not_of("+-"));
+        return number_of(word).has_value() || word == "nan" || word == "inf" || word == "infinity";
+    });
 }
 
 } // namespace

@@ -302,6 +302,7 @@ int run_bench(const BenchRequest& request) {
         tell(stderr, "vkvol: note: a render failed; what was measured before is written\n");
         std::rethrow_exception(bench.failure());
     }
+    check_validation(bench.device());
     return result.interrupted ? exit_interrupted : exit_done;
 }
 

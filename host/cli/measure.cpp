@@ -1,11 +1,9 @@
 #include "measure.h"
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
+#include <cstdint>
 #include <fmt/format.h>
 #include <glm/glm.hpp>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
@@ -17,6 +15,7 @@
 #include "film_table.h"
 #include "image_io.h"
 #include "input_file.h"
+#include "input_files.h"
 #include "interrupt.h"
 #include "messages.h"
 #include "render_notes.h"
@@ -25,6 +24,7 @@
 #include "session.h"
 #include "spectral_bands.h"
 #include "stopwatch.h"
+#include "table_rows.h"
 #include "workshop.h"
 
 namespace vkvol {
@@ -67,7 +67,10 @@ RenderResult measure(const MeasureOptions& options, const Scene& scene, std::uin
     job.noise_goal = options.request.noise_goal;
     job.disk_cache = !options.request.no_cache;
     job.interrupted = interrupted;
-    return render(workshop.device(options.request.device), scene, job);
+    const Device& device = workshop.device(options.request.device);
+    RenderResult result = render(device, scene, job);
+    check_validation(device);
+    return result;
 }
 
 // A line of a table that has one.
@@ -86,86 +89,9 @@ std::string mean_table(const Film& film) {
     return text + fmt::format("{}\n", samples);
 }
 
-// Rows of a text that has commas between its values; the first is the heading.
-std::vector<Values> rows_of(const std::string& table) {
-    std::vector<Values> rows{{""}};
-    for (const char c : table) {
-        if (c == '\n')
-            rows.push_back({""});
-        else if (c == ',')
-            rows.back().emplace_back();
-        else
-            rows.back().back() += c;
-    }
-    rows.pop_back(); // behind the last line's end
-    return rows;
-}
-
-std::string as_csv(const std::vector<Values>& rows) {
-    std::string text;
-    for (Values row : rows) {
-        for (std::string& word : row)
-            if (word.find_first_of("\"\n\r") != std::string::npos) {
-                for (std::size_t at = 0; (at = word.find('"', at)) != std::string::npos; at += 2)
-                    word.insert(at, 1, '"');
-                word = '"' + word + '"';
-            }
-        text += fmt::format("{}\n", fmt::join(row, ","));
-    }
-    return text;
-}
-
-// Not "007", nor "inf": what a number would not be written as, but a key's value may be.
-bool is_plain(const std::string& number) {
-    const std::size_t first = number.find_first_not_of('-');
-    return first != std::string::npos && std::isdigit(static_cast<unsigned char>(number[first])) &&
-           !(number[first] == '0' && first + 1 < number.size() &&
-             std::isdigit(static_cast<unsigned char>(number[first + 1])));
-}
-
-// An object for each row: numbers, null for what is not known, and else texts.
-std::string as_json(const std::vector<Values>& rows) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (std::size_t i = 1; i < rows.size(); ++i) {
-        nlohmann::ordered_json object = nlohmann::ordered_json::object();
-        for (std::size_t k = 0; k < rows[i].size(); ++k) {
-            const std::string& word = rows[i][k];
-            double number = 0.0;
-            const char* const end = word.data() + word.size();
-            const auto [read, error] = std::from_chars(word.data(), end, number);
-            if (word.empty())
-                object[rows[0][k]] = nullptr;
-            else if (error == std::errc() && read == end && is_plain(word))
-                object[rows[0][k]] = number;
-            else
-                object[rows[0][k]] = word;
-        }
-        list.push_back(std::move(object));
-    }
-    return list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-}
-
-// As the table's file wants it.
-std::string as_file(const std::filesystem::path& file, const std::vector<Values>& rows) {
-    return file_ending(file) == ".json" ? as_json(rows) : as_csv(rows);
-}
-
-// In columns, for reading.
-std::string as_text(const std::vector<Values>& rows) {
-    std::vector<std::size_t> widths(rows.front().size(), 0);
-    for (const Values& row : rows)
-        for (std::size_t i = 0; i < row.size(); ++i)
-            widths[i] = std::max(widths[i], row[i].size());
-    std::string text;
-    for (const Values& row : rows)
-        for (std::size_t i = 0; i < row.size(); ++i)
-            text += fmt::format("{:>{}}{}", row[i], widths[i], i + 1 < row.size() ? "  " : "\n");
-    return text;
-}
-
 // A table's rows behind the values that they are of.
-void add(const std::vector<Sweep>& sweeps, const Values& values, const std::string& table, std::vector<Values>& rows) {
-    std::vector<Values> found = rows_of(table);
+void add(const std::vector<Sweep>& sweeps, const Values& values, const std::string& table, TableRows& rows) {
+    TableRows found = rows_of(table);
     if (rows.empty()) {
         Values heading;
         for (const Sweep& sweep : sweeps)
@@ -225,7 +151,7 @@ void check_keys(const MeasureOptions& options, const Scene& scene) {
 }
 
 // A table that no file takes is printed: it may be of hours.
-void write(const MeasureOptions& options, const std::vector<Values>& rows) {
+void write(const MeasureOptions& options, const TableRows& rows) {
     if (rows.empty())
         return;
     if (!options.output) {
@@ -241,7 +167,7 @@ void write(const MeasureOptions& options, const std::vector<Values>& rows) {
 }
 
 // From reading to reading, so that none is lost. Whether it is written: a disk may be full for a moment.
-bool keep(const MeasureOptions& options, const std::vector<Values>& rows) {
+bool keep(const MeasureOptions& options, const TableRows& rows) {
     if (!options.output || is_special(*options.output) || rows.empty())
         return false;
     try {
@@ -253,8 +179,15 @@ bool keep(const MeasureOptions& options, const std::vector<Values>& rows) {
     }
 }
 
+// All readings are of one scene: throws InputError where it changes between them.
+void see(const MeasureOptions& options, const Scene& scene, SeenFiles& seen) {
+    seen.see({"the scene", options.request.scene});
+    seen.see(scene);
+}
+
 // Before any time is spent: what is wrong with the last of many values is wrong now.
-void check_all(const MeasureOptions& options, const std::vector<SpectralBand>& bands, Workshop& workshop) {
+void check_all(const MeasureOptions& options, const std::vector<SpectralBand>& bands, Workshop& workshop,
+               SeenFiles& seen) {
     for (const Values& values : combinations(options.sweeps)) {
         std::optional<glm::ivec2> size;
         for (const SpectralBand& band : bands)
@@ -262,6 +195,7 @@ void check_all(const MeasureOptions& options, const std::vector<SpectralBand>& b
                 if (interrupted())
                     return;
                 const RenderScene loaded = load_render_scene(request_of(options, values, band), workshop.fields());
+                see(options, loaded.scene, seen);
                 const glm::ivec2 its(loaded.scene.picture.width, loaded.scene.picture.height);
                 if (size.value_or(its) != its)
                     throw InputError(another_size);
@@ -312,7 +246,7 @@ class Readings {
 public:
     // Throws InputError for what is wrong with any reading.
     explicit Readings(const MeasureOptions& options) : options_(options), bands_(bands_of(options)) {
-        check_all(options_, bands_, workshop_);
+        check_all(options_, bands_, workshop_, seen_);
     }
 
     // One reading, summed over its bands; nothing if interrupted before: of some bands alone it would be another.
@@ -340,6 +274,7 @@ public:
 private:
     RenderScene scene_of(const Values& values, std::size_t band) {
         RenderScene loaded = load_render_scene(request_of(options_, values, bands_[band]), workshop_.fields());
+        see(options_, loaded.scene, seen_);
         if ((std::exchange(loaded.scene.layers, 0u) & ~layer_alpha) != 0)
             loaded.scene.warnings.push_back("<film aov>: a table has no layers, and none is rendered; leave it out");
         if (std::exchange(loaded.scene.holds_out, false))
@@ -364,6 +299,7 @@ private:
     const MeasureOptions& options_;
     std::vector<SpectralBand> bands_;
     Workshop workshop_{true};
+    SeenFiles seen_;
     bool was_interrupted_ = false;
     RenderResult told_;
 };
@@ -371,7 +307,7 @@ private:
 // Each reading's rows, written between readings where that takes little of the time.
 void measure_all(const MeasureOptions& options, Readings& readings) {
     constexpr double pause = 20.0; // times what writing takes: of many readings the table is long
-    std::vector<Values> rows;
+    TableRows rows;
     bool is_written = false;
     double writing = 0.0; // seconds
     Stopwatch unwritten;

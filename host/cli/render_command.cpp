@@ -138,13 +138,6 @@ bool has_samples(const Film& film) {
     return std::any_of(film.samples.begin(), film.samples.end(), [](std::uint32_t n) { return n > 0; });
 }
 
-void check_result(const Device& device) {
-    for (const std::string& message : device.validation_messages())
-        tell(stderr, "vkvol: validation: {}", message + "\n"); // of several lines
-    if (!device.validation_messages().empty())
-        throw RenderError(fmt::format("the validation layer has {} objections", device.validation_messages().size()));
-}
-
 // Once, also where all frames of a sequence have the same.
 void tell_why(const RenderOptions& options, Workshop& workshop, const std::optional<Explanation>& explanation) {
     if (explanation && !workshop.new_warnings({explanation->text}).empty() && !options.quiet)
@@ -163,7 +156,7 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
     if (!options.quiet)
         print_warnings(workshop.new_warnings(result.warnings));
     for (const Device* one : devices)
-        check_result(*one);
+        check_validation(*one);
     if (options.dry_run) {
         if (!options.quiet)
             print_dry_run(options, scene, device, result);

@@ -101,6 +101,9 @@ void add_band(const Film& film, double weight, Film& sum) {
     }
     if (sum.pixel_count() != film.pixel_count())
         throw InputError(another_size);
+    if (sum.places != film.places)
+        throw InputError("bands whose sensors are at other places are no sum; leave their column out of the table of "
+                         "bands, and sweep it with -D");
     const std::optional<glm::dvec3> of_band = variance_of_sum(film);
     if (sum.sum_variance && of_band)
         *sum.sum_variance += weight * weight * *of_band;

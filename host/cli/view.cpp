@@ -4,6 +4,9 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
+#include <new>
+#include <optional>
+#include <system_error>
 #include <utility>
 
 #include "camera_view.h"
@@ -32,6 +35,7 @@ constexpr double seconds_between_polls = 0.5; // at the scene's file
 constexpr double longest_unwatched = 10.0;    // seconds; then it waits until somebody looks again
 constexpr int sketch_pixels = 20'000;         // of the first picture of a view
 constexpr std::uint32_t sketch_samples = 2;
+constexpr double patience = 0.3; // seconds that a view may still take to be shown, though another is wished by now
 constexpr auto nap = std::chrono::milliseconds(200);
 
 // Renders what the board wishes, one scene after another.
@@ -55,11 +59,19 @@ public:
             } catch (const RenderError& error) {
                 session_.reset();
                 board_.say(error.what());
+            } catch (const std::bad_alloc&) {
+                session_.reset();
+                board_.say("there is no memory for that; take a smaller picture or grid");
+            } catch (const std::system_error& error) { // no thread, say
+                session_.reset();
+                board_.say(error.what());
             }
             if (!rendered)
                 wait_for_news();
         }
     }
+
+    const Device& device() const { return device_; }
 
 private:
     bool is_news() { return board_.wish_number() != wish_number_ || file_changed(); }
@@ -97,7 +109,7 @@ private:
         WatchedScene::Read read = read_with_layers(wish.layer);
         const std::string what = read.xml + '\n' + layers_ + asked_text(options_.request, read.scene);
         if (what != rendering_ || !session_) {
-            begin(std::move(read), what);
+            begin(std::move(read), what, wish.paused);
         } else {
             describe(read.xml);
             publish(session_->result(), is_done_);
@@ -145,16 +157,27 @@ private:
         file_lights_ = lights;
         const Camera& camera = file.scene.camera;
         const auto key = [](const Camera& c) {
-            return fmt::format("{} {} {} {} {} {} {} {} {}", c.position.x, c.position.y, c.position.z, c.pitch, c.yaw,
-                               c.roll, c.fov, c.view_height, c.lens.focus);
+            return fmt::format("{} {} {} {} {} {} {} {} {} {}", int(c.projection), c.position.x, c.position.y,
+                               c.position.z, c.pitch, c.yaw, c.roll, c.fov, c.view_height, c.lens.focus);
         };
         if (key(camera) != key(file_camera_))
             board_.forget_camera();
         file_camera_ = camera;
     }
 
-    void begin(WatchedScene::Read read, const std::string& what) {
+    // Of a view that is dragged about each is shown for a moment, though there is another already.
+    bool is_outdated() {
+        if (!is_news())
+            return false;
+        if (!since_asked_)
+            since_asked_.emplace();
+        return has_shown_ || since_asked_->seconds() > patience;
+    }
+
+    void begin(WatchedScene::Read read, const std::string& what, bool is_paused) {
         session_.reset();
+        has_shown_ = false;
+        since_asked_.reset();
         rendering_.clear();
         ++begun_;
         scene_ = std::move(read.scene);
@@ -166,13 +189,13 @@ private:
         job_.disk_cache = !options_.request.no_cache;
         job_.noise_goal = options_.request.noise_goal;
         job_.interrupted = [this] {
-            return interrupted() || is_news() || board_.seconds_unwatched() > longest_unwatched;
+            return interrupted() || is_outdated() || board_.seconds_unwatched() > longest_unwatched;
         };
         describe(read.xml);
         if (!options_.quiet)
             print_warnings(workshop_.new_warnings(scene_.warnings));
-        sketch();
-        if (interrupted() || is_news())
+        sketch(is_paused);
+        if (interrupted() || is_outdated())
             return;
         job_.preview = [this](const RenderResult& result) { publish(result, false); };
         session_.emplace(device_, scene_, job_);
@@ -196,15 +219,16 @@ private:
         viewed_ = std::move(viewed);
     }
 
-    // A small picture at once, where the whole one takes longer.
-    void sketch() {
+    // A small picture at once, where the whole one takes longer, or does not come.
+    void sketch(bool is_paused) {
         sketch_.reset();
         const double pixels = double(scene_.picture.width) * scene_.picture.height;
-        if (pixels < 3.0 * sketch_pixels || reads_flux(scene_.camera))
+        if ((pixels < 3.0 * sketch_pixels && !is_paused) || reads_flux(scene_.camera))
             return;
         Scene small = scene_;
-        resize_picture(small.picture, int(std::max(scene_.picture.width * std::sqrt(sketch_pixels / pixels), 1.0)),
-                       std::nullopt);
+        if (pixels > sketch_pixels)
+            resize_picture(small.picture, int(std::max(scene_.picture.width * std::sqrt(sketch_pixels / pixels), 1.0)),
+                           std::nullopt);
         RenderJob job = job_;
         job.crop = {0, small.picture.width, 0, small.picture.height};
         Session session(device_, small, job);
@@ -219,9 +243,11 @@ private:
 
     // Until there is news, or all is rendered.
     bool go_on(const ViewWish& wish) {
+        if (session_ && wish.paused && !has_shown_)
+            publish(session_->result(), false);
         if (!session_ || wish.paused)
             return false;
-        while (!interrupted() && !is_news()) {
+        while (!interrupted() && !is_outdated()) {
             if (board_.seconds_unwatched() > longest_unwatched) {
                 board_.wait_for_wish(wish_number_, nap);
                 continue;
@@ -231,17 +257,17 @@ private:
                 return true;
             }
             session_->render(scene_.settings.spp);
-            if (!session_->result().interrupted)
-                break;
+            if (!session_->result().interrupted) {
+                is_done_ = true;
+                publish(session_->result(), true);
+                return is_news();
+            }
         }
-        if (interrupted() || is_news())
-            return true;
-        is_done_ = true;
-        publish(session_->result(), true);
-        return false;
+        return true;
     }
 
     void publish(const RenderResult& result, bool is_done) {
+        has_shown_ = has_shown_ || result.samples > 0;
         auto viewed = std::make_shared<ViewedScene>(*viewed_);
         viewed->integrator = result.integrator;
         viewed->biased = result.biased;
@@ -289,6 +315,8 @@ private:
     std::string rendering_;              // what the session is of
     std::shared_ptr<const Film> sketch_; // of the session's view
     bool is_sketch_ = false, is_done_ = false;
+    bool has_shown_ = false;               // anything of this view,
+    std::optional<Stopwatch> since_asked_; // which was news first then
 };
 
 } // namespace
@@ -307,6 +335,7 @@ int run_view(const ViewOptions& options) {
              options.request.scene.string());
     std::fflush(stdout);
     viewing.run();
+    check_validation(viewing.device());
     return exit_done;
 }
 

@@ -90,6 +90,8 @@ int connect_to(const std::string& address) {
             return made;
         error = errno;
         close(made);
+        if (interrupted())
+            throw Interrupted("interrupted before tev had answered");
     }
     throw InputError(fmt::format("--tev: {} takes no picture: {}; start tev first, or say where it listens: "
                                  "--tev=HOST:PORT",

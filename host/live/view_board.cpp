@@ -84,6 +84,11 @@ std::shared_ptr<const Shot> ViewBoard::next_shot(std::uint64_t version, std::chr
     return shot_;
 }
 
+void ViewBoard::see() {
+    const std::scoped_lock lock(mutex_);
+    watched_ = Clock::now();
+}
+
 std::string ViewBoard::message(std::uint64_t* version) const {
     const std::scoped_lock lock(mutex_);
     if (version)

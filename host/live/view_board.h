@@ -69,6 +69,7 @@ public:
     std::shared_ptr<const Shot> shot() const;
     // As soon as it is newer than `version`, or when the time is over; may be null.
     std::shared_ptr<const Shot> next_shot(std::uint64_t version, std::chrono::milliseconds time);
+    void see(); // it is looking
     std::string message(std::uint64_t* version = nullptr) const;
     void close(); // nobody waits any more
 

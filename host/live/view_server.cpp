@@ -136,6 +136,7 @@ struct ViewServer::Serving {
     void route();
     static void answer(Response& response, const std::function<void()>& content);
     std::shared_ptr<const std::string> frame(const std::shared_ptr<const Shot>& shot, const Request& request);
+    void send_watched(const std::shared_ptr<const std::string>& body, Response& response) const;
     void send_file(const Request& request, Response& response, const char* ending, const char* type);
 };
 
@@ -209,20 +210,31 @@ std::shared_ptr<const std::string> ViewServer::Serving::frame(const std::shared_
     return made.front().body;
 }
 
+// Who is being sent a picture is looking, however slow the way.
+void ViewServer::Serving::send_watched(const std::shared_ptr<const std::string>& body, Response& response) const {
+    static constexpr std::size_t piece = 1 << 18;
+    response.set_content_provider(body->size(), "application/octet-stream",
+                                  [this, body](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+                                      board.see();
+                                      return sink.write(body->data() + offset, std::min(length, piece));
+                                  });
+}
+
 void ViewServer::Serving::send_file(const Request& request, Response& response, const char* ending, const char* type) {
     const std::shared_ptr<const Shot> shot = board.shot();
     if (!shot || !shot->scene || shot->film.pixel_count() == 0)
         throw InputError("there is no picture yet");
-    if (shot->scene->has_grids && std::string(ending) == ".xml")
+    const bool is_scene = std::string(ending) == ".xml";
+    if (shot->scene->has_grids && is_scene)
         throw InputError(
             "grids of this scene stand in it, and in no file that a scene could name; vkvol convert writes them "
             "beside it\n");
-    const std::string name = std::filesystem::path(shot->scene->name).stem().string() + ending;
+    const std::string name = std::filesystem::path(shot->scene->name).stem().string() +
+                             (shot->is_sketch && !is_scene ? "-sketch" : "") + ending;
     response.set_header("Content-Disposition",
                         fmt::format("attachment; filename=\"{}\"", replaced(replaced(name, "\"", "_"), "\\", "_")));
-    response.set_content(std::string(ending) == ".xml"
-                             ? shot->scene->xml
-                             : image_file(*shot, ("picture" + std::string(ending)).c_str(), tone_of(request)),
+    response.set_content(is_scene ? shot->scene->xml
+                                  : image_file(*shot, ("picture" + std::string(ending)).c_str(), tone_of(request)),
                          type);
 }
 
@@ -251,7 +263,7 @@ void ViewServer::Serving::route() {
                 response.status = 204; // nothing new
                 return;
             }
-            response.set_content(*frame(shot, request), "application/octet-stream");
+            send_watched(frame(shot, request), response);
         });
     });
     server.Post("/wish", [this](const Request& request, Response& response) {

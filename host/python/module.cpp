@@ -26,6 +26,48 @@ namespace {
 
 using FloatArray = py::array_t<float, py::array::f_style | py::array::forcecast>; // x fastest
 
+// What Python raises while this program works on this thread ends the work, and is raised when that has come to rest.
+thread_local std::unique_ptr<py::error_already_set> raised;
+
+bool ask() {
+    if (is_ending())
+        return true;
+    const py::gil_scoped_acquire acquire;
+    if (!raised && PyErr_CheckSignals() != 0)
+        raised = std::make_unique<py::error_already_set>();
+    return raised != nullptr;
+}
+
+// A daemon thread that asks for Python's lock at the interpreter's end is to be unwound, which would let go of Python's
+// objects without that lock, and pass through destructors that must not throw: it rests until the process is gone.
+[[noreturn]] void rest() {
+    for (;;)
+        ::pause();
+}
+
+// Without Python's lock. A forced unwind is an exception without an object.
+template <class Work> void run(const Work& work) {
+    std::exception_ptr failure;
+    PyThreadState* const state = PyEval_SaveThread();
+    try {
+        const InterruptQuestion question(&ask);
+        work();
+    } catch (...) {
+        failure = std::current_exception();
+        if (!failure)
+            rest();
+    }
+    try {
+        PyEval_RestoreThread(state);
+    } catch (...) {
+        rest();
+    }
+    if (const auto error = std::move(raised)) // which is why
+        throw py::error_already_set(*error);
+    if (failure)
+        std::rethrow_exception(failure);
+}
+
 // One grid by an array of shape (nx, ny, nz), or (nx, ny, nz, 3) of colours.
 MemoryGrids::Grid grid_of(const std::string& name, const FloatArray& array, const GridPlace& place) {
     const bool is_color = array.ndim() == 4 && array.shape(3) == 3;
@@ -40,13 +82,18 @@ MemoryGrids::Grid grid_of(const std::string& name, const FloatArray& array, cons
     }
     const std::size_t voxels = std::size_t(dims.x) * std::size_t(dims.y) * std::size_t(dims.z);
     const float* data = array.data();
-    const py::gil_scoped_release release;
-    if (!is_color)
-        return {name, make_grid(name, dims, std::span(data, voxels), place)};
-    std::vector<glm::vec3> colors(voxels); // the array has its channels one after another
-    for (std::size_t i = 0; i < voxels; ++i)
-        colors[i] = {data[i], data[voxels + i], data[2 * voxels + i]};
-    return {name, make_grid(name, dims, std::span<const glm::vec3>(colors), place)};
+    MemoryGrids::Grid grid{name, {}};
+    run([&] {
+        if (!is_color) {
+            grid = {name, make_grid(name, dims, std::span(data, voxels), place)};
+            return;
+        }
+        std::vector<glm::vec3> colors(voxels); // the array has its channels one after another
+        for (std::size_t i = 0; i < voxels; ++i)
+            colors[i] = {data[i], data[voxels + i], data[2 * voxels + i]};
+        grid = {name, make_grid(name, dims, std::span<const glm::vec3>(colors), place)};
+    });
+    return grid;
 }
 
 std::shared_ptr<MemoryGrids> grids_of(const std::vector<std::pair<std::string, FloatArray>>& arrays,
@@ -152,48 +199,6 @@ RenderRequest request_of(const py::dict& options) {
     return request;
 }
 
-// What Python raises while this program works on this thread ends the work, and is raised when that has come to rest.
-thread_local std::unique_ptr<py::error_already_set> raised;
-
-bool ask() {
-    if (is_ending())
-        return true;
-    const py::gil_scoped_acquire acquire;
-    if (!raised && PyErr_CheckSignals() != 0)
-        raised = std::make_unique<py::error_already_set>();
-    return raised != nullptr;
-}
-
-// A daemon thread that asks for Python's lock at the interpreter's end is to be unwound, which would let go of Python's
-// objects without that lock, and pass through destructors that must not throw: it rests until the process is gone.
-[[noreturn]] void rest() {
-    for (;;)
-        ::pause();
-}
-
-// Without Python's lock. A forced unwind is an exception without an object.
-template <class Work> void run(const Work& work) {
-    std::exception_ptr failure;
-    PyThreadState* const state = PyEval_SaveThread();
-    try {
-        const InterruptQuestion question(&ask);
-        work();
-    } catch (...) {
-        failure = std::current_exception();
-        if (!failure)
-            rest();
-    }
-    try {
-        PyEval_RestoreThread(state);
-    } catch (...) {
-        rest();
-    }
-    if (const auto error = std::move(raised)) // which is why
-        throw py::error_already_set(*error);
-    if (failure)
-        std::rethrow_exception(failure);
-}
-
 // Who is told of this thread's render. Python's objects are kept only meanwhile: nothing that refers to a session can
 // be found by Python's collector through it.
 class Told {
@@ -293,7 +298,7 @@ void add_classes(py::module_& module) {
         .def(
             "write",
             [](const MemoryGrids& grids, const std::filesystem::path& file) {
-                write_text(file, nvdb_file_of(grids), "Grids.write");
+                run([&] { write_text(file, nvdb_file_of(grids), "Grids.write"); });
             },
             py::arg("file"));
     py::class_<SceneSource>(module, "Scene")

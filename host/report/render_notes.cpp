@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "error.h"
 #include "messages.h"
 
 namespace vkvol {
@@ -49,6 +50,14 @@ void print_warnings(const std::vector<std::string>& warnings) {
 
 void print_explanation(const Explanation& explanation) {
     tell(stderr, "vkvol: note: {}\n", explanation.text);
+}
+
+void check_validation(const Device& device) {
+    const std::vector<std::string>& messages = device.validation_messages();
+    for (const std::string& message : messages)
+        tell(stderr, "vkvol: validation: {}", message + "\n"); // of several lines
+    if (!messages.empty())
+        throw RenderError(fmt::format("the validation layer has {} objections", messages.size()));
 }
 
 std::vector<std::string> caps_text(const RenderCounts& c) {

@@ -18,6 +18,9 @@ std::vector<std::string> caps_text(const RenderCounts& counts);
 // These, and for samples that were not finite the command that follows their path.
 void print_caps(const RenderRequest& request, const RenderResult& result);
 
+// Prints what the validation layer has said, each once. Throws RenderError if that is anything.
+void check_validation(const Device& device);
+
 // What is said of devices, where several rendered: "A + B".
 std::string of_all_devices(const Device& first, const RenderResult& result, std::string DeviceInfo::*text);
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "camera_view.h"
+#include "decimals.h"
 #include "error.h"
 #include "framing.h"
 #include "integrators.h"
@@ -102,25 +103,10 @@ glm::dvec3 on_orbit(double turn, double lift, glm::dvec3 up) {
     return camera.position;
 }
 
-// Decimals at which a hundred-thousandth of `size` is still told apart.
-int decimals_for(double size) {
-    return std::clamp(5 - int(std::floor(std::log10(size))), 0, 30);
-}
-
 double rounded(double value, int decimals) {
     const std::string text = fmt::format("{:.{}f}", value, decimals);
     std::from_chars(text.data(), text.data() + text.size(), value); // whatever a locale takes for a decimal point
     return value;
-}
-
-std::string number(double value, int decimals) {
-    std::string text = fmt::format("{:.{}f}", value, decimals);
-    if (text.find('.') != std::string::npos) {
-        text.erase(text.find_last_not_of('0') + 1);
-        if (text.back() == '.')
-            text.pop_back();
-    }
-    return text == "-0" ? "0" : text;
 }
 
 std::string integrator_element(const std::string& request) {
@@ -142,8 +128,8 @@ std::string light_elements(const FileView& view) {
     const bool glows = view.medium.kelvin.has_value();
     return fmt::format("  <light x=\"{}\" y=\"{}\" z=\"{}\" r=\"1\" g=\"0.93\" b=\"0.82\" multiplier=\"{}\"/>\n"
                        "  <backgroundColor r=\"{}\" g=\"{}\" b=\"{}\"/>\n",
-                       number(view.sun.x, 3), number(view.sun.y, 3), number(view.sun.z, 3), glows ? 4.0 : 5.5,
-                       glows ? 0.02 : 0.06, glows ? 0.03 : 0.12, glows ? 0.055 : 0.25);
+                       short_text(view.sun.x, 3), short_text(view.sun.y, 3), short_text(view.sun.z, 3),
+                       glows ? 4.0 : 5.5, glows ? 0.02 : 0.06, glows ? 0.03 : 0.12, glows ? 0.055 : 0.25);
 }
 
 std::string assumed_line(const std::filesystem::path& file, const FileView& view, Up up, bool is_only) {

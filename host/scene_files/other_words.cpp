@@ -16,6 +16,13 @@ const char* const mean_cosine = "the mean cosine is <heyneygreenstein_g>";
 const char* const surfaces = "surfaces stand in <surfaces>: sphere, disk, rectangle, box, plane, mesh";
 const char* const color = "colours are r=\"...\" g=\"...\" b=\"...\" multiplier=\"...\"";
 
+const char* const radiance =
+    "colours are r=\"...\" g=\"...\" b=\"...\" multiplier=\"...\"; what a surface shines with is the "
+    "<emission r=\"...\" g=\"...\" b=\"...\"/> in it";
+const char* const places =
+    "places are attributes of a shape; a <volume> of <volumes>, and what is in <surfaces>, may have "
+    "a <transform>";
+
 using Words = std::map<std::string, const char*>;
 
 // Words of Mitsuba, pbrt and Cycles, as elements.
@@ -45,15 +52,15 @@ const Words elements{{"sigma_t", extinction},
                      {"disk", surfaces},
                      {"fov", "the vertical angle of view is an attribute: <camera fov=\"40\"/>"},
                      {"sensor", "the sensor is <camera>, or <irradiance>, <fluence>, <absorption>"},
-                     {"toWorld", "places are attributes of a shape, or a <transform> in it"},
-                     {"to_world", "places are attributes of a shape, or a <transform> in it"},
+                     {"toWorld", places},
+                     {"to_world", places},
                      {"max_depth", "the number of vertices is bounded by <maxDepth>"},
                      {"density", "a medium has the density of its <densityField> or shape, times sigma_a and sigma_s"}};
 
 const Words attributes{
-    {"radiance", color}, {"intensity", color},        {"irradiance", color},
-    {"color", color},    {"colour", color},           {"rgb", color},
-    {"g", mean_cosine},  {"anisotropy", mean_cosine}, {"value", "the value stands between the tags"}};
+    {"radiance", radiance}, {"intensity", color},        {"irradiance", color},
+    {"color", color},       {"colour", color},           {"rgb", color},
+    {"g", mean_cosine},     {"anisotropy", mean_cosine}, {"value", "the value stands between the tags"}};
 
 std::string known_as(const Words& words, const std::string& word) {
     const auto found = words.find(word);

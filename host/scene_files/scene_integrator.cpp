@@ -90,7 +90,7 @@ void SceneReader::check_method(const Scene& scene) const {
 void SceneReader::warn_about_light(const Scene& scene, const Method& method) const {
     if (method.uses_lights() || scene.lights.empty())
         return;
-    const XmlElement light = one("light"), element = light.exists() && !scene.lights.empty() ? light : one("lights");
+    const XmlElement lights = one("lights"), element = lights.exists() ? lights : one("light");
     if (std::all_of(scene.lights.begin(), scene.lights.end(), is_met_by_chance)) {
         if (method.scattering == SCATTERING_SINGLE)
             element.warn(fmt::format("{} sends no shadow rays, without which what scatters once has no light; the sky "

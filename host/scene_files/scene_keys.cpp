@@ -178,12 +178,26 @@ std::optional<std::string> SceneKeys::find(const std::string& key) {
     return fmt::format("{:0>{}}", frame->second, digits);
 }
 
-// F, $F, ${F} or ${F:-1}, within an expression.
-bool SceneKeys::is_time_here() const {
-    std::size_t at = at_;
-    for (const char c : {'$', '{'})
-        at += at < raw_.size() && raw_[at] == c ? 1 : 0;
-    return raw_.compare(at, 1, frame_key) == 0 && (at + 1 == raw_.size() || !in_key(raw_[at + 1]));
+// F, $F, ${F} or ${F:-1}, within an expression, or the default of a key without a value: ${t:-$F}.
+bool SceneKeys::is_time_here() {
+    for (std::size_t at = at_;;) {
+        bool is_braced = false;
+        for (const char c : {'$', '{'})
+            if (at < raw_.size() && raw_[at] == c) {
+                is_braced = c == '{';
+                ++at;
+            }
+        std::size_t end = at;
+        while (end < raw_.size() && in_key(raw_[end]))
+            ++end;
+        const std::string key = raw_.substr(at, end - at);
+        if (key == frame_key)
+            return true;
+        const std::optional<std::string> value = find(key);
+        if (!is_braced || raw_.compare(end, 3, ":-$") != 0 || (value && !value->empty()))
+            return false;
+        at = end + 2;
+    }
 }
 
 // A key within an expression, with or without $.

@@ -37,7 +37,7 @@ private:
     std::string value_of(const std::string& key, bool live);
     std::optional<std::string> find(const std::string& key);
     double key_number(bool live);
-    bool is_time_here() const;
+    bool is_time_here();
     void count(const std::string& key, std::size_t bytes);
 
     const std::map<std::string, std::string> values_;

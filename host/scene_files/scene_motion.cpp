@@ -1,4 +1,6 @@
 // The part of SceneReader that reads for how long light is taken in.
+#include <algorithm>
+
 #include "scene_reader.h"
 
 namespace vkvol {
@@ -11,7 +13,7 @@ std::shared_ptr<const MotionBlur> SceneReader::motion_blur() const {
     constexpr Limits frames{-1000.0, 1000.0, true, true, "a number of frames from -1000 to 1000"};
     MotionBlur blur;
     blur.open = element.attribute_number("open", -0.25, frames);
-    blur.close = element.attribute_number("close", blur.open + 0.5, frames);
+    blur.close = element.attribute_number("close", std::min(blur.open + 0.5, frames.high), frames);
     if (!(blur.open < blur.close))
         element.fail_attribute(element.has("close") ? "close" : "open",
                                "<motionBlur> closes before it opens; expected open < close, in frames");

@@ -208,7 +208,10 @@ Drift SceneReader::drift(const std::string& integrator) const {
 // All models; the original kept the last one alone.
 MeshFiles SceneReader::mesh_files() const {
     MeshFiles files;
-    for (const pugi::xml_node node : find({"models"}).children("model")) {
+    pugi::xml_node models; // those that are asked for
+    for (std::size_t i = 0; i < scopes_.size() && !models.child("model"); ++i)
+        models = find_one(document_, scopes_[i], {"models"});
+    for (const pugi::xml_node node : models.children("model")) {
         const XmlElement model(document_, node);
         model.allow({"baseDir"}, true);
         files.paths.push_back(file_path(model, "sphere.obj"));

@@ -235,6 +235,11 @@ void SceneReader::read_texture(const XmlElement& element, Material& material) co
         material.texture = file_path(element, element.attribute("texture"));
     }
     const std::vector<double> times = element.attribute_numbers("repeat", repeats);
+    if (times.empty() && element.has("repeat"))
+        element.fail_attribute("repeat",
+                               fmt::format("<{}> repeat: is empty; expected one number, or two for across and "
+                                           "upwards",
+                                           element.name()));
     if (times.size() > 2)
         element.fail_attribute("repeat", fmt::format("<{}> repeat: {} numbers; expected one, or two for across and "
                                                      "upwards",
@@ -326,8 +331,16 @@ Surface SceneReader::surface(const XmlElement& element) const {
         allow({"x", "y", "z", "width", "height", "depth"});
         const auto edge = [&](const char* name) { return element.attribute_number(name, 1.0, length); };
         surface.shape = moved(map, box_of({xyz(element, coordinate), {edge("width"), edge("height"), edge("depth")}}));
-    } else if (kind == "mesh" && !element.has("file") && one("vertices").exists()) {
-        element.allow(with_material({}), false,
+    } else if (kind == "mesh" && one("vertices").exists()) {
+        if (element.has("file"))
+            element.fail("<mesh> names a file and has <vertices>; leave out one of them");
+        if (element.has("normals"))
+            element.fail_attribute("normals", "<mesh> normals: is for those of a file; beside <vertices> each has its "
+                                              "own in <normals>, without which faces are flat");
+        std::vector<std::string> attributes;
+        if (element.has("texture"))
+            attributes = {"baseDir"};
+        element.allow(with_material(std::move(attributes)), false,
                       {"transform", "emission", "vertices", "normals", "places", "triangles"});
         surface.shape = moved(map, triangles());
     } else {

@@ -48,6 +48,14 @@ bool inside(double value, const Limits& limits) {
     return above && below; // false for NaN
 }
 
+const char* comma_remedy(const std::string& text) {
+    const std::size_t comma = text.find(',');
+    if (comma == std::string::npos)
+        return "";
+    return comma + 1 < text.size() ? "; a decimal point is no comma, and between numbers stand spaces"
+                                   : "; between numbers stand spaces, no commas";
+}
+
 // Empty when `text` is a number within the limits, else what is wrong with it.
 std::string read_number(const std::string& text, const Limits& limits, double& value) {
     const NumberText read = read_number_text(text);
@@ -57,8 +65,7 @@ std::string read_number(const std::string& text, const Limits& limits, double& v
     if (read.is_too_large)
         return fmt::format("{} is out of range; expected {}", quoted(text), limits.expected);
     if (!read.is_number || !std::isfinite(value))
-        return fmt::format("{} is not a number; expected {}{}", quoted(text), limits.expected,
-                           text.find(',') != std::string::npos ? "; between numbers stand spaces, no commas" : "");
+        return fmt::format("{} is not a number; expected {}{}", quoted(text), limits.expected, comma_remedy(text));
     if (limits.device && std::abs(value) < smallest_number)
         value = 0.0;
     if (!inside(value, limits))
@@ -145,8 +152,10 @@ XmlDocument::XmlDocument(const std::string& text, std::filesystem::path file,
 void XmlDocument::parse() {
     if (const char* encoding = foreign_encoding(text_))
         fail_at(file_.string(), fmt::format("is {}; save it as UTF-8", encoding));
+    buffer_.push_back('\n'); // it would take the last letter for the text's end
     const pugi::xml_parse_result result =
-        document_.load_buffer_inplace(buffer_.data(), buffer_.size(), pugi::parse_default, pugi::encoding_utf8);
+        document_.load_buffer_inplace(buffer_.data(), buffer_.size(), pugi::parse_default | pugi::parse_fragment,
+                                      pugi::encoding_utf8); // with what stands outside of the root
     if (!result) {
         std::string reason = result.description();
         reason[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(reason[0])));
@@ -156,6 +165,9 @@ void XmlDocument::parse() {
 
 void XmlDocument::find_root(const std::string& name) {
     for (const pugi::xml_node node : document_.children()) {
+        if (is_text(node) && !trimmed(node.value()).empty())
+            fail_at(place_of_offset(node.value() - buffer_.data() + std::ptrdiff_t(std::strspn(node.value(), spaces))),
+                    fmt::format("stray text {} beside the root element", quoted(trimmed(node.value()))));
         if (node.type() != pugi::node_element)
             continue;
         record_position(node);
@@ -163,6 +175,8 @@ void XmlDocument::find_root(const std::string& name) {
             fail_at(place(node), fmt::format("a second root element <{}>; a scene has one <{}>", node.name(), name));
         root_ = node;
     }
+    if (!root_)
+        fail_at(place_of_offset(0), "malformed XML: no document element found");
     if (root_.name() != name)
         fail_at(place(root_), fmt::format("the root element is <{}>; a scene has <{}>", root_.name(), name));
 }

@@ -246,3 +246,56 @@ TEST_CASE("a table of readings as JSON has its numbers, and null for what is not
     CHECK_THAT(folder.vkvol("measure glow.xml -D sigma=1 -D glow=1 -o table.exr").text,
                Contains("expected .csv or .json"));
 }
+
+TEST_CASE("counts in a table of readings as JSON are whole numbers", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("glow.xml", ball);
+    REQUIRE(folder.vkvol("measure glow.xml -D sigma=1 -D glow=1 --spp 16 -o table.json").code == exit_done);
+    const auto json = nlohmann::json::parse(folder.text("table.json"));
+    for (const char* column : {"column", "row", "samples"})
+        CHECK(json[1].at(column).is_number_integer());
+    CHECK(json[1].at("column") == 1);
+    CHECK(json[1].at("y") == 3.0);
+}
+
+TEST_CASE("readings of a scene that is changed between them end", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("glow.xml", ball);
+    const Run changed = folder.script(
+        "\"$vkvol\" measure glow.xml -D sigma=1..8x8 -D glow=1 --spp 1000000000 --time 0.5 -o t.csv 2>said & "
+        "i=0; until [ -s t.csv ] || [ $i = 600 ]; do sleep 0.1; i=$((i + 1)); done; "
+        "printf '<!-- another -->\\n' >>glow.xml; wait $!; echo ended with $?; cat said");
+    CHECK_THAT(changed.text, Contains(fmt::format("ended with {}", exit_bad_input)) &&
+                                 Contains("glow.xml: the scene was changed while it was rendered"));
+    CHECK(lines_of(folder.text("t.csv")).size() >= 1 + 2); // what was read before stays
+}
+
+TEST_CASE("bands whose sensors are at other places are no sum", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("glow.xml", "<options><sphere radius='$r'/><sigma_a>1</sigma_a><sigma_s>0</sigma_s>"
+                             "<medium r='1' g='1' b='1'/><fluence>0 $y 0</fluence></options>");
+    folder.write("apart.csv", "weight,r,y\n1,1,0\n1,1,3\n");
+    const Run apart = folder.vkvol("measure glow.xml --bands apart.csv --spp 4");
+    CHECK(apart.code == exit_bad_input);
+    CHECK_THAT(apart.text, Contains("band of y=3: ") && Contains("are no sum"));
+    folder.write("together.csv", "weight,r,y\n1,1,3\n1,2,3\n");
+    CHECK(folder.vkvol("measure glow.xml --bands together.csv --spp 4").code == exit_done);
+}
+
+TEST_CASE("what the validation layer objects to fails measurements as it does renders", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("glow.xml", ball);
+    const std::string keys = "glow.xml -D sigma=1 -D glow=1 --validate ";
+    // Which it has something to say of: that it is there.
+    const std::string strict = "VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_BEST_PRACTICES_EXT";
+    const Run render = folder.vkvol(keys + "--spp 4 -o glow.exr", strict);
+    if (render.text.find("the validation layer has ") == std::string::npos) {
+        WARN("skipped: this validation layer objects to nothing");
+        return;
+    }
+    for (const char* command : {"measure ", "bench "}) {
+        const Run run = folder.vkvol(command + keys + (command[0] == 'm' ? "--spp 4" : "--time 2s"), strict);
+        CHECK(run.code == exit_render_failed);
+        CHECK_THAT(run.text, Contains("vkvol: validation: ") && Contains("the validation layer has "));
+    }
+}

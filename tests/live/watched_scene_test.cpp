@@ -5,6 +5,7 @@
 #include <httplib.h>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <signal.h>
 #include <sys/wait.h>
 #include <thread>
@@ -115,6 +116,11 @@ public:
         const auto answer = client_->Get(("/" + name + "?key=" + key_).c_str());
         REQUIRE(answer->status == 200);
         folder.write("kept-" + name, answer->body);
+    }
+
+    // As the page is told to save it.
+    std::string name_of(const std::string& name) {
+        return client_->Get(("/" + name + "?key=" + key_).c_str())->get_header_value("Content-Disposition");
     }
 
     const Folder folder;
@@ -290,4 +296,33 @@ TEST_CASE("what cannot be viewed is refused", "[cpu][live]") {
     const Run strict = folder.vkvol("view part.pbrt --strict", "timeout 20");
     CHECK(strict.code == exit_bad_input);
     CHECK_THAT(strict.text, Contains("part.pbrt:3") && Contains("--strict"));
+}
+
+TEST_CASE("a view that is dragged about is shown meanwhile", "[gpu][live]") {
+    Onlooker onlooker;
+    Json camera = onlooker.wait_for(Onlooker::is_done)["camera"];
+    std::set<double> shown;
+    for (int i = 0; i < 10000 && shown.size() < 4; ++i) { // faster than any render begins
+        camera["position"][0] = 0.001 * i;
+        onlooker.wish_only({{"camera", camera}});
+        if (i % 20 == 19) {
+            const Json now = onlooker.wait_for([](const Json&) { return true; });
+            if (now["samples"] > 0)
+                shown.insert(now["camera"]["position"][0].get<double>());
+        }
+    }
+    CHECK(shown.size() == 4);
+}
+
+TEST_CASE("what is changed while a view is paused is shown", "[gpu][live]") {
+    Onlooker onlooker;
+    onlooker.wait_for(Onlooker::is_done);
+    const std::uint64_t paused = onlooker.wish_only({{"paused", true}, {"density", 0.25}});
+    const Json state = onlooker.wait_for([&](Json now) { return now["sceneWish"] == paused; });
+    CHECK(state["density"] == 0.25);
+    CHECK(state["width"] == 16);
+    // Kept, it is by its name no picture of all samples.
+    CHECK_THAT(onlooker.name_of("picture.exr"), Contains("ball-sketch.exr"));
+    onlooker.wish({{"density", 0.25}});
+    CHECK_THAT(onlooker.name_of("picture.exr"), Contains("ball.exr"));
 }

@@ -359,6 +359,7 @@ TEST_CASE("sensors of flux in scene files", "[cpu][xml][flux]") {
     CHECK_THROWS_WITH(in_file("1 2\n"), Contains(":1: has 2 numbers") && Contains("x y z"));
     CHECK_THROWS_WITH(in_file("1 2 1e12\n"), Contains(":1: 1e+12 is out of range"));
     CHECK_THROWS_WITH(in_file("x y z\n"), Contains("holds no points"));
+    CHECK_THROWS_WITH(in_file("nan nan nan\n1 2 3\n"), Contains(":1: 'nan' is no number")); // no heading
     const std::pair<const char*, const char*> errors[] = {
         {R"(<irradiance/>)", "needs lookAt"},
         {R"(<irradiance lookAt="0 0 0"/>)", "is where the sensor is"},

@@ -480,6 +480,18 @@ TEST_CASE("paths of a single scattering end where nothing absorbs, too", "[cpu][
     }
 }
 
+TEST_CASE("paths end where nothing absorbs and what is scattered is lost", "[cpu][method][periodic]") {
+    Scene scene = above(medium(Sphere{{0.0, 0.0, 0.0}, 2.0}, 1.0, 1.0));
+    scene.periodic->low.y = -5.0;
+    scene.periodic->high.y = 5.0;
+    Scene fog = above(medium(Everywhere{}, 1.0, 1.0));
+    fog.periodic.reset();
+    for (Scene* endless : {&scene, &fog}) {
+        endless->settings.choices.scattering = SCATTERING_NONE;
+        CHECK_NOTHROW(load_assets(*endless, choose_method(*endless)));
+    }
+}
+
 TEST_CASE("a colour that nothing collides with keeps no path for ever", "[cpu][method][periodic]") {
     Scene fog = above(medium(Everywhere{}, 1.0, 1.0));
     fog.periodic.reset();

@@ -256,3 +256,13 @@ TEST_CASE("a camera's settings say which luminance is white", "[cpu][camera][xml
           std::pair("shutter=\"1e-9\" fNumber=\"1e9\" iso=\"1e-9\"", "beyond 100")})
         CHECK_THROWS_WITH(camera(attributes), Contains(message) && Contains("s.xml:1:"));
 }
+
+TEST_CASE("the camera that a far scene gets is said with the digits that it takes", "[cpu][camera][xml]") {
+    FieldCache fields;
+    const std::string far = R"(<box x="4512345" z="780123"/>)";
+    Scene scene = parse_scene("<options>" + far + "</options>", "s.xml");
+    const std::string line = give_camera(scene, fields);
+    const Camera said =
+        parse_scene("<options>" + far + line.substr(line.find("<camera ")) + "</options>", "s.xml").camera;
+    CHECK(glm::distance(said.position, scene.camera.position) < 1e-3);
+}

@@ -153,3 +153,16 @@ TEST_CASE("$F4 is the frame's number with four digits", "[cpu][xml]") {
     // F counts as used.
     CHECK(parse("<densityField>a.$F3.vdb</densityField>", {{"F", "5"}}).volumes.size() == 1);
 }
+
+TEST_CASE("F is a time as the default of another key, too", "[cpu][xml]") {
+    const auto at_later = [](const std::string& text, Defines values) {
+        SceneKeys keys(std::move(values), {}, 0.25);
+        const std::string filled = keys.fill_in(text);
+        return std::pair(filled, keys.moves());
+    };
+    for (const char* text : {"${= 4*F}", "${= 4*${t:-$F}}", "${= 4*${t:-${F}}}", "${= 4*${t:-${u:-$F}}}"})
+        CHECK(at_later(text, {{"F", "3"}}) == std::pair(std::string("13"), true));
+    CHECK(at_later("${= 4*${t:-$F}}", {{"F", "3"}, {"t", "5"}}) == std::pair(std::string("20"), false));
+    CHECK(at_later("${= 4*${t:-$Q}}", {{"F", "3"}, {"Q", "5"}}) == std::pair(std::string("20"), false));
+    CHECK(at_later("${t:-$F}", {{"F", "3"}}) == std::pair(std::string("3"), false)); // a number of files
+}

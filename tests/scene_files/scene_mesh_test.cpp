@@ -89,3 +89,16 @@ TEST_CASE("wrong meshes in scene files are refused with their place", "[cpu][xml
     CHECK_THAT(refused(""), Contains("names no file"));
     CHECK_THROWS_WITH(with_surface_files(parse(mesh(tetrahedron, " texture=\"none.png\""))), Contains("add <places>"));
 }
+
+TEST_CASE("a mesh in the scene file has its texture in a folder, and its normals in the file", "[cpu][xml][surfaces]") {
+    const auto with = [](const std::string& attributes) {
+        return parse("<surfaces><mesh" + attributes + "><vertices>0 0 0  1 0 0  0 1 0</vertices><triangles>0 1 2" +
+                     "</triangles><places>0 0  1 0  0 1</places></mesh></surfaces>");
+    };
+    CHECK(with(" texture=\"wood.png\" baseDir=\"images\"").surfaces.front().material.texture.filename() == "wood.png");
+    CHECK(with(" texture=\"wood.png\" baseDir=\"images\"").surfaces.front().material.texture.parent_path().filename() ==
+          "images");
+    CHECK_THROWS_WITH(with(" normals=\"smooth\""), Contains("is for those of a file"));
+    CHECK_THROWS_WITH(with(" file=\"a.obj\""), Contains("names a file and has <vertices>"));
+    CHECK_THROWS_WITH(with(" baseDir=\"images\""), Contains("unknown attribute 'baseDir'"));
+}

@@ -214,3 +214,33 @@ TEST_CASE("what is without effect has numbers all the same", "[cpu][xml]") {
     CHECK_THAT(error_of("<sphere/><lights><point value='1'/></lights>"), !Catch::Contains("between the tags"));
     CHECK_THAT(error_of("<sphere/><sigma_a value='1'/>"), Catch::Contains("between the tags"));
 }
+
+TEST_CASE("text beside the root element is an error", "[cpu][xml]") {
+    CHECK_THAT(error_of_text("<options/> <!-- --> rayPerPixelCount=64"),
+               Catch::StartsWith("s.xml:1:21: stray text 'rayPerPixelCount=64'"));
+    CHECK_THAT(error_of_text("\n  x<options/>"), Catch::StartsWith("s.xml:2:"));
+    CHECK_NOTHROW(parse_scene("<?xml version='1.0'?>\n<!-- a -->\n<options/>\n<!-- b -->\n\n", "s.xml"));
+}
+
+TEST_CASE("remedies of others' words work", "[cpu][xml]") {
+    CHECK_THAT(error_of("<sphere/><to_world/>"), Catch::Contains("a <volume> of <volumes>"));
+    CHECK_THAT(error_of("<surfaces><sphere radiance=\"5\"/></surfaces>"), Catch::Contains("<emission r="));
+    CHECK_THAT(error_of("<sigma_s>1,5</sigma_s>"), Catch::Contains("a decimal point is no comma"));
+    CHECK_THAT(error_of("<surfaces><plane checker=\".1\" repeat=\"\"/></surfaces>"),
+               Catch::Contains("repeat: is empty"));
+    // The element whose lights are left out, and not one that is black.
+    const Scene scene = parse_scene("<options><light y=\"1\"/>\n<lights><point r=\"1\" g=\"1\" b=\"1\"/></lights>\n"
+                                    "<sphere/><integrator>deltaTracking</integrator></options>",
+                                    "s.xml");
+    REQUIRE(scene.warnings.size() == 1);
+    CHECK_THAT(scene.warnings.front(), Catch::StartsWith("s.xml:2:1: deltaTracking sends no shadow rays"));
+}
+
+TEST_CASE("models that ask for nothing leave those of a volume that is liked", "[cpu][xml]") {
+    const Scene scene = parse_scene(
+        "<options><volumes><volume name=\"a\"><models><model>b.obj</model></models><sigma_s>1</sigma_s></volume>"
+        "<volume like=\"a\"><models/></volume></volumes></options>",
+        "s.xml");
+    REQUIRE(scene.volumes.size() == 2);
+    CHECK(std::get<MeshFiles>(scene.volumes[1].shape).paths == std::get<MeshFiles>(scene.volumes[0].shape).paths);
+}

@@ -16,6 +16,8 @@ class Verdict:
 
     @property
     def z(self):
+        if not math.isfinite(self.error):
+            return math.inf  # of a reading that nothing is known of
         return (self.reading - self.published) / math.hypot(self.error, self.slack)
 
 
@@ -26,13 +28,18 @@ def limit(count, alpha=0.01):
 
 def scatter(case, rows):
     """Of a consensus whose own is not published: by how much neighbouring figures differ at random from the readings. From second
-    differences, so that whatever differs smoothly, or all alike, is no part of it. No more than a tenth of the figures, so that a wrong
-    map cannot excuse itself."""
+    differences, so that whatever differs smoothly, or all alike, is no part of it. No more than a tenth of the figures, nor than a
+    quarter of what these themselves differ so: a map that is moved by a column would have all of that."""
     apart = [case.scale * mean - published for (mean, _), published in zip(rows, case.published, strict=True)]
-    rough = [a - 2.0 * b + c for a, b, c in zip(apart, apart[1:], apart[2:])]
     own = sum((case.scale * error) ** 2 for _, error in rows) / len(rows)
-    most = 0.1 * sum(map(abs, case.published)) / len(case.published)
-    return min(math.sqrt(max(0.0, sum(x * x for x in rough) / (6.0 * len(rough)) - own)), most)
+    most = min(0.1 * sum(map(abs, case.published)) / len(case.published), 0.25 * math.sqrt(roughness(case.published)))
+    return min(math.sqrt(max(0.0, roughness(apart) - own)), most)
+
+
+def roughness(values):
+    """The variance of what differs at random between neighbours."""
+    second = [a - 2.0 * b + c for a, b, c in zip(values, values[1:], values[2:])]
+    return sum(x * x for x in second) / (6.0 * len(second))
 
 
 def judge(case, rows, mean_error):

@@ -1,5 +1,5 @@
-"""Slabs and stacks drawn at random, solved by discrete ordinates (PyPI's nanodisort, a C port of DISORT): fluxes, and radiances at
-three angles. An optional peer: without the package there are none."""
+"""Slabs of printed tables whose prints are not at hand, and stacks drawn at random, solved by discrete ordinates (PyPI's nanodisort, a C
+port of DISORT): fluxes, and radiances at three angles. An optional peer: without the package there are none."""
 
 import math
 import random
@@ -10,6 +10,11 @@ from .case import Case
 SOURCE = "nanodisort"
 STREAMS, MOMENTS = 64, 300
 MUS = (.2, .55, .95)
+# (optical depth, albedo, g) from the top down, and the sun's mu0.
+OF_TABLES = (
+    ("van de Hulst, forward, albedo 1", [(2.0, 1.0, .75)], 1.0),
+    *((f"DISORT 1, isotropic, depth 32, albedo {albedo}", [(32.0, albedo, 0.0)], .1) for albedo in (.2, .99, 1.0)),
+)
 
 
 def draw(rng):
@@ -45,22 +50,27 @@ def solve(layers, mu0, ground, azimuth):
     return state.flup[0], state.rfldn[1] + state.rfldir[1], [state.uu[i, 0, 0] for i in range(len(MUS))]
 
 
+def of_slab(group, what, layers, mu0, ground=0.0, azimuth=0.0):
+    up, down, radiances = solve(layers, mu0, ground, azimuth)
+    medium, bottom = scenes.slab([(tau, albedo, scenes.henyey_greenstein(g)) for tau, albedo, g in layers])
+    scene = medium + scenes.sun(mu0, 1.0) + (scenes.ground(bottom - .01, ground) if ground else "")
+    # Of ordinates: as they are stated for such phase functions, a thousandth.
+    for label, sensor, value in (("up", scenes.flux(1e-3, False), up), ("down", scenes.flux(bottom - .005, True), down)):
+        yield Case(f"{group}, fluxes", what, SOURCE, scene + sensor, [label], [value], [1e-3 * value + 1e-6])
+    for mu, value in zip(MUS, radiances):
+        yield Case(f"{group}, radiances", what, SOURCE, scene + scenes.radiance(1e-3, mu, 180.0 + azimuth), [f"mu {mu}"], [value],
+                   [2e-3 * value + 1e-6])
+
+
 def cases(count, seed=1):
     try:
         import nanodisort  # noqa: F401
     except ImportError:
         return
+    for what, layers, mu0 in OF_TABLES:
+        yield from of_slab("nanodisort, of tables", what, layers, mu0)
     rng = random.Random(seed)
     for number in range(count):
         layers, mu0, ground, azimuth = draw(rng)
-        up, down, radiances = solve(layers, mu0, ground, azimuth)
-        medium, bottom = scenes.slab([(tau, albedo, scenes.henyey_greenstein(g)) for tau, albedo, g in layers])
-        scene = medium + scenes.sun(mu0, 1.0) + (scenes.ground(bottom - .01, ground) if ground else "")
         what = f"{number + 1}: " + " ".join(f"{tau:.3g}/{albedo:.3g}/{g:.2g}" for tau, albedo, g in layers) + f" mu0 {mu0:.2f}"
-        # Of ordinates: as they are stated for such phase functions, a thousandth.
-        for sensor, value in ((scenes.flux(1e-3, False), up), (scenes.flux(bottom - .005, True), down)):
-            yield Case("nanodisort, fluxes", what, SOURCE, scene + sensor, ["up" if value is up else "down"], [value],
-                       [1e-3 * value + 1e-6])
-        for mu, value in zip(MUS, radiances):
-            yield Case("nanodisort, radiances", what, SOURCE, scene + scenes.radiance(1e-3, mu, 180.0 + azimuth), [f"mu {mu}"], [value],
-                       [2e-3 * value + 1e-6])
+        yield from of_slab("nanodisort", what, layers, mu0, ground, azimuth)

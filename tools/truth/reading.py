@@ -39,6 +39,8 @@ class Reader:
             for row in csv.DictReader(stream):
                 place = int(row["row"]) if is_map else 0, int(row["column"])
                 columns.setdefault(place, []).append((float(row["G"]), float(row["standardError.G"] or "inf")))
+                if any(not math.isclose(float(row[other]), float(row["G"]), rel_tol=1e-5, abs_tol=1e-30) for other in "RB"):
+                    raise SystemExit(f"{file}: all is grey, but a reading is {row}")
         mean = json.loads(report.read_text())["mean"]
         errors = mean["standardError"]  # none of a single sample; 0 where nothing varies
         self.mean_error = errors[1] if errors and errors[1] is not None else math.inf

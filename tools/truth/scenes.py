@@ -36,11 +36,12 @@ def flux(height, down, width=SLAB, depth=SLAB, columns=1, rows=ROWS):
 
 def radiance(height, mu, azimuth=0.0, width=0.01, columns=1, rows=ROWS):
     """A camera of parallel rays that sees what leaves a plane at `height`, upwards by mu, in this azimuth: columns along x, of the
-    plane, whatever the slant, and rows along z. More than one column are for azimuths along x."""
+    plane, whatever the slant, and rows along z. More than one column are for azimuths along x, or all but upright."""
     d = toward(mu, azimuth)
-    eye = [p + 2.0 * width * q for p, q in zip((0.0, height, 0.0), d)]  # beyond all that slants down from it
     slant = mu if abs(d[2]) < 1e-9 else 1.0
     high = width * slant / columns * rows
+    far = 2.0 * max(width, high) / mu  # no corner of the picture, however it slants, begins below `height`
+    eye = [p + far * q for p, q in zip((0.0, height, 0.0), d)]
     return (f'<camera projection="orthographic" viewHeight="{high!r}" x="{eye[0]!r}" y="{eye[1]!r}" z="{eye[2]!r}" '
             f'lookAt="0 {height!r} 0" up="0 0 -1"/><width>{columns}</width><height>{rows}</height>')
 
