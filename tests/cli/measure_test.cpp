@@ -283,18 +283,16 @@ TEST_CASE("bands whose sensors are at other places are no sum", "[gpu][command]"
 }
 
 TEST_CASE("what the validation layer objects to fails measurements as it does renders", "[gpu][command]") {
-    const Folder folder("");
-    folder.write("glow.xml", ball);
-    const std::string keys = "glow.xml -D sigma=1 -D glow=1 --validate ";
+    const Folder folder("<light y=\"1\" r=\"1\" g=\"1\" b=\"1\"/>");
     // Which it has something to say of: that it is there.
     const std::string strict = "VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_BEST_PRACTICES_EXT";
-    const Run render = folder.vkvol(keys + "--spp 4 -o glow.exr", strict);
+    const Run render = folder.vkvol("ball.xml --validate --spp 4 -o ball.exr", strict);
     if (render.text.find("the validation layer has ") == std::string::npos) {
         WARN("skipped: this validation layer objects to nothing");
         return;
     }
-    for (const char* command : {"measure ", "bench "}) {
-        const Run run = folder.vkvol(command + keys + (command[0] == 'm' ? "--spp 4" : "--time 2s"), strict);
+    for (const char* command : {"measure ball.xml --validate --spp 4", "bench ball.xml --validate --time 2s"}) {
+        const Run run = folder.vkvol(command, strict);
         CHECK(run.code == exit_render_failed);
         CHECK_THAT(run.text, Contains("vkvol: validation: ") && Contains("the validation layer has "));
     }
