@@ -72,6 +72,21 @@ void PbrtDirectives::read() {
     if (!in_world_)
         fail_at(token.place, "the scene lacks its WorldBegin, behind which it is; is the file whole?");
     place_objects();
+    place_early_media();
+}
+
+// What pbrt makes before it knows the camera stands in the space that it renders in, whose origin the camera's eye will
+// be, and whose axes too if that is the camera's own.
+void PbrtDirectives::place_early_media() {
+    if (!scene_.camera || scene_.rendered_in == "world")
+        return;
+    const glm::dmat4 to_world = glm::inverse(scene_.camera->transform);
+    const glm::dmat4 shift = scene_.rendered_in == "camera"
+                                 ? to_world
+                                 : glm::translate(glm::dmat4(1.0), glm::dvec3(to_world[3]) / to_world[3].w);
+    for (auto& [name, medium] : scene_.media)
+        if (medium.is_before_camera && medium.type != "homogeneous")
+            medium.transform = shift * medium.transform;
 }
 
 // Whether all that was begun after so many states were kept has its end.
@@ -96,6 +111,7 @@ PbrtThing PbrtDirectives::thing(const PbrtToken& directive, const char* target) 
         parameters->add_defaults(defaults->second);
     result.parameters = std::move(parameters);
     result.transform = state_.transform;
+    result.is_before_camera = !scene_.camera && !in_world_;
     result.color_space = state_.color_space;
     return result;
 }
@@ -219,7 +235,9 @@ void PbrtDirectives::add_settings() {
 
 void PbrtDirectives::read_option() {
     const PbrtToken option = tokens_.next(Kind::quoted, "an option in quotes");
-    tokens_.next();
+    const PbrtToken value = tokens_.next();
+    if (option.value.ends_with("rendercoordsys"))
+        scene_.rendered_in = value.value;
     const std::vector<std::string> without_effect = {"seed", "rendercoordsys", "wavefront", "pixelstats",
                                                      "recordpixelstatistics"};
     if (std::none_of(without_effect.begin(), without_effect.end(),

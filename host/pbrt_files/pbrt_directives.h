@@ -54,6 +54,7 @@ private:
     void end_object(const PbrtToken& directive);
     void read_instance();
     void place_objects();
+    void place_early_media();
     void push(const PbrtPlace& place) {
         states_.push_back(state_);
         state_.begun = place;

@@ -115,7 +115,8 @@ void PbrtTranslator::write_lights() {
     xml_.open("lights");
     for (const PbrtThing& light : scene_.lights) {
         const PbrtParameters& p = *light.parameters;
-        if (light.type == "infinite" && p.text("filename").empty()) {
+        const bool is_map = light.type == "infinite" && !p.text("filename").empty();
+        if (light.type == "infinite" && !is_map) {
             const double illuminance = p.number("illuminance", -1.0);
             background += light_color(light, "L") * (illuminance > 0.0 ? illuminance / pi : 1.0);
             place = light.place.text();
@@ -130,6 +131,8 @@ void PbrtTranslator::write_lights() {
             note(light.place, fmt::format("LightSource \"{}\" is left out", light.type));
             continue;
         }
+        if (double scale; (light.type == "spot" || is_map) && !turns_alone(glm::dmat3(light.transform), scale))
+            note(light.place, "it is stretched by its transform in pbrt, and not here");
         note_unused(light);
     }
     xml_.close();

@@ -197,20 +197,28 @@ std::optional<PbrtTranslator::Region> PbrtTranslator::region_within(const PbrtSh
     std::optional<Region> region = region_of(shape);
     if (!region)
         note(shape.thing.place,
-             fmt::format("\"{}\" encloses medium \"{}\", which is left out: of shapes a whole sphere, a box or a "
+             fmt::format("\"{}\" encloses medium \"{}\", which {}: of shapes a whole sphere, a box or a "
                          "plymesh that is closed can hold it",
-                         shape.thing.type, medium));
+                         shape.thing.type, medium, is_endless(medium) ? "has no end here" : "is left out"));
     return region;
+}
+
+// Around the camera, with no shape that ends it.
+bool PbrtTranslator::is_endless(const std::string& medium) const {
+    return camera_medium_is_endless_ && medium == scene_.camera_medium;
 }
 
 bool PbrtTranslator::has_camera(const PbrtShape& shape, const Region& region) const {
     const glm::dmat4 placed = scene_.camera ? scene_.camera->transform : glm::dmat4(1.0); // pbrt's usual one
-    const glm::dmat4 camera = world_ * glm::inverse(placed);
+    return has_point(shape, region, world_ * glm::inverse(placed)[3]);
+}
+
+bool PbrtTranslator::has_point(const PbrtShape& shape, const Region& region, const glm::dvec4& point) const {
     if (region.element.empty()) { // whose name is, for `vkvol convert`, that beside the new scene
         const std::string file = shape.thing.parameters->text("filename");
-        return has_within(scene_.folder / file, region.transform, glm::dvec3(camera[3]));
+        return has_within(scene_.folder / file, region.transform, glm::dvec3(point));
     }
-    const glm::dvec3 p(glm::inverse(region.transform) * camera[3]);
+    const glm::dvec3 p(glm::inverse(region.transform) * point);
     if (region.element == "sphere")
         return glm::length(p) < 1.0;
     return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < 0.5;
@@ -221,7 +229,7 @@ bool PbrtTranslator::ends_camera_medium() {
         const PbrtSides sides = sides_of(shape);
         if (sides.within != scene_.camera_medium || sides.beyond == sides.within)
             return false;
-        const std::optional<Region> region = region_within(shape, sides.within);
+        const std::optional<Region> region = region_of(shape);
         return region && has_camera(shape, *region);
     });
 }
@@ -283,76 +291,6 @@ void PbrtTranslator::write_camera_medium() {
                                 scene_.camera_medium));
 }
 
-// Notes what becomes of a homogeneous medium outside of a shape.
-void PbrtTranslator::note_beyond(const PbrtShape& shape, const std::string& medium) {
-    if (medium != scene_.camera_medium && media_within_.count(medium) == 0)
-        note(shape.thing.place,
-             fmt::format("medium \"{}\" is outside of this, as its normals point, and neither the camera's nor within "
-                         "another shape: it is left out",
-                         medium));
-    else if (lets_light_in(shape))
-        note(shape.thing.place,
-             fmt::format("medium \"{}\" goes on within: media add up where they overlap here", medium));
-}
-
-namespace {
-
-// How often a closed mesh winds about p, by the solid angles of its triangles (van Oosterom and Strackee 1983).
-double winding(const PbrtTriangles& mesh, const glm::dvec3& p) {
-    double angle = 0.0;
-    for (const glm::uvec3& t : mesh.triangles) {
-        const glm::dvec3 a = mesh.points[t.x] - p, b = mesh.points[t.y] - p, c = mesh.points[t.z] - p;
-        const double u = glm::length(a), v = glm::length(b), w = glm::length(c);
-        angle += 2.0 * std::atan2(glm::dot(a, glm::cross(b, c)),
-                                  u * v * w + glm::dot(a, b) * w + glm::dot(b, c) * u + glm::dot(c, a) * v);
-    }
-    return angle / (4.0 * std::numbers::pi);
-}
-
-// Whether the grid's box is within these triangles, by its corners, or they are but a rectangle, one of several.
-bool is_about(const PbrtShape& shape, const PbrtThing& medium) {
-    if (shape.thing.type != "trianglemesh" && shape.thing.type != "bilinearmesh")
-        return false;
-    const PbrtTriangles mesh = moved(shape.thing.transform, read_triangles(shape.thing), false);
-    if (as_rectangle(mesh))
-        return true;
-    const PbrtBounds bounds = bounds_of(medium);
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 along = 1e-4 + (1.0 - 2e-4) * glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2);
-        const glm::dvec3 p(medium.transform * glm::dvec4(bounds.low + bounds.size * along, 1.0));
-        if (std::abs(winding(mesh, p)) < 0.5)
-            return false;
-    }
-    return true;
-}
-
-} // namespace
-
-void PbrtTranslator::note_what_is_not_cut(const PbrtShape& shape, const std::string& name, const PbrtThing& medium) {
-    if (!is_dense(medium))
-        return;
-    const std::optional<Region> region = region_of(shape);
-    if (!region && is_about(shape, medium))
-        return;
-    if (!region || region->element.empty())
-        return note(shape.thing.place, fmt::format("the grid of medium \"{}\" fills its box, whatever of it is within "
-                                                   "this: shapes do not cut grids here",
-                                                   name));
-    const PbrtBounds bounds = bounds_of(medium);
-    const glm::dmat4 to_region = glm::inverse(region->transform) * world_ * medium.transform;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 own = bounds.low + bounds.size * glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2);
-        const glm::dvec3 p(to_region * glm::dvec4(own, 1.0));
-        const double reach = region->element == "sphere"
-                                 ? glm::length(p)
-                                 : 2.0 * std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-        if (reach > 1.0 + 1e-5)
-            return note(shape.thing.place, fmt::format("the grid of medium \"{}\" reaches beyond this, and is there "
-                                                       "beyond it too: shapes do not cut grids here",
-                                                       name));
-    }
-}
-
 void PbrtTranslator::write_media_of(const PbrtShape& shape) {
     const PbrtSides sides = sides_of(shape);
     if (sides.within == sides.beyond)
@@ -370,9 +308,22 @@ void PbrtTranslator::write_media_of(const PbrtShape& shape) {
                                             scene_.camera_medium));
     if (!within)
         return;
-    if (write_grid_once(sides.within, *within))
+    if (write_grid_once(sides.within, *within)) {
         note_what_is_not_cut(shape, sides.within, *within);
-    else if (const std::optional<Region> region = region_within(shape, sides.within)) {
+        const std::optional<Region> region = region_of(shape);
+        if (scene_.camera_medium.empty() && region && has_camera(shape, *region))
+            note(
+                shape.thing.place,
+                fmt::format("the camera is within this, and sees the grid of medium \"{}\"; pbrt's rays begin in none, "
+                            "as there is no MediumInterface before Camera",
+                            sides.within));
+    } else if (const std::optional<Region> region = region_within(shape, sides.within);
+               region && is_endless(sides.within)) {
+        note(shape.thing.place,
+             fmt::format("medium \"{}\" is everywhere here, and not twice within this", sides.within));
+    } else if (region) {
+        if (sides.beyond.empty())
+            note_media_around(shape, *region);
         write_medium(sides.within, *within, *region, shape.thing.place);
         if (sides.within != scene_.camera_medium && has_camera(shape, *region))
             note(shape.thing.place,

@@ -92,7 +92,9 @@ void PbrtParameters::add_defaults(const std::vector<SharedParameter>& defaults) 
         if (std::any_of(parameters_.begin(), parameters_.end(), is_same))
             continue;
         parameters_.push_back(parameter);
-        used_.push_back(true); // it may be for others
+        // It may be for others; but not these, which change what they are given to.
+        used_.push_back(parameter->name != "invert" && parameter->name != "normalmap" &&
+                        parameter->name != "displacement");
     }
 }
 

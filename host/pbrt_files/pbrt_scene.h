@@ -20,6 +20,7 @@ struct PbrtThing {
         std::make_shared<PbrtParameters>(); // instances have them in common
     PbrtPlace place;
     glm::dmat4 transform{1.0};        // from its own space to the world
+    bool is_before_camera = false;    // made before there was one
     std::string color_space = "srgb"; // of its colours
 };
 
@@ -41,6 +42,7 @@ struct PbrtScene {
     std::filesystem::path folder;                                       // from which file names are
     std::optional<PbrtThing> camera, film, filter, sampler, integrator; // of the camera, `transform` is from the world
     std::string camera_medium;
+    std::string rendered_in = "cameraworld"; // of Option "rendercoordsys"
     std::map<std::string, PbrtThing> media, materials, textures;
     std::vector<PbrtThing> lights;
     std::vector<PbrtShape> shapes;  // those of instances included

@@ -339,7 +339,8 @@ void PbrtTranslator::write_surface(const PbrtShape& shape) {
             note(shape.thing.place,
                  "shines, but is an interface between media: pbrt leaves that light out, and so does "
                  "this");
-        if (shape.thing.parameters->has("alpha") && !is_never_met(shape))
+        if (const PbrtParameters& p = *shape.thing.parameters;
+            !is_never_met(shape) && (!p.texture("alpha").empty() || p.number("alpha", 1.0) < 1.0))
             note(shape.thing.place, "\"alpha\" is left out; it bounds its media everywhere");
         return;
     }

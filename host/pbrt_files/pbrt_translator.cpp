@@ -85,16 +85,6 @@ Pixels pixels_of(const PbrtThing& film) {
     return pixels;
 }
 
-bool turns_alone(const glm::dmat3& m, double& scale) {
-    scale = std::cbrt(std::abs(glm::determinant(m)));
-    const glm::dmat3 square = glm::transpose(m) * m;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            if (std::abs(square[i][j] - (i == j ? scale * scale : 0.0)) > 1e-4 * scale * scale)
-                return false;
-    return true;
-}
-
 // That nearest to `m`, as a rotation that may mirror.
 glm::dmat3 rotation_of(const glm::dmat3& m) {
     const glm::dvec3 x = glm::normalize(m[0]), y = glm::normalize(m[1] - glm::dot(m[1], x) * x);
@@ -121,6 +111,16 @@ void write_window(const Pixels& pixels, const Screen& screen, const PbrtPlace& p
 }
 
 } // namespace
+
+bool turns_alone(const glm::dmat3& m, double& scale) {
+    scale = std::cbrt(std::abs(glm::determinant(m)));
+    const glm::dmat3 square = glm::transpose(m) * m;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            if (std::abs(square[i][j] - (i == j ? scale * scale : 0.0)) > 1e-4 * scale * scale)
+                return false;
+    return true;
+}
 
 PbrtTranslator::PbrtTranslator(const PbrtScene& scene, PbrtTranslationOptions options)
     : scene_(scene), options_(std::move(options)), colors_(scene.folder) {

@@ -23,6 +23,9 @@ bool is_dense(const PbrtThing& medium);
 
 constexpr double least_kelvin = 100.0; // of what glows
 
+// Whether it turns, mirrors and has one scale, which is found.
+bool turns_alone(const glm::dmat3& m, double& scale);
+
 class PbrtTranslator {
 public:
     PbrtTranslator(const PbrtScene& scene, PbrtTranslationOptions options);
@@ -56,6 +59,9 @@ private:
     std::optional<Region> region_of(const PbrtShape& shape) const;
     std::optional<Region> region_within(const PbrtShape& shape, const std::string& medium);
     bool has_camera(const PbrtShape& shape, const Region& region) const;
+    bool has_point(const PbrtShape& shape, const Region& region, const glm::dvec4& point) const;
+    bool is_endless(const std::string& medium) const;
+    void note_media_around(const PbrtShape& shape, const Region& region);
     bool ends_camera_medium();
     void write_camera_medium();
     void write_media_of(const PbrtShape& shape);

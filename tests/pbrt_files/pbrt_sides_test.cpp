@@ -308,3 +308,69 @@ TEST_CASE("pbrt's names of media, spectra and spaces", "[cpu][pbrt]") {
     CHECK_THROWS_WITH(world_of("LightSource \"infinite\" \"string filename\" \"a.exr.gz\""),
                       Contains("unpack it with gunzip"));
 }
+
+TEST_CASE("grids that pbrt makes before its camera stand about the camera's eye", "[cpu][pbrt]") {
+    const std::string grid = "MakeNamedMedium \"c\" \"string type\" \"uniformgrid\" \"integer nx\" 1 \"integer ny\" 1 "
+                             "\"integer nz\" 1 \"float density\" [ 1 ] ",
+                      camera = "LookAt 1 2 -5  0 0 0  0 1 0 Camera \"perspective\" ",
+                      ball = "MediumInterface \"c\" \"\" Material \"interface\" Shape \"sphere\" \"float radius\" 9 ";
+    const auto place = [&](const std::string& before, const std::string& after) {
+        return scene_of(before + camera + "WorldBegin AttributeBegin " + after + " AttributeEnd " + ball)
+            .volumes.at(0)
+            .transform;
+    };
+    const auto same = [](const glm::dmat4& a, const glm::dmat4& b) {
+        double most = 0.0;
+        for (int i = 0; i < 4; ++i)
+            most = std::max(most, glm::length(a[i] - b[i]));
+        return most < 1e-6;
+    };
+    const std::string moved = "Translate 0 0 3 ", back = "Translate 0 0 -3 ";
+    CHECK(same(place(moved + grid + back, ""), place("", "Translate 1 2 -2 " + grid)));
+    CHECK(
+        same(place("Option \"string rendercoordsys\" \"world\" " + moved + grid + back, ""), place("", moved + grid)));
+    CHECK(same(place("Option \"string rendercoordsys\" \"camera\" " + moved + grid + back, ""),
+               place("", "CoordSysTransform \"camera\" " + moved + grid)));
+}
+
+TEST_CASE("where pbrt's rays leave media that go on here is noted", "[cpu][pbrt]") {
+    const std::string fog = "MediumInterface \"a\" \"\" Shape \"sphere\" \"float radius\" 10 ",
+                      smoke = "MediumInterface \"b\" \"\" Shape \"sphere\" ";
+    check_noted(fog + smoke, "medium \"a\" goes on within and beyond this");
+    CHECK(world_of(media + "AttributeBegin Translate 30 0 0 MediumInterface \"a\" \"\" Shape \"sphere\" AttributeEnd " +
+                   smoke)
+              .warnings.size() == world_of(media + smoke).warnings.size());
+    const std::string grid =
+        "MakeNamedMedium \"g\" \"string type\" \"uniformgrid\" \"integer nx\" 1 \"integer ny\" 1 "
+        "\"integer nz\" 1 \"float density\" [ 1 ] \"point3 p0\" [ -9 -9 -9 ] \"point3 p1\" [ 9 9 9 ] "
+        "MediumInterface \"g\" \"\" ";
+    check_noted(grid + "Shape \"sphere\" \"float radius\" 20 ", "sees the grid of medium \"g\"");
+    check_noted(
+        "LightSource \"spot\" \"point3 to\" [ 1 0 1 ] AttributeBegin Scale 1 1 3 LightSource \"spot\" AttributeEnd ",
+        "stretched by its transform");
+    check_noted("Attribute \"texture\" \"bool invert\" true Texture \"t\" \"spectrum\" \"imagemap\" \"string "
+                "filename\" \"a.png\" Material \"diffuse\" \"texture reflectance\" \"t\"" +
+                    sided_ball,
+                "\"invert\" is left out");
+    CHECK(world_of(media + "MediumInterface \"a\" \"\" Translate 9 0 0 Shape \"sphere\" \"float alpha\" 1")
+              .warnings.empty());
+}
+
+TEST_CASE("fog about pbrt's camera that no shape can end has no end, and is there once", "[cpu][pbrt]") {
+    const auto of = [](const std::string& shape) {
+        return scene_of("MakeNamedMedium \"a\" \"string type\" \"homogeneous\" MediumInterface \"\" \"a\" Camera "
+                        "\"perspective\" WorldBegin MediumInterface \"a\" \"\" Material \"interface\" " +
+                        shape);
+    };
+    const auto has = [](const Scene& scene, const std::string& words) {
+        return std::any_of(scene.warnings.begin(), scene.warnings.end(),
+                           [&](const std::string& warning) { return warning.find(words) != warning.npos; });
+    };
+    const Scene cylinder = of("Shape \"cylinder\" \"float radius\" 5");
+    CHECK(cylinder.volumes.size() == 1);
+    CHECK(has(cylinder, "\"cylinder\" encloses medium \"a\", which has no end here"));
+    CHECK(!has(cylinder, "which is left out"));
+    const Scene aside = of("Translate 9 0 0 Shape \"sphere\"");
+    CHECK(aside.volumes.size() == 1);
+    CHECK(has(aside, "is everywhere here, and not twice within this"));
+}
