@@ -23,8 +23,8 @@
 //   choice of a light      x, y: which; z, w: where on it; select: whether by the phase function instead. Then, down a tree,
 //                          a draw for each three levels, x, y, z, and w of the first: whether by halves; of a map of the sky
 //                          x, y: row; z, w: column; of a surface of any shape x, y: which piece
-//   look along a flight    x: how far on a light counts that is chosen down a tree; y: the distance; tap: its density. Then
-//                          the light's own draw, as of a choice. The flight takes a draw of its own after that
+//   look along a flight    y: the distance; tap: its density. Then the light's own draw, as of a choice. The flight takes a
+//                          draw of its own after that
 //   light before a sensor  of flux: a choice of a light, behind the camera's draw; then as after a lamp before the camera
 //   lamp before the camera w of the camera's draw: which of those that the ray meets. After its shadow ray the first
 //                          flight takes a draw of its own, e_z as from the camera's

@@ -15,7 +15,7 @@ struct Bsdf {
     vec3 eta; // beyond the surface over before it
     vec3 k;   // of what is coated, x: share of diffuse light that the coat throws back at it
     float alpha;
-    uvec4 key; // of the walks among facets of what is rough; no other random numbers come from it
+    uvec4 key; // of the walks among facets of what is rough; and, turned about, of bsdf_guess
 };
 
 struct BsdfSample {
@@ -180,14 +180,14 @@ BsdfSample sample_pane(Bsdf b, vec3 wo, float u) {
 }
 
 // The coat mirrors F of the light, and what is below it scatters its albedo of the rest: which of them the path takes is drawn by what
-// is left of it then, `carried` before.
+// is left of it then, `carried` before, whatever its sign.
 BsdfSample sample_coated(Bsdf b, vec3 wo, vec3 carried, vec3 u) {
     float cosine = min(dot(b.normal, wo), 1.0);
     float F = fresnel_dielectric(cosine, b.eta.x);
     vec3 direction = by_cosine(b.normal, u.xy);
     float out_cosine = max(dot(b.normal, direction), 0.0);
-    float mirrored = F * dot(carried, vec3(1.0));
-    float scattered = (1.0 - F) * dot(carried, (1.0 - b.k.x) * b.color / max(1.0 - b.k.x * b.color, 1.0e-7));
+    float mirrored = F * dot(abs(carried), vec3(1.0));
+    float scattered = (1.0 - F) * dot(abs(carried), (1.0 - b.k.x) * b.color / max(1.0 - b.k.x * b.color, 1.0e-7));
     float chance = mirrored > 0.0 ? mirrored / (mirrored + scattered) : 0.0;
     vec3 below = b.color * through_coat(b, out_cosine, cosine) / max(1.0 - chance, 1.0e-7);
     bool mirrors = u.z < chance;

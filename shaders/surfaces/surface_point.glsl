@@ -134,7 +134,7 @@ SurfacePoint surface_point(uint i, vec3 near) {
     if (shape == SURFACE_SPHERE) {
         at.normal = normalize(near - p.a);
         at.position = p.a + p.c.x * at.normal;
-        reach += p.c.x;
+        reach = abs(p.a) + p.c.x; // its far side
     }
     at.smooth_normal = at.normal;
     at.place = vec2(0.0);

@@ -8,6 +8,7 @@
 #include "support/agreement.h"
 #include "support/images.h"
 #include "support/surface_scenes.h"
+#include "support/test_device.h"
 #include "support/thorough.h"
 
 using namespace vkvol;
@@ -270,5 +271,25 @@ TEST_CASE("surfaces among media are the same for every estimator", "[gpu][image]
         Scene other = scene;
         other.settings.choices = combination.choices;
         CHECK_AGREEMENT(agree(render_here(other, 2).film, expected, combination.name));
+    }
+}
+
+TEST_CASE("coats mirror what majorants below the density leave, of either sign", "[gpu][image][surfaces]") {
+    Scene scene = empty_scene(8, 0.1); // which the ball fills
+    scene.background = Rgb(1.0);
+    scene.volumes = {box_of_fog(2.0, 0.0)};
+    scene.surfaces = {ball_surface(white(MaterialKind::coated))};
+    scene.surfaces.front().material.color = Rgb(0.0); // the coat alone
+    scene.settings.spp = 4096;
+    scene.settings.integrator = "deltaTracking";
+    const Film expected = render_here(scene, 1).film;
+    scene.settings.majorant_scale = 0.5;
+    RenderJob job;
+    job.crop = {0, 8, 0, 8};
+    for (const int flight : {FREE_FLIGHT_WEIGHTED, FREE_FLIGHT_SPECTRAL}) {
+        scene.settings.choices.free_flight = flight;
+        const RenderResult result = render(test_device(), scene, job);
+        CHECK(result.counts.majorant_violations > 0);
+        CHECK_AGREEMENT(agree(result.film, expected, fmt::format("flight {}", flight)));
     }
 }
