@@ -475,20 +475,10 @@ TEST_CASE("paths of a single scattering end where nothing absorbs, too", "[cpu][
     fog.periodic.reset();
     for (Scene* endless : {&scene, &fog}) {
         CHECK_THROWS_WITH(load_assets(*endless, choose_method(*endless)), Contains("keeps its paths for ever"));
-        endless->settings.choices.scattering = SCATTERING_SINGLE;
-        CHECK_NOTHROW(load_assets(*endless, choose_method(*endless)));
-    }
-}
-
-TEST_CASE("paths end where nothing absorbs and what is scattered is lost", "[cpu][method][periodic]") {
-    Scene scene = above(medium(Sphere{{0.0, 0.0, 0.0}, 2.0}, 1.0, 1.0));
-    scene.periodic->low.y = -5.0;
-    scene.periodic->high.y = 5.0;
-    Scene fog = above(medium(Everywhere{}, 1.0, 1.0));
-    fog.periodic.reset();
-    for (Scene* endless : {&scene, &fog}) {
-        endless->settings.choices.scattering = SCATTERING_NONE;
-        CHECK_NOTHROW(load_assets(*endless, choose_method(*endless)));
+        for (const int scattering : {SCATTERING_SINGLE, SCATTERING_NONE}) {
+            endless->settings.choices.scattering = scattering;
+            CHECK_NOTHROW(load_assets(*endless, choose_method(*endless)));
+        }
     }
 }
 
