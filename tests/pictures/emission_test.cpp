@@ -162,14 +162,15 @@ TEST_CASE("a file without a temperature grid does not glow, and says so", "[gpu]
 }
 
 TEST_CASE("a temperature grid that is cold throughout does not glow, and says so", "[gpu][emission]") {
+    const float warmth = GENERATE(0.0f, -1.0f);
     GridRecipe heat = cloud_grid();
-    heat.value = [](glm::ivec3) { return 0.0f; };
+    heat.value = [warmth](glm::ivec3) { return warmth; };
     heat.name = "temperature";
     Scene scene = scene_of(medium(write_grids({cloud_grid(), heat}), 2.0, 0.5), 11.0, 8);
     scene.volumes.front().temperature.color = Rgb(1.0);
     const RenderResult result = render_here(scene, 1);
-    REQUIRE(result.warnings.size() == 1);
-    CHECK_THAT(result.warnings.front(), Catch::Contains("no value above 0"));
+    CHECK(std::any_of(result.warnings.begin(), result.warnings.end(),
+                      [](const std::string& warning) { return warning.find("no value above 0") != warning.npos; }));
     CHECK(mean_of(result.film) == 0.0);
 }
 
