@@ -83,6 +83,21 @@ MeshNormals mesh_normals(const XmlElement& element) {
     return MeshNormals::smooth;
 }
 
+// One whose vertices stand in the scene.
+void check_mesh_of_numbers(const XmlElement& element) {
+    if (element.has("file"))
+        element.fail("<mesh> names a file and has <vertices>; leave out one of them");
+    if (element.has("normals"))
+        element.fail_attribute("normals",
+                               "<mesh> normals: is for those of a file; beside <vertices> each has its own in "
+                               "<normals>, without which faces are flat");
+    std::vector<std::string> attributes;
+    if (element.has("texture"))
+        attributes = {"baseDir"};
+    element.allow(with_material(std::move(attributes)), false,
+                  {"transform", "emission", "vertices", "normals", "places", "triangles"});
+}
+
 glm::dvec3 moved(const glm::dmat4& map, const glm::dvec3& point) {
     return glm::dvec3(map * glm::dvec4(point, 1.0));
 }
@@ -332,16 +347,7 @@ Surface SceneReader::surface(const XmlElement& element) const {
         const auto edge = [&](const char* name) { return element.attribute_number(name, 1.0, length); };
         surface.shape = moved(map, box_of({xyz(element, coordinate), {edge("width"), edge("height"), edge("depth")}}));
     } else if (kind == "mesh" && one("vertices").exists()) {
-        if (element.has("file"))
-            element.fail("<mesh> names a file and has <vertices>; leave out one of them");
-        if (element.has("normals"))
-            element.fail_attribute("normals", "<mesh> normals: is for those of a file; beside <vertices> each has its "
-                                              "own in <normals>, without which faces are flat");
-        std::vector<std::string> attributes;
-        if (element.has("texture"))
-            attributes = {"baseDir"};
-        element.allow(with_material(std::move(attributes)), false,
-                      {"transform", "emission", "vertices", "normals", "places", "triangles"});
+        check_mesh_of_numbers(element);
         surface.shape = moved(map, triangles());
     } else {
         allow({"file", "baseDir", "normals"});
