@@ -21,8 +21,10 @@ bool is_plain(const std::string& number) {
              std::isdigit(static_cast<unsigned char>(number[first + 1])));
 }
 
-bool counts(const std::string& column) {
-    return column == "column" || column == "row" || column == "samples";
+// Not what a key of such a name may have.
+bool counts(const std::string& column, const std::string& word) {
+    return (column == "column" || column == "row" || column == "samples") && word.size() < 16 &&
+           word.find_first_not_of("0123456789") == std::string::npos;
 }
 
 // An object for each row: numbers, null for what is not known, and else texts.
@@ -38,8 +40,9 @@ std::string as_json(const TableRows& rows) {
             if (word.empty())
                 object[rows[0][k]] = nullptr;
             else if (error == std::errc() && read == end && is_plain(word))
-                object[rows[0][k]] = counts(rows[0][k]) ? nlohmann::ordered_json(static_cast<std::int64_t>(number))
-                                                        : nlohmann::ordered_json(number);
+                object[rows[0][k]] = counts(rows[0][k], word)
+                                         ? nlohmann::ordered_json(static_cast<std::int64_t>(number))
+                                         : nlohmann::ordered_json(number);
             else
                 object[rows[0][k]] = word;
         }

@@ -112,7 +112,10 @@ private:
             begin(std::move(read), what, wish.paused);
         } else {
             describe(read.xml);
-            publish(session_->result(), is_done_);
+            if (session_->samples() > 0)
+                publish(session_->result(), is_done_);
+            else
+                sketch(wish.paused);
         }
         board_.say(file_trouble_); // of this wish there is none
         try {
@@ -199,6 +202,7 @@ private:
             return;
         job_.preview = [this](const RenderResult& result) { publish(result, false); };
         session_.emplace(device_, scene_, job_);
+        since_asked_.reset(); // that took its time
         if (!options_.quiet)
             print_warnings(workshop_.new_warnings(session_->warnings()));
         rendering_ = what;
@@ -231,6 +235,7 @@ private:
                            std::nullopt);
         RenderJob job = job_;
         job.crop = {0, small.picture.width, 0, small.picture.height};
+        job.interrupted = [this] { return interrupted() || is_outdated(); }; // also while nobody looks: it is soon done
         Session session(device_, small, job);
         session.render(sketch_samples);
         if (session.samples() == 0) // there is news

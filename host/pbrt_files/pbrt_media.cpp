@@ -269,7 +269,13 @@ void PbrtTranslator::count_media() {
         for (const std::string& name : {sides.within, sides.beyond})
             if (is_grid(name))
                 grids.insert(name);
-        media_count_ += !sides.within.empty() && !is_grid(sides.within) ? 1 : 0;
+        if (sides.within.empty() || is_grid(sides.within))
+            continue;
+        ++media_count_;
+        if (shape.thing.type == "plymesh")
+            continue;
+        if (const std::optional<Region> region = region_of(shape); region && sides.within != sides.beyond)
+            bounded_.push_back({&shape, sides.within, *region});
     }
     media_count_ += int(grids.size());
 }

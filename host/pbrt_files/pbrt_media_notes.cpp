@@ -82,21 +82,17 @@ void PbrtTranslator::note_beyond(const PbrtShape& shape, const std::string& medi
 
 // Homogeneous media that are around this region's middle as well, by shapes of their own.
 void PbrtTranslator::note_media_around(const PbrtShape& shape, const Region& region) {
-    if (region.element.empty())
+    if (region.element.empty() || bounded_.size() > 1000) // which would take long
         return;
-    for (const PbrtShape& other : scene_.shapes) {
-        const PbrtSides sides = sides_of(other);
-        const PbrtThing* medium = &other == &shape ? nullptr : medium_of(sides.within, other.thing.place);
-        if (!medium || medium->type != "homogeneous" || sides.within == sides.beyond)
-            continue;
-        const std::optional<Region> around = region_of(other);
-        const bool is_larger = around && std::abs(glm::determinant(glm::dmat3(around->transform))) >
-                                             std::abs(glm::determinant(glm::dmat3(region.transform)));
-        if (is_larger && has_point(other, *around, region.transform[3]))
+    for (const auto& [other, medium, around] : bounded_) {
+        const bool is_larger = std::abs(glm::determinant(glm::dmat3(around.transform))) >
+                               std::abs(glm::determinant(glm::dmat3(region.transform)));
+        if (other != &shape && is_larger && has_point(*other, around, region.transform[3]) &&
+            noted_around_.emplace(medium, sides_of(shape).within).second)
             note(shape.thing.place,
                  fmt::format("medium \"{}\" goes on within and beyond this: media add up where they overlap here; "
                              "pbrt's rays leave it here, since the MediumInterface has none outside",
-                             sides.within));
+                             medium));
     }
 }
 

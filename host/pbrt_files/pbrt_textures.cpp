@@ -45,6 +45,8 @@ const PbrtThing& PbrtTranslator::texture_of(const PbrtThing& thing, const char* 
 
 // Colour of a texture that has the same one everywhere; else none.
 std::optional<glm::dvec3> PbrtTranslator::even_color(const PbrtThing& texture, int depth) {
+    if (texture.type != "imagemap")
+        texture.parameters->find("invert"); // of Attribute, say: nothing to these
     if (texture.type == "constant")
         return colors_.share(texture, "value").value_or(glm::dvec3(1.0));
     if (texture.type != "scale" || !texture.parameters->texture("scale").empty() || depth >= most_nested)

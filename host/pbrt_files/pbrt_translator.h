@@ -62,6 +62,13 @@ private:
     bool has_point(const PbrtShape& shape, const Region& region, const glm::dvec4& point) const;
     bool is_endless(const std::string& medium) const;
     void note_media_around(const PbrtShape& shape, const Region& region);
+    struct Bounded { // a homogeneous medium in a ball or box
+        const PbrtShape* shape;
+        std::string medium;
+        Region region;
+    };
+    std::vector<Bounded> bounded_;
+    std::set<std::pair<std::string, std::string>> noted_around_; // once for two media
     bool ends_camera_medium();
     void write_camera_medium();
     void write_media_of(const PbrtShape& shape);
