@@ -71,6 +71,8 @@ void DeviceScene::make_lights(const Scene& scene, const Method& method, const As
     }
     lights_ = make_light_table(scene, assets, surfaces_, origin_, radius);
     tell_look_densities(lights_, surfaces_);
+    if (!assets.superposition) // else media have rows of their own, in the end
+        tell_look_densities(lights_, frame_.media);
     if (is_left_to_flights(scene, assets.media, method, assets.sky ? &*assets.sky : nullptr)) {
         leave_sky_to_flights(lights_);
         text_ += ", an even sky by flights alone";
@@ -91,6 +93,7 @@ void DeviceScene::make_lights(const Scene& scene, const Method& method, const As
 void DeviceScene::upload_media(const Scene& scene, const Method& method, const Assets& assets,
                                std::uint64_t most_texel_bytes) {
     media_ = make_media(scene, assets.media, method, origin_);
+    tell_look_densities(lights_, media_);
     const OverlapWords overlaps = overlap_words(media_, assets.media, *assets.superposition);
     frame_.overlaps = overlaps.places;
     frame_.media[0].density = overlaps.grid;

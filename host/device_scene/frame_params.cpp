@@ -36,7 +36,7 @@ static_assert(sizeof(shared::GridParams) == 4 * 12 + 2 * 4);
 static_assert(sizeof(shared::AlbedoParams) == sizeof(shared::GridParams) + 3 * 16);
 static_assert(sizeof(shared::EmissionParams) == 2 * 12 + sizeof(shared::GridParams) + 3 * 16 + 6 * 4);
 static_assert(sizeof(shared::LayerParams) == 12 + 3 * 4);
-static_assert(sizeof(shared::MediumParams) == 3 * 16 + 4 * 12 + sizeof(shared::GridParams) + 12 + 6 * 4 + 3 * 12 +
+static_assert(sizeof(shared::MediumParams) == 3 * 16 + 4 * 12 + sizeof(shared::GridParams) + 12 + 7 * 4 + 3 * 12 +
                                                   sizeof(shared::PhaseParams) + sizeof(shared::AlbedoParams) +
                                                   sizeof(shared::EmissionParams) + sizeof(shared::NoiseParams) +
                                                   sizeof(shared::LayerParams) + 12 + sizeof(shared::MediumKinds));

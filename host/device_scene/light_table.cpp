@@ -10,6 +10,7 @@
 #include "alias_table.h"
 #include "layer_plan.h"
 #include "light_tree.h"
+#include "placement.h"
 #include "shining_pieces.h"
 
 namespace vkvol {
@@ -29,9 +30,9 @@ struct Entry {
     shared::LightRow row{};
     double fluence = 0.0; // amid the media, roughly
     // In this order rows are laid out.
-    enum class Place { sky, far, lamp, point, surface } place = Place::far; // sky: met by flights that leave
-    glm::vec3 reach{0.0f};                                                  // from its middle
-    double power = 0.0;                                                     // see LightTable
+    enum class Place { sky, far, lamp, point, surface, glow } place = Place::far; // sky: met by flights that leave
+    glm::vec3 reach{0.0f};                                                        // from its middle
+    double power = 0.0;                                                           // see LightTable
     double cone = pi; // radians, the most that its light is off its direction
     // What counts of its intensity for the chance to be chosen, of spots: the fourth root of the share of the media
     // that is in the cone. The square root would have the least noise if all places counted alike; what is lit counts
@@ -47,7 +48,7 @@ bool is_somewhere(const Entry& entry) {
 class Rows {
 public:
     Rows(const Scene& scene, const Assets& assets, const ShiningPieces& pieces, const glm::dvec3& origin, double radius)
-        : assets_(assets), pieces_(pieces), origin_(origin), radius_(radius),
+        : scene_(scene), assets_(assets), pieces_(pieces), origin_(origin), radius_(radius),
           reach_(scene.surfaces.empty() && !any_medium(scene, is_everywhere) && !reads_flux(scene.camera)
                      ? radius
                      : std::numeric_limits<double>::infinity()) {}
@@ -141,6 +142,27 @@ public:
         return entry;
     }
 
+    Entry operator()(const GlowLight& light) const {
+        Entry entry = begin(LIGHT_GLOW, light.intensity);
+        const auto index = std::size_t(light.medium);
+        const glm::dmat4 map = medium_to_world(scene_.volumes[index], assets_.media[index]);
+        const double whole = std::abs(glm::determinant(glm::dmat3(map)));
+        const bool is_ball = std::holds_alternative<Sphere>(scene_.volumes[index].shape);
+        const glm::dvec3 middle(map[3]);
+        entry.row.first_piece = static_cast<std::uint32_t>(light.medium);
+        entry.row.sides = is_ball ? 0 : 6;
+        entry.row.extent = static_cast<float>(largest(world_sigma_t(scene_.volumes[index], nullptr)));
+        entry.row.position = middle - origin_;
+        entry.row.edge_u = glm::dvec3(map[0]);
+        entry.row.edge_v = glm::dvec3(map[1]);
+        entry.row.direction = glm::dvec3(map[2]);
+        entry.row.area = static_cast<float>(whole * (is_ball ? 4.0 / 3.0 * pi : 8.0));
+        entry.reach = glm::abs(entry.row.edge_u) + glm::abs(entry.row.edge_v) + glm::abs(entry.row.direction);
+        entry.fluence = channel_mean(light.intensity) * entry.row.area / square_distance(middle);
+        entry.place = Entry::Place::glow;
+        return entry;
+    }
+
     Entry operator()(const SkyLight&) const {
         Entry entry = begin(LIGHT_MAP, Rgb(0.0));
         entry.fluence = channel_mean(assets_.sky->fluence);
@@ -198,6 +220,7 @@ private:
         return distance > 0.0 ? distance * distance : 1.0;
     }
 
+    const Scene& scene_;
     const Assets& assets_;
     const ShiningPieces& pieces_;
     glm::dvec3 origin_;
@@ -212,7 +235,7 @@ double power_of(const Light& light, const Entry& entry) {
             if constexpr (requires { power_per_unit(kind); })
                 return channel_mean(entry.row.radiance) * power_per_unit(kind);
             else
-                return entry.place == Entry::Place::surface ? 0.0 : entry.fluence;
+                return entry.place >= Entry::Place::surface ? 0.0 : entry.fluence;
         },
         light);
 }
@@ -246,9 +269,10 @@ std::vector<glm::vec3> find_suns(std::vector<Entry> entries, double fluence) {
 PlacedLight placed(const Entry& entry, std::uint32_t row) {
     const glm::vec3 radiance = entry.row.radiance;
     const float mean = (radiance.x + radiance.y + radiance.z) / 3.0f;
-    const float area = entry.place == Entry::Place::lamp      ? entry.row.area
-                       : entry.place == Entry::Place::surface ? 0.25f * float(entry.row.sides) * entry.row.area
-                                                              : 1.0f;
+    const bool is_glow = entry.place == Entry::Place::glow;
+    const float area = is_glow || entry.place == Entry::Place::lamp ? entry.row.area
+                       : entry.place == Entry::Place::surface       ? 0.25f * float(entry.row.sides) * entry.row.area
+                                                                    : 1.0f;
     const float power = mean * area * (entry.fluence > 0.0 ? 1.0f : 1e-6f);
     PlacedLight light{entry.row.position - entry.reach, entry.row.position + entry.reach, std::max(power, 1e-30f),
                       std::max(power * static_cast<float>(entry.by_cone), 1e-30f), row};
@@ -259,13 +283,13 @@ PlacedLight placed(const Entry& entry, std::uint32_t row) {
     return light;
 }
 
-// By area, with the chance that the tree would have if all lights were as far off: see shining.glsl.
+// By area or volume, with the chance that the tree would have if all lights were as far off: see shining.glsl.
 void set_look_densities(const std::vector<PlacedLight>& in_tree, std::vector<shared::LightRow>& rows, float placed) {
     double all = 0.0;
     for (const PlacedLight& light : in_tree)
         all += light.power_in_matter;
     const auto set = [&](shared::LightRow& light, double share) {
-        if (light.kind == LIGHT_SURFACE && light.area > 0.0f)
+        if ((light.kind == LIGHT_SURFACE || light.kind == LIGHT_GLOW) && light.area > 0.0f)
             light.look_density = static_cast<float>(std::clamp(placed * share / light.area, 1e-30, 1e30));
     };
     for (const PlacedLight& light : in_tree)
@@ -282,6 +306,7 @@ int lights_kind(const Scene& scene) {
     if (lights.empty() || lone_directional(scene))
         return LIGHTS_LONE;
     const auto is_map = [](const Light& light) { return std::holds_alternative<SkyLight>(light); };
+    const auto is_glow = [](const Light& light) { return std::holds_alternative<GlowLight>(light); };
     const auto is_square = [](const Light& light) {
         const auto* sky = std::get_if<SkyLight>(&light);
         return sky && sky->mapping == SkyMapping::equal_area;
@@ -294,8 +319,9 @@ int lights_kind(const Scene& scene) {
     const bool asks_where = (!scene.surfaces.empty() || reads_flux(scene.camera)) && any(is_aimed);
     const int tree = somewhere > 1 ? LIGHTS_TREE | (asks_where ? LIGHTS_AIMED : 0) : 0;
     return LIGHTS_TABLE | (any(is_met_by_chance) ? LIGHTS_SKY : 0) | (any(is_lamp) ? LIGHTS_LAMPS : 0) | tree |
-           (any(is_shining_surface) ? LIGHTS_SURFACES : 0) | (any(is_map) ? LIGHTS_MAP : 0) |
-           (lights.size() == 1 ? LIGHTS_SOLE : 0) | (any(is_square) ? LIGHTS_EQUAL_AREA : 0);
+           (any(is_shining_surface) ? LIGHTS_SURFACES : 0) | (any(is_glow) ? LIGHTS_GLOW : 0) |
+           (any(is_map) ? LIGHTS_MAP : 0) | (lights.size() == 1 ? LIGHTS_SOLE : 0) |
+           (any(is_square) ? LIGHTS_EQUAL_AREA : 0);
 }
 
 std::uint32_t loop_iterations(const Scene& scene) {
@@ -378,6 +404,12 @@ void tell_look_densities(const LightTable& table, SurfaceTable& surfaces) {
         if (light.kind == LIGHT_SURFACE && light.look_density > 0.0f)
             surfaces.rows[surfaces.primitives[table.pieces[light.first_piece].source].surface].look_density =
                 light.look_density;
+}
+
+void tell_look_densities(const LightTable& table, std::span<shared::MediumParams> media) {
+    for (const shared::LightRow& light : table.rows)
+        if (light.kind == LIGHT_GLOW)
+            media[light.first_piece].look_density = light.look_density;
 }
 
 shared::SkyParams make_sky_params(const Scene& scene, const Assets& assets) {

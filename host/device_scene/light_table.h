@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "loaded_medium.h"
@@ -18,8 +19,8 @@ struct LightTable {
     std::vector<shared::LightRow> rows;
     std::vector<shared::LightNode> tree; // over those that are somewhere, if there are several
     std::vector<glm::vec3> suns;         // CACHE_SUNS at most: towards those far lights that are no small part of all
-    std::vector<double> powers; // of each row; of what is far, of the first lamp_first, through a unit of area;
-                                // 0 of surfaces, whose pieces send out their particles themselves
+    std::vector<double> powers; // of each row; of what is far, of the first lamp_first, through a unit of area; 0 of
+                                // surfaces and media, whose pieces send out their particles themselves
     std::vector<shared::EmitterRow> pieces; // of all surfaces among the rows, in their order
     float fluence = 0.0f;                   // of all, amid the media, roughly; > 0
     std::uint32_t choices = 0, sky_count = 0, lamp_first = 0, lamp_count = 0; // see FrameParams
@@ -35,6 +36,8 @@ LightTable make_light_table(const Scene& scene, const Assets& assets, const Surf
 
 // To surfaces that are lights, for flights that meet them.
 void tell_look_densities(const LightTable& table, SurfaceTable& surfaces);
+// To media that are.
+void tell_look_densities(const LightTable& table, std::span<shared::MediumParams> media);
 
 // Iterations of the loops in which a kernel asks all of some kind, or goes down the tree; each with the one that ends
 // it.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "glow_lights.h"
 #include "method.h"
 #include "nearest_name.h"
 #include "particle_scenes.h"
@@ -164,13 +165,16 @@ namespace {
 // Towards a light that is near, transmittances are differences of what is cached, and take as long as shadow rays do:
 // see tools/results/README.md.
 bool gains_by_cache(const Scene& scene) {
-    return can_cache_light(scene) && std::none_of(scene.lights.begin(), scene.lights.end(), has_place);
+    const auto is_cached = [](const Light& light) { return !is_met_on_the_way(light); };
+    const auto is_near = [](const Light& light) { return place_of(light).has_value(); };
+    return can_cache_light(scene) && std::any_of(scene.lights.begin(), scene.lights.end(), is_cached) &&
+           std::none_of(scene.lights.begin(), scene.lights.end(), is_near);
 }
 
 } // namespace
 
 const Integrator& choose_integrator(const Scene& scene) {
-    const bool is_dark = scene.lights.empty() && !has_lamps_of_surfaces(scene);
+    const bool is_dark = scene.lights.empty() && !has_lamps_of_surfaces(scene) && !has_lights_of_glow(scene);
     const std::string name = !scene.settings.integrator.empty() ? scene.settings.integrator
                              : gains_by_particles(scene)        ? "lightTracing"
                              : is_dark                          ? "deltaTracking"

@@ -6,6 +6,7 @@
 #include "density_field.h"
 #include "error.h"
 #include "estimator_traits.h"
+#include "glow_lights.h"
 #include "integrators.h"
 #include "method_biases.h"
 #include "particle_scenes.h"
@@ -93,7 +94,7 @@ Method MethodChooser::choose() {
 void MethodChooser::choose_paths() {
     method_.paths = choices_.paths.value_or(preset_.paths);
     // Surfaces of any shape are for paths to find.
-    if (method_.paths == PATHS_BOTH && std::all_of(scene_.lights.begin(), scene_.lights.end(), is_shining_surface)) {
+    if (method_.paths == PATHS_BOTH && std::all_of(scene_.lights.begin(), scene_.lights.end(), is_met_on_the_way)) {
         warn("paths are from the camera: without lights other than meshes there are no particles");
         method_.paths = PATHS_CAMERA;
     }
@@ -210,7 +211,7 @@ void MethodChooser::choose_mis() {
     const bool met = scatters && std::any_of(lights.begin(), lights.end(), is_met_by_chance);
     const bool shared = method_.paths != PATHS_LIGHT && method_.nee != NEE_NONE &&
                         (met || std::any_of(lights.begin(), lights.end(), is_lamp) ||
-                         std::any_of(lights.begin(), lights.end(), is_shining_surface));
+                         std::any_of(lights.begin(), lights.end(), is_met_on_the_way));
     if (choices_.mis && !shared)
         warn("mis is without effect: no light is found in two ways");
     method_.mis = shared ? choices_.mis : std::nullopt;
@@ -220,10 +221,11 @@ void MethodChooser::choose_mis() {
 // parts.
 void MethodChooser::choose_distance() {
     const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
-    const bool could =
-        method_.paths == PATHS_CAMERA && method_.nee != NEE_NONE && method_.scattering != SCATTERING_NONE &&
-        (is_superposition(scene_) || !any_medium(scene_, is_mesh)) &&
-        (has_lamps_of_surfaces(scene_) || std::any_of(scene_.lights.begin(), scene_.lights.end(), has_place));
+    const bool could = method_.paths == PATHS_CAMERA && method_.nee != NEE_NONE &&
+                       method_.scattering != SCATTERING_NONE &&
+                       (is_superposition(scene_) || !any_medium(scene_, is_mesh)) &&
+                       (has_lamps_of_surfaces(scene_) || has_lights_of_glow(scene_) ||
+                        std::any_of(scene_.lights.begin(), scene_.lights.end(), has_place));
     if (choices_.distance && !could)
         warn("distance is without effect: it is for lights that have a place, and not in models alone");
     method_.distance = could ? choices_.distance : DISTANCE_FLIGHTS;

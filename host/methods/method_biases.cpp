@@ -47,7 +47,7 @@ private:
 };
 
 bool has_no_extent(const Light& light) {
-    return !is_lamp(light) && !is_met_by_chance(light) && !is_shining_surface(light);
+    return !is_lamp(light) && !is_met_by_chance(light) && !is_met_on_the_way(light);
 }
 
 // Whether any surface shines that is no light.

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "estimator_traits.h"
+#include "glow_lights.h"
 #include "scene_facts.h"
 #include "shared/constants.h"
 #include "surface_lamps.h"
@@ -70,7 +71,11 @@ Scene with_preset(Scene scene) {
     const bool has_particles = choices.paths.value_or(integrator.paths) != PATHS_CAMERA; // which are looked at
     const bool looks = choices.nee ? *choices.nee != NEE_NONE : integrator.nee != NEE_NONE || marches || has_particles;
     const bool scatters_or_reads = scatters != SCATTERING_NONE || reads_flux(scene.camera);
-    return looks && scatters_or_reads ? with_lamps_of_surfaces(std::move(scene)) : scene;
+    if (!looks || !scatters_or_reads)
+        return scene;
+    scene = with_lamps_of_surfaces(std::move(scene));
+    const bool meets_glow = !has_particles && scatters != SCATTERING_SINGLE; // where it may be looked for as well
+    return meets_glow ? with_lights_of_glow(std::move(scene)) : scene;
 }
 
 } // namespace vkvol

@@ -186,6 +186,7 @@ void add_light(Writer& writer, const DiskLight& light) {
 }
 
 void add_light(Writer&, const SurfaceLight&) {} // known by its surface
+void add_light(Writer&, const GlowLight&) {}    // by its medium
 
 void add_light(Writer& writer, const RectangleLight& light) {
     writer.add("rectangle", light.center);

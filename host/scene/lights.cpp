@@ -19,6 +19,7 @@ struct Kind {
     const char* operator()(const DiskLight&) const { return "disk"; }
     const char* operator()(const RectangleLight&) const { return "rectangle"; }
     const char* operator()(const SurfaceLight&) const { return "surface"; }
+    const char* operator()(const GlowLight&) const { return "medium"; }
 };
 
 } // namespace

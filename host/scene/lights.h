@@ -98,6 +98,13 @@ struct SurfaceLight {
     int body = no_body;
 };
 
+// A ball or box of even density that glows evenly, and is looked for by points of it, while flights go on to meet it.
+struct GlowLight {
+    Rgb intensity{0.0}; // of a unit of volume, per steradian
+    std::string group = {};
+    int medium = 0; // a place in Scene::volumes
+};
+
 // A sky by day, as assets/daylight.h makes it.
 struct Daylight {
     glm::dvec3 sun{0.0, 1.0, 0.0}; // unit, towards it; above the horizon
@@ -132,7 +139,7 @@ struct SkyLight {
 };
 
 using Light = std::variant<DirectionalLight, SunLight, PointLight, SpotLight, SkyLight, SphereLight, DiskLight,
-                           RectangleLight, SurfaceLight>;
+                           RectangleLight, SurfaceLight, GlowLight>;
 
 // The name of the element that makes it; of a surface that shines, `surface`.
 const char* kind_of(const Light& light);
@@ -173,17 +180,22 @@ inline bool is_shining_surface(const Light& light) {
     return std::holds_alternative<SurfaceLight>(light);
 }
 
+// One that flights go on to meet where it is, and which has no place but its points.
+inline bool is_met_on_the_way(const Light& light) {
+    return is_shining_surface(light) || std::holds_alternative<GlowLight>(light);
+}
+
 // One with a shape and a place, which the camera sees by looks.
 inline bool is_lamp(const Light& light) {
     return std::holds_alternative<SphereLight>(light) || std::holds_alternative<DiskLight>(light) ||
            std::holds_alternative<RectangleLight>(light);
 }
 
-// Middle of a light that is somewhere, near or far; none of one infinitely far, or that is a surface of any shape.
+// Middle of a light that is somewhere, near or far; none of one infinitely far, or that flights meet on their way.
 std::optional<glm::dvec3> place_of(const Light& light);
 
 inline bool has_place(const Light& light) {
-    return is_shining_surface(light) || place_of(light).has_value();
+    return is_met_on_the_way(light) || place_of(light).has_value();
 }
 
 } // namespace vkvol

@@ -109,7 +109,8 @@ const bool SOLE_LIGHT = (LIGHTS & LIGHTS_SOLE) != 0;
 const bool EQUAL_AREA = (LIGHTS & LIGHTS_EQUAL_AREA) != 0;
 const bool SEES_LAMPS = (LIGHTS & LIGHTS_LAMPS) != 0;
 const bool SEES_SURFACES = (LIGHTS & LIGHTS_SURFACES) != 0;
-const bool MEETS_LIGHTS = (LIGHTS & (LIGHTS_SKY | LIGHTS_SURFACES)) != 0; // that looks find, too
+const bool SEES_GLOW = (LIGHTS & LIGHTS_GLOW) != 0;
+const bool MEETS_LIGHTS = (LIGHTS & (LIGHTS_SKY | LIGHTS_SURFACES | LIGHTS_GLOW)) != 0; // that looks find, too
 const bool HAS_TREE = (LIGHTS & LIGHTS_TREE) != 0;
 const bool SOME_AIMED = (LIGHTS & LIGHTS_AIMED) != 0;
 const bool HAS_LAYERS = LAYERS != 0;

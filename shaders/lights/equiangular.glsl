@@ -58,7 +58,8 @@ Stretch stretch_of(MediumParams v, LightRow light, vec3 position, vec3 direction
     vec3 apart = light.position - position;
     s.foot = dot(apart, direction);
     // Lamps are no points: nearer than half their size nothing grows any more. And no ray is known to hit a point, from afar.
-    float least = max(0.3 * sqrt((light.kind & LIGHT_SHAPED) != 0u || light.kind == LIGHT_SURFACE ? light.area : 0.0), 1.0e-6 * length(apart));
+    float area = light.kind == LIGHT_GLOW ? pow(light.area, 2.0 / 3.0) : (light.kind & LIGHT_SHAPED) != 0u || light.kind == LIGHT_SURFACE ? light.area : 0.0;
+    float least = max(0.3 * sqrt(area), 1.0e-6 * length(apart));
     vec3 off = apart - s.foot * direction;
     s.off = max(length(off), max(least, 1.0e-30));
     vec2 lit = s.foot + lit_part(light, -off, direction);

@@ -29,7 +29,7 @@ float sensor_share(vec3 position, vec3 ray, float distance) {
 vec2 light_shares(LightRow light, float cosine, float pdf) {
     float radius = frame.particles.radius;
     vec2 shares = vec2(0.0);
-    if (light.kind == LIGHT_SURFACE) // paths find all of its light
+    if (light.kind == LIGHT_SURFACE || light.kind == LIGHT_GLOW) // paths find all of its light
         shares = vec2(0.0);
     else if ((light.kind & LIGHT_SHAPED) != 0u)
         shares = light.kind == LIGHT_SPHERE ? vec2(0.5 / PI, 1.0 / light.area) : vec2(cosine / PI, 4.0 / light.area);

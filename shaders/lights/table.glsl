@@ -1,8 +1,9 @@
 // Any number of lights of any kind. A look goes toward one of them, chosen with a chance that the host has fixed; what
-// flights meet by themselves of a light with extent, they meet when they leave for the sky, or come to a surface that shines.
+// flights meet by themselves of a light with extent, they meet when they leave for the sky, or come to a surface that shines, or a medium that glows.
 #ifndef LIGHT_TABLE_GLSL
 #define LIGHT_TABLE_GLSL
 #include "lights/disc.glsl"
+#include "lights/glowing.glsl"
 #include "lights/lamp.glsl"
 #include "lights/mis.glsl"
 #include "lights/point.glsl"
@@ -88,6 +89,8 @@ LightSample sample_light(Scatterer s, LightRow light, vec3 from, vec3 travel, uv
     else if (SEES_SURFACES && light.kind == LIGHT_SURFACE)
         drawn = sample_shining(s, light, from, travel, u, rng);
 #endif
+    else if (SEES_GLOW && light.kind == LIGHT_GLOW)
+        drawn = sample_glow(s, light, from, travel, u, rng);
     else
         drawn = sample_shapeless(light, from, u, rng);
     if (SEES_SKY && SCATTERING == SCATTERING_SINGLE && MIS != MIS_LIGHT)

@@ -1,6 +1,6 @@
 // Sensors that read flux: irradiance through a rectangle, fluence at points. They stand among the lights as a collision does, with
 // the density of their rays in the place of a phase function: light that no ray meets by chance, of what has no extent or is a
-// lamp, they find by a look; what rays meet of the sky and of surfaces is shared between the two, by the same weights.
+// lamp, they find by a look; what rays meet of the sky, of surfaces and of what glows is shared between the two, by the same weights.
 #ifndef FLUX_GLSL
 #define FLUX_GLSL
 #include "lights/table.glsl"
@@ -38,6 +38,8 @@ LightSample look_from_sensor(vec3 from, vec3 ray, inout Rng rng, out uint row) {
     else if (SEES_SURFACES && light.kind == LIGHT_SURFACE)
         drawn = draw_shining(light, from, u, rng, density);
 #endif
+    else if (SEES_GLOW && light.kind == LIGHT_GLOW)
+        drawn = draw_glow(light, from, u, rng, density);
     else
         drawn = sample_shapeless(light, from, u, rng);
     drawn = over_density(drawn, chance);

@@ -214,6 +214,7 @@
 #define LIGHTS_TREE 8  // several that have a place
 #define LIGHTS_AIMED 32 // of those that have a place, some that do not shine into all directions
 #define LIGHTS_SURFACES 256 // surfaces of any shape, which flights meet, too
+#define LIGHTS_GLOW 512 // media that glow, which flights meet, too
 #define LIGHTS_EQUAL_AREA 16 // a map of the sky, and that a square one; see equal_area.glsl
 
 // Kinds of lights: each a number of its own, and what else is to be known of it.
@@ -230,6 +231,7 @@
 #define LIGHT_DISK (6 | LIGHT_PLACED | LIGHT_SHAPED | LIGHT_FLAT | LIGHT_AIMED)
 #define LIGHT_RECTANGLE (7 | LIGHT_PLACED | LIGHT_SHAPED | LIGHT_FLAT | LIGHT_AIMED)
 #define LIGHT_SURFACE (8 | LIGHT_PLACED) // of any shape, which flights meet, too: no lamp
+#define LIGHT_GLOW (9 | LIGHT_PLACED)    // a medium, likewise
 
 // What a surface is made of. A plane has no end; there are few, and no hierarchy holds them.
 #define SURFACE_TRIANGLES 0

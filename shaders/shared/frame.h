@@ -199,6 +199,7 @@ struct MediumParams {
     uint bvh_nodes; // of a mesh
     uint first_knot; // of the map
     MediumKinds kinds;
+    float look_density; // of what glows: per volume, of looks toward it; 0 if there are none. See glowing.glsl
     uint layer; // among those of media
 };
 
@@ -223,23 +224,25 @@ struct LightRow {
     AliasEntry alias;
     float chance;    // with which it is chosen; of the first that is in a tree, with which the tree is
     vec3 position;   // render space
-    float extent;    // of a disc: 1 - cos of the angle from its middle to its rim; of a sphere its radius
+    float extent;    // of a disc: 1 - cos of the angle from its middle to its rim; of a sphere its radius; of what glows
+                     // its extinction at most [1 / world unit]
     vec3 direction;  // unit: towards the light, where it is infinitely far; of a spot, along its axis; of what is flat, its normal
     float darkening; // of a disc toward its rim, in [0, 1]
-    vec3 edge_u;     // halves of the edges of a rectangle, or radii of a disk; across each other
-    float area;      // of a lamp, as seen from in front; of a surface, of all pieces, on one side
+    vec3 edge_u;     // halves of the edges of a rectangle, or radii of a disk; across each other; of what glows, with its
+                     // direction, likewise of its cube or ball
+    float area;      // of a lamp, as seen from in front; of a surface, of all pieces, on one side; of what glows its volume
     vec3 edge_v;
     uint group;      // of layers
     vec3 radiance;   // from everywhere on it, of a disc from its middle; of a directional light its irradiance, of a point the
-                     // radiant intensity
+                     // radiant intensity, of what glows that of a unit of volume
     uint body;       // of a lamp that is a surface, that; else NO_SURFACE
     float full_within; // of a spot, 1 - cos of angles to its axis: full intensity within,
     float none_beyond; // none beyond
     float apart;     // from its place: so far on no surface that it lies in is before it, by rounding
-    float look_density; // of a surface: per area, of looks toward it, as weights have it; see shining.glsl
-    uint first_piece;   // the first of the rows of BINDING_EMITTERS that are its pieces,
+    float look_density; // of a surface: per area, of looks toward it, as weights have it; see shining.glsl. Of what glows per volume
+    uint first_piece;   // the first of the rows of BINDING_EMITTERS that are its pieces, or the medium that glows
     uint pieces;        // and how many these are
-    uint sides;         // that shine: 1 or 2
+    uint sides;         // that shine: 1 or 2; of what glows, of its cube: 6, of a ball 0
     uint unused;        // so that it is whole texels: see lights/row.glsl
 };
 

@@ -101,11 +101,13 @@ void gather_light(MediumParams v, MediumParams met, vec3 position, float t, Spec
 // Light that comes of a collision, or absorption at it, of throughput lane.beta. Marches collide where they have looked nothing up: of
 // several media theirs is that of the one that was drawn.
 void add_glow(MediumParams v, MediumParams met, inout Lane lane) {
+    float flown = lane.walk.start + lane.walk.t;
     if (SEVERAL_MEDIA && NULL_FLIGHT)
         add_glow_of_all(v, lane.walk.per_extinction, lane.walk.origin + lane.walk.t * lane.walk.direction, lane.walk.tap,
-                        lane.path.position, lane);
+                        lane.path.position, flown, lane);
     else
-        add_light(lane, lane.beta * emitted_radiance(met, lane.path.position), glow_label(lane.path.depth) | lane.first_label);
+        add_light(lane, lane.beta * share_at(met, lane.path.position, flown, lane) * emitted_radiance(met, lane.path.position),
+                  glow_label(lane.path.depth) | lane.first_label);
 }
 vec3 absorbed_here(MediumParams v, MediumParams met, Lane lane) {
     if (SEVERAL_MEDIA && NULL_FLIGHT)
@@ -181,7 +183,8 @@ void touch(MediumParams v, Spectrum deposit, inout Lane lane, inout Rng rng) {
     uint label = label_at(lane, met);
     if (goes_through()) {
         if (EMISSION != EMISSION_NONE)
-            add_light(lane, deposit * emitted_radiance(met, position), glow_label(lane.path.depth) | label);
+            add_light(lane, deposit * share_at(met, position, t, lane) * emitted_radiance(met, position),
+                      glow_label(lane.path.depth) | label);
         if (HAS_LAYERS)
             note_step(v, met, deposit, t, lane, rng);
         next = largest(lane.beta) == 0.0 ? TODO_END : TODO_FLY;

@@ -14,10 +14,11 @@ void add_glow_along(MediumParams v, Spectrum beta, float from, inout Lane lane, 
     tally.lookups += 1u;
     vec3 p = w.origin + t * w.direction, position = lane.path.position + (w.start + t) * lane.path.direction;
 #ifdef SEVERAL
-    add_glow_of_all(v, vec3(beta * (w.t - from)), p, to_tap(words), position, lane);
+    add_glow_of_all(v, vec3(beta * (w.t - from)), p, to_tap(words), position, w.start + t, lane);
 #else
     Matter met = matter_at(v, p, to_tap(words), 0.0, beta);
-    add_light(lane, beta * (w.t - from) * (v.sigma_t * met.density) * met.ratio * emitted_radiance(v, position),
+    beta *= (w.t - from) * share_at(v, position, w.start + t, lane);
+    add_light(lane, beta * (v.sigma_t * met.density) * met.ratio * emitted_radiance(v, position),
               glow_label(lane.path.depth) | label_at(lane, v));
 #endif
 }
@@ -33,6 +34,7 @@ void add_glow_of_part(MediumParams v, Spectrum beta, float depth, inout Lane lan
     if (LAYERED)
         whole = faded_depth(fading_along(v, w.origin, w.direction), w.t_end);
     Spectrum met = beta * depth_weight(v, beta, depth, false) * one_minus_exp(v.sigma_t * to_spectrum(v.sigma_ratio) * whole);
+    met *= share_at(v, lane.path.position, 0.0, lane);
     add_light(lane, met * emitted_radiance(v, lane.path.position), glow_label(lane.path.depth) | label_at(lane, v));
 }
 

@@ -52,20 +52,6 @@ Scene under(std::vector<Surface> lights, double sigma_t) {
     return scene;
 }
 
-// All three channels' means over the picture are the same, but for chance.
-void check_same_mean(const Film& a, const Film& b, const std::string& name) {
-    INFO(name);
-    for (int channel = 0; channel < 3; ++channel) {
-        double difference = 0.0, variance = 0.0;
-        for (std::size_t i = 0; i < a.mean.size(); ++i) {
-            difference += double(a.mean[i][channel]) - b.mean[i][channel];
-            variance += double(a.variance[i][channel]) + b.variance[i][channel];
-        }
-        CAPTURE(channel, difference, std::sqrt(variance));
-        CHECK(std::abs(difference) < 4.0 * std::sqrt(variance)); // one in 16,000
-    }
-}
-
 // Of the pixels that do not see what shines, in whose mean it is.
 double variance_beside(const Film& film, const Film& picture) {
     double sum = 0.0;

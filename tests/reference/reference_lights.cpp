@@ -73,6 +73,7 @@ struct Ask {
     }
     std::optional<Towards> operator()(const vkvol::SkyLight&) const { return std::nullopt; }
     std::optional<Towards> operator()(const vkvol::SurfaceLight&) const { return std::nullopt; } // it has no surfaces
+    std::optional<Towards> operator()(const vkvol::GlowLight&) const { return std::nullopt; } // flights meet all of it
 };
 
 } // namespace

@@ -234,6 +234,19 @@ Film as_film(Film film, const std::string& name) {
     return film;
 }
 
+void check_same_mean(const Film& a, const Film& b, const std::string& name) {
+    INFO(name);
+    for (int channel = 0; channel < 3; ++channel) {
+        double difference = 0.0, variance = 0.0;
+        for (std::size_t i = 0; i < a.mean.size(); ++i) {
+            difference += double(a.mean[i][channel]) - b.mean[i][channel];
+            variance += double(a.variance[i][channel]) + b.variance[i][channel];
+        }
+        CAPTURE(channel, difference, std::sqrt(variance));
+        CHECK(std::abs(difference) < 4.0 * std::sqrt(variance)); // one in 16,000
+    }
+}
+
 bool same_bits(const Film& a, const Film& b) {
     const auto same = [](const auto& x, const auto& y) {
         return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0);

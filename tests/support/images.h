@@ -56,6 +56,10 @@ Agreement agree_with_escapes(const Film& film, const std::vector<double>& p, con
 const FilmLayer& layer_of(const Film& film, const char* name);
 Film as_film(Film film, const std::string& name);
 
+// That all three channels' means over the picture are the same, but for chance. Of estimates that find in some pixels
+// once in thousands of samples what makes them bright.
+void check_same_mean(const Film& a, const Film& b, const std::string& name);
+
 // Every mean, variance and count has the same bits, those of layers too.
 bool same_bits(const Film& a, const Film& b);
 
