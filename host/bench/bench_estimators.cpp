@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "framing.h"
+#include "glow_lights.h"
 #include "integrators.h"
 #include "preset.h"
 #include "scene_facts.h"
@@ -29,9 +30,9 @@ Estimator load_estimator(const RenderRequest& request, const std::optional<std::
     return estimator;
 }
 
-// What its integrator makes of a scene, for others: whether these look for surfaces that shine is theirs to say.
+// What its integrator makes of a scene, for others: whether these look for what shines or glows is theirs to say.
 Scene as_seen(const Scene& scene) {
-    return without_lamps_of_surfaces(with_preset(scene));
+    return without_lamps_of_surfaces(without_lights_of_glow(with_preset(scene)));
 }
 
 // The same light by other means: the scene as `of` sees it, rendered by `request`.

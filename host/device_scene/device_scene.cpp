@@ -70,13 +70,13 @@ void DeviceScene::make_lights(const Scene& scene, const Method& method, const As
         radius = any_medium(scene, is_everywhere) ? std::min(radius, reach) : std::max(radius, reach);
     }
     lights_ = make_light_table(scene, assets, surfaces_, origin_, radius);
-    tell_look_densities(lights_, surfaces_);
-    if (!assets.superposition) // else media have rows of their own, in the end
-        tell_look_densities(lights_, frame_.media);
     if (is_left_to_flights(scene, assets.media, method, assets.sky ? &*assets.sky : nullptr)) {
         leave_sky_to_flights(lights_);
         text_ += ", an even sky by flights alone";
     }
+    tell_look_densities(lights_, surfaces_);
+    if (!assets.superposition) // else media have rows of their own, in the end
+        tell_look_densities(lights_, frame_.media);
     if (method.paths != PATHS_CAMERA)
         keep_apart(lights_.rows, surfaces_);
     frame_.choices = lights_.choices;

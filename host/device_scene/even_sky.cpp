@@ -56,6 +56,8 @@ void leave_sky_to_flights(LightTable& table) {
         table.rows[i].chance = static_cast<float>(chances[i] / sum);
         table.rows[i].alias = alias[i];
     }
+    for (shared::LightRow& row : table.rows) // of those that flights meet as well
+        row.look_density = static_cast<float>(row.look_density / sum);
 }
 
 } // namespace vkvol

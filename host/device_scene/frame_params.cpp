@@ -301,13 +301,11 @@ std::vector<shared::MediumParams> make_media(const Scene& scene, Media media, co
     const UploadLayout layout(media);
     std::vector<shared::MediumParams> rows;
     rows.reserve(media.size());
-    const std::vector<std::string> names =
-        scene.layers & layer_media ? medium_names(scene) : std::vector<std::string>{};
+    const std::vector<std::string> layers = media_layers(scene);
     const bool is_chromatic = has_chromatic_extinction(scene);
     for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
         rows.push_back(make_medium(scene, scene.volumes[i], media[i], layout, method, origin, is_chromatic));
-        if (!names.empty())
-            rows.back().layer = place_among(names, medium_name(scene, i));
+        rows.back().layer = media_layer(layers, scene, i);
     }
     return rows;
 }

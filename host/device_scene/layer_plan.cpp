@@ -147,6 +147,14 @@ std::uint32_t group_layer(const std::vector<std::string>& groups, const std::str
     return group.empty() || groups.empty() ? 0 : 1 + place_among(groups, group);
 }
 
+std::vector<std::string> media_layers(const Scene& scene) {
+    return scene.layers & layer_media ? medium_names(scene) : std::vector<std::string>{};
+}
+
+std::uint32_t media_layer(const std::vector<std::string>& layers, const Scene& scene, std::size_t volume) {
+    return layers.empty() ? 0 : place_among(layers, medium_name(scene, volume));
+}
+
 std::vector<FilmLayer> develop_layers(const LayerPlan& plan, std::span<const glm::vec3> sums,
                                       std::span<const std::uint32_t> samples, const glm::dvec3& origin) {
     Developer developer(plan, sums, samples);

@@ -25,6 +25,11 @@ LayerPlan plan_layers(const Scene& scene);
 // Number of a light's group among the layers of groups; 0: none.
 std::uint32_t group_layer(const std::vector<std::string>& groups, const std::string& group);
 
+// The layers of media, none where these are not asked for; and the number of a medium's among them, 0 where there are
+// none.
+std::vector<std::string> media_layers(const Scene& scene);
+std::uint32_t media_layer(const std::vector<std::string>& layers, const Scene& scene, std::size_t volume);
+
 // What a picture's layers are on the host. `sums`: four for each layer of each pixel. `samples`: of each pixel.
 // `origin`: of render space, in world space.
 std::vector<FilmLayer> develop_layers(const LayerPlan& plan, std::span<const glm::vec3> sums,

@@ -33,7 +33,8 @@ struct Entry {
     enum class Place { sky, far, lamp, point, surface, glow } place = Place::far; // sky: met by flights that leave
     glm::vec3 reach{0.0f};                                                        // from its middle
     double power = 0.0;                                                           // see LightTable
-    double cone = pi; // radians, the most that its light is off its direction
+    double size = 1.0; // what its radiance, seen from afar, is times to be an intensity: area, volume, or 1
+    double cone = pi;  // radians, the most that its light is off its direction
     // What counts of its intensity for the chance to be chosen, of spots: the fourth root of the share of the media
     // that is in the cone. The square root would have the least noise if all places counted alike; what is lit counts
     // for more.
@@ -48,7 +49,8 @@ bool is_somewhere(const Entry& entry) {
 class Rows {
 public:
     Rows(const Scene& scene, const Assets& assets, const ShiningPieces& pieces, const glm::dvec3& origin, double radius)
-        : scene_(scene), assets_(assets), pieces_(pieces), origin_(origin), radius_(radius),
+        : scene_(scene), assets_(assets), media_layers_(media_layers(scene)), pieces_(pieces), origin_(origin),
+          radius_(radius),
           reach_(scene.surfaces.empty() && !any_medium(scene, is_everywhere) && !reads_flux(scene.camera)
                      ? radius
                      : std::numeric_limits<double>::infinity()) {}
@@ -136,29 +138,37 @@ public:
         entry.row.position = 0.5f * (pieces.low + pieces.high);
         entry = lamp(entry, light.radiance, origin_ + glm::dvec3(entry.row.position), 0.25 * pieces.sides * pieces.area,
                      0.0f);
-        entry.row.area = static_cast<float>(pieces.area);
+        entry.row.area = static_cast<float>(pieces.area); // once, where a look goes
         entry.reach = 0.5f * (pieces.high - pieces.low);
         entry.place = Entry::Place::surface;
         return entry;
     }
 
+    // What is thick shows no more than a body of its area would, by what glows a free path deep.
     Entry operator()(const GlowLight& light) const {
         Entry entry = begin(LIGHT_GLOW, light.intensity);
         const auto index = std::size_t(light.medium);
-        const glm::dmat4 map = medium_to_world(scene_.volumes[index], assets_.media[index]);
-        const double whole = std::abs(glm::determinant(glm::dmat3(map)));
-        const bool is_ball = std::holds_alternative<Sphere>(scene_.volumes[index].shape);
-        const glm::dvec3 middle(map[3]);
+        const Volume& volume = scene_.volumes[index];
+        const glm::dmat4 map = medium_to_world(volume, assets_.media[index]);
+        const glm::dvec3 u(map[0]), v(map[1]), w(map[2]), middle(map[3]);
+        const bool is_ball = std::holds_alternative<Sphere>(volume.shape);
+        const double sigma_t = largest(world_sigma_t(volume, nullptr));
+        const double whole = std::abs(glm::determinant(glm::dmat3(map))) * (is_ball ? 4.0 / 3.0 * pi : 8.0);
+        const double faces =
+            8.0 * (glm::length(glm::cross(u, v)) + glm::length(glm::cross(v, w)) + glm::length(glm::cross(w, u)));
+        const double area = (is_ball ? pi / 6.0 : 1.0) * faces; // of what is no ball, roughly
         entry.row.first_piece = static_cast<std::uint32_t>(light.medium);
+        entry.row.pieces = 1 + media_layer(media_layers_, scene_, index);
         entry.row.sides = is_ball ? 0 : 6;
-        entry.row.extent = static_cast<float>(largest(world_sigma_t(scene_.volumes[index], nullptr)));
+        entry.row.extent = static_cast<float>(sigma_t);
         entry.row.position = middle - origin_;
-        entry.row.edge_u = glm::dvec3(map[0]);
-        entry.row.edge_v = glm::dvec3(map[1]);
-        entry.row.direction = glm::dvec3(map[2]);
-        entry.row.area = static_cast<float>(whole * (is_ball ? 4.0 / 3.0 * pi : 8.0));
-        entry.reach = glm::abs(entry.row.edge_u) + glm::abs(entry.row.edge_v) + glm::abs(entry.row.direction);
-        entry.fluence = channel_mean(light.intensity) * entry.row.area / square_distance(middle);
+        entry.row.edge_u = u;
+        entry.row.edge_v = v;
+        entry.row.direction = w;
+        entry.row.area = static_cast<float>(whole);
+        entry.reach = glm::abs(u) + glm::abs(v) + glm::abs(w);
+        entry.size = std::min(whole, 0.25 * area / std::max(sigma_t, 1e-30));
+        entry.fluence = channel_mean(light.intensity) * entry.size / square_distance(middle);
         entry.place = Entry::Place::glow;
         return entry;
     }
@@ -206,6 +216,7 @@ private:
 
     Entry lamp(Entry entry, const Rgb& radiance, const glm::dvec3& center, double area, float reach) const {
         entry.row.area = static_cast<float>(area);
+        entry.size = area;
         entry.fluence =
             std::min(channel_mean(radiance) * area / square_distance(center), 2.0 * pi * channel_mean(radiance));
         entry.place = Entry::Place::lamp;
@@ -222,6 +233,7 @@ private:
 
     const Scene& scene_;
     const Assets& assets_;
+    std::vector<std::string> media_layers_;
     const ShiningPieces& pieces_;
     glm::dvec3 origin_;
     double radius_; // of a ball about the media
@@ -269,11 +281,7 @@ std::vector<glm::vec3> find_suns(std::vector<Entry> entries, double fluence) {
 PlacedLight placed(const Entry& entry, std::uint32_t row) {
     const glm::vec3 radiance = entry.row.radiance;
     const float mean = (radiance.x + radiance.y + radiance.z) / 3.0f;
-    const bool is_glow = entry.place == Entry::Place::glow;
-    const float area = is_glow || entry.place == Entry::Place::lamp ? entry.row.area
-                       : entry.place == Entry::Place::surface       ? 0.25f * float(entry.row.sides) * entry.row.area
-                                                                    : 1.0f;
-    const float power = mean * area * (entry.fluence > 0.0 ? 1.0f : 1e-6f);
+    const float power = mean * static_cast<float>(entry.size) * (entry.fluence > 0.0 ? 1.0f : 1e-6f);
     PlacedLight light{entry.row.position - entry.reach, entry.row.position + entry.reach, std::max(power, 1e-30f),
                       std::max(power * static_cast<float>(entry.by_cone), 1e-30f), row};
     if (entry.row.kind & LIGHT_AIMED) {

@@ -27,7 +27,7 @@ bool is_glow(const Light& light) {
 
 bool has_lights_of_glow(const Scene& scene) {
     // Where a domain repeats each has them, and looks would find those of one.
-    const bool lights_others = scene.volumes.size() > 1 || !scene.surfaces.empty();
+    const bool lights_others = scene.volumes.size() > 1 || !scene.surfaces.empty() || reads_flux(scene.camera);
     return lights_others && !scene.periodic && any_medium(scene, can_be_light);
 }
 
@@ -37,6 +37,11 @@ Scene with_lights_of_glow(Scene scene) {
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         if (can_be_light(scene.volumes[i]))
             scene.lights.push_back(GlowLight{even_glow(scene.volumes[i]), "", static_cast<int>(i)});
+    return scene;
+}
+
+Scene without_lights_of_glow(Scene scene) {
+    std::erase_if(scene.lights, is_glow);
     return scene;
 }
 

@@ -6,7 +6,6 @@
 #include "density_field.h"
 #include "error.h"
 #include "estimator_traits.h"
-#include "glow_lights.h"
 #include "integrators.h"
 #include "method_biases.h"
 #include "particle_scenes.h"
@@ -221,11 +220,10 @@ void MethodChooser::choose_mis() {
 // parts.
 void MethodChooser::choose_distance() {
     const auto is_mesh = [](const Volume& volume) { return std::holds_alternative<MeshFiles>(volume.shape); };
-    const bool could = method_.paths == PATHS_CAMERA && method_.nee != NEE_NONE &&
-                       method_.scattering != SCATTERING_NONE &&
-                       (is_superposition(scene_) || !any_medium(scene_, is_mesh)) &&
-                       (has_lamps_of_surfaces(scene_) || has_lights_of_glow(scene_) ||
-                        std::any_of(scene_.lights.begin(), scene_.lights.end(), has_place));
+    const bool could =
+        method_.paths == PATHS_CAMERA && method_.nee != NEE_NONE && method_.scattering != SCATTERING_NONE &&
+        (is_superposition(scene_) || !any_medium(scene_, is_mesh)) &&
+        (has_lamps_of_surfaces(scene_) || std::any_of(scene_.lights.begin(), scene_.lights.end(), has_place));
     if (choices_.distance && !could)
         warn("distance is without effect: it is for lights that have a place, and not in models alone");
     method_.distance = could ? choices_.distance : DISTANCE_FLIGHTS;

@@ -29,6 +29,16 @@ Scene with_steady_integrator(Scene scene) {
     return scene;
 }
 
+namespace {
+
+// Whether shadow rays of this kind go through all that there is, and have no bias, or would be refused.
+bool sees_through(const Scene& scene, int transmittance) {
+    const int unfit = TRAIT_CLOSED | TRAIT_INEXACT | (has_chromatic_extinction(scene) ? TRAIT_MARCH : 0);
+    return !is_superposition(scene) || !transmittance_has(transmittance, unfit);
+}
+
+} // namespace
+
 Scene with_preset(Scene scene) {
     const Integrator& integrator = choose_integrator(scene);
     const auto adjusts = [&](Adjustment adjustment) { return (integrator.adjustments & adjustment) != 0; };
@@ -75,7 +85,8 @@ Scene with_preset(Scene scene) {
         return scene;
     scene = with_lamps_of_surfaces(std::move(scene));
     const bool meets_glow = !has_particles && scatters != SCATTERING_SINGLE; // where it may be looked for as well
-    return meets_glow ? with_lights_of_glow(std::move(scene)) : scene;
+    const int transmittance = choices.transmittance.value_or(integrator.transmittance);
+    return meets_glow && sees_through(scene, transmittance) ? with_lights_of_glow(std::move(scene)) : scene;
 }
 
 } // namespace vkvol

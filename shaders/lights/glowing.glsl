@@ -26,6 +26,12 @@ float mean_square(vec2 t) {
     return (t.x * t.x + t.x * t.y + t.y * t.y) / 3.0;
 }
 
+// Density, for weights, of looks in a direction that has this part `t` in what glows; 0: there are none. Of what is so thick that a look
+// would have to end within its distance's last digits there is but a surface to be seen, which only flights meet rightly.
+float glow_density(float look_density, float sigma_t, vec2 t) {
+    return sigma_t * t.x < 1.0e5 ? look_density * mean_square(t) * (t.y - t.x) : 0.0;
+}
+
 // To that space. A light knows itself where it is: looks from sensors do not know the media.
 Ray to_glow(LightRow light, vec3 from, vec3 direction) {
     vec3 u = light.edge_u, v = light.edge_v, w = light.direction, apart = from - light.position;
@@ -62,8 +68,8 @@ LightSample draw_glow(LightRow light, vec3 from, vec2 u, inout Rng rng, out floa
     bool hit = glow_interval(to_glow(light, from, direction), light.sides == 0u, t);
     float even;
     float distance = t.x + way_into_glow(light.extent, t.y - t.x, more.yz, even), square = mean_square(t);
-    density = light.look_density * square * (t.y - t.x);
-    hit = hit && square > 0.0;
+    density = hit ? glow_density(light.look_density, light.extent, t) : 0.0;
+    hit = density > 0.0;
     return LightSample(direction, distance, hit ? light.radiance * (light.area / (square * even)) : vec3(0.0), 0.0);
 }
 
@@ -82,7 +88,7 @@ float share_of_glow(MediumParams m, vec3 from, vec3 direction, float phase_pdf) 
         if (phase_pdf > 0.0 && m.look_density > 0.0) {
             vec2 t;
             bool hit = glow_interval(to_medium(m, from, direction), m.kinds.shape == SHAPE_SPHERE, t);
-            share = weight_of_flight(phase_pdf, hit ? m.look_density * mean_square(t) * (t.y - t.x) : 0.0);
+            share = weight_of_flight(phase_pdf, hit ? glow_density(m.look_density, m.sigma_t, t) : 0.0);
         }
     return share;
 }

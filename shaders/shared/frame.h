@@ -241,7 +241,7 @@ struct LightRow {
     float apart;     // from its place: so far on no surface that it lies in is before it, by rounding
     float look_density; // of a surface: per area, of looks toward it, as weights have it; see shining.glsl. Of what glows per volume
     uint first_piece;   // the first of the rows of BINDING_EMITTERS that are its pieces, or the medium that glows
-    uint pieces;        // and how many these are
+    uint pieces;        // and how many these are, or 1 + its layer among those of media
     uint sides;         // that shine: 1 or 2; of what glows, of its cube: 6, of a ball 0
     uint unused;        // so that it is whole texels: see lights/row.glsl
 };

@@ -6,11 +6,13 @@
 #include "stages/look_straight.glsl"
 
 // A look from the sensor comes before the first flight.
-void look_first(MediumParams v, LightSample seen, uint row, inout Lane lane) {
-    bool is_solid = light_at(row).body != NO_SURFACE;
-    uint label = (is_solid ? SOLID : 0u) | kind_label(0u) | group_label(light_at(row).group);
+void look_first(MediumParams v, LightSample seen, uint i, inout Lane lane) {
+    LightRow row = light_at(i);
+    uint label = (row.body != NO_SURFACE ? SOLID : 0u) | kind_label(0u) | group_label(row.group);
+    if (SEES_GLOW && row.kind == LIGHT_GLOW)
+        label = glow_label(0u) | row.pieces << MEDIUM_BIT;
     if (SHADOW_RAYS_WALK) {
-        look_straight(seen, light_at(row).body, to_spectrum(vec3(1.0)), label, TODO_DEPART, lane);
+        look_straight(seen, row.body, to_spectrum(vec3(1.0)), label, TODO_DEPART, lane);
     } else {
         add_light(lane, transmittance_to(v, lane.path.position, seen.direction, seen.distance) * seen.light, label);
     }

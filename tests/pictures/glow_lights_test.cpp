@@ -65,7 +65,7 @@ Scene at_point(const glm::dvec3& point, const Volume& volume) {
     scene.camera.position = point;
     scene.camera.points.assign(16, point);
     scene.picture = {16, 1, 0.0, 0.0, 16.0, 1.0};
-    scene.volumes = {volume, medium(Box{{60.0, 0.0, 0.0}, {1.0, 1.0, 1.0}}, 0.1, 0.0)}; // so that something may be lit
+    scene.volumes = {volume};
     scene.settings.spp = 4096;
     return scene;
 }
@@ -142,6 +142,30 @@ TEST_CASE("points see balls that glow as closed forms have it", "[gpu][image][gl
     CHECK(same_bits(render_here(scene, 1).film, render_here(scene, 1, staged).film));
 }
 
+TEST_CASE("what a sensor of flux finds of a glow by looks is in the layers of what it meets", "[gpu][image][glow]") {
+    Scene scene = at_point({2.0, 0.0, 0.0}, glowing(Sphere{{0.0, 0.0, 0.0}, 0.8}, 0.7, 0.0, Rgb(2.0)));
+    scene.volumes.push_back(medium(Box{{0.0, 3.0, 0.0}, Rgb(1.0)}, 0.5, 0.0));
+    scene.volumes.front().name = "flame";
+    scene.volumes.back().name = "air";
+    scene.layers = layer_emission | layer_background | layer_media;
+    scene.settings.choices.mis = MIS_LIGHT;
+    const Film film = render_here(scene, 1).film;
+    const double all = mean_of(film);
+    CHECK(all > 0.0);
+    CHECK(mean_of(as_film(film, "emission")) == Approx(all).epsilon(1e-5));
+    CHECK(mean_of(as_film(film, "medium.flame")) == Approx(all).epsilon(1e-5));
+    CHECK(mean_of(as_film(film, "background")) == 0.0);
+}
+
+TEST_CASE("thick things that glow starve no other light", "[gpu][image][glow]") {
+    Scene scene = scene_of(medium(Sphere{{0.0, 0.0, 0.0}, 1.3}, 0.9, 0.8), 2.0, 8, 8.0);
+    scene.lights = {PointLight{{0.0, 3.0, 0.0}, Rgb(10.0)}};
+    scene.settings.spp = 256;
+    const Film alone = render_here(scene, 1).film;
+    scene.volumes.push_back(glowing(Sphere{{0.0, -2.2, 0.0}, 0.5}, 5000.0, 0.0, Rgb(0.01)));
+    CHECK(variance_of(render_here(scene, 2).film) < 3.0 * variance_of(alone));
+}
+
 TEST_CASE("small things that glow are found by looks", "[gpu][image][glow]") {
     Scene scene = scene_of(medium(Sphere{{0.0, 0.0, 0.0}, 1.3}, 0.9, 0.8), 2.0, 8, 8.0);
     scene.volumes.push_back(glowing(Box{{0.0, 1.6, 0.0}, Rgb(0.2)}, 3.0, 0.0, Rgb(20.0)));
@@ -176,6 +200,16 @@ TEST_CASE("glow is looked for where it is even, has an end, and may light someth
     other = fog;
     other.settings.choices.scattering = SCATTERING_SINGLE;
     CHECK(lights(other) == 0);
+    other.settings.choices.distance = DISTANCE_MIXED; // for which there is nothing then
+    CHECK_FALSE(choose_method(with_preset(other)).warnings.empty());
+    other = fog;
+    other.settings.choices.transmittance = TRANSMITTANCE_MARCH; // which would be biased
+    CHECK(lights(other) == 0);
+    other.settings.choices.transmittance = TRANSMITTANCE_TELESCOPING;
+    CHECK(lights(other) == 2);
+    other.volumes[0].sigma_s = {1.0, 0.5, 0.2}; // and would be refused
+    CHECK(lights(other) == 0);
+    CHECK_NOTHROW(choose_method(with_preset(other)));
     other = fog;
     other.settings.integrator = "deltaTracking";
     CHECK(lights(other) == 0);
