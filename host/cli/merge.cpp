@@ -129,6 +129,12 @@ void take_means(const std::vector<Moments>& moments, std::vector<glm::vec3>& mea
     }
 }
 
+// Whether all know of this layer how sure it is.
+bool knows_variance(const std::vector<MergeInput>& inputs, std::size_t which) {
+    return std::none_of(inputs.begin(), inputs.end(),
+                        [which](const MergeInput& input) { return input.film.layers[which].variance.empty(); });
+}
+
 // Merges means over collisions: weighted by how many there were. The variance is that of a quotient of sums over all
 // samples, n / (n - 1) sum (w (d - mean))^2 / (sum w)^2: each part has told the sum about its own mean; how far the
 // parts lie apart counts by the sum of the squares of weights, which coverage's variance knows.
@@ -137,6 +143,7 @@ FilmLayer merge_collisions(const std::vector<MergeInput>& inputs, std::size_t wh
     std::vector<double> weights(pixels, 0.0), samples(pixels, 0.0);
     std::vector<glm::dvec3> sums(pixels, glm::dvec3(0.0)), squares(pixels, glm::dvec3(0.0));
     const FilmLayer& first = inputs.front().film.layers[which];
+    const bool is_sure = knows_variance(inputs, which);
     for (const MergeInput& input : inputs) {
         const FilmLayer& layer = input.film.layers[which];
         const FilmLayer* coverage = input.film.layer("coverage");
@@ -167,7 +174,7 @@ FilmLayer merge_collisions(const std::vector<MergeInput>& inputs, std::size_t wh
     }
     for (std::size_t i = 0; i < pixels; ++i) {
         const double weight = weights[i], n = samples[i];
-        if (!first.variance.empty())
+        if (is_sure)
             merged.variance.emplace_back(weight > 0.0 && n > 1.0 ? n / (n - 1.0) * squares[i] / (weight * weight)
                                                                  : glm::dvec3(0.0));
     }
@@ -186,8 +193,7 @@ FilmLayer merge_layer(const std::vector<MergeInput>& inputs, std::size_t which, 
     }
     FilmLayer merged{first.name, {}, {}};
     take_means(moments, merged.mean, merged.variance);
-    const auto lacks_variance = [which](const MergeInput& input) { return input.film.layers[which].variance.empty(); };
-    if (std::any_of(inputs.begin(), inputs.end(), lacks_variance)) // of which nobody knows how sure it is
+    if (!knows_variance(inputs, which))
         merged.variance.clear();
     return merged;
 }

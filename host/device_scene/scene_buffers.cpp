@@ -171,20 +171,20 @@ void SceneBuffers::upload_textures(const Device& device, Commands& commands, con
 void SceneBuffers::make_grids(const Device& device, Commands& commands, const Parts& grids, std::uint64_t most_bytes) {
     const std::uint64_t bytes = total(grids);
     if (bytes > most_bytes)
-        return make_windows(device, commands, grids, bytes);
+        return make_windows(device, commands, grids, bytes, most_bytes);
     grids_.emplace(device, "grids", bytes, storage_and_texels, BufferPlace::device);
     upload_range(commands, *grids_, grids, 0, bytes);
 }
 
 // As few words to a window as will do: far below what one allocation may hold, which Vulkan lets end at 1 GiB.
-void SceneBuffers::make_windows(const Device& device, Commands& commands, const Parts& grids, std::uint64_t bytes) {
+void SceneBuffers::make_windows(const Device& device, Commands& commands, const Parts& grids, std::uint64_t bytes,
+                                std::uint64_t most_bytes) {
     constexpr std::uint64_t most_words = std::uint64_t{1} << 32; // as the kernels count them
     if (!device.has_addresses() || bytes / 4 > most_words)
         throw InputError(fmt::format(
             "the grids take {:.1f} MiB, but \"{}\" holds no more than {:.1f} MiB of them{}; crop them or write them "
             "quantised (nanovdb_convert --fp8 takes a quarter of the bytes of floats)",
-            bytes / mebibyte, device.info().name,
-            device.has_addresses() ? 4 * most_words / mebibyte : device.limits().maxStorageBufferRange / mebibyte,
+            bytes / mebibyte, device.info().name, (device.has_addresses() ? 4 * most_words : most_bytes) / mebibyte,
             device.has_addresses() ? "" : ", since it lacks the feature bufferDeviceAddress"));
     window_bits_ = static_cast<std::uint32_t>(std::bit_width((bytes / 4 - 1) / GRID_WINDOWS));
     const std::uint64_t window = std::uint64_t{4} << *window_bits_;

@@ -65,7 +65,8 @@ private:
     void upload_alone(const Device& device, Commands& commands, const LoadedMedium& medium);
     void find_texels(std::uint64_t most_bytes);
     void make_grids(const Device& device, Commands& commands, const Parts& grids, std::uint64_t most_bytes);
-    void make_windows(const Device& device, Commands& commands, const Parts& grids, std::uint64_t bytes);
+    void make_windows(const Device& device, Commands& commands, const Parts& grids, std::uint64_t bytes,
+                      std::uint64_t most_bytes);
 
     Buffer frame_;
     std::optional<Buffer> grids_, leaf_table_, majorants_, controls_, blackbody_, triangles_, bvh_;

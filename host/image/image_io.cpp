@@ -158,12 +158,18 @@ void read_layers(const PictureHeader& header, const std::vector<float>& pixels, 
     }
 }
 
+// Without which samples would be taken for ones without noise.
+bool knows_variance(const PictureHeader& header) {
+    return channel_of(header, "variance.R") >= 0 && channel_of(header, "variance.G") >= 0 &&
+           channel_of(header, "variance.B") >= 0;
+}
+
 Film film_of(const PictureHeader& header, const std::vector<float>& pixels, const path& file) {
     const auto channel = [&header](const char* name) { return channel_of(header, name); };
     const int color[3] = {channel("R"), channel("G"), channel("B")};
     const int variance[3] = {channel("variance.R"), channel("variance.G"), channel("variance.B")};
-    const bool knows_variance = *std::min_element(variance, variance + 3) >= 0;
-    const int samples = knows_variance ? channel("samples") : -1; // which else would be taken for ones without noise
+    const bool is_sure = knows_variance(header);
+    const int samples = is_sure ? channel("samples") : -1;
     if (*std::min_element(color, color + 3) < 0)
         throw InputError(one_line(fmt::format("{}: has channels {}; R, G and B are needed", file.string(),
                                               fmt::join(header.channels, ", "))));
@@ -182,7 +188,7 @@ Film film_of(const PictureHeader& header, const std::vector<float>& pixels, cons
         const float* pixel = &pixels[i * header.channels.size()];
         for (int c = 0; c < 3; ++c) {
             film.mean[i][c] = pixel[color[c]];
-            if (knows_variance)
+            if (is_sure)
                 film.variance[i][c] = pixel[variance[c]];
         }
         if (samples >= 0 && pixel[samples] > 0.0f && pixel[samples] < 4294967296.0f)
@@ -297,8 +303,9 @@ Film read_exr(const path& file, Metadata* metadata) {
     if (metadata)
         *metadata = found;
     // Read as floats, whole numbers would be parts of the largest there is.
-    if (const int samples = channel_of(header, "samples");
-        samples >= 0 && header.counts[std::size_t(samples)] && !reader->read(samples, film.samples.data()))
+    if (const int samples = channel_of(header, "samples"); samples >= 0 && knows_variance(header) &&
+                                                           header.counts[std::size_t(samples)] &&
+                                                           !reader->read(samples, film.samples.data()))
         fail_to_read(file, *reader);
     return film;
 }

@@ -200,7 +200,7 @@ void Session::save_checkpoint() {
     } catch (const std::bad_alloc&) {
         warn_of_checkpoint();
     } catch (const VulkanError& error) {
-        if (error.result != VK_ERROR_OUT_OF_HOST_MEMORY && error.result != VK_ERROR_OUT_OF_DEVICE_MEMORY)
+        if (!error.lacks_memory())
             throw;
         warn_of_checkpoint();
     }
@@ -251,7 +251,14 @@ void Session::offer_preview() {
     if (!job_.preview || watch_.seconds() < next_preview_)
         return;
     const double begun = watch_.seconds();
-    develop_film();
+    try {
+        develop_film();
+    } catch (const VulkanError& error) { // of a device that has no room for a copy; later there may be
+        if (!error.lacks_memory())
+            throw;
+        next_preview_ = begun + least_pause;
+        return;
+    }
     result_.samples = done_;
     result_.render_seconds += begun;
     job_.preview(result_);

@@ -55,8 +55,8 @@ Buffer::Buffer(const Device& device, const std::string& name, VkDeviceSize bytes
     }
     if (result != VK_SUCCESS) {
         release();
-        throw RenderError(fmt::format("{} for the {} ({:.1f} MiB) on \"{}\"; use a smaller picture or grid",
-                                      result_name(result), name, bytes / 1048576.0, device.info().name));
+        throw VulkanError(result, fmt::format("{} for the {} ({:.1f} MiB) on \"{}\"; use a smaller picture or grid",
+                                              result_name(result), name, bytes / 1048576.0, device.info().name));
     }
     try {
         VK_CHECK(vkBindBufferMemory(device.handle(), buffer_, memory_, 0));

@@ -139,6 +139,7 @@ std::vector<VkPhysicalDevice> enumerate(VkInstance instance) {
     check(vkEnumeratePhysicalDevices(instance, &count, nullptr));
     std::vector<VkPhysicalDevice> devices(count);
     check(vkEnumeratePhysicalDevices(instance, &count, devices.data()));
+    devices.resize(count); // some may have gone
     return devices;
 }
 

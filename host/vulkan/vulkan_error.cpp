@@ -53,4 +53,10 @@ VulkanError::VulkanError(const char* call, VkResult failure, const char* file, i
                               std::strrchr(file, '/') ? std::strrchr(file, '/') + 1 : file, line, advice(failure))),
       result(failure) {}
 
+VulkanError::VulkanError(VkResult failure, const std::string& text) : RenderError(text), result(failure) {}
+
+bool VulkanError::lacks_memory() const {
+    return result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
+}
+
 } // namespace vkvol

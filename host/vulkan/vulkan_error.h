@@ -12,6 +12,8 @@ const char* result_name(VkResult result);
 
 struct VulkanError : RenderError {
     VulkanError(const char* call, VkResult result, const char* file, int line);
+    VulkanError(VkResult result, const std::string& text);
+    bool lacks_memory() const;
     VkResult result;
 };
 

@@ -92,9 +92,12 @@ TEST_CASE("samples are whole numbers, and may be floats as they once were", "[cp
     write_exr(scratch.path / "a.exr", film, {});
     CHECK(read_exr(scratch.path / "a.exr").samples == film.samples);
 
+    const OIIO::TypeDesc type = GENERATE(OIIO::TypeDesc(OIIO::TypeDesc::FLOAT), OIIO::TypeDesc(OIIO::TypeDesc::UINT32));
     const auto samples_of = [&](const std::vector<std::string>& channels) {
         OIIO::ImageSpec spec(2, 2, int(channels.size()), OIIO::TypeDesc::FLOAT);
         spec.channelnames = channels;
+        for (const std::string& channel : channels)
+            spec.channelformats.push_back(channel == "samples" ? type : OIIO::TypeDesc(OIIO::TypeDesc::FLOAT));
         const std::vector<float> pixels(4 * channels.size(), 8.0f);
         const auto output = OIIO::ImageOutput::create("old.exr");
         REQUIRE(output->open((scratch.path / "old.exr").string(), spec));
@@ -102,8 +105,9 @@ TEST_CASE("samples are whole numbers, and may be floats as they once were", "[cp
         output->close();
         return read_exr(scratch.path / "old.exr").samples;
     };
+    const std::uint32_t there = type == OIIO::TypeDesc::FLOAT ? 8 : 4294967295; // as floats are made whole numbers
     CHECK(samples_of({"R", "G", "B", "samples", "variance.R", "variance.G", "variance.B"}) ==
-          std::vector<std::uint32_t>(4, 8));
+          std::vector<std::uint32_t>(4, there));
     // Of which the scatter is not known: no samples without noise, as they would be by a variance of 0.
     CHECK(samples_of({"R", "G", "B", "samples"}) == std::vector<std::uint32_t>(4, 0));
     CHECK(samples_of({"R", "G", "B", "samples", "variance.R"}) == std::vector<std::uint32_t>(4, 0));
