@@ -139,6 +139,8 @@ def main():
     cases = [Case(path) for path in sorted((ROOT / "scenes/hard").glob("*.xml"), key=lambda path: path.stem)]
     # Each renderer is tested in each channel.
     p = 1 - (1 - options.significance) ** (1 / (6 * len(cases)))
+    if unknown := set(options.names) - {case.path.stem for case in cases}:
+        parser.error(f"scenes/hard has no {', '.join(sorted(unknown))}")
     cases = [case for case in cases if not options.names or case.path.stem in options.names]
     renderers = {
         "device": Renderer(options.build / "vkvol", 1, ["-q"] + (["--device", options.device] if options.device else [])),

@@ -93,6 +93,8 @@ def main():
         sys.exit("--runs: at least 3 are needed for an interval")
     options.vkvol = str(pathlib.Path(options.build).resolve() / "vkvol")
     lights = {name: xml for name, xml in LIGHTS.items() if options.lights in name}
+    if not lights:
+        parser.error(f"no light's name contains {options.lights}")
     confidence = CONFIDENCE ** (1 / (2 * len(LIGHTS) * len(PHASES)))  # against light and against phase
     ways = {way: (options.vkvol, integrator) for way, integrator in WAYS.items()}
     print(f"{table_runs.driver_of(options.vkvol)}, commit {table_runs.commit_of(options.vkvol)}; geometric means of {options.runs}, in "

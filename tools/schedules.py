@@ -51,6 +51,7 @@ def main():
     parser.add_argument("--build", default=ROOT / "build")
     parser.add_argument("--scenes", default=",".join(SCENES))
     options = parser.parse_args()
+    options.old = options.old and str(pathlib.Path(options.old).resolve())
     vkvol = str(pathlib.Path(options.build).resolve() / "vkvol")
     columns = {"old": [options.old]} if options.old else {}
     columns |= {schedule: [vkvol, "--schedule", schedule] for schedule in ("fused", "staged")}

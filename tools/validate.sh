@@ -80,11 +80,18 @@ run_tests() {
     (cd "$work" && VKVOL_THOROUGH=1 "$vkvol_root/build/vkvol_tests" "[gpu]~[bench]") || failed=1
 }
 
+# What cannot be set up has failed, and others go on.
+lacks() {
+    echo "FAIL  $*" >&2
+    failed=1
+}
+
 # What the notebook shows is kept with it.
 run_python() {
     say "pip install . in a fresh environment"
     local python=$work/venv/bin/python notebook=$vkvol_root/tools/notebooks/first_steps.ipynb
-    python3 -m venv "$work/venv" && "$python" -m pip install -q "$vkvol_root" mypy nbclient ipykernel matplotlib || die "pip install . failed"
+    python3 -m venv "$work/venv" || { lacks "python: needs python3-venv: apt-get install python3-venv"; return; }
+    "$python" -m pip install -q "$vkvol_root" mypy nbclient ipykernel matplotlib || { lacks "python: pip install . failed"; return; }
     "$python" -m mypy --strict "$vkvol_root/host/python/vkvol" || failed=1
     (cd "$work" && VKVOL_INSTALLED=1 VKVOL_BUILD="$vkvol_root/build" PYTHONDONTWRITEBYTECODE=1 "$python" -W error -m unittest discover \
         -p "*_test.py" -s "$vkvol_root/tests/python") || failed=1
@@ -93,8 +100,9 @@ run_python() {
 
 run_view() {
     say "The page of vkvol view"
-    command -v chromium >/dev/null || die "view: needs a browser: apt-get install chromium"
-    python3 -m venv "$work/browser" && "$work/browser/bin/pip" install -q playwright || die "view: playwright cannot be installed"
+    command -v chromium >/dev/null || { lacks "view: needs a browser: apt-get install chromium"; return; }
+    python3 -m venv "$work/browser" && "$work/browser/bin/pip" install -q playwright ||
+        { lacks "view: playwright cannot be installed, which needs python3-venv and PyPI"; return; }
     "$work/browser/bin/python" "$vkvol_root/tools/view_check.py" --vkvol "$vkvol_root/build/vkvol" -o "$vkvol_root/build/view_check" || failed=1
 }
 
@@ -105,7 +113,8 @@ run_pbrt() {
 
 run_denoise() {
     say "tools/denoise"
-    /usr/bin/python3 -m venv --system-site-packages "$work/oidn" && "$work/oidn/bin/pip" install -q pyoidn || die "denoise: pyoidn cannot be installed"
+    /usr/bin/python3 -m venv --system-site-packages "$work/oidn" && "$work/oidn/bin/pip" install -q pyoidn ||
+        { lacks "denoise: pyoidn cannot be installed, which needs python3-venv and PyPI"; return; }
     "$work/oidn/bin/python" "$vkvol_root/tools/denoise" --self-test || failed=1
 }
 

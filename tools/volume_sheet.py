@@ -67,7 +67,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         results = [render(chosen.vkvol, file, options, pathlib.Path(folder)) for file in chosen.files]
         draw(results, chosen.output, chosen.columns)
+    return 0 if all(picture for picture, _ in results) else 1
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

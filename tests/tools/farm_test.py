@@ -28,6 +28,17 @@ class FarmTest(unittest.TestCase):
         environment = {**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}", "VKVOL": str(self.folder / "vkvol")}
         return subprocess.run(["bash", FARM / name, *arguments], cwd=self.folder, env=environment, capture_output=True, text=True)
 
+    def test_files_that_all_parts_would_write_are_refused(self):
+        for argument in ("-o", "-oall.exr", "--output=all.exr", "--report"):
+            done = self.run_script("render_part.sh", "scene.xml", "still", "1", "2", "a", argument, "all.exr")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(f"{argument}: all parts would write the same file", done.stderr)
+
+    def test_no_checkpoint_outlives_a_part(self):
+        (self.folder / "a.still.1-of-2.partial.checkpoint").write_text("of a render that --time ended")
+        self.assertEqual(self.run_script("render_part.sh", "scene.xml", "still", "1", "2", "a", "--time", "1").returncode, 0)
+        self.assertFalse((self.folder / "a.still.1-of-2.partial.checkpoint").exists())
+
     def frames_of(self, text):
         (self.folder / "log").unlink(missing_ok=True)
         done = self.run_script("slurm.sh", "scene.xml", text, "2", "out/100 %/a", "--spp", "4")

@@ -154,7 +154,8 @@ END
 
 run_slurm() {
     local job i
-    claim "slurm: a farm of one node" start_slurm || return 0
+    claim "slurm: a farm of one node" start_slurm
+    squeue -h >/dev/null 2>&1 || return 0 # it has been told
     job=$("$farm/slurm.sh" "$work/scene.xml" 1-2 $parts "$work/slurm" "${arguments[@]}")
     kill_one "$work/slurm"
     for ((i = 0; i < 200; ++i)); do

@@ -15,5 +15,5 @@ if [ "$parts" -eq 1 ]; then
     cp "${inputs[0]}" "$name.$frame.exr"
     "${VKVOL:-vkvol}" develop "$name.$frame.exr" -q -o "$name.$frame.png"
 else
-    "${VKVOL:-vkvol}" merge "${inputs[@]}" -q -o "$name.$frame.exr" -o "$name.$frame.png"
+    "${VKVOL:-vkvol}" merge "${inputs[@]}" -o "$name.$frame.exr" -o "$name.$frame.png"
 fi

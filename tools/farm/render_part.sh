@@ -16,6 +16,15 @@ export LC_ALL=C # numbers have points
 scene=$1 frame=$2 part=$3 parts=$4 name=$5
 shift 5
 output=$name.$frame.$part-of-$parts.exr
+for argument in "$@"; do
+    case $argument in
+    -o* | --output* | --report*)
+        echo "render_part.sh: error: $argument: all parts would write the same file; merge_frame.sh writes the frames" >&2
+        [ "${FARM_LINES:-}" != openjd ] || echo "openjd_fail: $argument: all parts would write the same file"
+        exit 2
+        ;;
+    esac
+done
 mkdir -p -- "$(dirname -- "$name")"
 asked=$(cksum <"$scene")$(printf ' %q' "$@")
 request=$name.$frame.$part-of-$parts.request
@@ -79,4 +88,5 @@ rm -f -- "$partial.log"
 [ $code -eq 0 ] || [ $code -eq $caps_hit ] || exit $code
 [ $code -eq 0 ] || echo "$code" >>"$request"
 mv -- "$partial.exr" "$output"
+rm -f -- "$checkpoint" # there yet where --time ended it: what is removed to be rendered again begins anew
 exit $code

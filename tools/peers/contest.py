@@ -175,9 +175,10 @@ class Contest:
     def make_reference(self):
         ours = self.measured[0]
         self.reference_file, samples, seconds = self.options.reference, None, None
+        seed = self.next_seed()  # whoever made it: else the first render may be a part of it
         if self.reference_file is None:
             self.reference_file, samples = pathlib.Path(self.name + ".reference.exr"), REFERENCE_FACTOR * ours.samples
-            report = ours.renderer.run(samples, self.next_seed(), self.reference_file)
+            report = ours.renderer.run(samples, seed, self.reference_file)
             seconds = report["seconds"]["render"]
             self.say(f"reference: {samples} samples a pixel by {ours.renderer.name()} in {seconds:.1f} s")
         self.reference, self.variance, counts = exr.read_rgb(self.reference_file)

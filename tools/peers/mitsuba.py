@@ -63,12 +63,16 @@ class Description:
             result[f"surface{i}"] = mitsuba_surfaces.entry(self.mi, surface)
         if scene.background.any() and not self.maps:
             result["sky"] = {"type": "constant", "radiance": mitsuba_lights.rgb(scene.background)}
-            if self.options.sky == "escape" and scene.lights:
+            if self.options.sky == "escape" and self.has_lights():
                 result["sky"]["sampling_weight"] = 0.0  # of shadow rays
         corners = scene.corners()
         translate = mitsuba_lights.Lights(self.mi, corners.mean(axis=0), np.linalg.norm(np.ptp(corners, axis=0)), self.fail)
         result.update((f"light{i}", translate.entry(light)) for i, light in enumerate(scene.lights))
         return result
+
+    def has_lights(self):
+        """Besides the sky: what shadow rays are to look for, as ours do."""
+        return bool(self.scene.lights) or any(np.any(surface.emission) for surface in self.scene.surfaces)
 
     def fail(self, what):
         sys.exit(f"{self.scene.path}: {what}")
@@ -130,7 +134,7 @@ class Description:
         result = {"type": "homogeneous", "albedo": float(albedo[0]) if np.ptp(albedo) == 0 else mitsuba_lights.rgb(albedo),
                   "scale": strength, "sigma_t": 1.0 if grey else mitsuba_lights.rgb(medium.sigma_t / strength),
                   "has_spectral_extinction": not grey, "phase": phase(medium.phase),
-                  "sample_emitters": self.options.sky == "sampled" or bool(self.scene.lights)}
+                  "sample_emitters": self.options.sky == "sampled" or self.has_lights()}
         if isinstance(medium.shape, grids.Grid):
             result.update(type="heterogeneous", sigma_t=self.field(None if grey else medium.sigma_t / strength))
         return result
