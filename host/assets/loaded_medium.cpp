@@ -194,6 +194,10 @@ void Loader::load_albedo(const Volume& volume, const GridFile& file, LoadedMediu
         throw InputError(
             fmt::format("{}: \"{}\" has no active voxel, and would make the medium black; leave <albedo> out",
                         file.path.string(), volume.albedo_grid));
+    if (const float most = largest_value(field); most > 1.0f)
+        warn(loaded, fmt::format("{}: \"{}\" has values up to {:.4g}, and what is above 1 counts as 1: an albedo; "
+                                 "divide them where they are made (colours of 8 bits by 255)",
+                                 file.path.string(), volume.albedo_grid, most));
     if (largest_value(field) == 0.0f)
         warn(loaded, fmt::format("{}: \"{}\" is 0 everywhere: the medium absorbs all that it meets; name "
                                  "another grid (vkvol info lists them), or leave <albedo> out",

@@ -253,7 +253,7 @@ DensityField drifted(const DensityField& field, const DensityField& velocity, do
                            is_color ? GridValues::numbers_or_colors : GridValues::numbers);
     result.as_authored = field.as_authored; // which went through no rounding
     result.index_to_world = field.index_to_world;
-    result.cleaned = field.cleaned;
+    result.cleaned = field.cleaned + velocity.cleaned;
     return result;
 }
 

@@ -1,6 +1,7 @@
 #include "field_cache.h"
 
 #include <set>
+#include <system_error>
 
 #include "shared/constants.h"
 
@@ -58,9 +59,13 @@ void FieldCache::foresee(const std::vector<GridFile>& files) {
         if (!begun.empty() && begun.mapped().stamp == stamp)
             coming.insert(std::move(begun));
         else
-            coming[key_of(file)] = {stamp, std::async(std::launch::async, [file] {
-                                        return load_density_field(file, GridValues::numbers_or_colors);
-                                    })};
+            try {
+                coming[key_of(file)] = {stamp, std::async(std::launch::async, [file] {
+                                            return load_density_field(file, GridValues::numbers_or_colors);
+                                        })};
+            } catch (const std::system_error&) { // no thread to be had: it is read when it is needed
+                coming.erase(key_of(file));
+            }
     }
     coming_ = std::move(coming);
 }

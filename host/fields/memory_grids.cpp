@@ -60,8 +60,11 @@ GridBytes make_grid(const std::string& name, glm::ivec3 dims, std::span<const gl
 }
 
 std::string nvdb_file_of(const MemoryGrids& grids) {
-    std::ostringstream file(
-        std::string(1 << 16, '\0')); // the writer begins behind its header, and streams go no further than they are
+    // The writer begins behind its header, some 200 bytes and a name for each, and streams go no further than they are.
+    std::size_t header = 1 << 16;
+    for (const MemoryGrids::Grid& grid : grids.grids)
+        header += 512 + grid.name.size();
+    std::ostringstream file(std::string(header, '\0'));
     std::vector<nanovdb::GridHandle<>> handles;
     for (const MemoryGrids::Grid& grid : grids.grids) {
         auto buffer = nanovdb::HostBuffer::create(grid.bytes.size());

@@ -40,6 +40,21 @@ glm::dvec3 parse_vertex(std::string_view line, const std::filesystem::path& path
     return vertex;
 }
 
+// Behind the f. Whole numbers are read by atoi, which takes what it can of anything.
+void check_face(std::string_view line, const std::filesystem::path& path, std::size_t number) {
+    constexpr std::size_t most_digits = 9;
+    std::size_t digits = 0;
+    for (const char c : line) {
+        const bool is_digit = c >= '0' && c <= '9';
+        digits = is_digit ? digits + 1 : 0;
+        if (digits > most_digits || !(is_digit || c == '-' || c == '+' || c == '/' || c == ' ' || c == '\t'))
+            throw InputError(
+                fmt::format("{}:{}: a face needs whole numbers of at most {} digits, but has \"{}\"; export "
+                            "the mesh again",
+                            path.string(), number, most_digits, one_line(std::string(line.substr(0, 60)))));
+    }
+}
+
 // Whether what it says is numbers, behind which a # begins a comment. In names it is a letter.
 bool has_numbers(std::string_view line) {
     const std::string_view word = line.substr(0, line.find_first_of(" \t"));
@@ -111,6 +126,8 @@ std::vector<glm::dvec3> parse_vertices(std::string_view text, const std::filesys
         line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
         if (line.size() > 1 && line[0] == 'v' && (line[1] == ' ' || line[1] == '\t'))
             vertices.push_back(parse_vertex(line.substr(2), path, number));
+        else if (line.size() > 1 && line[0] == 'f' && (line[1] == ' ' || line[1] == '\t'))
+            check_face(line.substr(2), path, number);
         begin = end + (text.substr(end, 2) == "\r\n" ? 2 : 1);
     }
     return vertices;

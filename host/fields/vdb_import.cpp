@@ -141,6 +141,8 @@ openvdb::GridBase::Ptr read_grid(const std::filesystem::path& path, const std::s
         openvdb::initialize();
         const StandIns stand_ins(entries);
         return OneGrid().read(path, number);
+    } catch (const std::bad_alloc&) { // nothing is wrong with the file
+        throw;
     } catch (const std::exception& e) {
         throw InputError(
             one_line(fmt::format("{}: not readable as OpenVDB: {}; copy or export it again", path.string(), e.what())));
@@ -170,6 +172,8 @@ GridBytes read_vdb_grid(const std::filesystem::path& path, const std::string& na
             return to_nanovdb(*numbers);
         if (const auto colors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grid))
             return to_nanovdb(*colors);
+    } catch (const std::bad_alloc&) { // nothing is wrong with the file
+        throw;
     } catch (const std::exception& e) {
         throw InputError(one_line(fmt::format("{}: grid \"{}\" cannot be converted: {}; copy or export it again",
                                               path.string(), name, e.what())));

@@ -53,3 +53,13 @@ TEST_CASE("triangles all in one place have a hierarchy", "[cpu][mesh]") {
     mesh.triangles.assign(100, {0, 1, 2});
     CHECK(build_bvh(mesh, glm::dvec3(0.0)).triangles.size() == 300);
 }
+
+TEST_CASE("faces of what are no whole numbers are refused", "[cpu][mesh]") {
+    const TestDirectory directory;
+    for (const std::string face : {"f 1.5 2 3", "f 4294967297 2 3", "f 1 2 x", "f 1/1e0 2 3"}) {
+        CAPTURE(face);
+        CHECK_THROWS_WITH(load_mesh({{directory.write("mesh.obj", tetrahedron + face + "\n")}}),
+                          Contains("mesh.obj:10: a face needs whole numbers") && Contains(face.substr(2)));
+    }
+    CHECK_NOTHROW(load_mesh({{directory.write("mesh.obj", tetrahedron + "f -4//  -2/-3 +3\t# and no more\n")}}));
+}

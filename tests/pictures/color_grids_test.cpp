@@ -193,6 +193,15 @@ TEST_CASE("a grid of albedos that are all 0 is warned of", "[cpu][color_grids]")
     CHECK(warnings(numbers("Cd")).empty());
 }
 
+TEST_CASE("a grid of albedos above 1 is warned of", "[cpu][color_grids]") {
+    GridRecipe bright = numbers("Cd");
+    bright.value = [](glm::ivec3) { return 255.0f; };
+    const Scene scene = colored_cloud({cloud_grid(), bright}, 1.0);
+    const auto warnings = load_assets(scene, choose_method(scene)).media.front().warnings;
+    REQUIRE(warnings.size() == 1);
+    CHECK_THAT(warnings.front(), Catch::Contains("\"Cd\" has values up to 255, and what is above 1 counts as 1"));
+}
+
 TEST_CASE("grids of colours where none can be, and grids that are missing", "[gpu][color_grids]") {
     const GridFile file = write_grids({cloud_grid(), colors("Cd")});
     Scene scene = scene_of(medium(file, 2.0, 0.5), 11.0, 8);
