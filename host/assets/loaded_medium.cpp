@@ -194,7 +194,7 @@ void Loader::load_albedo(const Volume& volume, const GridFile& file, LoadedMediu
         throw InputError(
             fmt::format("{}: \"{}\" has no active voxel, and would make the medium black; leave <albedo> out",
                         file.path.string(), volume.albedo_grid));
-    if (const float most = largest_value(field); most > 1.0f)
+    if (const float most = largest_value(field); most > 1.001f) // of white, quantised ones come out a digit above
         warn(loaded, fmt::format("{}: \"{}\" has values up to {:.4g}, and what is above 1 counts as 1: an albedo; "
                                  "divide them where they are made (colours of 8 bits by 255)",
                                  file.path.string(), volume.albedo_grid, most));

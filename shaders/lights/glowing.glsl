@@ -88,7 +88,8 @@ float share_of_glow(MediumParams m, vec3 from, vec3 direction, float phase_pdf) 
         if (phase_pdf > 0.0 && m.look_density > 0.0) {
             vec2 t;
             bool hit = glow_interval(to_medium(m, from, direction), m.kinds.shape == SHAPE_SPHERE, t);
-            share = weight_of_flight(phase_pdf, hit ? glow_density(m.look_density, m.sigma_t, t) : 0.0);
+            float density = hit ? glow_density(m.look_density, m.sigma_t, t) : 0.0;
+            share = density > 0.0 ? weight_of_flight(phase_pdf, density) : 1.0;
         }
     return share;
 }

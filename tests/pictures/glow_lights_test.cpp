@@ -157,6 +157,16 @@ TEST_CASE("what a sensor of flux finds of a glow by looks is in the layers of wh
     CHECK(mean_of(as_film(film, "background")) == 0.0);
 }
 
+TEST_CASE("what is too thick for looks is met by flights", "[gpu][image][glow]") {
+    // So many free paths to where it begins that a look would end within the last digits of its distance.
+    Scene scene = at_point({0.0, 0.0, 0.0}, glowing(Box{{0.0, 0.0, 12.0}, {20.0, 20.0, 4.0}}, 5e4, 0.0, Rgb(2.0)));
+    scene.settings.choices.mis = MIS_LIGHT;
+    // Of the square's radiance of 2: its solid angle, four times that over a quarter.
+    const double a = 10.0, b = 10.0, d = 10.0;
+    const double solid_angle = 4.0 * std::atan(a * b / (d * std::sqrt(a * a + b * b + d * d)));
+    check_means(scene, 2.0 * solid_angle, "a thick wall");
+}
+
 TEST_CASE("thick things that glow starve no other light", "[gpu][image][glow]") {
     Scene scene = scene_of(medium(Sphere{{0.0, 0.0, 0.0}, 1.3}, 0.9, 0.8), 2.0, 8, 8.0);
     scene.lights = {PointLight{{0.0, 3.0, 0.0}, Rgb(10.0)}};

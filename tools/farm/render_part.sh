@@ -18,7 +18,7 @@ shift 5
 output=$name.$frame.$part-of-$parts.exr
 for argument in "$@"; do
     case $argument in
-    -o* | --output* | --report*)
+    -o* | -[a-z]o* | --output* | --report*)
         echo "render_part.sh: error: $argument: all parts would write the same file; merge_frame.sh writes the frames" >&2
         [ "${FARM_LINES:-}" != openjd ] || echo "openjd_fail: $argument: all parts would write the same file"
         exit 2
