@@ -27,7 +27,7 @@ bool is_glow(const Light& light) {
 
 bool has_lights_of_glow(const Scene& scene) {
     // Where a domain repeats each has them, and looks would find those of one.
-    const bool lights_others = scene.volumes.size() > 1 || !scene.surfaces.empty() || reads_flux(scene.camera);
+    const bool lights_others = scene.volumes.size() > 1 || !scene.surfaces.empty();
     return lights_others && !scene.periodic && any_medium(scene, can_be_light);
 }
 

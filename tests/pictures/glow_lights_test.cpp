@@ -65,7 +65,7 @@ Scene at_point(const glm::dvec3& point, const Volume& volume) {
     scene.camera.position = point;
     scene.camera.points.assign(16, point);
     scene.picture = {16, 1, 0.0, 0.0, 16.0, 1.0};
-    scene.volumes = {volume};
+    scene.volumes = {volume, medium(Box{{60.0, 0.0, 0.0}, Rgb(1.0)}, 0.1, 0.0)}; // so that something may be lit
     scene.settings.spp = 4096;
     return scene;
 }
