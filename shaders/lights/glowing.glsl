@@ -26,8 +26,8 @@ float mean_square(vec2 t) {
     return (t.x * t.x + t.x * t.y + t.y * t.y) / 3.0;
 }
 
-// Density, for weights, of looks in a direction that has this part `t` in what glows; 0: there are none. Of what is so thick that a look
-// would have to end within its distance's last digits there is but a surface to be seen, which only flights meet rightly.
+// Density, for weights, of looks in a direction that has this part `t` in what glows; 0: there are none. What is so thick that a look
+// would have to end within its distance's last digits is but a surface to be seen, which only flights meet rightly.
 float glow_density(float look_density, float sigma_t, vec2 t) {
     return sigma_t * t.x < 1.0e5 ? look_density * mean_square(t) * (t.y - t.x) : 0.0;
 }
@@ -49,8 +49,8 @@ vec3 point_of_glow(LightRow light, vec2 u, float w) {
     return light.position + at.x * light.edge_u + at.y * light.edge_v + at.z * light.direction;
 }
 
-// How far into a part of this length a look goes: half of all evenly, since before this may be other media, and channels that see further,
-// and half as the medium itself lets through. `even`: over that density, which is that of even draws times what is returned.
+// How far into a part of this length a look goes: half of all evenly, since there may be other media, and channels that see further, and
+// half as the medium itself lets through. `even`: over that density, which is that of even draws times what is returned.
 float way_into_glow(float sigma_t, float length_of, vec2 u, out float even) {
     float rate = max(sigma_t, 1.0e-20), most = one_minus_exp(rate * length_of);
     float s = length_of * u.y;

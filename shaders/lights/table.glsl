@@ -1,5 +1,6 @@
 // Any number of lights of any kind. A look goes toward one of them, chosen with a chance that the host has fixed; what
-// flights meet by themselves of a light with extent, they meet when they leave for the sky, or come to a surface that shines, or a medium that glows.
+// flights meet by themselves of a light with extent, they meet when they leave for the sky, or come to a surface that shines, or a medium
+// that glows.
 #ifndef LIGHT_TABLE_GLSL
 #define LIGHT_TABLE_GLSL
 #include "lights/disc.glsl"

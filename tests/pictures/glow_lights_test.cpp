@@ -176,6 +176,16 @@ TEST_CASE("thick things that glow starve no other light", "[gpu][image][glow]") 
     CHECK(variance_of(render_here(scene, 2).film) < 3.0 * variance_of(alone));
 }
 
+TEST_CASE("points see a leaning box that glows alike by looks and by flights", "[gpu][image][glow]") {
+    Scene scene = at_point({-0.8, 1.3, 0.46}, leaning_box(1.5, {0.5, 1.0, 4.0}));
+    scene.settings.choices.mis = MIS_PHASE;
+    const Film met = render_here(scene, 1).film;
+    for (const int mis : {MIS_LIGHT, MIS_BALANCE}) {
+        scene.settings.choices.mis = mis;
+        check_same_mean(render_here(scene, 2).film, met, fmt::format("mis {}", mis));
+    }
+}
+
 TEST_CASE("small things that glow are found by looks", "[gpu][image][glow]") {
     Scene scene = scene_of(medium(Sphere{{0.0, 0.0, 0.0}, 1.3}, 0.9, 0.8), 2.0, 8, 8.0);
     scene.volumes.push_back(glowing(Box{{0.0, 1.6, 0.0}, Rgb(0.2)}, 3.0, 0.0, Rgb(20.0)));
