@@ -20,12 +20,14 @@ def driver_of(vkvol):
     return next((device["driver"] for device in found if device["usable"]), "no device")
 
 
-def options(description, **defaults):
-    """--build, and an integer for each of `defaults`. `vkvol` is the program."""
+def options(description, scenes=(), **defaults):
+    """--build, and an integer for each of `defaults`. `vkvol` is the program. Where there are `scenes`, some of them may be named."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default=ROOT / "build")
     for name, value in defaults.items():
         parser.add_argument(f"--{name}", type=int, default=value)
+    if scenes:
+        parser.add_argument("scenes", nargs="*", default=list(scenes), metavar="SCENE")
     found = parser.parse_args()
     found.vkvol = str(pathlib.Path(found.build).resolve() / "vkvol")
     return found
