@@ -9,6 +9,7 @@
 #include <new>
 #include <optional>
 #include <poll.h>
+#include <random>
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
@@ -86,8 +87,10 @@ path behind_links(path name) {
 }
 
 path temporary_name(const path& target) {
+    std::random_device random; // processes in containers may have the same number
     path name = target;
-    name.replace_filename(fmt::format(".{}.{}.tmp{}", target.stem().string(), getpid(), target.extension().string()));
+    name.replace_filename(fmt::format(".{}.{}-{:08x}{:08x}.tmp{}", target.stem().string(), getpid(), random(), random(),
+                                      target.extension().string()));
     return name;
 }
 
@@ -134,7 +137,7 @@ void AtomicFile::open_in_directory() {
         descriptor_ = open(directory.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
     if (descriptor_ >= 0)
         return;
-    descriptor_ = open(temporary_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    descriptor_ = open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     named_ = descriptor_ >= 0;
 }
 
@@ -194,7 +197,6 @@ void AtomicFile::send_kept() {
 
 // Some file systems know files without a name, but cannot give them one.
 void AtomicFile::give_name() {
-    unlink(temporary_.c_str()); // of a process long dead, with our number
     if (linkat(AT_FDCWD, name_of(descriptor_).c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) == 0) {
         named_ = true;
         return;

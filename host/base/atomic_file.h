@@ -43,7 +43,7 @@ private:
     std::vector<char> kept_; // of a special one, until it is whole
 };
 
-// Beside the target, so that it can be renamed, with the target's extension, which names the format.
+// Beside the target, so that it can be renamed, with the target's extension, which names the format. Another each time.
 std::filesystem::path temporary_name(const std::filesystem::path& target);
 
 // A device or pipe (/dev/stdout, say): written to, never replaced by a file.

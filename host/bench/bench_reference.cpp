@@ -139,7 +139,12 @@ Reference render_reference(const BenchRequest& request, const Estimator& estimat
         throw InputError(fmt::format("{:.3g} s do not suffice for a reference of two samples per pixel; raise --time, "
                                      "lower --width, or give a --reference",
                                      wish.seconds));
-    if (!request.render.no_cache)
+    if (const std::uint64_t lost = result.counts.step_caps + result.counts.abandoned + result.counts.non_finite)
+        tell(stderr,
+             "vkvol: warning: the reference lacks the light of {} paths that were not followed to their end; it is "
+             "not kept\n",
+             lost);
+    else if (!request.render.no_cache)
         keep(reference, cache_file(estimator, wish.seed), metadata);
     return reference;
 }

@@ -1,5 +1,6 @@
 #include "convert.h"
 
+#include <cstring>
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
@@ -58,6 +59,11 @@ int run_convert(const ConvertOptions& options) {
             fmt::format("{}: has densities of its own, which become files beside the new scene; name a file "
                         "with -o",
                         options.scene.string()));
+    if (const std::size_t size = std::strlen(head) + translation.xml.size(); size > largest_scene_file)
+        throw InputError(
+            fmt::format("{}: would come to {} MiB, and a scene file may have {}: put its meshes into files "
+                        "(plymesh), or render it as it is",
+                        options.output.string(), size >> 20, largest_scene_file >> 20));
     // Files are looked for where the new scene will be.
     const Scene scene = parse_scene(translation, options.output, {{}, {}, options.strict});
     FileUses uses;

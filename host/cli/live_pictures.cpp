@@ -1,6 +1,7 @@
 #include "live_pictures.h"
 
 #include <fmt/format.h>
+#include <new>
 
 #include "error.h"
 #include "messages.h"
@@ -30,6 +31,15 @@ LivePictures::LivePictures(const RenderOptions& options, const Scene& scene, boo
 void LivePictures::show(const Device& device, const RenderResult& result, Progress* progress) {
     if (pictures_.empty())
         return;
+    try {
+        show_all(device, result, progress);
+    } catch (const std::bad_alloc&) { // no look is worth the picture
+        pictures_.clear();
+        tell(stderr, "vkvol: warning: there is not enough memory to show the picture meanwhile; the render goes on\n");
+    }
+}
+
+void LivePictures::show_all(const Device& device, const RenderResult& result, Progress* progress) {
     const Tone tone = choose_tone(options_.tone, result.film, make_metadata(options_, scene_, device, result));
     if (progress)
         progress->finish();

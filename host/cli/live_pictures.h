@@ -25,6 +25,8 @@ public:
     void show(const Device& device, const RenderResult& result, Progress* progress);
 
 private:
+    void show_all(const Device& device, const RenderResult& result, Progress* progress);
+
     const RenderOptions& options_;
     const Scene& scene_;
     std::string missing_;

@@ -144,6 +144,12 @@ void tell_why(const RenderOptions& options, Workshop& workshop, const std::optio
         print_explanation(*explanation);
 }
 
+// What the validation layer objects to is told once the picture is safe.
+void check_all(const std::vector<const Device*>& devices) {
+    for (const Device* device : devices)
+        check_validation(*device);
+}
+
 int render_scene(const RenderOptions& options, const Scene& scene, Workshop& workshop, CheckpointFile& checkpoint,
                  RenderOutputs& outputs, LivePictures& live) {
     const std::optional<Explanation> foreseen = options.trace ? std::nullopt : foresee(scene);
@@ -155,9 +161,8 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
     live.show(device, result, nullptr);
     if (!options.quiet)
         print_warnings(workshop.new_warnings(result.warnings));
-    for (const Device* one : devices)
-        check_validation(*one);
     if (options.dry_run) {
+        check_all(devices);
         if (!options.quiet)
             print_dry_run(options, scene, device, result);
         return exit_done;
@@ -174,6 +179,7 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
         shown.tone = choose_tone(options.tone, result.film, make_metadata(options, scene, device, result));
     shown.explanation = foreseen || options.trace ? foreseen : explain(scene, result, shown.tone);
     outputs.write(device, result, shown);
+    check_all(devices);
     // A picture's time may be given once more, and it goes on; a frame is done with it.
     const bool is_done = result.samples == scene.settings.spp || result.reached_goal;
     if (is_done || (options.is_frame && !result.interrupted && !result.failure))

@@ -74,6 +74,8 @@ void RenderOutputs::write(const Device& device, const RenderResult& result, cons
             append(failures, "; ", output.string() + ": there is not enough memory to write it");
         } catch (const RenderError& error) {
             append(failures, "; ", error.what());
+        } catch (const std::exception& error) { // of the library of grids
+            append(failures, "; ", fmt::format("{}: cannot be written: {}", output.string(), error.what()));
         }
     const std::string kept = failures.empty() || exr_written ? "" : rescue(result.film, metadata);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

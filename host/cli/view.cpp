@@ -234,6 +234,7 @@ private:
             resize_picture(small.picture, int(std::max(scene_.picture.width * std::sqrt(sketch_pixels / pixels), 1.0)),
                            std::nullopt);
         RenderJob job = job_;
+        job.preview = nullptr; // of another session, whose pictures are whole ones
         job.crop = {0, small.picture.width, 0, small.picture.height};
         job.interrupted = [this] { return interrupted() || is_outdated(); }; // also while nobody looks: it is soon done
         Session session(device_, small, job);

@@ -14,8 +14,6 @@ namespace vkvol {
 
 namespace {
 
-constexpr std::size_t largest_scene = 256u << 20u; // bytes, as scene files may have
-
 // When it was written, and its size: a clock's ticks are long, and what is written in two goes may be read between
 // them.
 std::pair<std::filesystem::file_time_type, std::uintmax_t> state_of(const std::filesystem::path& file) {
@@ -53,7 +51,7 @@ void WatchedScene::load() {
     } else {
         const RenderRequest& request = options_.request;
         load_scene(file, request.defines, {request.grid, request.integrator, options_.strict}); // likewise
-        xml_ = read_input_text(file, largest_scene, "name a scene file (.xml)");
+        xml_ = read_input_text(file, largest_scene_file, "name a scene file (.xml)");
     }
 }
 

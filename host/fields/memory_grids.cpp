@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <nanovdb/util/IO.h>
+#include <new>
 #include <sstream>
 #include <type_traits>
 
@@ -72,6 +73,8 @@ std::string nvdb_file_of(const MemoryGrids& grids) {
         handles.emplace_back(std::move(buffer));
     }
     nanovdb::io::writeGrids(file, handles, nanovdb::io::Codec::ZIP);
+    if (!file) // streams keep that to themselves
+        throw std::bad_alloc();
     std::string text = file.str();
     text.resize(static_cast<std::size_t>(file.tellp()));
     return text;

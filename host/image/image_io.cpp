@@ -225,7 +225,6 @@ void check_directory_writable(const path& target, const char* option) {
                         target.string(), std::strerror(errno), option));
     // Only making a file tells: permissions, read-only file systems and quotas all have a say.
     const path probe = temporary_name(place);
-    unlink(probe.c_str()); // of a process long dead, with our number
     const int descriptor = open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     if (descriptor < 0)
         throw InputError(fmt::format("{}: no file can be made in {}: {}; name another place with {}", target.string(),

@@ -278,10 +278,12 @@ void MethodChooser::choose_first_flight() {
     const bool from_camera = method_.paths != PATHS_LIGHT && !reads_flux(scene_.camera);
     const bool could = from_camera && method_.nee != NEE_TENTATIVE && !scene_.periodic &&
                        !(emits_ && field_ == FIELD_SUPERPOSITION) && scene_.settings.majorant_scale >= 1.0 &&
+                       !has_no_end() && // whose outermost cells have none
                        (method_.free_flight == FREE_FLIGHT_DELTA || method_.free_flight == FREE_FLIGHT_SPECTRAL);
     if (choices_.first_flight == FIRST_FLIGHT_SPLIT && !could)
         warn("first flights are drawn: split ones are of cameras, by flight delta or spectral, without shadow rays at "
-             "null collisions; not in domains that repeat, where several volumes glow, or below densities' bounds");
+             "null collisions; not in domains that repeat or media without end, where several volumes glow, or below "
+             "densities' bounds");
     method_.first_flight = could ? choices_.first_flight : FIRST_FLIGHT_DRAWN;
 }
 

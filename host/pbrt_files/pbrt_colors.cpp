@@ -58,8 +58,10 @@ std::vector<double> numbers_in_file(const std::filesystem::path& file, const Pbr
 } // namespace
 
 Spectrum PbrtColors::spectrum(const PbrtParameter& parameter) const {
-    const std::vector<double> numbers =
-        parameter.numbers.empty() ? numbers_in_file(folder_ / parameter.texts.front(), parameter) : parameter.numbers;
+    if (parameter.numbers.empty() && !files_.contains(parameter.texts.front()))
+        files_[parameter.texts.front()] = numbers_in_file(folder_ / parameter.texts.front(), parameter);
+    const std::vector<double>& numbers =
+        parameter.numbers.empty() ? files_[parameter.texts.front()] : parameter.numbers;
     if (numbers.empty() || numbers.size() % 2 != 0)
         fail(parameter, "wavelengths in nm, each with its value");
     Spectrum spectrum;

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,7 +31,8 @@ private:
     template <class Named, class Whole>
     glm::dvec3 of_spectrum(const PbrtParameter& parameter, const Named& named, const Whole& whole) const;
 
-    std::filesystem::path folder_; // of files
+    std::filesystem::path folder_;                             // of files
+    mutable std::map<std::string, std::vector<double>> files_; // read once, however many shapes name them
 };
 
 } // namespace vkvol

@@ -31,7 +31,7 @@ PbrtCloud cloud_of(const PbrtThing& medium) {
             number_in(medium, "frequency", 5.0, 0.0, 1e6)};
 }
 
-std::vector<float> values_of(const PbrtThing& medium, const char* name, glm::ivec3 dims) {
+std::vector<float> values_of(const PbrtThing& medium, const char* name, glm::ivec3 dims, double least = 0.0) {
     const std::vector<double> numbers = medium.parameters->numbers(name);
     const std::size_t expected = voxel_count(dims);
     if (numbers.size() != expected)
@@ -40,9 +40,9 @@ std::vector<float> values_of(const PbrtThing& medium, const char* name, glm::ive
     std::vector<float> values;
     values.reserve(expected);
     for (const double number : numbers) {
-        if (!(number >= 0.0 && number <= 1e30))
+        if (!(number >= least && number <= 1e30))
             fail_at(medium.parameters->find(name)->place,
-                    fmt::format("\"{}\" has {:g} among its values; expected 0 to 1e30", name, number));
+                    fmt::format("\"{}\" has {:g} among its values; expected {:g} to 1e30", name, number, least));
         values.push_back(static_cast<float>(number));
     }
     return values;
@@ -170,8 +170,9 @@ std::string PbrtTranslator::free_name(const std::string& medium) const {
 // to 0.
 MemoryGrids::Grid PbrtTranslator::glow_of(const PbrtThing& medium, glm::ivec3 dims) {
     const PbrtParameters& p = *medium.parameters;
-    const std::vector<float> temperatures = values_of(medium, "temperature", dims);
-    const std::vector<float> scales = p.has("Lescale") ? values_of(medium, "Lescale", dims) : std::vector<float>{};
+    const std::vector<float> temperatures = values_of(medium, "temperature", dims, -1e30); // degrees, say
+    const std::vector<float> scales =
+        p.has("Lescale") ? values_of(medium, "Lescale", dims, -1e30) : std::vector<float>{};
     const glm::dvec2 kelvin = kelvins(medium);
     const auto [coldest, hottest] = std::minmax_element(temperatures.begin(), temperatures.end());
     const double most = std::max({kelvin.x * *coldest + kelvin.y, kelvin.x * *hottest + kelvin.y, 2.0 * least_kelvin});
@@ -191,6 +192,16 @@ MemoryGrids::Grid PbrtTranslator::glow_of(const PbrtThing& medium, glm::ivec3 di
          fmt::format("what glows by its temperature is a grid of {} x {} x {} colours here", finer.dims.x, finer.dims.y,
                      finer.dims.z));
     return {"glow", make_grid("glow", finer.dims, glow, finer.place)};
+}
+
+std::vector<float> PbrtTranslator::scales_of(const PbrtThing& medium, glm::ivec3 dims) {
+    std::vector<float> values = values_of(medium, "Lescale", dims, -1e30);
+    if (std::any_of(values.begin(), values.end(), [](float value) { return value < 0.0f; }))
+        note(medium.parameters->find("Lescale")->place,
+             "values below 0 are 0 here; pbrt's glow ends a little before them");
+    for (float& value : values)
+        value = std::max(value, 0.0f);
+    return values;
 }
 
 void PbrtTranslator::write_dense_medium(const std::string& name, const PbrtThing& medium) {
@@ -224,7 +235,7 @@ void PbrtTranslator::write_dense_medium(const std::string& name, const PbrtThing
     if (burns)
         grids->grids.push_back(glow_of(medium, dims));
     else if (has_scales)
-        add("Lescale", values_of(medium, "Lescale", dims));
+        add("Lescale", scales_of(medium, dims));
     else if (!is_cloud && p.has("Le"))
         grids->grids.push_back({"Lescale", make_grid("Lescale", finer.dims,
                                                      of_voxels(finer.dims,

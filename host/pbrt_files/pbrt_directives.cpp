@@ -155,7 +155,11 @@ void PbrtDirectives::add_transforms() {
         if (!std::isfinite(size) || size == 0.0)
             fail_at(directive.place,
                     fmt::format("{} leaves nothing of space; expected a map with an inverse", directive.value));
-        return m;
+        if (const double w = m[3][3]; m[0][3] != 0.0 || m[1][3] != 0.0 || m[2][3] != 0.0 || w == 0.0)
+            fail_at(directive.place, fmt::format("the {} has perspective, in the last of each four numbers; expected 0 "
+                                                 "0 0 1 there (a translation is in the last four)",
+                                                 directive.value));
+        return m / m[3][3];
     };
     handlers_["Identity"] = [this](const PbrtToken&) {
         if (!state_.is_moving)
@@ -236,12 +240,16 @@ void PbrtDirectives::add_settings() {
 void PbrtDirectives::read_option() {
     const PbrtToken option = tokens_.next(Kind::quoted, "an option in quotes");
     const PbrtToken value = tokens_.next();
-    if (option.value.ends_with("rendercoordsys"))
+    std::string called; // as pbrt reads it: render-coord-sys is RenderCoordSys
+    for (const char c : option.value)
+        if (c != '-' && c != '_')
+            called += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (called.ends_with("rendercoordsys"))
         scene_.rendered_in = value.value;
     const std::vector<std::string> without_effect = {"seed", "rendercoordsys", "wavefront", "pixelstats",
                                                      "recordpixelstatistics"};
     if (std::none_of(without_effect.begin(), without_effect.end(),
-                     [&](const std::string& name) { return option.value.ends_with(name); }))
+                     [&](const std::string& name) { return called.ends_with(name); }))
         note(option.place, fmt::format("Option \"{}\" is left out", option.value));
 }
 

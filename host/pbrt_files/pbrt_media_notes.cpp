@@ -28,7 +28,8 @@ double winding(const PbrtTriangles& mesh, const glm::dvec3& p) {
 bool is_about(const PbrtShape& shape, const PbrtThing& medium) {
     if (shape.thing.type != "trianglemesh" && shape.thing.type != "bilinearmesh")
         return false;
-    const PbrtTriangles mesh = moved(shape.thing.transform, read_triangles(shape.thing), false);
+    PbrtTriangles mesh = moved(shape.thing.transform, read_triangles(shape.thing), false);
+    mesh.normals.clear(); // by which its triangles go round now
     if (as_rectangle(mesh))
         return true;
     const PbrtBounds bounds = bounds_of(medium);

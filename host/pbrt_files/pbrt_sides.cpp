@@ -1,5 +1,7 @@
 #include "pbrt_sides.h"
 
+#include <cmath>
+
 #include "pbrt_triangles.h"
 
 namespace vkvol {
@@ -11,14 +13,14 @@ bool faces_inwards(const PbrtShape& shape) {
     if (thing.type != "trianglemesh" && thing.type != "bilinearmesh")
         return shape.is_reversed != shape.is_mirrored; // an instance carries normals along
     const PbrtTriangles mesh = moved(thing.transform, read_triangles(thing), shape.is_reversed);
-    if (as_rectangle(mesh)) // flat, but for rounding, of which its volume would be
-        return false;
-    double volume = 0.0; // by Gauss's theorem, six times
+    double volume = 0.0, area = 0.0; // six times, by Gauss's theorem, and twice
     for (const glm::uvec3& t : mesh.triangles) {
         const glm::dvec3& o = mesh.points[mesh.triangles[0].x];
-        volume += glm::dot(mesh.points[t.x] - o, glm::cross(mesh.points[t.y] - o, mesh.points[t.z] - o));
+        const glm::dvec3 a = mesh.points[t.x] - o, b = mesh.points[t.y] - o, c = mesh.points[t.z] - o;
+        volume += glm::dot(a, glm::cross(b, c));
+        area += glm::length(glm::cross(b - a, c - a));
     }
-    return volume < 0.0;
+    return volume < -1e-6 * std::pow(area, 1.5); // what is flat has a volume of rounding, of six digits at worst
 }
 
 bool is_never_met(const PbrtShape& shape) {

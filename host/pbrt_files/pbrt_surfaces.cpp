@@ -248,6 +248,13 @@ void PbrtTranslator::write_file_mesh(const PbrtShape& shape, const XmlAttributes
 
 // `own`: in the shape's own space.
 void PbrtTranslator::write_triangles(const PbrtShape& shape, const PbrtTriangles& own, const XmlAttributes& material) {
+    constexpr std::size_t most = 20'000'000;
+    triangle_count_ += own.triangles.size();
+    if (triangle_count_ > most)
+        fail_at(shape.thing.place,
+                fmt::format("with this {} there are more than {} triangles, the most that are written: put meshes into "
+                            "files (plymesh), and let spheres, cylinders and disks be round and whole",
+                            shape.thing.type, most));
     PbrtTriangles mesh = moved(world_ * shape.thing.transform, own, shape.is_reversed);
     if (!has_texture(material))
         mesh.places.clear();

@@ -51,6 +51,7 @@ private:
     void write_dense_medium(const std::string& name, const PbrtThing& medium);
     void write_rgb_medium(const std::string& name, const PbrtThing& medium);
     MemoryGrids::Grid glow_of(const PbrtThing& medium, glm::ivec3 dims);
+    std::vector<float> scales_of(const PbrtThing& medium, glm::ivec3 dims);
     void write_black_body(const std::string& grid, double glow, const PbrtThing& medium);
     static double glow_scale(const PbrtThing& medium);
     static glm::dvec2 kelvins(const PbrtThing& medium);
@@ -131,8 +132,9 @@ private:
     std::set<std::string> written_grids_; // media
     std::set<std::string> media_within_;  // of shapes
     bool camera_medium_is_endless_ = false;
-    int media_count_ = 0;   // of volumes, at most
-    glm::dmat4 world_{1.0}; // from pbrt's world to this renderer's
+    int media_count_ = 0;            // of volumes, at most
+    std::size_t triangle_count_ = 0; // that are written out
+    glm::dmat4 world_{1.0};          // from pbrt's world to this renderer's
     bool sky_is_mirrored_ = false;
     // Of the material that was written last: its texture, and which part of pbrt's places it repeats in one.
     std::optional<PbrtThing> texture_;

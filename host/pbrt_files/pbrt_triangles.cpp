@@ -93,16 +93,17 @@ PbrtTriangles with_usual_places(const PbrtTriangles& mesh, bool is_patches) {
 PbrtTriangles moved(const glm::dmat4& map, PbrtTriangles mesh, bool is_reversed) {
     for (glm::dvec3& point : mesh.points)
         point = glm::dvec3(map * glm::dvec4(point, 1.0));
+    if (std::all_of(mesh.normals.begin(), mesh.normals.end(), [](const auto& n) { return n == glm::dvec3(0.0); }))
+        mesh.normals.clear(); // an exporter's, that had none
     const bool mirrors = glm::determinant(glm::dmat3(map)) < 0.0;
     const glm::dmat3 of_normals = glm::transpose(glm::inverse(glm::dmat3(map))) * (is_reversed ? -1.0 : 1.0);
     for (glm::dvec3& normal : mesh.normals)
         normal = of_normals * normal;
     for (glm::uvec3& t : mesh.triangles) {
         const glm::dvec3 face = glm::cross(mesh.points[t.y] - mesh.points[t.x], mesh.points[t.z] - mesh.points[t.x]);
-        const bool turns = mesh.normals.empty()
-                               ? mirrors != is_reversed
-                               : glm::dot(face, mesh.normals[t.x] + mesh.normals[t.y] + mesh.normals[t.z]) < 0.0;
-        if (turns)
+        const glm::dvec3 normal =
+            mesh.normals.empty() ? glm::dvec3(0.0) : mesh.normals[t.x] + mesh.normals[t.y] + mesh.normals[t.z];
+        if (normal == glm::dvec3(0.0) ? mirrors != is_reversed : glm::dot(face, normal) < 0.0)
             std::swap(t.y, t.z);
     }
     return mesh;

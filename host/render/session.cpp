@@ -258,6 +258,9 @@ void Session::offer_preview() {
             throw;
         next_preview_ = begun + least_pause;
         return;
+    } catch (const std::bad_alloc&) { // nor has the host
+        next_preview_ = begun + least_pause;
+        return;
     }
     result_.samples = done_;
     result_.render_seconds += begun;

@@ -5,9 +5,12 @@
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
+#include <functional>
 #include <future>
 #include <iterator>
 #include <numeric>
+#include <system_error>
+#include <thread>
 #include <utility>
 
 #include "error.h"
@@ -17,6 +20,20 @@
 namespace vkvol {
 
 namespace {
+
+// A machine that has too many threads may have fewer in a moment.
+std::future<void> begin_thread(const std::function<void()>& work) {
+    constexpr int most = 20;
+    constexpr std::chrono::milliseconds pause(100);
+    for (int i = 1;; ++i)
+        try {
+            return std::async(std::launch::async, work);
+        } catch (const std::system_error&) {
+            if (i == most)
+                throw;
+            std::this_thread::sleep_for(pause);
+        }
+}
 
 std::vector<std::uint32_t> rows_of_bands(const std::vector<Band>& bands) {
     std::vector<std::uint32_t> rows;
@@ -172,8 +189,7 @@ Session::Following Session::start_followers() {
         if (divided_)
             session.pixels_.reset();
         if (divided_ ? !rows.empty() : !session.pixels_->empty())
-            followers_[i]->work =
-                std::async(std::launch::async, [this, &session, rows] { session.follow(rows, order_); });
+            followers_[i]->work = begin_thread([this, &session, rows] { session.follow(rows, order_); });
     }
     return following;
 }

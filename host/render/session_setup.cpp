@@ -246,6 +246,9 @@ void Session::find_wish(const Assets& assets, const Specialization& specializati
         return;
     if (wish_.schedule == Schedule::automatic) // a GPU may round the two differently
         wish_.schedule = job_.resume->schedule;
+    if (wish_.schedule != job_.resume->schedule && !device_.is_cpu())
+        throw InputError(fmt::format("the checkpoint was rendered by --schedule {0}; go on by that, or name none",
+                                     name_of(job_.resume->schedule)));
     // Its batch is gone on with, whatever this schedule would have made of it.
     wish_.waiting = std::max(wish_.waiting, job_.resume->batch);
 }

@@ -15,18 +15,17 @@ namespace vkvol {
 namespace {
 
 std::string read_file(const std::filesystem::path& file) {
-    constexpr std::size_t limit = 256 << 20;
     std::error_code error;
     if (std::filesystem::is_directory(file, error))
         throw InputError(fmt::format("{}: is a directory; expected a scene file (.xml)", file.string()));
-    std::string text = read_input_text(file, limit, "name a scene file (.xml)");
+    std::string text = read_input_text(file, largest_scene_file, "name a scene file (.xml)");
     for (const char* picture : {"\x76\x2f\x31\x01", "\x89PNG"})
         if (text.starts_with(picture))
             throw InputError(
                 fmt::format("{}: is a picture (vkvol develop, compare and merge read .exr files); expected a scene "
                             "file (.xml)",
                             file.string()));
-    if (text.size() > limit)
+    if (text.size() > largest_scene_file)
         throw InputError(
             fmt::format("{}: larger than 256 MiB; expected a scene file (.xml), with its meshes in files of their own",
                         file.string()));

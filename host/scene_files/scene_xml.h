@@ -12,6 +12,8 @@
 
 namespace vkvol {
 
+inline constexpr std::size_t largest_scene_file = 256u << 20u; // bytes
+
 // Values for `$key` in attribute values and text.
 using Defines = std::map<std::string, std::string>;
 

@@ -59,14 +59,19 @@ void pick_again(inout Walk w, inout Spectrum beta, out float begun_with, inout S
     begun_with = largest(beta);
 }
 
+// Of what has collided: it neither glows nor scatters.
+bool finds_nothing() {
+    const bool glows_there = EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_COLLISIONS;
+    return !glows_there && (SCATTERING == SCATTERING_NONE || frame.max_depth == 0u);
+}
+
 // What was left, `through`, has gone through, and meets that `light`. What has collided goes on by chance, with the share, roughly, that
 // it has of all there is to be seen, which is that of a drawn flight at least: in front of nothing it mostly does. Whether it does or not, it is first taken to bring the same
 // light as what went through, which where it goes on is taken away again: where both are alike, as in an even glow, chance then leaves
 // no trace. Hence the throughput that is returned, to be added to the former; its expectation is 0.
+// Where it could find nothing it does not go on.
 Spectrum stand_in(vec3 light, Spectrum through, out Spectrum beta, inout float begun_with, inout Split split, inout Rng rng) {
-    const bool glows_there = EMISSION != EMISSION_NONE && EMISSION_AT == EMISSION_AT_COLLISIONS;
-    if (!glows_there && (SCATTERING == SCATTERING_NONE || frame.max_depth == 0u))
-        split.collided = 0.0; // there is nothing to find
+    split.collided = finds_nothing() ? 0.0 : split.collided;
     Spectrum whole = split.picked * split.collided;
     float fluence = largest(frame.lights[FRAME_DIRECTIONAL].radiance) + (LIGHTS == LIGHTS_LONE ? 0.0 : frame.fluence);
     float even = max(INV_4PI * fluence + largest(frame.lights[FRAME_BACKGROUND].radiance), 1.0e-20), m = largest(whole);

@@ -148,10 +148,11 @@ uint next_cell(MediumParams v, bool residual, float t_exit, vec3 t_face, inout W
     return left ? EVENT_LEFT : EVENT_MOVING;
 }
 
-// Along the ray, per world unit; of a part without cells, one.
+// Along the ray, per world unit, of cells like the walk's, which may be a coarse one; of a part without cells, one.
 float cells_per_length(MediumParams v, Walk w) {
     vec3 d = abs(w.direction);
-    return HAS_CELLS ? max(d.x, max(d.y, d.z)) / v.cell_size : 1.0 / max(w.t_end, 1.0e-30);
+    float edge = v.cell_size * (CELL_BITS != 0 ? float(w.cell_edge) : 1.0);
+    return HAS_CELLS ? max(d.x, max(d.y, d.z)) / edge : 1.0 / max(w.t_end, 1.0e-30);
 }
 
 // One step: to the face of the cell, or to a tentative collision before it (EVENT_COLLIDED).

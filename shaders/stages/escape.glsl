@@ -34,6 +34,13 @@ vec3 light_left_to_path(vec3 direction, Lane lane) {
     return radiance;
 }
 
+// What of a split flight has collided where it would find nothing, which only layers know.
+void note_unfollowed(MediumParams v, Lane lane) {
+    vec3 position = lane.path.position + lane.split.at * lane.path.direction;
+    note_collision(lane.record, vec3(lane.split.picked * lane.split.collided), position, lane.path.direction,
+                   flown_before(lane) + lane.split.at, albedo_at(medium_of(v, lane.split.met), position));
+}
+
 // `direction`: the path's. After a flight that was split the path may go on, with what has collided: then
 // `lane.split` still has that.
 void escape(MediumParams v, vec3 direction, inout Lane lane, inout Rng rng) {
@@ -53,8 +60,12 @@ void escape(MediumParams v, vec3 direction, inout Lane lane, inout Rng rng) {
     lane.todo = TODO_END;
     Spectrum through = beta;
     if (SPLITS) // in an `if` of its own, which kernels without it are compiled without
-        if (lane.split.collided > 0.0)
+        if (lane.split.collided > 0.0) {
+            if (HAS_LAYERS)
+                if (finds_nothing())
+                    note_unfollowed(v, lane);
             beta += stand_in(light, beta, lane.beta, lane.begun_with, lane.split, rng);
+        }
     if (HAS_LAYERS)
         note_escape(beta, through, label, direction, lane);
     lane.path.radiance += beta * light;

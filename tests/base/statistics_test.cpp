@@ -1,8 +1,10 @@
 // The statistical tests themselves, against tabulated values.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <random>
 
+#include "support/images.h"
 #include "support/statistics.h"
 
 using namespace vkvol;
@@ -84,4 +86,31 @@ TEST_CASE("p-values are uniform where nothing is wrong and small where something
     for (double& x : bent)
         x = std::pow(uniform(engine), 1.1);
     CHECK(kolmogorov_smirnov_p(bent) < 1e-6);
+}
+
+TEST_CASE("what is no number is worse than all, for good", "[cpu][statistics]") {
+    double worst = 0.5;
+    for (const double x : {std::nan(""), 2.0, 0.1})
+        worsen(worst, x);
+    CHECK(std::isinf(worst));
+}
+
+TEST_CASE("pictures with pixels that are no numbers agree with none", "[cpu][statistics]") {
+    Film film;
+    film.picture_width = film.picture_height = 4;
+    film.crop = {0, 4, 0, 4};
+    film.mean.assign(16, glm::vec3(1.0f));
+    film.variance.assign(16, glm::vec3(0.01f));
+    film.samples.assign(16, 64);
+    const std::vector<Rgb> means(16, Rgb(1.0));
+    REQUIRE(agree(film, film, "alike").ok);
+    REQUIRE(agree_with_means(film, means, "alike").ok);
+    for (const float x : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()})
+        for (const std::size_t pixel : {0u, 7u, 15u}) {
+            Film other = film;
+            other.mean[pixel].y = x;
+            CHECK(!agree(film, other, "no number").ok);
+            CHECK(!agree(other, other, "no numbers").ok);
+            CHECK(!agree_with_means(other, means, "no number").ok);
+        }
 }

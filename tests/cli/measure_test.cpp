@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -291,6 +292,7 @@ TEST_CASE("what the validation layer objects to fails measurements as it does re
         WARN("skipped: this validation layer objects to nothing");
         return;
     }
+    CHECK(std::filesystem::exists(folder.file("ball.exr"))); // which is not lost for that
     for (const char* command : {"measure ball.xml --validate --spp 4", "bench ball.xml --validate --time 2s"}) {
         const Run run = folder.vkvol(command, strict);
         CHECK(run.code == exit_render_failed);

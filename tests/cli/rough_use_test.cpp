@@ -130,13 +130,6 @@ TEST_CASE("two signals one after the other are one", "[gpu][command]") {
     CHECK(fs::exists(folder.file("h.exr")));
 }
 
-TEST_CASE("what a dead process with our number left is no obstacle", "[gpu][command]") {
-    const Folder folder("");
-    const Run run = folder.script("sh -c ': >.a.$$.tmp.exr; exec \"$0\" ball.xml -q -o a.exr' \"$vkvol\"");
-    CHECK(run.code == exit_done);
-    CHECK(fs::exists(folder.file("a.exr")));
-}
-
 TEST_CASE("a layer of alpha changes no PNG", "[gpu][command]") {
     const Folder folder("");
     REQUIRE(folder.vkvol("ball.xml -q -o a.png").code == exit_done);

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "support/numbers.h"
+#include "support/statistics.h"
 #include "support/test_medium.h"
 #include "tests/reference/quadrature.h"
 
@@ -95,7 +96,7 @@ TEST_CASE("unbiased flights follow the optical depth in every medium", "[gpu][fr
         // of them seen twice.
         double worst = 0.0;
         for (const FlightOutput& f : flights)
-            worst = std::max(worst, std::abs(f.weight.x - 1.0) / (16.0 * u * (f.nulls + 1.0)));
+            worsen(worst, std::abs(f.weight.x - 1.0) / (16.0 * u * (f.nulls + 1.0)));
         CHECK(worst <= (is_null_flight(flight) ? 1.0 : 0.0));
     }
 }
@@ -132,7 +133,7 @@ TEST_CASE("regular tracking collides where the optical depth is the sampled one"
             REQUIRE((escapes || flights[i].event == collided));
             REQUIRE(flights[i].weight.x == 1.0f);
             const double error = escapes ? std::max(sigma_t * D_end - E, 0.0) : std::abs(sigma_t * D[i] - E);
-            worst = std::max(worst, error / tolerance);
+            worsen(worst, error / tolerance);
         }
     }
     CAPTURE(worst);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "support/numbers.h"
+#include "support/statistics.h"
 #include "support/test_medium.h"
 #include "tests/reference/quadrature.h"
 
@@ -167,7 +168,7 @@ TEST_CASE("regular transmittance is exact to rounding", "[gpu][transmittance]") 
         const double tau = sigma_t * medium.density_integral(rays[i]);
         const double tau_error = sigma_t * (displaced + 64.0 * u * rho_max * length);
         const double tolerance = std::exp(-tau) * (tau_error + (6.0 + 6.0 * tau) * u);
-        worst = std::max(worst, std::abs(outputs[i].weight.x - std::exp(-tau)) / tolerance);
+        worsen(worst, std::abs(outputs[i].weight.x - std::exp(-tau)) / tolerance);
     }
     CAPTURE(worst);
     CHECK(worst <= 1.0);
@@ -220,7 +221,7 @@ TEST_CASE("marched transmittance has the bias of its order", "[gpu][transmittanc
             const double T = std::exp(-2.0 * medium.density_integral(rays[i]));
             const double expected = march_mean(medium, rays[i], step, jitter ? 100 : 1);
             const RunningMean& mean = means[i].channel[0];
-            worst = std::max(worst, std::abs(mean.mean() - expected));
+            worsen(worst, std::abs(mean.mean() - expected));
             difference += mean.mean() - expected;
             variance += mean.standard_error() * mean.standard_error();
             bias += expected - T;
@@ -260,7 +261,7 @@ TEST_CASE("telescoping knows a constant density by each estimate", "[gpu][transm
         if (outputs[i].event != left)
             continue;
         const double T = std::exp(-medium.density_integral(rays[i / count]));
-        worst = std::max(worst, std::abs(outputs[i].weight.x / T - 1.0));
+        worsen(worst, std::abs(outputs[i].weight.x / T - 1.0));
         longest = std::max(longest, outputs[i].steps);
     }
     CHECK(longest > 256 * 20);

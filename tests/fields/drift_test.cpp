@@ -6,6 +6,7 @@
 #include "drift.h"
 #include "error.h"
 #include "shared/constants.h"
+#include "support/statistics.h"
 #include "support/test_grids.h"
 
 using namespace vkvol;
@@ -55,7 +56,7 @@ template <class Expected> void check_voxels(const DensityField& moved, const Exp
     for (int x = -40; x <= 50; ++x)
         for (int y = -30; y <= 40; ++y)
             for (int z = -20; z <= 40; ++z)
-                worst = std::max(worst, std::abs(double(moved.value({x, y, z})) - expected(glm::ivec3(x, y, z))));
+                worsen(worst, std::abs(double(moved.value({x, y, z})) - expected(glm::ivec3(x, y, z))));
     CHECK(worst < 1e-5); // of values up to 1.2, and ways up to 20 voxels, in single precision
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <set>
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
@@ -240,6 +241,17 @@ TEST_CASE("links that lead to what is not there yet", "[cpu][image_io]") {
     CHECK_THROWS_WITH(check_directory_writable(scratch.path / "lost.json"), Catch::Contains("none does not exist"));
     fs::create_symlink("round.json", scratch.path / "round.json");
     CHECK_NOTHROW(behind_links(scratch.path / "round.json"));
+}
+
+// Processes in containers may have the same number, and what one of them writes another must not take away.
+TEST_CASE("files that are not whole yet have names that nobody else gives", "[cpu][image_io]") {
+    const fs::path target = fs::path("far") / "a.exr";
+    std::set<fs::path> names;
+    for (int i = 0; i < 100; ++i)
+        names.insert(temporary_name(target));
+    CHECK(names.size() == 100);
+    CHECK(names.begin()->parent_path() == "far");
+    CHECK(names.begin()->extension() == ".exr");
 }
 
 TEST_CASE("links that lead to a pipe somebody has open", "[cpu][image_io]") {

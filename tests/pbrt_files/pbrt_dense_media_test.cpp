@@ -220,3 +220,20 @@ TEST_CASE("wrong media of pbrt are refused with their place", "[cpu][pbrt]") {
                  "\"\" Shape \"sphere\""),
         Contains("frequency is -3; expected 0 to 1e+06"));
 }
+
+TEST_CASE("what is below 0 in pbrt's grids of temperatures and scales does not glow", "[cpu][pbrt]") {
+    const std::string eight =
+        "\"integer nx\" 2 \"integer ny\" 2 \"integer nz\" 2 \"float density\" [ 1 1 1 1 1 1 1 1 ] ";
+    const Scene below = world_of(grid_medium(eight + "\"rgb Le\" [ 2 2 2 ] \"float Lescale\" [ -3 1 2 3 4 5 6 7 ]"));
+    CHECK(std::count_if(below.warnings.begin(), below.warnings.end(), [](const std::string& warning) {
+              return warning.find("values below 0 are 0 here") != std::string::npos;
+          }) == 1);
+    const DensityField scales = load_density_field(std::get<GridFile>(only_medium(below).shape).beside("Lescale"));
+    CHECK(scales.value({0, 0, 0}) == 0.0f);
+    CHECK(scales.value({1, 0, 0}) == 1.0f);
+    // Degrees, of which pbrt makes kelvins: (temperature + 273) * 1.
+    const Volume warm = only_medium(
+        world_of(grid_medium(eight + "\"float temperature\" [ -200 900 900 900 900 900 900 900 ] "
+                                     "\"float temperatureoffset\" -273 \"float Lescale\" [ -1 1 1 1 1 1 1 1 ]")));
+    CHECK(warm.temperature.grid == "glow");
+}

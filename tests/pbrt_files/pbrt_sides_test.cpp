@@ -81,6 +81,39 @@ TEST_CASE("pbrt's panes of glass have their inside below them however they are t
               .material.ior == 1.5);
 }
 
+TEST_CASE("pbrt's panes with normals, and flat shapes of other kinds, have their inside below them, too",
+          "[cpu][pbrt]") {
+    const std::string corners = " Shape \"trianglemesh\" \"point3 P\" [ -1 -1 0 1 -1 0 -1 1 0 1 1 0 ] ";
+    const std::string pane = corners + "\"integer indices\" [ 0 1 2 1 3 2 ] ";
+    const std::string normals = "\"normal N\" [ 0 0 1 0 0 1 0 0 1 0 0 1 ] ";
+    const std::string six = " Shape \"trianglemesh\" \"point3 P\" [ -1 -1 0 1 -1 0 -1 1 0 1 1 0 0 2 0 ] "
+                            "\"integer indices\" [ 0 1 2 1 3 2 2 3 4 ] ";
+    for (const std::string& flat : {pane + normals, six})
+        for (int degrees = 1; degrees < 90; ++degrees) {
+            const Scene scene = world_of(fmt::format("Material \"dielectric\" Rotate {} 1 2 3", degrees) + flat);
+            CAPTURE(flat, degrees);
+            REQUIRE(scene.surfaces.size() == 1);
+            CHECK(scene.surfaces.front().material.ior == 1.5);
+        }
+}
+
+// As pbrt has it for triangles whose normals an exporter wrote as zeros: as if there were none.
+TEST_CASE("pbrt's normals of no length turn no triangle", "[cpu][pbrt]") {
+    const auto front = [](const std::string& before, const std::string& normals) {
+        const Scene scene = world_of(before +
+                                     " AreaLightSource \"diffuse\" Shape \"trianglemesh\" \"point3 P\" "
+                                     "[ -1 -1 0 1 -1 0 -1 1 0 1 1 0 ] \"integer indices\" [ 0 1 2 1 3 2 ] " +
+                                     normals);
+        const Surface& lamp = scene.surfaces.at(0);
+        const RectangleSurface& shape = std::get<RectangleSurface>(lamp.shape);
+        return glm::dmat3(lamp.transform) * glm::cross(shape.edge_u, shape.edge_v);
+    };
+    for (const std::string before : {"", "ReverseOrientation", "Scale -1 1 1"}) {
+        CAPTURE(before);
+        CHECK(glm::dot(front(before, ""), front(before, "\"normal N\" [ 0 0 0 0 0 0 0 0 0 0 0 0 ]")) > 0.0);
+    }
+}
+
 TEST_CASE("pbrt's disks have their front where a mirror puts it", "[cpu][pbrt]") {
     const auto normal = [](const std::string& before) {
         const Surface disk = world_of(before + " Shape \"disk\"").surfaces.at(0);
@@ -329,6 +362,8 @@ TEST_CASE("grids that pbrt makes before its camera stand about the camera's eye"
     CHECK(same(place(moved + grid + back, ""), place("", "Translate 1 2 -2 " + grid)));
     CHECK(
         same(place("Option \"string rendercoordsys\" \"world\" " + moved + grid + back, ""), place("", moved + grid)));
+    CHECK(same(place("Option \"string Render-Coord_Sys\" \"world\" " + moved + grid + back, ""),
+               place("", moved + grid)));
     CHECK(same(place("Option \"string rendercoordsys\" \"camera\" " + moved + grid + back, ""),
                place("", "CoordSysTransform \"camera\" " + moved + grid)));
 }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <iostream>
+#include <set>
 
 #include "integrators.h"
 #include "shared/constants.h"
@@ -61,7 +62,8 @@ RelativeBias bias_of(const Film& film, const Film& exact) {
 
 TEST_CASE("each estimator equals the reference's own", "[gpu][agreement]") {
     // One axis at a time, from delta flights with ratio-tracked shadow rays at collisions: the rest is for the table.
-    std::size_t turn = 0;
+    std::size_t turn = 0, scenes = 0;
+    std::set<int> flights, transmittances, looks;
     for (const NamedScene& named : agreement_scenes()) {
         if (named.name != "thick cloud" && named.name != "chromatic cloud" && named.name != "fire" &&
             named.name != "noise in a mesh" && named.name != "transfer function" && named.name != "atmosphere")
@@ -81,12 +83,24 @@ TEST_CASE("each estimator equals the reference's own", "[gpu][agreement]") {
             if (others == 1 && (!about_density || about_flights))
                 one_axis.push_back(combination);
         }
+        ++scenes;
+        for (const Combination& combination : one_axis) {
+            flights.insert(*combination.choices.free_flight);
+            transmittances.insert(*combination.choices.transmittance);
+            looks.insert(*combination.choices.nee);
+        }
         for (const Combination& combination : in_turn(one_axis, turn++)) {
             const Scene chosen = with(scene, combination);
             CHECK_AGREEMENT(
                 agree(render_here(chosen, 5).film, render_reference(chosen, 6), named.name + ", " + combination.name));
         }
     }
+    CHECK(scenes == 6);
+    CHECK(flights == std::set<int>{FREE_FLIGHT_ANALYTIC, FREE_FLIGHT_REGULAR, FREE_FLIGHT_DELTA, FREE_FLIGHT_WEIGHTED,
+                                   FREE_FLIGHT_DECOMPOSITION, FREE_FLIGHT_SPECTRAL});
+    CHECK(transmittances == std::set<int>{TRANSMITTANCE_ANALYTIC, TRANSMITTANCE_REGULAR, TRANSMITTANCE_DELTA,
+                                          TRANSMITTANCE_RATIO, TRANSMITTANCE_RESIDUAL, TRANSMITTANCE_TELESCOPING});
+    CHECK(looks == std::set<int>{NEE_COLLISIONS, NEE_TENTATIVE, NEE_CACHED});
 }
 
 TEST_CASE("a control density is lit from null collisions too", "[gpu][agreement][long]") {

@@ -11,6 +11,7 @@
 #include "support/images.h"
 #include "support/numbers.h"
 #include "support/scenes.h"
+#include "support/statistics.h"
 #include "support/test_scene.h"
 #include "surface_gaps.h"
 #include "walk.spv.h"
@@ -78,15 +79,15 @@ Errors errors_of(const TestGrid& grid, const RayInput& ray, const WalkStep* step
         if (step.event == 1u) { // collided
             const double exact = t + tau / sigma;
             const double allowed = rounding / sigma + 8.0 * u * exact + 4.0 * u * (exact - t);
-            errors.collision = std::max(errors.collision, std::abs(step.t - exact) / allowed);
+            worsen(errors.collision, std::abs(step.t - exact) / allowed);
             break;
         }
         tau -= sigma * (exit - t);
         before = sigma;
         t = exit;
         rounding += sigma * 8.0 * u * t; // of this end, until the next cell is known to be alike
-        errors.t = std::max(errors.t, std::abs(step.t - t) / (8.0 * u * t + 1e-300));
-        errors.tau = std::max(errors.tau, std::abs(step.tau - tau) / rounding);
+        worsen(errors.t, std::abs(step.t - t) / (8.0 * u * t + 1e-300));
+        worsen(errors.tau, std::abs(step.tau - tau) / rounding);
         rounding -= sigma * 8.0 * u * t;
         if (step.event == 2u) // left
             break;
@@ -121,9 +122,9 @@ TEST_CASE("walks err by no more than derived, at every scale", "[gpu][precision]
     int collided = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const Errors errors = errors_of(grid, rays[i], &steps[i * most_steps], 0.2 / scale);
-        worst.t = std::max(worst.t, errors.t);
-        worst.tau = std::max(worst.tau, errors.tau);
-        worst.collision = std::max(worst.collision, errors.collision);
+        worsen(worst.t, errors.t);
+        worsen(worst.tau, errors.tau);
+        worsen(worst.collision, errors.collision);
         collided += errors.collision > 0.0;
     }
     CAPTURE(scale, worst.t, worst.tau, worst.collision, collided);
@@ -199,7 +200,7 @@ TEST_CASE("a grid far from its index origin is where it was, to a thousandth", "
     const Film near = picture(glm::ivec3(0)), far = picture(glm::ivec3(1000001, -2000003, 3000005));
     float worst = 0.0f;
     for (std::size_t i = 0; i < near.pixel_count(); ++i)
-        worst = std::max(worst, std::abs(far.mean[i].x - near.mean[i].x));
+        worsen(worst, std::abs(far.mean[i].x - near.mean[i].x));
     CHECK(worst < 55 * 0.3 * 3 * 0x1p-16);
 }
 

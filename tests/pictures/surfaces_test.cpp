@@ -242,7 +242,7 @@ TEST_CASE("light comes out of what it may be in for ever", "[gpu][image][surface
     stone.settings.spp = 1024;
     const Film seen = render_here(stone, 1).film;
     CHECK_AGREEMENT(agree_with_means(seen, std::vector<Rgb>(seen.mean.size(), Rgb(1.0)), "a cut stone"));
-    // Between white walls, with a glow of radiance L (1 - r) everywhere: L, and nothing but roulette ends a path.
+    // Between white walls nothing but roulette ends a path.
     Scene room = empty_scene(8);
     room.camera = {};
     Surface walls;
@@ -252,6 +252,26 @@ TEST_CASE("light comes out of what it may be in for ever", "[gpu][image][surface
     room.settings.max_depth.reset();
     room.settings.spp = 4;
     check_everywhere(room, Rgb(0.0), 0.0);
+}
+
+// Between walls of albedo r that shine with radiance 1 - r themselves: 1, a fifth of it by what has met seventy walls
+// or more.
+TEST_CASE("roulette keeps the light between bright walls", "[gpu][image][surfaces]") {
+    Scene room = empty_scene(8);
+    room.camera = {};
+    Surface walls;
+    walls.shape = round_mesh(6, 1.0);
+    walls.material = white(MaterialKind::diffuse);
+    walls.material.color = Rgb(0.98);
+    walls.emission = Rgb(0.02);
+    walls.shines_both_ways = true;
+    room.surfaces = {walls};
+    room.settings.max_depth.reset();
+    room.settings.spp = 256;
+    for (const double threshold : {0.1, 0.9}) {
+        room.settings.roulette_threshold = threshold;
+        check_means(room, 1.0, "roulette below " + std::to_string(threshold));
+    }
 }
 
 TEST_CASE("surfaces among media are the same for every estimator", "[gpu][image][surfaces][long]") {

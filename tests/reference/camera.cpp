@@ -17,20 +17,18 @@ glm::dvec3 rotate(const glm::dvec3& v, int axis, double degrees) {
     return r;
 }
 
-// Evenly over a disk, or a regular polygon within it by rejection: `u` and `v` are then where a sequence begins.
+// Evenly over a disk, or a regular polygon within it: over one of the parallelograms that two neighbouring corners span
+// with the middle, of which the half beyond the edge is folded back.
 glm::dvec2 on_aperture(const vkvol::Lens& lens, double u, double v) {
     if (lens.blades == 0)
         return std::sqrt(u) * glm::dvec2(std::cos(2.0 * std::numbers::pi * v), std::sin(2.0 * std::numbers::pi * v));
     const double half = std::numbers::pi / lens.blades, turn = lens.rotation * std::numbers::pi / 180.0;
-    for (int i = 0;; ++i) {
-        const glm::dvec2 p =
-            2.0 * glm::fract(glm::dvec2(u, v) + double(i) * glm::dvec2(0.7548776662, 0.5698402909)) - 1.0;
-        // Within the edge whose middle is nearest in angle.
-        const double angle = std::atan2(p.y, p.x) - turn;
-        const double from_corner = angle - 2.0 * half * std::floor(angle / (2.0 * half));
-        if (glm::length(p) * std::cos(from_corner - half) <= std::cos(half))
-            return p;
-    }
+    const auto corner = [&](double i) {
+        return glm::dvec2(std::cos(turn + 2.0 * half * i), std::sin(turn + 2.0 * half * i));
+    };
+    const double first = std::floor(u * lens.blades), a = u * lens.blades - first;
+    return a + v > 1.0 ? (1.0 - a) * corner(first) + (1.0 - v) * corner(first + 1.0)
+                       : a * corner(first) + v * corner(first + 1.0);
 }
 
 } // namespace

@@ -66,6 +66,9 @@ Emission load_emission(const vkvol::Volume& volume, const vkvol::GridFile* file)
         emission.colors = load_color_grid(file->path, volume.temperature.grid);
         return emission;
     }
+    if (emission.temperature.model == vkvol::TemperatureEmission::Model::blackbody &&
+        !(volume.temperature.reference > 0.0))
+        throw std::runtime_error("the reference knows black bodies by the luminance at one temperature alone");
     emission.grid = load_grid(file->path, volume.temperature.grid);
     if (emission.temperature.model == vkvol::TemperatureEmission::Model::blackbody && !emission.grid.empty()) {
         const double warmest = *std::max_element(emission.grid.values.begin(), emission.grid.values.end());

@@ -232,8 +232,7 @@ Rgb flux(const World& world, int x, int y, const Draw& draw, Rng& rng) {
         const bool has_extent = vkvol::is_met_by_chance(light) || vkvol::is_lamp(light);
         const auto found = has_extent || world.method.nee == NEE_NONE ? std::nullopt : towards(light, from, 0.0, 0.0);
         if (found && response(found->ray.direction) > 0.0)
-            reading += response(found->ray.direction) * found->light *
-                       (world.medium ? transmittance(world, found->ray, rng) : Rgb(1.0));
+            reading += response(found->ray.direction) * found->light * transmittance(world, found->ray, rng);
     }
     const double weight = 4.0 * std::numbers::pi * response(direction);
     if (weight == 0.0)

@@ -30,8 +30,8 @@ struct RgbMean {
         double worst = 0.0;
         for (int i = 0; i < 3; ++i) {
             const double difference = std::abs(channel[i].mean() - expected[i]);
-            if (difference > rounding)
-                worst = std::max(worst, difference / channel[i].standard_error());
+            if (!(difference <= rounding))
+                vkvol::worsen(worst, difference / channel[i].standard_error());
         }
         return worst;
     }
@@ -41,8 +41,8 @@ struct RgbMean {
 inline double z_between(const RgbMean& a, const RgbMean& b) {
     double worst = 0.0;
     for (int i = 0; i < 3; ++i)
-        worst = std::max(worst, std::abs(a.channel[i].mean() - b.channel[i].mean()) /
-                                    std::hypot(a.channel[i].standard_error(), b.channel[i].standard_error()));
+        vkvol::worsen(worst, std::abs(a.channel[i].mean() - b.channel[i].mean()) /
+                                 std::hypot(a.channel[i].standard_error(), b.channel[i].standard_error()));
     return worst;
 }
 

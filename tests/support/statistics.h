@@ -3,7 +3,10 @@
 // significance.
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace vkvol {
@@ -28,6 +31,12 @@ double normal_p(double z);
 // Two-sided, that `mean` differs from `expected` as much as it does: Student's t-test. Values that are all equal have
 // p = 1 if they agree with `expected` within `rounding`, else 0.
 double t_test_p(const RunningMean& mean, double expected, double rounding = 0.0);
+
+// The worse of the two; what is no number is worse than all.
+template <class T> void worsen(T& worst, std::type_identity_t<T> found) {
+    if (!(found <= worst))
+        worst = std::isnan(found) ? std::numeric_limits<T>::infinity() : found;
+}
 
 // p of a chi-square statistic, upper tail.
 double chi_square_p(double statistic, double degrees_of_freedom);

@@ -70,6 +70,13 @@ template <class Build> void attach(TestGrid& grid, const std::shared_ptr<GridByt
     grid.sampler = [bytes, accessor](glm::vec3 p) {
         return nanovdb::createSampler<1>(*accessor)(nanovdb::Vec3f(p.x, p.y, p.z));
     };
+    const auto to_world = [nano](double x, double y, double z) {
+        const nanovdb::Vec3d p = nano->map().applyMap(nanovdb::Vec3d(x, y, z));
+        return glm::dvec3(p[0], p[1], p[2]);
+    };
+    grid.translation = to_world(0.0, 0.0, 0.0);
+    for (int axis = 0; axis < 3; ++axis)
+        grid.linear[axis] = to_world(axis == 0, axis == 1, axis == 2) - grid.translation;
     if (nano->activeVoxelCount() > 0) {
         grid.voxel_min = to_ivec3(nano->indexBBox().min());
         grid.voxel_max = to_ivec3(nano->indexBBox().max());
@@ -169,10 +176,9 @@ GridBytes with_root_tile(GridBytes bytes, glm::ivec3 ijk, float value) {
 }
 
 reference::Grid make_reference_grid(const TestGrid& grid) {
-    const glm::dmat4& m = grid.field().index_to_world;
     return reference::make_grid(
-        grid.voxel_min, grid.voxel_max, [&](glm::ivec3 i) { return double(grid.accessor(i)); }, glm::dmat3(m),
-        glm::dvec3(m[3]));
+        grid.voxel_min, grid.voxel_max, [&](glm::ivec3 i) { return double(grid.accessor(i)); }, grid.linear,
+        grid.translation);
 }
 
 double voxel_noise(glm::ivec3 ijk, std::uint32_t seed) {

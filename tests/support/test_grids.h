@@ -33,7 +33,9 @@ struct TestGrid {
     std::function<float(glm::ivec3)> accessor;
     std::function<float(glm::vec3)> sampler;
     glm::ivec3 voxel_min{0}, voxel_max{-1}; // NanoVDB's box of active voxels
-    float highest = 0.0f;                   // of the values that count
+    glm::dmat3 linear{1.0};                 // to world space, by NanoVDB's map
+    glm::dvec3 translation{0.0};
+    float highest = 0.0f; // of the values that count
 
     const DensityField& field() const { return *volume.field; }
     const MajorantGrid& majorants() const { return *volume.majorants; }
