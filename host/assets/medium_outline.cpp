@@ -119,6 +119,11 @@ WorldBox world_box(const MediumOutline& outline) {
     return box;
 }
 
+bool is_within(const MediumOutline& outline, const glm::dvec3& place) {
+    const glm::dvec3 p(outline.from_world * glm::dvec4(place, 1.0));
+    return outline.exists && (outline.is_ball ? glm::length(p) <= 1.0 : p == glm::clamp(p, outline.low, outline.high));
+}
+
 std::optional<glm::dvec2> crossing(const MediumOutline& outline, glm::dvec3 origin, glm::dvec3 direction) {
     if (!outline.exists)
         return std::nullopt;

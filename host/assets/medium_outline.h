@@ -34,6 +34,9 @@ struct WorldBox {
 };
 WorldBox world_box(const MediumOutline& outline);
 
+// Of the ball or box, a place in the world.
+bool is_within(const MediumOutline& outline, const glm::dvec3& place);
+
 // How far along the ray it enters the ball or box and leaves it, in lengths of `direction`; the former is 0 from
 // within. None if it misses.
 std::optional<glm::dvec2> crossing(const MediumOutline& outline, glm::dvec3 origin, glm::dvec3 direction);

@@ -269,6 +269,15 @@ void Session::keep(const Assets& assets) {
         result_.outline = make_outline(*assets.superposition, device_scene_->emits());
     else if (const Volume* lone = lone_volume(scene_))
         result_.outline = make_outline(scene_, *lone, assets.media[0], device_scene_->emits());
+    // A collision at distance D is shown with 1 / D^2, of which the mean square about the eye has no bound.
+    const bool has_eye =
+        scene_.camera.projection == Projection::perspective || scene_.camera.projection == Projection::equirectangular;
+    const char* const near =
+        "lightTracing: the camera is within a medium, where what particles show from next to it has "
+        "no bound: its noise is more than errors tell; integrator bidirectional leaves that to paths";
+    if (method_.paths == PATHS_LIGHT && has_eye && is_within(result_.outline, scene_.camera.position) &&
+        std::find(result_.warnings.begin(), result_.warnings.end(), near) == result_.warnings.end())
+        result_.warnings.emplace_back(near);
     if (leads_ && job_.others.empty())
         release_grids();
 }

@@ -67,9 +67,7 @@ Sight sight_of(const Scene& scene, const MediumOutline& outline, const Crop& cro
     sight.eye = rays.position;
     sight.forward = rays.forward;
     sight.box = world_box(outline);
-    const std::optional<glm::dvec2> ahead = crossing(outline, rays.position, rays.forward);
-    const std::optional<glm::dvec2> behind = crossing(outline, rays.position, -rays.forward);
-    sight.inside = ahead && behind && ahead->x == 0.0 && behind->x == 0.0;
+    sight.inside = is_within(outline, rays.position);
     const glm::dvec3 apart = 0.5 * (sight.box.low + sight.box.high) - rays.position;
     const glm::dvec3 middle =
         rays.direction(0.5 * picture.width, 0.5 * picture.height); // of the picture, not of its frame

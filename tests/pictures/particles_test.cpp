@@ -1,5 +1,6 @@
 // Particles from the lights against paths from the camera: the same pictures by estimators that share neither draws nor
 // directions, and by both at once.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include "session.h"
 #include "support/agreement.h"
 #include "support/images.h"
+#include "support/scene_text.h"
 #include "support/surface_scenes.h"
 #include "support/thorough.h"
 
@@ -255,6 +257,25 @@ TEST_CASE("particles at a panorama's pole count as much as paths there", "[gpu][
     CHECK(paths.value.x > 10.0 * paths.standard_error->x);
     CHECK(std::abs(paths.value.x - particles.value.x) <
           4.5 * std::hypot(paths.standard_error->x, particles.standard_error->x));
+}
+
+TEST_CASE("that particles alone are noisy about an eye in fog is told", "[gpu][particles]") {
+    const auto told = [](const std::string& camera, const char* integrator) {
+        Scene scene = parse("<box width='4' height='4' depth='4'/><sigma_a>0.1</sigma_a><sigma_s>0.1</sigma_s>"
+                            "<lights><point y='1'/></lights><rayPerPixelCount>1</rayPerPixelCount>"
+                            "<width>8</width><height>8</height>" +
+                            camera);
+        scene.settings.integrator = integrator;
+        const std::vector<std::string> warnings = render_here(scene, 1).warnings;
+        return std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+            return warning.find("the camera is within a medium") != std::string::npos;
+        });
+    };
+    CHECK(told("<camera z='1.9'/>", "lightTracing"));
+    CHECK(told("<camera z='1.9' projection='equirectangular'/>", "lightTracing"));
+    CHECK(!told("<camera z='2.1'/>", "lightTracing"));
+    CHECK(!told("<camera z='1.9'/>", "bidirectional"));
+    CHECK(!told("<camera z='1.9'/>", "ratioTracking"));
 }
 
 TEST_CASE("particles are seen by every camera through every filter", "[gpu][particles]") {
