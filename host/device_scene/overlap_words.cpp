@@ -6,7 +6,7 @@
 namespace vkvol {
 
 static_assert(sizeof(shared::MemberRow) == 64 && sizeof(shared::GridRow) == 64, "four texels of four words");
-static_assert(sizeof(shared::OverlapParams) == 2 * 4);
+static_assert(sizeof(shared::OverlapParams) == 3 * 4);
 
 namespace {
 
@@ -65,6 +65,10 @@ OverlapWords overlap_words(std::span<const shared::MediumParams> rows, Media med
         if (!empty)
             result.words[lists + whole.overlaps[i + 1] - 1] |= LAST_OF_LIST;
     }
+    result.places.all = static_cast<std::uint32_t>(result.words.size());
+    for (std::uint32_t i = 0; i < rows.size(); ++i)
+        result.words.push_back(i);
+    result.words.back() |= LAST_OF_LIST;
     return result;
 }
 

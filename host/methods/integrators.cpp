@@ -167,7 +167,8 @@ namespace {
 bool gains_by_cache(const Scene& scene) {
     const auto is_cached = [](const Light& light) { return !is_met_on_the_way(light); };
     const auto is_near = [](const Light& light) { return place_of(light).has_value(); };
-    return can_cache_light(scene) && std::any_of(scene.lights.begin(), scene.lights.end(), is_cached) &&
+    return can_cache_light(scene) && !are_even_together(scene) &&
+           std::any_of(scene.lights.begin(), scene.lights.end(), is_cached) &&
            std::none_of(scene.lights.begin(), scene.lights.end(), is_near);
 }
 

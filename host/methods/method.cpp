@@ -50,6 +50,12 @@ private:
     bool bends_voxels() const;
     // Optical depths are closed forms: of one density, or of one that falls exponentially.
     bool is_closed() const { return field_ == FIELD_CONSTANT || (field_ == FIELD_LAYERS && fades(scene_)); }
+    // Shadow rays through several even media, unless they are told to walk.
+    bool sees_at_once() const {
+        const std::optional<int>& chosen = choices_.transmittance;
+        return are_even_together(scene_) &&
+               (chosen ? transmittance_has(*chosen, TRAIT_CLOSED | TRAIT_VOXELS) : choices_.nee != NEE_CACHED);
+    }
     bool has_no_end() const { return any_medium(scene_, is_everywhere); }
     void choose_nee();
     void choose_mis();
@@ -195,7 +201,7 @@ void MethodChooser::choose_nee() {
         if (choices_.nee)
             warn("these flights have no null collisions; shadow rays start at real ones");
         nee = NEE_COLLISIONS;
-    } else if (nee == NEE_CACHED && (is_closed() || !can_cache_light(scene_))) {
+    } else if (nee == NEE_CACHED && (is_closed() || sees_at_once() || !can_cache_light(scene_))) {
         if (choices_.nee)
             warn("a cache of transmittances is for grids, and for noise in spheres and boxes, without surfaces and "
                  "where "
@@ -239,7 +245,7 @@ void MethodChooser::choose_transmittance() {
             warn("shadow rays do not march: a march comes to no end of what is everywhere");
         transmittance = is_closed() ? TRANSMITTANCE_ANALYTIC : TRANSMITTANCE_RATIO;
     }
-    if (is_closed()) {
+    if (is_closed() || sees_at_once()) {
         if (!choices_.transmittance || transmittance_has(transmittance, TRAIT_VOXELS))
             transmittance = TRANSMITTANCE_ANALYTIC;
         return;

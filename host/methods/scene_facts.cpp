@@ -10,6 +10,16 @@ bool is_superposition(const Scene& scene) {
     return scene.volumes.size() > 1;
 }
 
+bool are_even_together(const Scene& scene) {
+    const auto varies = [](const Volume& volume) {
+        const bool is_plain = std::holds_alternative<Sphere>(volume.shape) ||
+                              std::holds_alternative<Box>(volume.shape) || is_everywhere(volume);
+        return !is_plain || volume.noise || volume.layers;
+    };
+    return is_superposition(scene) && scene.volumes.size() <= MOST_EVEN_MEDIA && !any_medium(scene, varies) &&
+           !has_chromatic_extinction(scene);
+}
+
 int density_kind(const Scene& scene) {
     if (is_superposition(scene))
         return FIELD_SUPERPOSITION;

@@ -8,6 +8,9 @@ namespace vkvol {
 // Several media, whose extinctions add up.
 bool is_superposition(const Scene& scene);
 
+// Several that are even, of one colour's extinction, and few: what each takes away along a ray is a closed form.
+bool are_even_together(const Scene& scene);
+
 // FIELD_..., FIELD_CONSTANT without a volume.
 int density_kind(const Scene& scene);
 bool has_chromatic_extinction(const Scene& scene); // sigma_t differs between channels

@@ -40,6 +40,9 @@ std::uint64_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
     iterations += (4 * steps + 1) * look_up + 4 * search; // colours are looked up at collisions
     if (loops.media > 0)                                  // where all of them glow, or absorb, too
         iterations += look_up + loops.media * std::uint64_t{std::max(4u, 2 * steps)} * search;
+    if (loops.even > 0) // a shadow ray's parts, or whole ones: from two kinds of collisions, along flights, toward
+                        // sensors, and three as paths begin
+        iterations += (steps + 8) * std::uint64_t{loops.even + 1};
     // A record is begun and added, and lights in the sky are noted one by one.
     const std::uint32_t records = loops.layers > 0 ? 2 * (loops.layers + 1) + loops.lights : 0;
     return iterations + loops.phase + loops.lights + records;

@@ -54,6 +54,7 @@ struct LoopSizes {
     std::uint32_t octaves = 0;  // of noise; 0 without it
     std::uint32_t halvings = 0; // of a search in a map of values; 0 without one
     std::uint32_t media = 0;    // that a look-up asks, at most; 0 where there is but one
+    std::uint32_t even = 0;     // media, each of which a shadow ray asks; 0 where they are walked through
     std::uint32_t models = 0;   // meshes among them
     std::uint32_t faces = 0;    // of one of these, that a look-up asks, at most
     std::uint32_t phase = 0;    // iterations within phase functions

@@ -239,6 +239,8 @@ void Session::find_wish(const Assets& assets, const Specialization& specializati
     }
     if (assets.superposition) {
         loops_.media = assets.superposition->most_overlaps;
+        if (transmittance_has(specialization[SPEC_TRANSMITTANCE], TRAIT_CLOSED))
+            loops_.even = static_cast<std::uint32_t>(assets.media.size());
         wish_.majorant_cell = 0;
         wish_.leaps = assets.superposition->cells.leaps;
     }

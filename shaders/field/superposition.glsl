@@ -79,6 +79,29 @@ uint listed(uint k, out bool more) {
     return row;
 }
 
+// Optical depth from a point of render space on, `reach` world units along a ray, where all are even balls and boxes, or everywhere:
+// each adds what it has of its own.
+float depth_of_all(vec3 position, vec3 direction, float reach) {
+    vec4 at = vec4(position, 1.0);
+    float depth = 0.0;
+    uint k = frame.overlaps.all;
+    for (bool more = true; more; ++k) { // at most MOST_EVEN_MEDIA
+        uint row = listed(k, more);
+        vec4 x = uintBitsToFloat(member_texel(4u * row)), y = uintBitsToFloat(member_texel(4u * row + 1u)),
+             z = uintBitsToFloat(member_texel(4u * row + 2u));
+        uvec4 rest = member_texel(4u * row + 3u);
+        Ray ray = Ray(vec3(dot(x, at), dot(y, at), dot(z, at)),
+                      vec3(dot(x.xyz, direction), dot(y.xyz, direction), dot(z.xyz, direction)));
+        const int shape = MEMBER_SHAPE < 0 ? int(rest.y & 255u) : MEMBER_SHAPE;
+        vec2 of_ball, of_box;
+        bool meets_ball = intersect_unit_ball(ray, of_ball), meets_box = intersect_box(ray, vec3(-1.0), vec3(1.0), of_box);
+        vec2 t = shape == SHAPE_SPHERE ? of_ball : of_box;
+        bool met = shape == SHAPE_SPHERE ? meets_ball : meets_box;
+        depth += met ? uintBitsToFloat(rest.x) * max(min(t.y, reach) - t.x, 0.0) : 0.0;
+    }
+    return depth;
+}
+
 // In a cell of that entry, at a point of the superposition's space, which is that of render space in units of a cell. `u` in
 // [0, 1), for the draw; `tap`: see density.glsl. Media are drawn as they extinguish throughput `beta`, as spectral flights
 // choose what happens: drawn by the channel that is extinguished most, a path of one colour would gain weight at each collision

@@ -6,7 +6,7 @@
 #include "estimators/free_flight.glsl"
 #include "estimators/transmittance.glsl"
 
-// Where a shadow ray is a walk of its own; that of a homogeneous medium of one part is known at once, where no
+// Where a shadow ray is a walk of its own; that of a homogeneous medium of one part, or of several, is known at once, where no
 // surface and no seam can be in the way. (In bits,
 // since glslang 12 branches for nested `&&` and `||`, and takes the outcome for a constant nevertheless.)
 const bool SHADOW_RAYS_WALK =
@@ -101,8 +101,11 @@ uint search_part(MediumParams v, vec3 position, vec3 direction, float reach, boo
     return event;
 }
 
-// Transmittance of a homogeneous sphere or box, or of an exponential, up to a distance of `reach`.
+// Transmittance of a homogeneous sphere or box, of several, or of an exponential, up to a distance of `reach`.
 Spectrum transmittance_to(MediumParams v, vec3 position, vec3 direction, float reach) {
+#ifdef SEVERAL
+    return analytic_transmittance(v, depth_of_all(position, direction, cut_short(FAR, reach)));
+#else
     vec2 t;
     Ray ray = to_medium(v, position, direction);
     float inside = medium_interval(v, ray, t) ? cut_short(t.y, reach) - t.x : 0.0;
@@ -110,6 +113,7 @@ Spectrum transmittance_to(MediumParams v, vec3 position, vec3 direction, float r
     if (LAYERED)
         inside = faded_depth(fading_along(v, ray.origin + t.x * ray.direction, ray.direction), inside);
     return analytic_transmittance(v, inside);
+#endif
 }
 
 #endif

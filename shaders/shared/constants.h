@@ -240,6 +240,7 @@
 #define SURFACE_PLANE 3
 #define MOST_PLANES 8
 #define MOST_FACETS 16 // of one walk among a rough surface's
+#define MOST_EVEN_MEDIA 32 // that a shadow ray asks one by one
 
 // How it scatters.
 #define MATERIAL_DIFFUSE 0

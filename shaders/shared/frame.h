@@ -171,6 +171,7 @@ struct GridRow {
 struct OverlapParams {
     uint bricks; // of each coarse cell 0, or 1 + the number of the brick of finer cells that it is made of
     uint lists;  // of each cell, those of bricks last, where its list begins, or 0 if there is none; then the lists: media
+    uint all;    // the list of all media
 };
 
 // Medium space: index space for a grid, voxel centres at integers; the unit ball or the cube [-1, 1]^3 for shapes.
