@@ -2,7 +2,7 @@
 that of the reading and that of the print (rounding, or the scatter of a consensus) together; fails where one is beyond
 Sidak's limit over all of them.
 
-    python3 tools/truth [--figures DIR] [WORD ...]     WORD: only groups whose name contains one
+    python3 tools/truth [--figures DIR] [WORD ...]     WORD: only where "GROUP, QUANTITY" contains one
     --figures DIR  a folder with i3rc/ and kobayashi_problem1.csv; without it their cases are left out
     --share .33    standard errors as a share of the prints' own slack
     --least 1e-3   and as a share of the figures: what is printed to more digits is read no better than this
@@ -59,7 +59,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         reader = reading.Reader((chosen.build / "vkvol").resolve(), folder, chosen.schedule)
         for case in cases(chosen, folder):
-            if chosen.words and not any(word in case.name for word in chosen.words):
+            if chosen.words and not any(word in f"{case.name}, {case.what}" for word in chosen.words):
                 continue
             start = time.time()
             rows, samples = reader.read_to(case, chosen.share, chosen.least)
@@ -70,7 +70,7 @@ def main():
             for verdict in verdicts if len(verdicts) <= FEW else [max(verdicts, key=lambda v: abs(v.z)), verdicts[-1]]:
                 print(row(verdict), flush=True)
     if not found:
-        raise SystemExit("no group's name contains such a word")
+        raise SystemExit("no group and quantity contain such a word")
     judged = [v for v in found if v.case.judged]
     most = judge.limit(max(len(judged), 1))
     print(f"\n{len(judged)} figures; |z| may be {most:.2f}\n")
