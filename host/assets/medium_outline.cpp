@@ -124,6 +124,17 @@ bool is_within(const MediumOutline& outline, const glm::dvec3& place) {
     return outline.exists && (outline.is_ball ? glm::length(p) <= 1.0 : p == glm::clamp(p, outline.low, outline.high));
 }
 
+bool may_have_matter(const MediumOutline& outline, const glm::dvec3& place) {
+    bool may = is_within(outline, place);
+    if (may && outline.cells)
+        walk_cells(*outline.cells, {}, glm::dvec3(outline.from_world * glm::dvec4(place, 1.0)), {1.0, 0.0, 0.0}, 1.0,
+                   [&may](double bound, double, double) {
+                       may = bound > 0.0;
+                       return false;
+                   });
+    return may;
+}
+
 std::optional<glm::dvec2> crossing(const MediumOutline& outline, glm::dvec3 origin, glm::dvec3 direction) {
     if (!outline.exists)
         return std::nullopt;

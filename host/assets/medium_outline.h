@@ -36,6 +36,8 @@ WorldBox world_box(const MediumOutline& outline);
 
 // Of the ball or box, a place in the world.
 bool is_within(const MediumOutline& outline, const glm::dvec3& place);
+// There: the bound of its cell is above 0.
+bool may_have_matter(const MediumOutline& outline, const glm::dvec3& place);
 
 // How far along the ray it enters the ball or box and leaves it, in lengths of `direction`; the former is 0 from
 // within. None if it misses.

@@ -87,10 +87,11 @@ path behind_links(path name) {
 }
 
 path temporary_name(const path& target) {
-    std::random_device random; // processes in containers may have the same number
+    constexpr std::size_t most_of_stem = 64; // file systems have names of 143 bytes at least
+    std::random_device random;               // processes in containers may have the same number
     path name = target;
-    name.replace_filename(fmt::format(".{}.{}-{:08x}{:08x}.tmp{}", target.stem().string(), getpid(), random(), random(),
-                                      target.extension().string()));
+    name.replace_filename(fmt::format(".{}.{}-{:08x}{:08x}.tmp{}", target.stem().string().substr(0, most_of_stem),
+                                      getpid(), random(), random(), target.extension().string()));
     return name;
 }
 

@@ -144,10 +144,15 @@ void tell_why(const RenderOptions& options, Workshop& workshop, const std::optio
         print_explanation(*explanation);
 }
 
-// What the validation layer objects to is told once the picture is safe.
-void check_all(const std::vector<const Device*>& devices) {
-    for (const Device* device : devices)
-        check_validation(*device);
+// What the validation layer objects to, once it has been told; a picture is written all the same.
+std::string objection_of(const std::vector<const Device*>& devices) {
+    try {
+        for (const Device* device : devices)
+            check_validation(*device);
+    } catch (const RenderError& error) {
+        return error.what();
+    }
+    return "";
 }
 
 int render_scene(const RenderOptions& options, const Scene& scene, Workshop& workshop, CheckpointFile& checkpoint,
@@ -161,15 +166,17 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
     live.show(device, result, nullptr);
     if (!options.quiet)
         print_warnings(workshop.new_warnings(result.warnings));
+    const std::string objection = objection_of(devices);
     if (options.dry_run) {
-        check_all(devices);
+        if (!objection.empty())
+            throw RenderError(objection);
         if (!options.quiet)
             print_dry_run(options, scene, device, result);
         return exit_done;
     }
     if (!options.trace && !has_samples(result.film)) {
         print_caps(options, result);
-        const std::string why = no_samples_text(result);
+        const std::string why = no_samples_text(result) + (objection.empty() ? "" : "; " + objection);
         outputs.write_report(device, result, why);
         tell(stderr, "vkvol: {}: no picture is written\n", why); // which might spoil a good one
         return result.interrupted ? exit_interrupted : exit_render_failed;
@@ -178,8 +185,9 @@ int render_scene(const RenderOptions& options, const Scene& scene, Workshop& wor
     if (shows(options))
         shown.tone = choose_tone(options.tone, result.film, make_metadata(options, scene, device, result));
     shown.explanation = foreseen || options.trace ? foreseen : explain(scene, result, shown.tone);
-    outputs.write(device, result, shown);
-    check_all(devices);
+    outputs.write(device, result, shown, objection);
+    if (!objection.empty())
+        throw RenderError(objection);
     // A picture's time may be given once more, and it goes on; a frame is done with it.
     const bool is_done = result.samples == scene.settings.spp || result.reached_goal;
     if (is_done || (options.is_frame && !result.interrupted && !result.failure))

@@ -27,7 +27,7 @@ std::string rescue(const Film& film, const Metadata& metadata) {
         file = directory / fmt::format("vkvol-rescued-{}-{}.exr", getpid(), i);
     try {
         write_exr(file, film, metadata);
-    } catch (const RenderError&) {
+    } catch (const std::exception&) { // for want of memory, say
         return "";
     }
     return fmt::format("; the picture is kept as {}", file.string());
@@ -53,7 +53,8 @@ bool shows(const RenderOptions& options) {
     return std::any_of(options.outputs.begin(), options.outputs.end(), is_display_file);
 }
 
-void RenderOutputs::write(const Device& device, const RenderResult& result, const Shown& shown) {
+void RenderOutputs::write(const Device& device, const RenderResult& result, const Shown& shown,
+                          const std::string& objection) {
     const auto start = std::chrono::steady_clock::now();
     const Metadata metadata = make_metadata(options_, scene_, device, result);
     std::string failures, written;
@@ -81,6 +82,8 @@ void RenderOutputs::write(const Device& device, const RenderResult& result, cons
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const std::string why = message_of(result.failure);
     std::string error = why;
+    if (!objection.empty())
+        append(error, "; ", objection);
     if (!failures.empty())
         append(error, "; ", failures + kept);
     if (std::string failure; !try_report(make_report(options_, scene_, device, result, shown, seconds, error), failure))

@@ -20,7 +20,8 @@ public:
     void set_device(const DeviceInfo& device) { device_ = device; }
 
     // Pictures and report. All are tried before RenderError says which failed, and which are there.
-    void write(const Device& device, const RenderResult& result, const Shown& shown);
+    // `objection`: that of the validation layer, for the report, or nothing.
+    void write(const Device& device, const RenderResult& result, const Shown& shown, const std::string& objection);
 
     // The report alone, of a render that has a result, but no picture.
     void write_report(const Device& device, const RenderResult& result, const std::string& error);

@@ -50,12 +50,6 @@ private:
     bool bends_voxels() const;
     // Optical depths are closed forms: of one density, or of one that falls exponentially.
     bool is_closed() const { return field_ == FIELD_CONSTANT || (field_ == FIELD_LAYERS && fades(scene_)); }
-    // Shadow rays through several even media, unless they are told to walk.
-    bool sees_at_once() const {
-        const std::optional<int>& chosen = choices_.transmittance;
-        return are_even_together(scene_) &&
-               (chosen ? transmittance_has(*chosen, TRAIT_CLOSED | TRAIT_VOXELS) : choices_.nee != NEE_CACHED);
-    }
     bool has_no_end() const { return any_medium(scene_, is_everywhere); }
     void choose_nee();
     void choose_mis();
@@ -201,8 +195,12 @@ void MethodChooser::choose_nee() {
         if (choices_.nee)
             warn("these flights have no null collisions; shadow rays start at real ones");
         nee = NEE_COLLISIONS;
-    } else if (nee == NEE_CACHED && (is_closed() || sees_at_once() || !can_cache_light(scene_))) {
-        if (choices_.nee)
+    } else if (nee == NEE_CACHED && (is_closed() || sees_at_once(scene_) || !can_cache_light(scene_))) {
+        if (!is_closed() && sees_at_once(scene_))
+            warn("no transmittances are cached: through even spheres and boxes they are closed forms; shadow rays "
+                 "start at "
+                 "every collision");
+        else if (choices_.nee)
             warn("a cache of transmittances is for grids, and for noise in spheres and boxes, without surfaces and "
                  "where "
                  "nothing repeats; shadow rays start at every collision");
@@ -245,7 +243,7 @@ void MethodChooser::choose_transmittance() {
             warn("shadow rays do not march: a march comes to no end of what is everywhere");
         transmittance = is_closed() ? TRANSMITTANCE_ANALYTIC : TRANSMITTANCE_RATIO;
     }
-    if (is_closed() || sees_at_once()) {
+    if (is_closed() || sees_at_once(scene_)) {
         if (!choices_.transmittance || transmittance_has(transmittance, TRAIT_VOXELS))
             transmittance = TRANSMITTANCE_ANALYTIC;
         return;
@@ -272,7 +270,10 @@ void MethodChooser::choose_transmittance() {
     }
     const std::string why =
         transmittance_has(transmittance, TRAIT_CLOSED)
-            ? "analytic transmittance needs constant density, and this medium's varies"
+            ? fmt::format(
+                  "analytic transmittance needs constant density, or up to {} spheres and boxes of it, each taking "
+                  "away as much of every colour, and here it varies otherwise",
+                  MOST_EVEN_MEDIA)
             : fmt::format("regular transmittance goes from voxel to voxel, and {}", without_voxels());
     throw InputError(
         fmt::format("{}: {}; use transmittance ratio, or march with marched flights", method_.integrator, why));

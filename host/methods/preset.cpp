@@ -33,6 +33,8 @@ namespace {
 
 // Whether shadow rays of this kind go through all that there is, and have no bias, or would be refused.
 bool sees_through(const Scene& scene, int transmittance) {
+    if (scene.settings.choices.transmittance && sees_at_once(scene))
+        return true;
     const int unfit = TRAIT_CLOSED | TRAIT_INEXACT | (has_chromatic_extinction(scene) ? TRAIT_MARCH : 0);
     return !is_superposition(scene) || !transmittance_has(transmittance, unfit);
 }

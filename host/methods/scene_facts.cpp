@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "estimator_traits.h"
 #include "shared/constants.h"
 
 namespace vkvol {
@@ -18,6 +19,13 @@ bool are_even_together(const Scene& scene) {
     };
     return is_superposition(scene) && scene.volumes.size() <= MOST_EVEN_MEDIA && !any_medium(scene, varies) &&
            !has_chromatic_extinction(scene);
+}
+
+bool sees_at_once(const Scene& scene) {
+    const AxisChoices& choices = scene.settings.choices;
+    return are_even_together(scene) &&
+           (choices.transmittance ? transmittance_has(*choices.transmittance, TRAIT_CLOSED | TRAIT_VOXELS)
+                                  : choices.nee != NEE_CACHED || !can_cache_light(scene));
 }
 
 int density_kind(const Scene& scene) {

@@ -10,6 +10,9 @@ bool is_superposition(const Scene& scene);
 
 // Several that are even, of one colour's extinction, and few: what each takes away along a ray is a closed form.
 bool are_even_together(const Scene& scene);
+// Whether shadow rays through such are to be closed forms, as they are unless told to walk, or to be cached where that
+// can be.
+bool sees_at_once(const Scene& scene);
 
 // FIELD_..., FIELD_CONSTANT without a volume.
 int density_kind(const Scene& scene);

@@ -155,11 +155,15 @@ void PbrtDirectives::add_transforms() {
         if (!std::isfinite(size) || size == 0.0)
             fail_at(directive.place,
                     fmt::format("{} leaves nothing of space; expected a map with an inverse", directive.value));
-        if (const double w = m[3][3]; m[0][3] != 0.0 || m[1][3] != 0.0 || m[2][3] != 0.0 || w == 0.0)
+        const double w = m[3][3], most = 1e-6 * std::abs(w); // of what inverting a matrix leaves
+        if (!(std::abs(m[0][3]) <= most && std::abs(m[1][3]) <= most && std::abs(m[2][3]) <= most && w != 0.0))
             fail_at(directive.place, fmt::format("the {} has perspective, in the last of each four numbers; expected 0 "
                                                  "0 0 1 there (a translation is in the last four)",
                                                  directive.value));
-        return m / m[3][3];
+        glm::dmat4 affine = m / w;
+        for (int column = 0; column < 4; ++column)
+            affine[column][3] = column == 3 ? 1.0 : 0.0;
+        return affine;
     };
     handlers_["Identity"] = [this](const PbrtToken&) {
         if (!state_.is_moving)

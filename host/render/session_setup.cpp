@@ -239,7 +239,7 @@ void Session::find_wish(const Assets& assets, const Specialization& specializati
     }
     if (assets.superposition) {
         loops_.media = assets.superposition->most_overlaps;
-        if (transmittance_has(specialization[SPEC_TRANSMITTANCE], TRAIT_CLOSED))
+        if (specialization[SPEC_NEE] != NEE_NONE && transmittance_has(specialization[SPEC_TRANSMITTANCE], TRAIT_CLOSED))
             loops_.even = static_cast<std::uint32_t>(assets.media.size());
         wish_.majorant_cell = 0;
         wish_.leaps = assets.superposition->cells.leaps;
@@ -274,12 +274,15 @@ void Session::keep(const Assets& assets) {
     // A collision at distance D is shown with 1 / D^2, of which the mean square about the eye has no bound.
     const bool has_eye =
         scene_.camera.projection == Projection::perspective || scene_.camera.projection == Projection::equirectangular;
-    const char* const near =
-        "lightTracing: the camera is within a medium, where what particles show from next to it has "
+    const std::string near =
+        method_.integrator +
+        ": the camera is within a medium, where what particles show from next to it has "
         "no bound: its noise is more than errors tell; integrator bidirectional leaves that to paths";
-    if (method_.paths == PATHS_LIGHT && has_eye && is_within(result_.outline, scene_.camera.position) &&
+    const bool is_about = may_have_matter(result_.outline, scene_.camera.position) &&
+                          (any_medium(scene_, can_scatter) || device_scene_->emits());
+    if (method_.paths == PATHS_LIGHT && has_eye && is_about &&
         std::find(result_.warnings.begin(), result_.warnings.end(), near) == result_.warnings.end())
-        result_.warnings.emplace_back(near);
+        result_.warnings.push_back(near);
     if (leads_ && job_.others.empty())
         release_grids();
 }

@@ -11,7 +11,7 @@
 #define TRAIT_CONTROL 32         // knows a control density
 #define TRAIT_BOUND 64           // is biased where the density is above its majorant
 #define TRAIT_GREY 128           // all channels have one extinction
-#define TRAIT_CLOSED 256         // a closed form, of constant density alone
+#define TRAIT_CLOSED 256         // a closed form, of constant densities alone
 #define TRAIT_EQUAL_STEPS 512    // a flight's march in steps of one length
 #define TRAIT_OPTICAL_STEPS 1024 // in steps of one optical depth
 #define TRAIT_INEXACT 2048       // takes the density of one point for that of a whole step

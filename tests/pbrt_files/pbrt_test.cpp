@@ -225,6 +225,7 @@ TEST_CASE("wrong pbrt scenes are refused with their place", "[cpu][pbrt]") {
     refused("Translate 1 2", "the scene ends where a number is expected");
     refused("Translate 1 2 x", "s.pbrt:1:15: 'x': expected a number");
     refused("Scale 0 1 1", "Scale leaves nothing of space");
+    CHECK_NOTHROW(world_of("Transform [ 1 0 0 1e-17 0 1 0 -3e-9 0 0 1 0 0 0 0 1 ]"));
     refused("Transform [ 1 0 0 3 0 1 0 0 0 0 1 0 0 0 0 1 ]", "Transform has perspective");
     refused("ConcatTransform [ 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 0 ]", "ConcatTransform has perspective");
     refused("Transform [ 1 2 3 ]", "']': expected a number");

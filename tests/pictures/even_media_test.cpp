@@ -163,6 +163,16 @@ TEST_CASE("particles through several even media are seen by closed forms", "[gpu
     check_same_mean(render_here(scene, 3).film, paths, "lightTracing");
 }
 
+TEST_CASE("media that no shadow ray asks take no turns away", "[gpu][several][transmittance]") {
+    std::string balls;
+    for (int i = 0; i < 300; ++i)
+        balls += volume(fmt::format("<sphere x='{}' y='{}' radius='0.4'/>", i % 20 - 10, i / 20 - 7), 0.1, 0.5);
+    const Scene scene = parse("<volumes>" + balls +
+                              "</volumes><backgroundColor r='1' g='1' b='1'/><camera z='40' fov='30'/><width>8</width>"
+                              "<height>8</height><rayPerPixelCount>4</rayPerPixelCount>");
+    CHECK(render_here(scene, 1).plan.budget > 100); // of one medium or two at a place
+}
+
 TEST_CASE("where shadow rays through several media are closed forms", "[cpu][several][transmittance]") {
     const auto transmittance = [](const Scene& scene) { return choose_method(with_preset(scene)).transmittance; };
     const auto with = [](const std::function<void(Scene&)>& change) {
@@ -174,6 +184,19 @@ TEST_CASE("where shadow rays through several media are closed forms", "[cpu][sev
     CHECK(transmittance(with([](Scene& s) { s.settings.integrator.clear(); })) == TRANSMITTANCE_ANALYTIC);
     CHECK(transmittance(with([](Scene& s) { s.settings.choices.transmittance = TRANSMITTANCE_DELTA; })) ==
           TRANSMITTANCE_DELTA);
+    CHECK(transmittance(with([](Scene& s) {
+              s.settings.choices.nee = NEE_CACHED; // where nothing can be cached
+              s.volumes.push_back(medium(Everywhere{}, 0.1, 0.5));
+          })) == TRANSMITTANCE_ANALYTIC);
+    // What glows is looked for whether that is named or not.
+    const auto looks_for_glow = [](std::optional<int> chosen) {
+        Scene scene = jumble_with("");
+        scene.volumes[0].Le = Rgb(1.0);
+        scene.settings.choices.transmittance = chosen;
+        return with_preset(scene).lights.size();
+    };
+    CHECK(looks_for_glow(std::nullopt) == 1);
+    CHECK(looks_for_glow(TRANSMITTANCE_ANALYTIC) == 1);
     CHECK(transmittance(with([](Scene& s) { s.volumes[1].noise = Noise{}; })) == TRANSMITTANCE_RATIO);
     CHECK(transmittance(with([](Scene& s) { s.volumes[1].sigma_a = {0.2, 0.3, 0.4}; })) == TRANSMITTANCE_RATIO);
     CHECK(transmittance(with([](Scene& s) { s.volumes[2].shape = cloud_file(); })) == TRANSMITTANCE_RATIO);

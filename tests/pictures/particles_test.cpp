@@ -276,6 +276,25 @@ TEST_CASE("that particles alone are noisy about an eye in fog is told", "[gpu][p
     CHECK(!told("<camera z='2.1'/>", "lightTracing"));
     CHECK(!told("<camera z='1.9'/>", "bidirectional"));
     CHECK(!told("<camera z='1.9'/>", "ratioTracking"));
+    // Between two balls, and within what does not scatter.
+    const auto told_of = [](const std::string& body) {
+        Scene scene =
+            parse(body + "<lights><point y='1'/></lights><rayPerPixelCount>1</rayPerPixelCount><width>8</width>"
+                         "<height>8</height><camera/><integrator>lightTracing</integrator>");
+        const std::vector<std::string> warnings = render_here(scene, 1).warnings;
+        return std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+            return warning.find("the camera is within a medium") != std::string::npos;
+        });
+    };
+    const auto balls = [](double x) {
+        return fmt::format("<volumes><volume><sphere x='{0}' radius='1'/></volume><volume><sphere x='-{0}' radius='1'/>"
+                           "</volume></volumes>",
+                           x);
+    };
+    CHECK(!told_of(balls(8.0)));
+    CHECK(told_of(balls(0.5)));
+    CHECK(!told_of("<box width='4' height='4' depth='4'/><sigma_a>1</sigma_a><sigma_s>0</sigma_s><surfaces><sphere "
+                   "z='-1.5' radius='0.3'/></surfaces>"));
 }
 
 TEST_CASE("particles are seen by every camera through every filter", "[gpu][particles]") {
