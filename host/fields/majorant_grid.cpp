@@ -24,16 +24,26 @@ std::int64_t count(glm::ivec3 dims) {
     return std::int64_t{dims.x} * dims.y * dims.z;
 }
 
-// Raises the bounds of every cell that a voxel from `first` to `last` (relative to the grid's origin) is a corner of.
-void raise(MajorantGrid& grid, glm::ivec3 first, glm::ivec3 last, float value) {
+// Of two values the one that a bound is, from above or from below.
+float greater(float a, float b) {
+    return std::max(a, b);
+}
+float lesser(float a, float b) {
+    return std::min(a, b);
+}
+using Bound = float (*)(float, float);
+
+// Moves `bounds` of every cell that a voxel from `first` to `last` (relative to the grid's origin) is a corner of.
+template <Bound bound_of>
+void move_bounds(const MajorantGrid& grid, std::vector<float>& bounds, glm::ivec3 first, glm::ivec3 last, float value) {
     const glm::ivec3 high = glm::min(last / grid.cell, grid.dims - 1);
     // A voxel on a face between cells is a corner of both.
     const glm::ivec3 low = glm::max((first - 1) / grid.cell, glm::ivec3(0));
     for (int x = low.x; x <= high.x; ++x)
         for (int y = low.y; y <= high.y; ++y)
             for (int z = low.z; z <= high.z; ++z) {
-                float& bound = grid.bounds[(std::size_t(x) * grid.dims.y + y) * grid.dims.z + z];
-                bound = std::max(bound, value);
+                float& bound = bounds[(std::size_t(x) * grid.dims.y + y) * grid.dims.z + z];
+                bound = bound_of(bound, value);
             }
 }
 
@@ -46,13 +56,14 @@ CellRange cells_of_corner(const MajorantGrid& grid, int axis, int voxel) {
     return {std::max((voxel - 1) / grid.cell, 0), std::min(voxel / grid.cell, grid.dims[axis] - 1)};
 }
 
-// All voxels of a block, row by row. Tiles of value 0 are most of a sparse grid and cost one look, other tiles little
-// more.
-void raise_block(MajorantGrid& grid, const DensityField& field, glm::ivec3 block) {
+// All voxels of a block, row by row. Tiles of value 0 are most of a sparse grid and, for bounds from above, cost one
+// look, other tiles little more.
+template <Bound bound_of>
+void move_bounds(const MajorantGrid& grid, std::vector<float>& bounds, const DensityField& field, glm::ivec3 block) {
     const auto [low, high, constant] = field.block(block);
     if (constant) {
-        if (*constant > 0.0f)
-            raise(grid, low - grid.origin, high - grid.origin, *constant);
+        if (*constant > 0.0f || bound_of == lesser)
+            move_bounds<bound_of>(grid, bounds, low - grid.origin, high - grid.origin, *constant);
         return;
     }
     std::array<std::array<CellRange, 8>, 3> cells;
@@ -63,17 +74,28 @@ void raise_block(MajorantGrid& grid, const DensityField& field, glm::ivec3 block
     for (int x = low.x; x <= high.x; ++x)
         for (int y = low.y; y <= high.y; ++y) {
             const std::array<float, 8> row = field.row({x, y, low.z});
-            std::array<float, 9> most{}; // cells along the row: no more than there are voxels, and one
+            std::array<float, 9> of_row; // cells along it: no more than there are voxels, and one
+            of_row.fill(bound_of == lesser ? std::numeric_limits<float>::infinity() : 0.0f);
             for (int z = 0; z <= high.z - low.z; ++z)
                 for (int c = cells[2][z].low; c <= cells[2][z].high; ++c)
-                    most[c - first] = std::max(most[c - first], row[z]);
+                    of_row[c - first] = bound_of(of_row[c - first], row[z]);
             for (int i = cells[0][x - low.x].low; i <= cells[0][x - low.x].high; ++i)
                 for (int j = cells[1][y - low.y].low; j <= cells[1][y - low.y].high; ++j) {
-                    float* const bounds = &grid.bounds[(std::size_t(i) * grid.dims.y + j) * grid.dims.z + first];
+                    float* const there = &bounds[(std::size_t(i) * grid.dims.y + j) * grid.dims.z + first];
                     for (int c = 0; c <= last - first; ++c)
-                        bounds[c] = std::max(bounds[c], most[c]);
+                        there[c] = bound_of(there[c], of_row[c]);
                 }
         }
+}
+
+// Of every block.
+template <Bound bound_of>
+void move_bounds(const MajorantGrid& grid, std::vector<float>& bounds, const DensityField& field) {
+    glm::ivec3 block;
+    for (block.x = 0; block.x < field.leaf_dims.x; ++block.x)
+        for (block.y = 0; block.y < field.leaf_dims.y; ++block.y)
+            for (block.z = 0; block.z < field.leaf_dims.z; ++block.z)
+                move_bounds<bound_of>(grid, bounds, field, block);
 }
 
 struct CellDensities {
@@ -101,15 +123,20 @@ CellDensities cell_densities(const DensityField& field, const ValueMap& map, con
     return {range.least, range.most, sum / corners};
 }
 
-// Bounds of values become those of densities. Cells whose values are all 0 need not be searched.
+// Bounds of values become those of densities: of all that lies between the least and the most of a cell's corners,
+// which are 0 beyond the voxels that there are.
 void map_bounds(const DensityField& field, const ValueMap& map, MajorantGrid& grid) {
-    const double of_none = mapped_range(map, 0.0, 0.0).most;
+    std::vector<float> least(grid.bounds.size(), std::numeric_limits<float>::infinity());
+    move_bounds<lesser>(grid, least, field);
+    const glm::ivec3 end = field.voxel_max - grid.origin; // the last voxel's place
     std::size_t i = 0;
     for (int x = 0; x < grid.dims.x; ++x)
         for (int y = 0; y < grid.dims.y; ++y)
             for (int z = 0; z < grid.dims.z; ++z, ++i) {
-                const bool none = grid.bounds[i] == 0.0f;
-                grid.bounds[i] = static_cast<float>(none ? of_none : cell_densities(field, map, grid, {x, y, z}).most);
+                const glm::ivec3 cell(x, y, z), beyond = cell * grid.cell + grid.cell;
+                const bool at_edge = x == 0 || y == 0 || z == 0 || glm::any(glm::greaterThan(beyond, end));
+                const double from = at_edge ? std::min(least[i], 0.0f) : least[i];
+                grid.bounds[i] = static_cast<float>(mapped_range(map, from, grid.bounds[i]).most);
             }
 }
 
@@ -123,11 +150,7 @@ MajorantGrid make_majorant_grid(const DensityField& field, int cell, const Value
     grid.origin = field.voxel_min - 1;
     grid.dims = cell_dims(field, grid.cell);
     grid.bounds.assign(static_cast<std::size_t>(count(grid.dims)), 0.0f);
-    glm::ivec3 block;
-    for (block.x = 0; block.x < field.leaf_dims.x; ++block.x)
-        for (block.y = 0; block.y < field.leaf_dims.y; ++block.y)
-            for (block.z = 0; block.z < field.leaf_dims.z; ++block.z)
-                raise_block(grid, field, block);
+    move_bounds<greater>(grid, grid.bounds, field);
     if (map.exists())
         map_bounds(field, map, grid);
     return grid;

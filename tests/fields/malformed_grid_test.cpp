@@ -96,21 +96,39 @@ TEST_CASE("boxes of active voxels lie within the nodes", "[cpu][density]") {
     CHECK(with_box({-3, 2, 0}, {9, 12, 10}) == "no error");
 }
 
-TEST_CASE("large tiles cost no more than small ones", "[cpu][density]") {
-    // 4096^3 voxels of one value: by the voxel this would take minutes.
+namespace {
+
+// 4096^3 voxels of one value, 4, and some of 1.5: by the voxel anything about them would take minutes.
+DensityField large_tile() {
     GridRecipe recipe;
     recipe.first = {4090, 0, 0};
     recipe.last = {8200, 0, 0};
     recipe.value = [](glm::ivec3 i) { return i.x < 4093 || i.x > 8195 ? 1.5f : i.x == 5000 ? 2.0f : 0.0f; };
     GridBytes bytes = with_root_tile(make_grid_bytes(recipe), {5000, 0, 0}, 4.0f);
     reinterpret_cast<Grid*>(bytes.edit())->tree().root().data()->mBBox = {{4090, 0, 0}, {8200, 1000, 1000}};
-    const DensityField field = make_density_field(std::move(bytes), "tiles");
+    return make_density_field(std::move(bytes), "tiles");
+}
+
+float bound_at(const MajorantGrid& majorants, glm::ivec3 voxel) {
+    const glm::ivec3 cell = (voxel - majorants.origin) / majorants.cell;
+    return majorants.bounds[(std::size_t(cell.x) * majorants.dims.y + cell.y) * majorants.dims.z + cell.z];
+}
+
+} // namespace
+
+TEST_CASE("large tiles cost no more than small ones", "[cpu][density]") {
+    const DensityField field = large_tile();
     CHECK(field.max_value() == 4.0f);
     const MajorantGrid majorants = make_majorant_grid(field, 64);
-    const glm::ivec3 inside = (glm::ivec3(6000, 500, 500) - majorants.origin) / majorants.cell;
-    CHECK(majorants.bounds[(std::size_t(inside.x) * majorants.dims.y + inside.y) * majorants.dims.z + inside.z] ==
-          4.0f);
-    const glm::ivec3 outside = (glm::ivec3(4092, 500, 500) - majorants.origin) / majorants.cell;
-    CHECK(majorants.bounds[(std::size_t(outside.x) * majorants.dims.y + outside.y) * majorants.dims.z + outside.z] ==
-          4.0f); // a cell of 64 reaches across the border at 4096
+    CHECK(bound_at(majorants, {6000, 500, 500}) == 4.0f);
+    CHECK(bound_at(majorants, {4092, 500, 500}) == 4.0f); // a cell of 64 reaches across the border at 4096
+}
+
+TEST_CASE("large tiles cost no more than small ones under a map of values", "[cpu][density][value_map]") {
+    ValueMap map; // that falls: the least value decides
+    map.points = {{.value = 0.0, .density = 2.0}, {.value = 5.0, .density = 1.0}};
+    const MajorantGrid majorants = make_majorant_grid(large_tile(), 64, map);
+    CHECK(bound_at(majorants, {6000, 500, 500}) == Approx(1.2).epsilon(1e-5));
+    CHECK(bound_at(majorants, {4092, 500, 500}) == Approx(2.0).epsilon(1e-5));  // beside it is nothing
+    CHECK(bound_at(majorants, {6000, 1000, 500}) == Approx(2.0).epsilon(1e-5)); // where the grid ends is none, either
 }
