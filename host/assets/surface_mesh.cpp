@@ -247,6 +247,16 @@ double reach_of(const SurfaceBounds& bounds, const glm::dvec3& origin) {
     return glm::length(glm::max(glm::abs(bounds.low - origin), glm::abs(bounds.high - origin)));
 }
 
+std::uint32_t pieces_of(std::span<const Surface> surfaces) {
+    std::size_t pieces = 0;
+    for (const Surface& surface : surfaces)
+        if (const auto* mesh = std::get_if<TriangleSurface>(&surface.shape))
+            pieces += mesh->triangles.size();
+        else
+            pieces += std::holds_alternative<RectangleSurface>(surface.shape) ? 2 : 1;
+    return static_cast<std::uint32_t>(std::min<std::size_t>(pieces, 0xffffffffu));
+}
+
 double reach_of_surfaces(std::span<const Surface> surfaces, const glm::dvec3& origin) {
     for (const Surface& surface : surfaces)
         if (std::holds_alternative<PlaneSurface>(surface.shape))

@@ -12,6 +12,9 @@ namespace vkvol {
 // places on a texture where it has to.
 Scene with_surface_files(Scene scene);
 
+// Planes, triangles and other shapes, one by one.
+std::uint32_t pieces_of(std::span<const Surface> surfaces);
+
 // Where all finite surfaces are, world space; none without any. Of meshes only once they are loaded.
 struct SurfaceBounds {
     glm::dvec3 low, high;

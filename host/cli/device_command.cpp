@@ -18,8 +18,9 @@ void print_table(const std::vector<DeviceInfo>& devices) {
     for (const DeviceInfo& d : devices) {
         tell(stdout, "{}  {} ({}), Vulkan {}\n", d.index, d.name, d.type, d.api);
         tell(stdout, "   driver {}; uuid {}\n", d.driver, d.uuid);
-        tell(stdout, "   {:.0f} MiB of memory, {:.0f} MiB per storage buffer; grids {}\n", d.memory / mib,
-             d.storage_range / mib, d.addresses ? "may be larger" : "may be no larger");
+        tell(stdout, "   {:.0f} MiB of memory, {:.0f} MiB per storage buffer; grids {}{}\n", d.memory / mib,
+             d.storage_range / mib, d.addresses ? "may be larger" : "may be no larger",
+             d.ray_queries ? "; ray queries" : "");
         tell(stdout, "   {}\n",
              !d.rejection.empty() ? "not usable: " + d.rejection
              : d.conformant       ? "usable"

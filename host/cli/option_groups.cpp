@@ -146,8 +146,13 @@ void finish_sampling(RenderRequest& render, const SamplingTexts& texts) {
     if (!texts.noise.empty())
         render.noise_goal = parse_noise(texts.noise);
     if (!texts.schedule.empty())
-        render.plan = parse_schedule(texts.schedule);
+        set_schedule(texts.schedule, render);
     check_integrator_option(render);
+}
+
+void set_schedule(const std::string& text, RenderRequest& render) {
+    render.plan = parse_schedule(text);
+    render.device.ray_queries = render.plan.hits == Hits::query;
 }
 
 void check_integrator_option(const RenderRequest& render) {

@@ -41,6 +41,9 @@ struct SamplingTexts {
 void add_sampling_options(CLI::App& app, RenderRequest& render, SamplingTexts& texts, const char* usual_noise);
 void finish_sampling(RenderRequest& render, const SamplingTexts& texts);
 
+// As --schedule has it, and what that needs of the device.
+void set_schedule(const std::string& text, RenderRequest& render);
+
 // Throws InputError for what --integrator cannot be.
 void check_integrator_option(const RenderRequest& render);
 

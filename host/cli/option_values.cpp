@@ -93,8 +93,11 @@ Plan parse_schedule(const std::string& text) {
             plan.lanes = parse_plan_number(value, "lanes", 64, most_slots);
         else if (key == "budget")
             plan.budget = parse_plan_number(value, "budget", 1, 65535);
+        else if (key == "hits")
+            plan.hits = choose<Hits>("--schedule: hits", value, {{"tree", Hits::tree}, {"query", Hits::query}});
         else
-            fail_command_line(fmt::format("--schedule: '{}' is none of slots=N, lanes=N, budget=N, steps=N", parts[i]));
+            fail_command_line(fmt::format(
+                "--schedule: '{}' is none of slots=N, lanes=N, budget=N, steps=N, hits=tree|query", parts[i]));
     }
     return plan;
 }

@@ -38,7 +38,7 @@ CropRequest parse_crop(const std::string& text);
 // "1%" or "0.01", in (0, 1).
 double parse_noise(const std::string& text);
 
-// "NAME[:slots=N][:steps=N]".
+// "NAME[:slots=N][:steps=N]...".
 Plan parse_schedule(const std::string& text);
 
 // Adds "key=value".

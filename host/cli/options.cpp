@@ -110,11 +110,13 @@ void add_run_options(CLI::App& app, RenderOptions& render, RenderTexts& texts) {
     add_device_options(app, render, true);
     app.add_flag("--no-cache", render.no_cache, "Neither read nor write compiled kernels in the user's cache")
         ->group("Device");
-    app.add_option("--schedule", texts.schedule,
-                   "fused: one pass takes pixels through all stages; staged: passes of their own over queues of paths; "
-                   "auto: what is faster on the device. slots: pixels, or paths, in work; lanes: that work on them; "
-                   "steps: tracking steps in a turn; budget: turns before a lane lays its path aside")
-        ->option_text("NAME[:slots=N][:lanes=N][:steps=N][:budget=N] [auto]")
+    app.add_option(
+           "--schedule", texts.schedule,
+           "fused: one pass takes pixels through all stages; staged: passes of their own over queues of paths; "
+           "auto: what is faster on the device. slots: pixels, or paths, in work; lanes: that work on them; "
+           "steps: tracking steps in a turn; budget: turns before a lane lays its path aside; hits: surfaces are "
+           "found by a tree of the program's own (tree), or by the device's units for ray tracing (query)")
+        ->option_text("NAME[:slots=N][:lanes=N][:steps=N][:budget=N][:hits=WAY] [auto]")
         ->group("Device");
 
     app.add_option("--report", render.report, "Write what was done and how long it took, as JSON")
@@ -247,7 +249,7 @@ void finish_render(RenderOptions& render, const RenderTexts& texts) {
     if (!texts.up.empty())
         render.up = choose<Up>("--up", texts.up, {{"y", Up::y}, {"z", Up::z}});
     if (!texts.schedule.empty())
-        render.plan = parse_schedule(texts.schedule);
+        set_schedule(texts.schedule, render);
     render.tone = texts.tone.request();
     if (std::string wrong; !parse_layers(render.aov, wrong))
         fail_command_line(fmt::format("--aov: unknown layer '{}'{}", one_line(wrong), name_hint(wrong, layer_names())));

@@ -14,6 +14,7 @@
 #include "kernel_text.h"
 #include "light_table.h"
 #include "overlap_words.h"
+#include "piece_boxes.h"
 #include "seams.h"
 #include "surface_mesh.h"
 
@@ -21,7 +22,7 @@ namespace vkvol {
 
 DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& scene, const Method& method,
                          const Assets& assets, Crop crop, std::uint32_t seed, std::uint64_t most_grid_bytes,
-                         std::uint64_t most_texel_bytes)
+                         std::uint64_t most_texel_bytes, bool ray_queries)
     : device_(device), commands_(commands), specialization_(specialize(scene, assets.media, method, whole_of(assets))),
       frame_(make_frame(scene, assets.media, method, crop, seed, whole_of(assets))),
       buffers_(device, commands, assets.media, whole_of(assets), most_grid_bytes, most_texel_bytes),
@@ -45,7 +46,7 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
     if (needs_full(specialization_))
         form_ |= form_full;
     if (!scene.surfaces.empty())
-        make_surfaces(assets);
+        make_surfaces(assets, ray_queries);
     if (method.paths != PATHS_CAMERA)
         make_emitters(scene, method, assets);
     else if (!lights_.pieces.empty())
@@ -100,7 +101,7 @@ void DeviceScene::upload_media(const Scene& scene, const Method& method, const A
     buffers_.upload_media(device_, commands_, media_, overlaps.words, most_texel_bytes);
 }
 
-void DeviceScene::make_surfaces(const Assets& assets) {
+void DeviceScene::make_surfaces(const Assets& assets, bool ray_queries) {
     form_ |= form_full | form_surfaces;
     const bool has_mesh = !assets.superposition && !assets.media.empty() && assets.media.front().bvh;
     const std::vector<shared::BvhNode> none;
@@ -110,6 +111,12 @@ void DeviceScene::make_surfaces(const Assets& assets) {
     frame_.planes = surfaces_.planes;
     text_ += fmt::format(", {} surfaces of {} pieces", surfaces_.rows.size(), surfaces_.primitives.size());
     buffers_.upload_surfaces(device_, commands_, surfaces_, before);
+    if (ray_queries && !surfaces_.nodes.empty()) { // else there is nothing that they would search
+        const glm::vec3 eye = glm::abs(frame_.sensors[0].position);
+        boxes_.emplace(device_, commands_, piece_boxes(surfaces_, std::max({eye.x, eye.y, eye.z})));
+        form_ |= form_ray_query;
+        text_ += ", by ray queries";
+    }
     if (!surfaces_.texels.empty())
         buffers_.upload_textures(device_, commands_, surfaces_.texels, assets.sky ? &*assets.sky : nullptr);
 }
@@ -180,7 +187,7 @@ BoundBuffers DeviceScene::bound() const {
 }
 
 std::uint64_t DeviceScene::bytes() const {
-    return buffers_.bytes() + (light_cache_ ? light_cache_->buffer().bytes() : 0);
+    return buffers_.bytes() + (light_cache_ ? light_cache_->buffer().bytes() : 0) + (boxes_ ? boxes_->bytes() : 0);
 }
 
 } // namespace vkvol

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "box_structure.h"
 #include "crop.h"
 #include "layer_plan.h"
 #include "light_cache.h"
@@ -16,11 +17,11 @@ namespace vkvol {
 
 class DeviceScene {
 public:
-    // Uploads `assets`. `most_grid_bytes`, `most_texel_bytes`: see SceneBuffers. Throws InputError for what cannot be
-    // rendered, and RenderError where the device is too small.
+    // Uploads `assets`. `most_grid_bytes`, `most_texel_bytes`: see SceneBuffers. `ray_queries`: the device searches for
+    // surfaces. Throws InputError for what cannot be rendered, and RenderError where the device is too small.
     DeviceScene(const Device& device, Commands& commands, const Scene& scene, const Method& method,
                 const Assets& assets, Crop crop, std::uint32_t seed, std::uint64_t most_grid_bytes,
-                std::uint64_t most_texel_bytes);
+                std::uint64_t most_texel_bytes, bool ray_queries = false);
 
     // The cache of light, if the method has one: its place, its kernels, and what is in it.
     void make_light_cache();
@@ -46,12 +47,13 @@ public:
     const SurfaceTable& surfaces() const { return surfaces_; }
     std::span<const glm::vec3> points() const { return points_; } // where flux is read, render space
     BoundBuffers bound() const;
+    VkAccelerationStructureKHR boxes() const { return boxes_ ? boxes_->handle() : VK_NULL_HANDLE; }
     std::uint64_t bytes() const;
 
 private:
     void make_lights(const Scene& scene, const Method& method, const Assets& assets);
     void upload_media(const Scene& scene, const Method& method, const Assets& assets, std::uint64_t most_texel_bytes);
-    void make_surfaces(const Assets& assets);
+    void make_surfaces(const Assets& assets, bool ray_queries);
     void make_emitters(const Scene& scene, const Method& method, const Assets& assets);
     double reach_of_all(const Scene& scene, const Assets& assets) const;
 
@@ -66,6 +68,7 @@ private:
     std::vector<shared::MediumParams> media_;
     std::vector<glm::vec3> points_;
     std::optional<LightCache> light_cache_;
+    std::optional<BoxStructure> boxes_;
     unsigned form_;
     std::string text_;
     glm::dvec3 origin_;

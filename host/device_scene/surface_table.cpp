@@ -74,21 +74,18 @@ public:
             const float scale = 1.0f / std::max({longest.x, longest.y, longest.z, 1e-30f}); // as kernels have it
             if (glm::cross(scale * u, scale * v) == glm::vec3(0.0f))
                 continue;
-            for (const glm::vec3& corner : {piece.primitive.a, piece.primitive.b, piece.primitive.c})
-                piece.box.add(corner);
+            piece.box = box_of(piece.primitive);
             bounded_.push_back(piece);
         }
     }
 
 private:
-    // The box errs by the rounding of its middle and radius.
     void add(std::uint32_t shape, const glm::dvec3& center, const glm::dvec3& normal, double radius,
              std::optional<shared::SurfacePrimitive> axes) const {
         const glm::vec3 middle = center - origin_;
         const float r = static_cast<float>(radius);
         Piece piece{{middle, row_, normal, shape, {r, 0.0f, 0.0f}, 0}, {}, nullptr, nullptr, axes};
-        piece.box.add(middle - r * 1.000001f);
-        piece.box.add(middle + r * 1.000001f);
+        piece.box = box_of(piece.primitive);
         bounded_.push_back(piece);
     }
 
@@ -227,6 +224,19 @@ SurfaceTable make_surface_table(const std::vector<Surface>& surfaces, const glm:
         node.leaf += node.leaf != 0 ? 8 * table.planes : 0;
     table.nodes = std::move(tree.nodes);
     return table;
+}
+
+BvhBox box_of(const shared::SurfacePrimitive& piece) {
+    BvhBox box;
+    if (piece.shape == SURFACE_TRIANGLES) {
+        for (const glm::vec3& corner : {piece.a, piece.b, piece.c})
+            box.add(corner);
+    } else { // a ball or disk: the box errs by the rounding of its middle and radius
+        const float around = piece.c.x * 1.000001f;
+        box.add(piece.a - around);
+        box.add(piece.a + around);
+    }
+    return box;
 }
 
 double area_of(const shared::SurfacePrimitive& piece) {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "bvh.h"
 #include "scene.h"
 #include "shared/frame.h"
 
@@ -21,6 +22,9 @@ struct SurfaceTable {
 // `origin`: of render space. `first_texel`: where those of textures will be.
 SurfaceTable make_surface_table(const std::vector<Surface>& surfaces, const glm::dvec3& origin,
                                 std::uint32_t first_texel = 0);
+
+// About a piece that is no plane; render space.
+BvhBox box_of(const shared::SurfacePrimitive& piece);
 
 // World units^2; of a plane, none.
 double area_of(const shared::SurfacePrimitive& piece);

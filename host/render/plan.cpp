@@ -28,7 +28,9 @@ std::uint64_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
         iterations += 2 + 1 + MESH_NODES_PER_TURN * node;
     if (loops.surfaces) // planes when a segment begins, also beyond a seam, then a search, in which what is met is
                         // asked whether the light lies in it
-        iterations += 2 * (MOST_PLANES + 1) + 1 + SURFACE_NODES_PER_TURN * node + 2;
+        iterations += 2 * (MOST_PLANES + 1) + 1 + (loops.queried > 0 ? 0 : SURFACE_NODES_PER_TURN * node) + 2;
+    // Of a binary tree over them every node and, as the kernel has them given, every piece, if the worst comes.
+    iterations += loops.queried > 0 ? 2 * (3 * std::uint64_t{loops.queried} + 8) : 0;
     if (loops.facets) // a way on, and what leaves toward a light and toward a sensor
         iterations += 3 * (MOST_FACETS + 1);
     const std::uint32_t octaves = loops.octaves > 0 ? loops.octaves + 1 : 0;
@@ -90,6 +92,8 @@ Plan make_plan(const Device& device, const LoopSizes& loops, std::uint64_t pixel
     Plan plan = wish;
     if (plan.schedule == Schedule::automatic)
         plan.schedule = Schedule::fused;
+    if (plan.hits == Hits::automatic || !loops.surfaces)
+        plan.hits = Hits::tree;
     const bool staged = plan.schedule == Schedule::staged;
     // A software driver wants its state in cache and few lanes that each do much; a GPU wants to be full. There a pass
     // of a staged render lasts as long as its longest lane: lanes take several paths each, and lay long ones aside.
@@ -106,6 +110,10 @@ Plan make_plan(const Device& device, const LoopSizes& loops, std::uint64_t pixel
     constexpr std::uint32_t most = most_iterations - 2 * copy_iterations; // of one turn, beside what is about it
     if (turn_iterations(loops, plan.steps) > most)
         plan.steps = 1;
+    if (loops.queried > 0 && turn_iterations(loops, plan.steps) > most)
+        throw InputError(fmt::format("--schedule hits=query: software drivers may end a search among {} pieces of "
+                                     "surfaces before it is done; leave hits=query out",
+                                     loops.queried));
     if (device.is_cpu() && turn_iterations(loops, plan.steps) > most)
         throw InputError(
             fmt::format("{} volumes overlap somewhere, and software drivers end sums over so many, and the "
@@ -150,9 +158,15 @@ const char* name_of(Schedule schedule) {
     return schedule == Schedule::staged ? "staged" : schedule == Schedule::fused ? "fused" : "auto";
 }
 
+const char* name_of(Hits hits) {
+    return hits == Hits::query ? "query" : hits == Hits::tree ? "tree" : "auto";
+}
+
 std::string describe(const Plan& plan) {
     std::string text = fmt::format("{}, {} {}, {} steps a turn", name_of(plan.schedule), plan.slots,
                                    plan.schedule == Schedule::staged ? "paths" : "pixels", plan.steps);
+    if (plan.hits == Hits::query)
+        text += ", surfaces by ray queries";
     if (plan.majorant_cell > 0)
         text +=
             fmt::format(", majorant cells of {} voxels{}", plan.majorant_cell, plan.leaps ? ", empty ones leapt" : "");

@@ -17,11 +17,16 @@ enum class Schedule { automatic, fused, staged };
 // How the words of paths get to memory and back: one by one, or in loops; see laid_aside.glsl.
 enum class PathCopies { automatic, by_word, in_loops };
 
+// How kernels find what surfaces a ray meets, the same ones by either: by a search of their own through a tree, or by
+// asking the device (VK_KHR_ray_query).
+enum class Hits { automatic, tree, query };
+
 // 0, automatic: what suits device and scene.
 struct Plan {
     Schedule schedule = Schedule::automatic;
     bool tries = false;                        // automatic: try both even where one is known to be faster
     PathCopies copies = PathCopies::automatic; // how its driver compiles them best
+    Hits hits = Hits::automatic;               // tree: what query does for speed was never measured on a GPU
     std::uint32_t slots = 0;                   // fused: pixels in work; staged: paths
     std::uint32_t waiting = 0;          // staged: room for samples that wait to be added to the film, or at least this
     std::uint32_t lanes = 0;            // invocations that share a queue of paths
@@ -50,6 +55,7 @@ constexpr std::uint32_t most_slots = 1u << 19;
 struct LoopSizes {
     bool mesh = false;
     bool surfaces = false;
+    std::uint32_t queried = 0;  // pieces of surfaces that a software driver may ask in a ray query; 0 without
     bool facets = false;        // of rough surfaces
     std::uint32_t octaves = 0;  // of noise; 0 without it
     std::uint32_t halvings = 0; // of a search in a map of values; 0 without one
@@ -73,6 +79,7 @@ void fit_splats(const Device& device, std::uint64_t pixels, std::uint32_t batch,
 std::uint32_t queue_capacity(const Plan& plan);
 
 const char* name_of(Schedule schedule);
+const char* name_of(Hits hits);
 
 // "staged, 65536 paths, 4 steps a turn, majorant cells of 8 voxels, empty ones leapt"
 std::string describe(const Plan& plan);

@@ -185,7 +185,8 @@ void Session::load() {
     find_wish(assets, specialization);
     result_.plan = plan_by(wish_.schedule);
     device_scene_.emplace(device_, commands_, scene_, method, assets, job_.crop, job_.seed,
-                          result_.plan.most_grid_bytes, result_.plan.most_texel_bytes);
+                          result_.plan.most_grid_bytes, result_.plan.most_texel_bytes,
+                          result_.plan.hits == Hits::query);
     if (is_first)
         make_film();
     device_scene_->set_records(records_);
@@ -210,6 +211,10 @@ void Session::load() {
 
 void Session::find_wish(const Assets& assets, const Specialization& specialization) {
     wish_ = job_.plan;
+    if (wish_.hits == Hits::query && !device_.has_ray_queries())
+        throw InputError(fmt::format("--schedule hits=query: \"{}\" offers no ray queries (VK_KHR_ray_query); leave "
+                                     "hits=query out",
+                                     device_.info().name));
     if (!bands_.empty()) { // a later moment, of the same paths and records
         wish_.schedule = result_.plan.schedule;
         wish_.slots = result_.plan.slots;
@@ -218,6 +223,8 @@ void Session::find_wish(const Assets& assets, const Specialization& specializati
     loops_ = {};
     loops_.lights = loop_iterations(scene_);
     loops_.surfaces = !scene_.surfaces.empty();
+    if (wish_.hits == Hits::query && device_.is_cpu())
+        loops_.queried = pieces_of(scene_.surfaces);
     loops_.facets = std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(),
                                 [](const Surface& surface) { return surface.material.roughness > 0.0; });
     loops_.halvings = static_cast<std::uint32_t>(specialization[SPEC_MAP_HALVINGS]);
@@ -335,8 +342,8 @@ std::unique_ptr<Wavefront> Session::make_wavefront(const Plan& plan, const Pipel
         specialization[SPEC_TRACE] = 1;
         bound[BINDING_TRACE] = &trace_->buffer();
     }
-    return std::make_unique<Wavefront>(device_, bound, bands_.front().rows * width(), specialization,
-                                       device_scene_->form(), plan, &cache, meanwhile);
+    return std::make_unique<Wavefront>(device_, bound, device_scene_->boxes(), bands_.front().rows * width(),
+                                       specialization, device_scene_->form(), plan, &cache, meanwhile);
 }
 
 // Fused or staged, by a moment of each, unless that was done before with such a scene at such a size.

@@ -69,9 +69,9 @@ std::vector<PassRow> passes_of(const Plan& plan, unsigned form, bool has_shadow_
 
 } // namespace
 
-Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, std::uint32_t most_pixels,
-                     const Specialization& specialization, unsigned form, const Plan& plan, const PipelineCache* cache,
-                     const std::function<void()>& meanwhile)
+Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, VkAccelerationStructureKHR boxes,
+                     std::uint32_t most_pixels, const Specialization& specialization, unsigned form, const Plan& plan,
+                     const PipelineCache* cache, const std::function<void()>& meanwhile)
     : device_(device), plan_(plan), commands_(device),
       readback_(device, "readback", queue_bytes + sizeof(shared::Counters), 0, BufferPlace::host) {
     const std::uint64_t slots = plan.slots;
@@ -88,7 +88,7 @@ Wavefront::Wavefront(const Device& device, const BoundBuffers& scene_buffers, st
     if (plan.splats > 0)
         add_buffer(BINDING_SPLATS, "splats",
                    (std::uint64_t{most_pixels} + 2) * plan.splats * SPLAT_WORDS * sizeof(std::uint32_t));
-    bindings_.emplace(device, bound(scene_buffers));
+    bindings_.emplace(device, bound(scene_buffers), boxes);
     make_passes(specialization, form, cache, meanwhile);
     push_.budget = std::min(plan.budget, first_budget(device));
     push_.step_limit = plan.step_limit;

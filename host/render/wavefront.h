@@ -20,11 +20,11 @@ namespace vkvol {
 
 class Wavefront {
 public:
-    // `most_pixels`: of any film that will be bound. `form`: of the kernels, see specialization.h. `meanwhile`: called
-    // while the large kernels compile.
-    Wavefront(const Device& device, const BoundBuffers& scene_buffers, std::uint32_t most_pixels,
-              const Specialization& specialization, unsigned form, const Plan& plan, const PipelineCache* cache,
-              const std::function<void()>& meanwhile);
+    // `boxes`: null, but where kernels ask for them. `most_pixels`: of any film that will be bound. `form`: of the
+    // kernels, see specialization.h. `meanwhile`: called while the large kernels compile.
+    Wavefront(const Device& device, const BoundBuffers& scene_buffers, VkAccelerationStructureKHR boxes,
+              std::uint32_t most_pixels, const Specialization& specialization, unsigned form, const Plan& plan,
+              const PipelineCache* cache, const std::function<void()>& meanwhile);
     ~Wavefront();
     Wavefront(const Wavefront&) = delete;
     Wavefront& operator=(const Wavefront&) = delete;

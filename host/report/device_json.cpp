@@ -16,6 +16,7 @@ std::string devices_json(const std::vector<DeviceInfo>& devices) {
                         {"memory", d.memory},
                         {"storageBufferRange", d.storage_range},
                         {"bufferDeviceAddress", d.addresses},
+                        {"rayQueries", d.ray_queries},
                         {"conformant", d.conformant},
                         {"usable", d.rejection.empty()},
                         {"rejection", d.rejection}});

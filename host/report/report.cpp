@@ -78,6 +78,7 @@ Json occupancy_json(const RenderResult& r) {
 
 Json plan_json(const Plan& plan) {
     return {{"schedule", name_of(plan.schedule)},
+            {"hits", name_of(plan.hits)},
             {"slots", plan.slots},
             {"waiting", plan.waiting},
             {"lanes", plan.lanes},

@@ -17,7 +17,7 @@ VkFormat texel_format(std::uint32_t binding) {
 }
 } // namespace
 
-Bindings::Bindings(const Device& device, const BoundBuffers& buffers)
+Bindings::Bindings(const Device& device, const BoundBuffers& buffers, VkAccelerationStructureKHR boxes)
     : device_(device), unused_(device, "placeholder", 256,
                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
                                    VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
@@ -29,6 +29,8 @@ Bindings::Bindings(const Device& device, const BoundBuffers& buffers)
             bind(i, buffers[i] ? *buffers[i] : unused_);
         for (std::uint32_t i = BINDING_BUFFERS; i < BINDING_COUNT; ++i)
             bind_texels(i, buffers[i] ? *buffers[i] : unused_);
+        if (boxes)
+            bind_boxes(boxes);
     } catch (...) {
         release();
         throw;
@@ -36,14 +38,15 @@ Bindings::Bindings(const Device& device, const BoundBuffers& buffers)
 }
 
 void Bindings::create() {
-    const std::array<VkDescriptorPoolSize, 3> sizes{
-        {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
-         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BINDING_BUFFERS - 1},
-         {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, BINDING_COUNT - BINDING_BUFFERS}}};
+    std::vector<VkDescriptorPoolSize> sizes{{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
+                                            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BINDING_BUFFERS - 1},
+                                            {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, BINDING_COUNT - BINDING_BUFFERS}};
+    if (device_.has_ray_queries())
+        sizes.push_back({VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1});
     VkDescriptorPoolCreateInfo pool{};
     pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
     pool.maxSets = 1;
-    pool.poolSizeCount = sizes.size();
+    pool.poolSizeCount = static_cast<std::uint32_t>(sizes.size());
     pool.pPoolSizes = sizes.data();
     VK_CHECK(vkCreateDescriptorPool(device_.handle(), &pool, nullptr, &pool_));
     VkDescriptorSetAllocateInfo allocate{};
@@ -55,9 +58,11 @@ void Bindings::create() {
     VK_CHECK(vkAllocateDescriptorSets(device_.handle(), &allocate, &set_));
 }
 
-void Bindings::write(std::uint32_t binding, const VkDescriptorBufferInfo* buffer, const VkBufferView* texels) {
+void Bindings::write(std::uint32_t binding, const VkDescriptorBufferInfo* buffer, const VkBufferView* texels,
+                     const void* more) {
     VkWriteDescriptorSet write{};
     write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.pNext = more;
     write.dstSet = set_;
     write.dstBinding = binding;
     write.descriptorCount = 1;
@@ -80,6 +85,14 @@ void Bindings::bind_texels(std::uint32_t binding, const Buffer& buffer) {
     create.range = VK_WHOLE_SIZE;
     VK_CHECK(vkCreateBufferView(device_.handle(), &create, nullptr, &views_.emplace_back(VK_NULL_HANDLE)));
     write(binding, nullptr, &views_.back());
+}
+
+void Bindings::bind_boxes(VkAccelerationStructureKHR boxes) {
+    VkWriteDescriptorSetAccelerationStructureKHR structure{};
+    structure.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR;
+    structure.accelerationStructureCount = 1;
+    structure.pAccelerationStructures = &boxes;
+    write(BINDING_BOXES, nullptr, nullptr, &structure);
 }
 
 Bindings::~Bindings() {

@@ -15,7 +15,8 @@ using BoundBuffers = std::array<const Buffer*, BINDING_COUNT>;
 
 class Bindings {
 public:
-    Bindings(const Device& device, const BoundBuffers& buffers);
+    // `boxes`: at BINDING_BOXES, where kernels ask for them.
+    Bindings(const Device& device, const BoundBuffers& buffers, VkAccelerationStructureKHR boxes = VK_NULL_HANDLE);
     ~Bindings();
     Bindings(const Bindings&) = delete;
     Bindings& operator=(const Bindings&) = delete;
@@ -29,7 +30,9 @@ private:
     void create();
     void release();
     void bind_texels(std::uint32_t binding, const Buffer& buffer);
-    void write(std::uint32_t binding, const VkDescriptorBufferInfo* buffer, const VkBufferView* texels);
+    void bind_boxes(VkAccelerationStructureKHR boxes);
+    void write(std::uint32_t binding, const VkDescriptorBufferInfo* buffer, const VkBufferView* texels,
+               const void* more = nullptr);
 
     const Device& device_;
     Buffer unused_; // stands where a scene needs no buffer

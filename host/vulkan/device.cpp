@@ -79,6 +79,41 @@ VkPhysicalDeviceVulkan12Features features_of(VkPhysicalDevice physical) {
     return features12;
 }
 
+constexpr std::array ray_query_extensions{VK_KHR_RAY_QUERY_EXTENSION_NAME, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+                                          VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
+
+// Those of ray queries, which are asked after and asked for in the same words.
+struct RayQueryFeatures {
+    VkPhysicalDeviceAccelerationStructureFeaturesKHR structures{};
+    VkPhysicalDeviceRayQueryFeaturesKHR queries{};
+
+    RayQueryFeatures() {
+        structures.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
+        structures.pNext = &queries;
+        queries.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
+    }
+};
+
+bool offers_ray_queries(VkPhysicalDevice physical) {
+    std::uint32_t count = 0;
+    vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr);
+    std::vector<VkExtensionProperties> extensions(count);
+    vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, extensions.data());
+    const bool has_all = std::ranges::all_of(ray_query_extensions, [&](const char* name) {
+        return std::ranges::any_of(extensions, [&](const VkExtensionProperties& extension) {
+            return std::strcmp(extension.extensionName, name) == 0;
+        });
+    });
+    if (!has_all)
+        return false;
+    RayQueryFeatures asked;
+    VkPhysicalDeviceFeatures2 features{};
+    features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+    features.pNext = &asked.structures;
+    vkGetPhysicalDeviceFeatures2(physical, &features);
+    return asked.structures.accelerationStructure && asked.queries.rayQuery;
+}
+
 std::string find_rejection(VkPhysicalDevice physical, const VkPhysicalDeviceProperties& properties) {
     if (properties.apiVersion < VK_API_VERSION_1_2)
         return fmt::format("it offers Vulkan {}, at least 1.2 is needed", version_text(properties.apiVersion));
@@ -126,6 +161,7 @@ DeviceInfo describe(VkPhysicalDevice physical, int index) {
             info.memory += memory.memoryHeaps[i].size;
     info.rejection = find_rejection(physical, properties.properties);
     info.addresses = info.rejection.empty() && features_of(physical).bufferDeviceAddress;
+    info.ray_queries = info.addresses && offers_ray_queries(physical);
     return info;
 }
 
@@ -239,7 +275,8 @@ std::vector<DeviceOptions> each_device(const DeviceOptions& options) {
         const std::size_t end = std::min(list.find(',', begin), list.size());
         if (begin == end)
             throw InputError(fmt::format("--device {}: a number is missing; two devices are 0,1", list));
-        each.push_back({list.substr(begin, end - begin), options.validate, options.robust});
+        DeviceOptions& one = each.emplace_back(options);
+        one.choice = list.substr(begin, end - begin);
         begin = end + 1;
     }
     return each;
@@ -306,12 +343,17 @@ void Device::choose_physical(const std::string& choice) {
     physical_ = devices[best];
     VkPhysicalDeviceMaintenance3Properties allocations{};
     allocations.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES;
+    VkPhysicalDeviceAccelerationStructurePropertiesKHR boxes{};
+    boxes.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR;
+    if (info_.ray_queries)
+        allocations.pNext = &boxes;
     VkPhysicalDeviceProperties2 all{};
     all.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
     all.pNext = &allocations;
     vkGetPhysicalDeviceProperties2(physical_, &all);
     properties_ = all.properties;
     most_allocation_ = allocations.maxMemoryAllocationSize;
+    box_limits_ = {boxes.maxPrimitiveCount, std::max(boxes.minAccelerationStructureScratchOffsetAlignment, 1u)};
     vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
 }
 
@@ -341,12 +383,21 @@ void Device::create_device(const DeviceOptions& options) {
     create.pNext = &features;
     create.queueCreateInfoCount = 1;
     create.pQueueCreateInfos = &queue;
+    RayQueryFeatures ray_queries;
+    has_ray_queries_ = options.ray_queries && info_.ray_queries;
+    if (has_ray_queries_) {
+        ray_queries.structures.accelerationStructure = VK_TRUE;
+        ray_queries.queries.rayQuery = VK_TRUE;
+        features12.pNext = &ray_queries.structures;
+        create.enabledExtensionCount = ray_query_extensions.size();
+        create.ppEnabledExtensionNames = ray_query_extensions.data();
+    }
     if (const VkResult result = vkCreateDevice(physical_, &create, nullptr, &device_); result != VK_SUCCESS)
         throw DeviceError(fmt::format("\"{}\" cannot be opened: {}; is another program using it up? --device names "
                                       "another (`vkvol devices` lists them)",
                                       info_.name, result_name(result)));
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
-    layout_ = std::make_unique<PipelineLayout>(device_);
+    layout_ = std::make_unique<PipelineLayout>(device_, has_ray_queries_);
     pipelines_ = std::make_unique<Pipelines>(device_, *layout_, info_.swiftshader);
 }
 

@@ -17,6 +17,7 @@ struct DeviceOptions {
     std::string choice = "auto"; // auto | index | part of the name | uuid | cpu
     bool validate = false;       // validation layer with synchronization validation
     bool robust = false;         // robustBufferAccess
+    bool ray_queries = false;    // those, if it offers them
 };
 
 // Each of several, whose numbers are the choice: "0,1". Any other choice is one.
@@ -36,6 +37,7 @@ struct DeviceInfo {
     bool swiftshader = false;        // it is Google's
     bool conformant = true;          // has passed Khronos' tests, by its own word
     bool addresses = false;          // kernels may reach buffers by address, and so larger grids
+    bool ray_queries = false;        // kernels may ask it which boxes a ray is in (VK_KHR_ray_query)
     std::string rejection;
 };
 
@@ -67,6 +69,13 @@ public:
     // Between two marks of one submit, counters that have begun anew between them included.
     std::uint64_t ticks_between(std::uint64_t first, std::uint64_t second) const;
     bool has_addresses() const { return info_.addresses; }
+    bool has_ray_queries() const { return has_ray_queries_; } // asked for, and there
+    // Of boxes that ray queries look for, and of the address of what they are built in.
+    struct BoxLimits {
+        std::uint64_t most = 0;
+        VkDeviceSize scratch_alignment = 1;
+    };
+    const BoxLimits& box_limits() const { return box_limits_; }
 
     // Index of a memory type in `allowed` with all `wanted` properties, or -1.
     int find_memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const;
@@ -93,6 +102,8 @@ private:
     VkQueue queue_ = VK_NULL_HANDLE;
     std::uint32_t queue_family_ = 0;
     std::uint32_t timestamp_bits_ = 0; // valid ones
+    bool has_ray_queries_ = false;
+    BoxLimits box_limits_;
     std::unique_ptr<PipelineLayout> layout_;
     std::unique_ptr<Pipelines> pipelines_;
     VkPhysicalDeviceProperties properties_{};

@@ -33,7 +33,7 @@ std::string digest_of(const std::vector<std::uint32_t>& kernel) {
 }
 
 // Nothing if there is no such file, or one that ends early or was changed: behind the kernel stands its digest.
-std::optional<std::vector<std::uint32_t>> read_if_possible(const fs::path& path) {
+std::optional<std::vector<std::uint32_t>> read_kernel_if_possible(const fs::path& path) {
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     constexpr std::size_t digest_bytes = 16;
     const std::size_t size = file ? static_cast<std::size_t>(file.tellg()) : 0;
@@ -56,7 +56,7 @@ std::vector<std::uint32_t> KernelStore::get(std::span<const std::uint32_t> spirv
     if (directory_.empty())
         return specialized(spirv, specialization);
     const fs::path path = directory_ / file_name(spirv, specialization);
-    if (std::optional<std::vector<std::uint32_t>> kept = read_if_possible(path)) {
+    if (std::optional<std::vector<std::uint32_t>> kept = read_kernel_if_possible(path)) {
         std::error_code unimportant; // of a directory that others may read only
         fs::last_write_time(path, fs::file_time_type::clock::now(), unimportant);
         return *std::move(kept);

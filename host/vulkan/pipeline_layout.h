@@ -13,8 +13,8 @@ VkDescriptorType descriptor_type(std::uint32_t binding);
 
 class PipelineLayout {
 public:
-    // Throws VulkanError.
-    explicit PipelineLayout(VkDevice device);
+    // `has_boxes`: BINDING_BOXES is among what is bound. Throws VulkanError.
+    PipelineLayout(VkDevice device, bool has_boxes);
     ~PipelineLayout();
     PipelineLayout(const PipelineLayout&) = delete;
     PipelineLayout& operator=(const PipelineLayout&) = delete;

@@ -15,7 +15,8 @@ using Specialization = std::array<std::int32_t, SPEC_COUNT>;
 
 // Bits of what a kernel is compiled with only where a scene has it: FORM_FLAGS of shaders/CMakeLists.txt. A table of a
 // kernel's forms is indexed by their sum.
-inline constexpr unsigned form_chromatic = 1, form_windows = 2, form_full = 4, form_several = 8, form_surfaces = 16;
+inline constexpr unsigned form_chromatic = 1, form_windows = 2, form_full = 4, form_several = 8, form_surfaces = 16,
+                          form_ray_query = 32;
 
 // These values, with zero for the constants that the kernel does not declare: where two are equal, so are its codes.
 Specialization declared_of(std::span<const std::uint32_t> spirv, const Specialization& specialization);

@@ -62,6 +62,9 @@ layout(binding = BINDING_NODE_TEXELS) uniform utextureBuffer node_texels;
 layout(binding = BINDING_PRIMITIVE_TEXELS) uniform utextureBuffer primitive_texels;
 layout(binding = BINDING_SURFACE_TEXELS) uniform utextureBuffer surface_texels;
 #endif
+#ifdef RAY_QUERY
+layout(binding = BINDING_BOXES) uniform accelerationStructureEXT boxes_of_pieces;
+#endif
 layout(binding = BINDING_LIGHT_TEXELS) uniform utextureBuffer light_texels;
 layout(scalar, binding = BINDING_LIGHT_TREE) readonly buffer LightTreeBlock { LightNode light_nodes[]; };
 #ifdef SEVERAL

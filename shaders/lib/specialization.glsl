@@ -5,6 +5,9 @@
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
+#ifdef RAY_QUERY
+#extension GL_EXT_ray_query : require
+#endif
 
 #include "shared/estimators.h"
 #include "shared/items.h"

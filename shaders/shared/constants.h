@@ -55,6 +55,7 @@
 #define BINDING_SKY_TEXELS 41 // one to a texel of the sky, then of textures
 #define BINDING_SKY_ALIAS_TEXELS 42 // one to an entry
 #define BINDING_COUNT 43
+#define BINDING_BOXES 43 // acceleration structure over boxes of surfaces' pieces, planes not among them; where devices have ray queries
 
 #define WORKGROUP_SIZE 64
 

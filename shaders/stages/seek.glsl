@@ -14,6 +14,13 @@ void seek(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
     MeshRay mesh_ray = make_mesh_ray(frame.first_surface_node, frame.surface_nodes, ray);
     float reach = looks && !REPEATS ? looking_as_far_as(lane) : FAR;
     bool over = looks && lane.seek.primitive != NO_SURFACE;
+#ifdef RAY_QUERY
+    bool passes = reach < FAR && over && lies_in(lane.seek.primitive, ray, lane.seek.nearest, reach); // a plane
+    lane.seek.primitive = passes ? NO_SURFACE : lane.seek.primitive;
+    lane.seek.nearest = passes ? seeking_as_far_as(lane) : lane.seek.nearest;
+    ask_boxes(mesh_ray, ray, from, looks ? lane.lamp_body : NO_SURFACE, looks, reach, lane.seek);
+    over = true;
+#else
     for (int k = 0; k < SURFACE_NODES_PER_TURN && !over; ++k) {
         over = step_seek(mesh_ray, ray, from, looks ? lane.lamp_body : NO_SURFACE, lane.seek);
         over = over || (looks && lane.seek.primitive != NO_SURFACE);
@@ -26,6 +33,7 @@ void seek(MediumParams v, inout Lane lane, inout Rng rng, inout Tally tally) {
         lane.seek.nearest = passes ? seeking_as_far_as(lane) : lane.seek.nearest;
         over = !passes || lane.seek.node >= frame.surface_nodes;
     }
+#endif
     if (over && looks && lane.seek.primitive != NO_SURFACE) {
         end_shadow(v, EVENT_OPAQUE, lane);
     } else if (over) {

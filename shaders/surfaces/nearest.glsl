@@ -42,6 +42,37 @@ BvhNode surface_node(uint i) {
     return bvh[i];
 }
 
+#ifdef RAY_QUERY
+// Of two pieces that are met at one distance the first, as the tree has it, whatever order the device asks them in.
+void take_nearer_of_any(MeshRay m, Ray ray, uint i, uint from, uint body, inout SurfaceSearch s) {
+    SurfacePrimitive p = primitive_at(i);
+    float t = p.surface != body ? meet_primitive(m, ray, p, i, from) : FAR;
+    bool nearer = t < s.nearest || (t == s.nearest && s.primitive != NO_SURFACE && i < s.primitive);
+    s.primitive = nearer ? i : s.primitive;
+    s.nearest = nearer ? t : s.nearest;
+}
+
+// The whole search, by the device: it finds boxes of pieces that the ray may be in, and whether a piece is met is found as a
+// search of the tree finds it. `looks`: whether anything is in the way will do. `reach`: how far a light is that what it lies in
+// does not hide, or FAR.
+void ask_boxes(MeshRay m, Ray ray, uint from, uint body, bool looks, float reach, inout SurfaceSearch s) {
+    rayQueryEXT query;
+    rayQueryInitializeEXT(query, boxes_of_pieces, gl_RayFlagsNoneEXT, 0xFFu, ray.origin, 0.0, ray.direction, s.nearest);
+    bool going = !(looks && s.primitive != NO_SURFACE);
+    while (going && rayQueryProceedEXT(query)) {
+        SurfaceSearch before = s;
+        take_nearer_of_any(m, ray, frame.planes + uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false)), from, body, s);
+        if (s.primitive != before.primitive) {
+            if (looks && reach < FAR && lies_in(s.primitive, ray, s.nearest, reach))
+                s = before;
+            else
+                rayQueryGenerateIntersectionEXT(query, s.nearest);
+            going = !(looks && s.primitive != NO_SURFACE);
+        }
+    }
+}
+#endif
+
 // One node: on to the next in depth-first order, or past its subtree. True once the search is over.
 bool step_seek(MeshRay m, Ray ray, uint from, uint body, inout SurfaceSearch s) {
     if (s.node < frame.surface_nodes) {
