@@ -1,8 +1,11 @@
 #include "first_flights.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "medium_pieces.h"
 #include "placement.h"
@@ -42,19 +45,28 @@ double even_light(const Scene& scene) {
     return fluence / (4.0 * std::numbers::pi);
 }
 
-} // namespace
-
-double chance_to_collide(const Volume& volume, const LoadedMedium& loaded) {
-    const double sigma_t = largest(world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr));
-    if (!loaded.field)
-        return -std::expm1(-sigma_t * usual_share * diagonal_of(volume, loaded) / std::sqrt(3.0));
-    double sum = 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double edge = loaded.majorants->cell * glm::length(glm::dvec3(loaded.field->index_to_world[axis]));
-        sum += chance_along(*loaded.majorants, axis, usual_share * sigma_t * edge);
+// Chances of media by what they follow from, since instances have one grid.
+class Chances {
+public:
+    double of(const Volume& volume, const LoadedMedium& loaded) {
+        const double sigma_t = largest(world_sigma_t(volume, loaded.field ? &*loaded.field : nullptr));
+        if (!loaded.field)
+            return -std::expm1(-sigma_t * usual_share * diagonal_of(volume, loaded) / std::sqrt(3.0));
+        std::array<double, 3> depths; // of cells, by axes
+        for (int axis = 0; axis < 3; ++axis)
+            depths[axis] = usual_share * sigma_t * loaded.majorants->cell *
+                           glm::length(glm::dvec3(loaded.field->index_to_world[axis]));
+        const auto [known, is_new] = known_.try_emplace({loaded.majorants.get(), depths}, 0.0);
+        for (int axis = 0; axis < 3 && is_new; ++axis)
+            known->second += chance_along(*loaded.majorants, axis, depths[axis]) / 3.0;
+        return known->second;
     }
-    return sum / 3.0;
-}
+
+private:
+    std::map<std::pair<const MajorantGrid*, std::array<double, 3>>, double> known_;
+};
+
+} // namespace
 
 bool gains_by_split_flights(const Scene& scene, Media media) {
     constexpr double most = 0.75;  // measured: tools/results/README.md
@@ -66,9 +78,12 @@ bool gains_by_split_flights(const Scene& scene, Media media) {
     const double even = even_light(scene), background = largest(scene.background);
     if (background > even) // whatever the chance, for which all cells are asked
         return false;
+    // Roughly, that a ray which meets a grid's matter collides with it, mean over rays along the grid's axes; of other
+    // media over such as cross them. Of several the largest.
     double chance = 0.0;
-    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-        chance = std::max(chance, chance_to_collide(scene.volumes[i], media[i]));
+    Chances chances;
+    for (std::size_t i = 0; i < scene.volumes.size() && chance < most; ++i)
+        chance = std::max(chance, chances.of(scene.volumes[i], media[i]));
     return chance > least && chance < most && background <= chance * even;
 }
 

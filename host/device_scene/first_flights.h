@@ -10,8 +10,4 @@ namespace vkvol {
 // nothing.
 bool gains_by_split_flights(const Scene& scene, Media media);
 
-// Chance, roughly, that a ray which meets a grid's matter collides with it, mean over rays along the grid's axes; of
-// other media over such as cross them. In [0, 1].
-double chance_to_collide(const Volume& volume, const LoadedMedium& loaded);
-
 } // namespace vkvol

@@ -145,7 +145,7 @@ void specialize_media(const Scene& scene, Media media, const Superposition& whol
 // is even, or falls exponentially with height) or, beside surfaces, the light is a point, about which there is no bound
 // to that: elsewhere they take more time than they save, see tools/results/README.md.
 bool gains_by_looks_along(const Scene& scene, Media media) {
-    if (density_kind(scene) != FIELD_CONSTANT && !(scene.volumes.size() == 1 && fades(scene)))
+    if (density_kind(scene) != FIELD_CONSTANT && !(scene.volumes.size() == 1 && fades(scene)) && !sees_at_once(scene))
         return false;
     constexpr double near = 0.1; // of the medium's diagonal
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)

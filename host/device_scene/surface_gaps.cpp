@@ -62,14 +62,14 @@ bool meet(const PlaneSurface& plane, const WorldBox& box) {
 }
 
 // The largest of the pieces of a surface that are in the medium: each triangle has its own. Of no more of them in all
-// than `patience`, which is of some tenths of a second.
-double gap_in(const Surface& surface, const WorldBox& box, const glm::dvec3& origin, std::size_t& patience) {
+// than `patience`, which is of some tenths of a second. `bounds`: of the surface; of a plane none.
+double gap_in(const Surface& surface, const std::optional<SurfaceBounds>& bounds, const WorldBox& box,
+              const glm::dvec3& origin, std::size_t& patience) {
     if (const auto* plane = std::get_if<PlaneSurface>(&surface.shape)) // by the distance of where rays leave it
         return meet(*plane, box) && std::isfinite(box.low.x) ? gap_at({box.low, box.high}, origin) : 0.0;
-    const SurfaceBounds bounds = *bounds_of(std::span(&surface, 1));
     const auto* mesh = std::get_if<TriangleSurface>(&surface.shape);
-    if (!mesh || !meet(bounds, box))
-        return meet(bounds, box) ? gap_at(bounds, origin) : 0.0;
+    if (!mesh || !meet(*bounds, box))
+        return meet(*bounds, box) ? gap_at(*bounds, origin) : 0.0;
     double apart = 0.0;
     if (mesh->triangles.size() > patience)
         return apart;
@@ -85,7 +85,8 @@ double gap_in(const Surface& surface, const WorldBox& box, const glm::dvec3& ori
 Gap gap_of(const Surface& surface, std::span<const Extinction> media, const glm::dvec3& origin, std::size_t& patience) {
     Gap worst;
     double most = std::numeric_limits<double>::infinity(); // of a plane
-    if (const std::optional<SurfaceBounds> bounds = bounds_of(std::span(&surface, 1))) {
+    const std::optional<SurfaceBounds> bounds = bounds_of(std::span(&surface, 1));
+    if (bounds) {
         most = gap_at(*bounds, origin);
         const glm::dvec3 size = bounds->high - bounds->low;
         worst = {most, most / (seen * glm::length(size)), Gap::Of::size};
@@ -96,7 +97,7 @@ Gap gap_of(const Surface& surface, std::span<const Extinction> media, const glm:
     for (const Extinction& medium : media) {
         if (most * medium.most <= seen * std::max(1.0, worst.times))
             break;
-        const double apart = gap_in(surface, medium.box, origin, patience), times = apart * medium.most / seen;
+        const double apart = gap_in(surface, bounds, medium.box, origin, patience), times = apart * medium.most / seen;
         worst = times > worst.times ? Gap{apart, times, Gap::Of::free_path} : worst;
     }
     return worst;

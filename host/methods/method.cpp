@@ -58,6 +58,7 @@ private:
     void choose_first_flight();
     bool glows_evenly() const;
     bool gains_by_closed_glow() const;
+    bool splits_at_once() const;
     void choose_emission();
     void choose_filter();
     void check_channels() const;
@@ -279,18 +280,26 @@ void MethodChooser::choose_transmittance() {
         fmt::format("{}: {}; use transmittance ratio, or march with marched flights", method_.integrator, why));
 }
 
+// By the depth of all its way, which a model has in many parts, and different colours differently.
+bool MethodChooser::splits_at_once() const {
+    const Volume* volume = lone_volume(scene_);
+    return volume && method_.free_flight == FREE_FLIGHT_ANALYTIC && !is_through(method_) && !chromatic_ && !emits_ &&
+           !std::holds_alternative<MeshFiles>(volume->shape);
+}
+
 // A flight that is split goes through, past all tentative collisions: what tells the matter along it by these alone can
 // be.
 void MethodChooser::choose_first_flight() {
     const bool from_camera = method_.paths != PATHS_LIGHT && !reads_flux(scene_.camera);
-    const bool could = from_camera && method_.nee != NEE_TENTATIVE && !scene_.periodic &&
-                       !(emits_ && field_ == FIELD_SUPERPOSITION) && scene_.settings.majorant_scale >= 1.0 &&
-                       !has_no_end() && // whose outermost cells have none
-                       (method_.free_flight == FREE_FLIGHT_DELTA || method_.free_flight == FREE_FLIGHT_SPECTRAL);
+    const bool could =
+        from_camera && method_.nee != NEE_TENTATIVE && !scene_.periodic && !(emits_ && field_ == FIELD_SUPERPOSITION) &&
+        scene_.settings.majorant_scale >= 1.0 && !has_no_end() && // whose outermost cells have none
+        (method_.free_flight == FREE_FLIGHT_DELTA || method_.free_flight == FREE_FLIGHT_SPECTRAL || splits_at_once());
     if (choices_.first_flight == FIRST_FLIGHT_SPLIT && !could)
-        warn("first flights are drawn: split ones are of cameras, by flight delta or spectral, without shadow rays at "
-             "null collisions; not in domains that repeat or media without end, where several volumes glow, or below "
-             "densities' bounds");
+        warn("first flights are drawn: split ones are of cameras, by flight delta or spectral, or analytic in a sphere "
+             "or "
+             "box of one colour that does not glow, without shadow rays at null collisions; not in domains that repeat "
+             "or media without end, where several volumes glow, or below densities' bounds");
     method_.first_flight = could ? choices_.first_flight : FIRST_FLIGHT_DRAWN;
 }
 

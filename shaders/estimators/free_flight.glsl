@@ -61,7 +61,7 @@ uint fly(MediumParams v, Collision c, uint event, inout Walk w, inout Rng rng, i
     }
     switch (FREE_FLIGHT) {
     case FREE_FLIGHT_ANALYTIC:
-        event = analytic_flight(v, w, beta, deposit);
+        event = analytic_flight(v, w, beta, split, deposit);
         break;
     case FREE_FLIGHT_REGULAR:
         event = regular_flight(v, w, tally);

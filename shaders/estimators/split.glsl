@@ -41,6 +41,21 @@ uint split_flight(Collision c, Walk w, Spectrum part, inout Spectrum beta, inout
     return EVENT_TOUCHED;
 }
 
+// Where the depth of all the way is known, and it is of one colour, nothing tentative is needed. The depth after which what collides
+// has collided, if a flight that is drawn would after `drawn`.
+float split_depth(float depth, float drawn) {
+    return min(minus_log_of_rest(one_minus_exp(drawn) * one_minus_exp(depth)), depth);
+}
+
+// Of `beta`, what goes through; what has collided is left in `split`.
+void split_at_once(float depth, Walk w, inout Spectrum beta, inout Split split) {
+    float sum = total(abs(beta));
+    split.collided = sum * one_minus_exp(depth);
+    split.picked = beta / max(sum, 1.0e-30);
+    split.met = w.met;
+    beta *= exp(-depth);
+}
+
 // To the collision that was picked.
 void go_back(inout Walk w, Split split) {
     w.start = 0.0;

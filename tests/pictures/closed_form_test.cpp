@@ -177,6 +177,7 @@ TEST_CASE("a slab of optical depth 1e-6 is met by a millionth of the paths", "[g
     Scene scene = scene_of(slab(1e-6, 0.8), 1e-6, 32);
     scene.settings.spp = 1024;
     scene.lights = {sunlight(Rgb(1.0))};
+    scene.settings.choices.first_flight = FIRST_FLIGHT_DRAWN;
     const RenderResult result = render_here(scene, 12);
     const auto lit = std::count_if(result.film.mean.begin(), result.film.mean.end(), [](auto m) { return m.x > 0.0f; });
     CAPTURE(lit);

@@ -9,6 +9,7 @@
 #include "scene_facts.h"
 #include "session.h"
 #include "shared/constants.h"
+#include "support/agreement.h"
 #include "support/images.h"
 #include "support/scene_text.h"
 #include "support/scenes.h"
@@ -200,4 +201,20 @@ TEST_CASE("where shadow rays through several media are closed forms", "[cpu][sev
     CHECK(transmittance(with([](Scene& s) { s.volumes[1].noise = Noise{}; })) == TRANSMITTANCE_RATIO);
     CHECK(transmittance(with([](Scene& s) { s.volumes[1].sigma_a = {0.2, 0.3, 0.4}; })) == TRANSMITTANCE_RATIO);
     CHECK(transmittance(with([](Scene& s) { s.volumes[2].shape = cloud_file(); })) == TRANSMITTANCE_RATIO);
+}
+
+TEST_CASE("lamps among several even media are looked at from along flights", "[gpu][several][variances]") {
+    Scene scene =
+        jumble_with("<lights><spot x='-1' y='1.2' lookAt='0.6 -0.5 0' angle='40' multiplier='5'/></lights>", 256);
+    const auto spread = [&](std::optional<int> distance) {
+        scene.settings.choices.distance = distance;
+        const Film film = render_here(scene, 1).film;
+        double sum = 0.0;
+        for (std::size_t i = 0; i < film.pixel_count(); ++i)
+            sum += film.variance[i].y;
+        return sum;
+    };
+    CHECK(spread(std::nullopt) < 0.4 * spread(DISTANCE_FLIGHTS));
+    scene.settings.choices.distance.reset();
+    CHECK_AGREEMENT(agree(render_here(scene, 2).film, render_reference(scene, 3), "a lamp among several even media"));
 }

@@ -270,3 +270,70 @@ TEST_CASE("first flights are split where media are thin and nothing bright is be
     scene.volumes.front().density_scale = 1000.0;
     CHECK(!splits(scene));
 }
+
+// Closed forms of depth: no tentative collisions, and no need of them.
+TEST_CASE("flights through what is even, or fades, are split at once", "[gpu][first_flight]") {
+    const std::string
+        rest = "<width>16</width><height>16</height><rayPerPixelCount>512</rayPerPixelCount>"
+               "<integrator>ratioTracking</integrator>",
+        outside = "<camera x='1' y='1.5' z='5' lookAt='0 0 0' fov='30'/>",
+        within = "<camera x='0.2' y='0.1' z='0.5' yaw='35' fov='80'/>",
+        sun = "<light x='1' y='2' z='1' r='3' g='2' b='1'/>",
+        lamps = "<lights><sun zenith='40' multiplier='2' angle='3'/><point x='0.3' y='4' multiplier='20'/></lights>";
+    const std::string scenes[] = {
+        "<sphere/><sigma_a>0.1</sigma_a><sigma_s>0.5</sigma_s>" + outside + sun,
+        "<sphere/><sigma_a>0.1</sigma_a><sigma_s>1.5</sigma_s><backgroundColor r='0.1' g='0.2' b='0.4'/>" + within +
+            sun,
+        "<box width='1.5'/><sigma_a>0</sigma_a><sigma_s>0.2</sigma_s>" + outside + lamps,
+        "<box/><layers scaleHeight='0.3'/><sigma_a>0.2</sigma_a><sigma_s>1</sigma_s>" + outside + lamps,
+        "<box/><layers scaleHeight='0.4' up='x'/><sigma_a>0</sigma_a><sigma_s>0.3</sigma_s>" + within + sun};
+    for (const std::string& xml : scenes) {
+        CAPTURE(xml);
+        const Scene scene = parse(xml + rest), split = with(scene, FIRST_FLIGHT_SPLIT);
+        const RenderResult result = render_here(split, 1);
+        CHECK(result.counts.null_collisions == 0);
+        CHECK_AGREEMENT(agree(result.film, render_here(with(scene, FIRST_FLIGHT_DRAWN), 2).film, "drawn"));
+        CHECK_AGREEMENT(agree(result.film, render_reference(split, 3), "the reference"));
+        Scene few = scene;
+        few.settings.spp = 64;
+        check_same(FirstCollisions(few, FIRST_FLIGHT_SPLIT, 1), FirstCollisions(few, FIRST_FLIGHT_DRAWN, 101));
+    }
+}
+
+TEST_CASE("an even glow leaves no noise where flights are split at once", "[gpu][first_flight][furnace]") {
+    for (const char* xml : {"<sphere/>", "<box/><layers scaleHeight='0.3'/>"})
+        for (const double sigma : {1e-6, 0.01, 2.0, 100.0}) {
+            const Scene scene =
+                parse(fmt::format("{}<sigma_a>0</sigma_a><sigma_s>{}</sigma_s><backgroundColor r='1' g='1' "
+                                  "b='1'/><camera z='4' fov='40'/><width>16</width><height>16</height>"
+                                  "<rayPerPixelCount>64</rayPerPixelCount><integrator "
+                                  "firstFlight='split'>ratioTracking</integrator>",
+                                  xml, sigma));
+            const Film film = render_here(scene, 5).film;
+            for (std::size_t i = 0; i < film.pixel_count(); ++i)
+                CHECK(std::abs(film.mean[i].x - 1.0f) < 1e-5f);
+        }
+}
+
+// One in 67 drawn flights collides.
+TEST_CASE("even matter is seen by most samples, however thin", "[gpu][first_flight][variances]") {
+    const Scene scene = parse("<sphere/><sigma_a>0</sigma_a><sigma_s>0.01</sigma_s><light y='1' r='3' g='3' b='3'/>"
+                              "<camera z='4' fov='25'/><width>16</width><height>16</height>"
+                              "<rayPerPixelCount>64</rayPerPixelCount><integrator>ratioTracking</integrator>");
+    const Film film = render_here(scene, 1).film; // by itself
+    CHECK(variance_of(film) < 0.1 * variance_of(render_here(with(scene, FIRST_FLIGHT_DRAWN), 1).film));
+}
+
+TEST_CASE("split flights in even media that glow, differ in colour or are models are drawn", "[cpu][first_flight]") {
+    const auto first_flight_in = [](const std::string& medium) {
+        const Scene scene = parse(medium + "<light y='1' r='1' g='1' b='1'/><integrator "
+                                           "firstFlight='split'>ratioTracking</integrator>");
+        return choose_method(scene).first_flight;
+    };
+    CHECK(first_flight_in("<sphere/><sigma_s>0.1</sigma_s>") == FIRST_FLIGHT_SPLIT);
+    CHECK(first_flight_in("<sphere/><sigma_s>0.1</sigma_s><sigma_a>0.1</sigma_a><medium r='1' g='1' b='1'/>") ==
+          FIRST_FLIGHT_DRAWN);
+    CHECK(first_flight_in("<sphere/><sigma_s>0.1</sigma_s><sigma_a>0</sigma_a><periodic x='-2 2'/>") ==
+          FIRST_FLIGHT_DRAWN);
+    CHECK(first_flight_in("<sphere/><sigma_s r='0.1' g='0.2' b='0.3'/>") == FIRST_FLIGHT_DRAWN);
+}

@@ -200,7 +200,7 @@ void check_means_of(Scene scene, const std::vector<Rgb>& means, std::size_t turn
 TEST_CASE("light that each light scatters once equals the quadrature, in thin and in thick fog",
           "[gpu][lights][closed_form]") {
     std::size_t turn = 0;
-    for (const LoneLight& lone : lone_lights(12, 30)) {
+    for (const LoneLight& lone : lone_lights(24, 30)) {
         ++turn;
         for (const double sigma_t : in_turn<double>({0.1, 3.0}, turn, 2)) {
             Scene scene = scene_of(medium(Box{{0, 0, 0}, 2.0 * half_edges}, sigma_t, 0.9, 0.4), 1.2, 8, 20.0,

@@ -29,6 +29,7 @@ class Reader:
         file = self.folder / f"case{self.count}.xml"
         table, report = file.with_suffix(".csv"), file.with_suffix(".json")
         self.report = report  # of the latest
+        self.places = []
         file.write_text(f"<options>{scene}<rayPerPixelCount>{samples}</rayPerPixelCount></options>\n")
         command = [self.vkvol, file, "-q", "--seed", str(seed), "--schedule", self.schedule, "-o", table, "--report", report, *options]
         done = subprocess.run(command, capture_output=True, text=True)
@@ -41,6 +42,7 @@ class Reader:
                 columns.setdefault(place, []).append((float(row["G"]), float(row["standardError.G"] or "inf")))
                 if any(not math.isclose(float(row[other]), float(row["G"]), rel_tol=1e-5, abs_tol=1e-30) for other in "RB"):
                     raise SystemExit(f"{file}: all is grey, but a reading is {row}")
+        self.places = sorted(columns)
         mean = json.loads(report.read_text())["mean"]
         errors = mean["standardError"]  # none of a single sample; 0 where nothing varies
         self.mean_error = errors[1] if errors and errors[1] is not None else math.inf
@@ -69,3 +71,8 @@ class Reader:
                 return rows, samples
             samples = min(MOST_SAMPLES, max(2 * samples, int(min(1.15 * short * samples, MOST_SAMPLES))))
             seed += 1
+
+    def read_alone(self, case, place, samples):
+        """One reading of a map, as often and with other random numbers."""
+        row, column = place
+        return self.read(case.scene, samples, 100 * self.count + 1, True, ["--crop", f"{column},{column + 1},{row},{row + 1}"])[0]
