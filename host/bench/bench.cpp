@@ -216,11 +216,12 @@ void check_request(const BenchRequest& request, const std::vector<Estimator>& es
     // none.
     constexpr int least_pixels = 32;
     const Picture& picture = estimators.front().scene.picture;
-    if (picture.width * picture.height < least_pixels)
+    const std::int64_t pixels = std::int64_t{picture.width} * picture.height;
+    if (pixels < least_pixels)
         throw InputError(
             fmt::format("a picture of {} pixels: a bench judges by the errors of {} at least; give the camera or "
                         "sensor more --width and --height",
-                        picture.width * picture.height, least_pixels));
+                        pixels, least_pixels));
     FileUses uses;
     uses.reads("the scene", request.render.scene);
     uses.reads_files_of(estimators.front().scene);

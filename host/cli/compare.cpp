@@ -199,7 +199,7 @@ void judge(const Film& a, const CompareOptions& options, Comparison& result) {
         result.reason = std::move(reason);
     };
     if (result.non_finite > 0)
-        return verdict(true, fmt::format("{} values are not finite", result.non_finite));
+        return verdict(true, fmt::format("{} pixels are not finite", result.non_finite));
     if (result.unsampled == pixels)
         return verdict(true, "no pixel has samples in both images");
     if (options.max_relmse)

@@ -22,7 +22,7 @@ int run_develop(const DevelopOptions& options) {
     uses.check();
     Metadata metadata;
     const Film film = read_exr(options.input, &metadata);
-    if (film.has_other_primaries)
+    if (film.has_other_primaries && !options.quiet)
         tell(stderr,
              "vkvol: warning: {}: its primaries are not those of Rec.709 (sRGB), but its numbers are taken as such\n",
              options.input.string());

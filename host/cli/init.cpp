@@ -37,12 +37,14 @@ int run_init(const InitOptions& options) {
     if (!is_special(output) && std::filesystem::exists(std::filesystem::symlink_status(output, ignored)))
         throw InputError(fmt::format("{}: is there already, and would be lost; remove it, or name another with -o",
                                      output.string()));
+    if (options.up && options.grid.empty())
+        throw InputError("--up: is for density files; name one");
     check_directory_writable(output);
     std::string xml = first_scene, assumed;
     if (!options.grid.empty()) {
         FileSceneOptions file;
         file.picture = file_picture();
-        file.up = options.up;
+        file.up = options.up.value_or(Up::y);
         // A stream's text may come to be anywhere.
         const std::filesystem::path grid =
             is_special(output) ? std::filesystem::weakly_canonical(options.grid) : options.grid;

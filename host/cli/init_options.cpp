@@ -9,7 +9,7 @@ namespace vkvol {
 void parse_init(const std::vector<std::string>& arguments, Options& options) {
     InitOptions& init = options.init;
     CLI::App app(init_description, "vkvol init");
-    std::string up = "y";
+    std::string up;
     app.add_option("grid", init.grid, "A density file to begin with")->option_text("[FILE.nvdb|FILE.vdb]");
     app.add_option("-o,--output", init.output, "Where to write")
         ->option_text("FILE.xml [scene.xml, or the density file's name]");
@@ -18,7 +18,8 @@ void parse_init(const std::vector<std::string>& arguments, Options& options) {
     app.footer(init_footer);
     if (!run_parser(app, arguments, options))
         return;
-    init.up = choose<Up>("--up", up, {{"y", Up::y}, {"z", Up::z}});
+    if (!up.empty())
+        init.up = choose<Up>("--up", up, {{"y", Up::y}, {"z", Up::z}});
 }
 
 } // namespace vkvol

@@ -161,7 +161,7 @@ void write(const MeasureOptions& options, const TableRows& rows) {
     try {
         write_text(*options.output, as_file(*options.output, rows));
     } catch (const RenderError& error) {
-        put(stdout, as_csv(rows));
+        put(stdout, as_file(*options.output, rows));
         throw RenderError(fmt::format("{}; the readings are on standard output instead", error.what()));
     }
 }

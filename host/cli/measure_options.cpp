@@ -66,7 +66,8 @@ void add_options(CLI::App& app, MeasureOptions& measure, MeasureTexts& texts) {
         ->option_text("FILE [scene]")
         ->group(group);
     add_list(app, "-D,--define", texts.defines,
-             "Fills $KEY in the scene, with one value after the other; may be given several times")
+             "Fills $KEY in the scene, with one value after the other; may be given several times. A..BxN: N values, "
+             "both ends among them")
         ->option_text("KEY=A,B,...|KEY=A..BxN")
         ->group(group);
     app.add_option("--bands", texts.bands,

@@ -98,7 +98,8 @@ void add_sampling_options(CLI::App& app, RenderOptions& render, RenderTexts& tex
         ->group(group);
     add_scene_options(app, render, texts.defines, group);
     app.add_option("-f,--frames", texts.frames,
-                   "Render these frames, each with its number as $F in the scene: 1..8, 1..48x4 or 1,5,9. Names of "
+                   "Render these frames, each with its number as $F in the scene: 1..8, 1..48x4 (every fourth) or "
+                   "1,5,9. Names of "
                    "outputs and of --grid may hold it as ####, %04d or $F4; else it comes before the outputs' "
                    "extension. files: "
                    "all for which there is a --grid")

@@ -82,7 +82,7 @@ struct ConvertOptions {
 struct InitOptions {
     std::filesystem::path grid;   // .nvdb or .vdb to begin with; or empty
     std::filesystem::path output; // .xml; empty: of a name that suits
-    Up up = Up::y;                // of the grid
+    std::optional<Up> up;         // of the grid; y
     bool quiet = false;
 };
 

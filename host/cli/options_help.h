@@ -4,7 +4,7 @@
 namespace vkvol {
 
 inline constexpr const char* render_description =
-    "Renders participating media: clouds, smoke, fog. Any Vulkan device will do.";
+    "Renders participating media: clouds, smoke, fog. On any Vulkan device that `vkvol devices` calls usable.";
 
 inline constexpr const char* render_footer = R"(Other commands (each has its own --help):
   vkvol devices               the Vulkan devices of this machine

@@ -17,6 +17,7 @@
 #include "messages.h"
 #include "render_command.h"
 #include "render_scene.h"
+#include "render_summary.h"
 #include "rendered_before.h"
 #include "workshop.h"
 
@@ -118,7 +119,8 @@ int render_frame(RenderOptions options, int frame, Workshop& workshop, bool& has
         return render_picture(options, workshop);
     }
     if (!options.quiet)
-        tell(stdout, "frame {}: {} is there\n", frame, options.outputs.front().string());
+        tell(stream_for_words(options.outputs, options.report), "frame {}: {} is there\n", frame,
+             options.outputs.front().string());
     return *code;
 }
 
@@ -136,7 +138,8 @@ void print_end(const RenderOptions& options, const std::vector<int>& done, int c
     } else if (options.dry_run) {
         tell(stdout, "{} frames checked: nothing is rendered, nothing written\n", total);
     } else {
-        tell(stdout, "{} frames ({}) in {:.1f} s\n", total, frames_text(options.frames), seconds);
+        tell(stream_for_words(options.outputs, options.report), "{} frames ({}) in {:.1f} s\n", total,
+             frames_text(options.frames), seconds);
     }
 }
 

@@ -13,10 +13,11 @@ namespace vkvol {
 
 namespace {
 
-// Not "007", nor "inf": what a number would not be written as, but a key's value may be.
+// Not "007", nor "inf": what a number would not be written as, but a key's value may be. ".5" is one.
 bool is_plain(const std::string& number) {
     const std::size_t first = number.find_first_not_of('-');
-    return first != std::string::npos && std::isdigit(static_cast<unsigned char>(number[first])) &&
+    const std::size_t digit = first != std::string::npos && number[first] == '.' ? first + 1 : first;
+    return digit < number.size() && std::isdigit(static_cast<unsigned char>(number[digit])) &&
            !(number[first] == '0' && first + 1 < number.size() &&
              std::isdigit(static_cast<unsigned char>(number[first + 1])));
 }

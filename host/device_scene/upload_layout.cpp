@@ -13,9 +13,9 @@ UploadLayout::UploadLayout(Media media) {
     GridPlace next{0, 0};
     for (const DensityField* grid : distinct_grids(media)) {
         grid_places_.emplace(grid->bytes.data(), next);
-        grids_.push_back(grid->bytes.span());
+        grids_.push_back(grid->bytes.words());
         leaf_tables_.push_back(std::as_bytes(std::span<const std::uint32_t>(grid->leaf_table)));
-        next.first_word += static_cast<std::uint32_t>(grid->bytes.size() / 4);
+        next.first_word += static_cast<std::uint32_t>(grid->bytes.words().size() / 4);
         next.first_entry += static_cast<std::uint32_t>(grid->leaf_table.size());
     }
     for (const LoadedMedium& medium : media) {

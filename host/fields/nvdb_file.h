@@ -24,6 +24,8 @@ public:
     const std::byte* data() const { return reinterpret_cast<const std::byte*>(blocks_.data()); }
     std::size_t size() const { return size_; }
     std::span<const std::byte> span() const { return {data(), size_}; }
+    // The same as kernels know it: behind the last byte are zeros, to the end of the word.
+    std::span<const std::byte> words() const { return {data(), (size_ + 3) / 4 * 4}; }
 
 private:
     struct alignas(32) Block {

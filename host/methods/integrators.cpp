@@ -87,7 +87,8 @@ const std::vector<Integrator> table = {
      "single scattering and emission in a grid, flights and shadow rays in equal steps", "Luna 2024"},
     {"lightTracing", SCATTERING_MULTIPLE, FREE_FLIGHT_DELTA, TRANSMITTANCE_RATIO, NEE_COLLISIONS, adjust_nothing, own,
      "", "maxDepth, filter, majorant, russianRoulette",
-     "particles from the lights, whose vertices look toward the camera: for light that paths from there seldom find",
+     "particles from the lights, whose vertices look toward the camera: for light that paths from there seldom find; "
+     "without what smooth mirrors, coats and glass show",
      "Dutre et al. 1993", PATHS_LIGHT},
     {"bidirectional", SCATTERING_MULTIPLE, FREE_FLIGHT_DELTA, TRANSMITTANCE_RATIO, NEE_COLLISIONS, adjust_nothing, own,
      "", "maxDepth, filter, majorant, russianRoulette",

@@ -141,7 +141,9 @@ Plan make_plan(const Device& device, const LoopSizes& loops, std::uint64_t pixel
 }
 
 void fit_splats(const Device& device, std::uint64_t pixels, std::uint32_t batch, Plan& plan) {
-    constexpr std::uint64_t each = SPLAT_WORDS * sizeof(std::uint32_t), usual = 1u << 26; // bytes
+    // Particles of a band are traced for its pixels alone: it has all the picture, where one sample of that fits.
+    constexpr std::uint64_t each = SPLAT_WORDS * sizeof(std::uint32_t), least = 1u << 26; // bytes
+    const std::uint64_t usual = std::clamp<std::uint64_t>(each * (pixels + 2), least, 1u << 30);
     const std::uint64_t most = std::min<std::uint64_t>(usual, device.limits().maxStorageBufferRange);
     plan.most_film_bytes = std::min<std::uint64_t>(plan.most_film_bytes, (most / each - 2) * sizeof(shared::FilmPixel));
     pixels = std::min<std::uint64_t>(pixels, plan.most_film_bytes / sizeof(shared::FilmPixel));

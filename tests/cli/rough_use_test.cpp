@@ -15,6 +15,7 @@
 #include "printable.h"
 #include "scene_xml.h"
 #include "support/command_folder.h"
+#include "table_rows.h"
 #include "test_paths.h"
 
 using namespace vkvol;
@@ -113,12 +114,42 @@ TEST_CASE("pipes are read and written", "[gpu][command]") {
 
 TEST_CASE("what goes to standard output has no words amid it", "[gpu][command]") {
     const Folder folder("");
-    REQUIRE(folder.script("\"$vkvol\" ball.xml --spp 2 -o a.exr --report /dev/stdout 2>words >a.json").code == exit_done);
+    REQUIRE(folder.script("\"$vkvol\" ball.xml --spp 2 -o a.exr --report /dev/stdout 2>words >a.json").code ==
+            exit_done);
     CHECK(nlohmann::json::parse(folder.text("a.json"))["samplesPerPixel"]["most"] == 2);
     CHECK_THAT(folder.text("words"), Contains("a.exr: 2 samples per pixel"));
     REQUIRE(folder.script("ln -s /dev/stdout a.csv; \"$vkvol\" merge a.exr -o a.csv >table 2>words").code == exit_done);
     CHECK_THAT(folder.text("table"), Catch::StartsWith("column,row,") && !Contains("images"));
     CHECK_THAT(folder.text("words"), Contains("1 images"));
+}
+
+TEST_CASE("a sequence has no words amid what goes to standard output", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("turn.xml", "<options><sphere/><sigma_s>${F}</sigma_s><width>8</width><height>8</height></options>");
+    REQUIRE(folder.script("\"$vkvol\" turn.xml --spp 2 -f 1..2 -o a.#.exr --report /dev/stdout 2>words >a.json").code ==
+            exit_done);
+    CHECK_THAT(folder.text("a.json"), Contains("samplesPerPixel") && !Contains("frames"));
+    CHECK_THAT(folder.text("words"), Contains("2 frames (1,2)"));
+    REQUIRE(
+        folder.script("\"$vkvol\" turn.xml --spp 2 -f 1..2 -o a.#.exr --resume --report /dev/stdout 2>words >a.json")
+            .code == exit_done);
+    CHECK_THAT(folder.text("a.json"), !Contains("is there"));
+}
+
+TEST_CASE("numbers of readings are numbers, however the key had them", "[cpu][command]") {
+    const TableRows rows{{"mu0", "R", "samples"}, {".5", "1", "16"}, {"-.25", "2", "16"}, {"007", "3", "16"}};
+    const nlohmann::json json = nlohmann::json::parse(as_file("t.json", rows));
+    CHECK(json[0]["mu0"] == 0.5);
+    CHECK(json[1]["mu0"] == -0.25);
+    CHECK(json[2]["mu0"] == "007");
+}
+
+TEST_CASE("what is up is asked of density files alone", "[gpu][command]") {
+    const Folder folder("");
+    const Run run = folder.vkvol("init --up z -o new.xml");
+    CHECK(run.code == exit_bad_input);
+    CHECK_THAT(run.text, Contains("--up: is for density files; name one"));
+    CHECK(!fs::exists(folder.file("new.xml")));
 }
 
 TEST_CASE("two signals one after the other are one", "[gpu][command]") {

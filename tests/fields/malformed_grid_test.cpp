@@ -9,8 +9,11 @@
 
 #include "density_field.h"
 #include "error.h"
+#include "loaded_medium.h"
 #include "majorant_grid.h"
+#include "support/scenes.h"
 #include "support/test_grids.h"
+#include "upload_layout.h"
 
 using namespace vkvol;
 using Catch::Contains;
@@ -131,4 +134,20 @@ TEST_CASE("large tiles cost no more than small ones under a map of values", "[cp
     CHECK(bound_at(majorants, {6000, 500, 500}) == Approx(1.2).epsilon(1e-5));
     CHECK(bound_at(majorants, {4092, 500, 500}) == Approx(2.0).epsilon(1e-5));  // beside it is nothing
     CHECK(bound_at(majorants, {6000, 1000, 500}) == Approx(2.0).epsilon(1e-5)); // where the grid ends is none, either
+}
+
+TEST_CASE("grids that end within a word lie behind one another whole", "[cpu][several]") {
+    const GridBytes even = make_grid_bytes(cloud_grid());
+    GridBytes odd(even.size() + 2);
+    std::memcpy(odd.edit(), even.data(), even.size());
+    reinterpret_cast<nanovdb::GridData*>(odd.edit())->mGridSize = odd.size();
+    std::vector<LoadedMedium> media(1);
+    media[0].field = make_density_field(std::move(odd), "odd");
+    media[0].temperature = make_density_field(make_grid_bytes(cloud_grid()), "even");
+    const UploadLayout layout(media);
+    REQUIRE(layout.grids().size() == 2);
+    CHECK(layout.place_of(*media[0].field).first_word == 0);
+    CHECK(4 * layout.place_of(*media[0].temperature).first_word == layout.grids()[0].size());
+    CHECK(layout.grids()[0].size() == even.size() + 4);
+    CHECK(layout.grids()[0].back() == std::byte{0});
 }
