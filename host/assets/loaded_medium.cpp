@@ -434,6 +434,8 @@ Assets load_assets(const Scene& scene, const Method& method, FieldCache* kept, S
     }
     check_everywhere(scene, assets.media, method.scattering);
     check_way_out(scene, assets.media, method.scattering);
+    if (std::string shut_out = lights_shut_out(scene); !shut_out.empty())
+        assets.warnings.push_back(std::move(shut_out));
     if (is_superposition(scene))
         assets.superposition = superpose(scene, assets.media, method);
     if (assets.superposition)

@@ -347,6 +347,24 @@ void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media
                          "sigma_a, or give a <maxDepth>");
 }
 
+std::string lights_shut_out(const Scene& scene) {
+    const auto is_endless = [](const Volume& volume) {
+        return is_everywhere(volume) && !volume.layers &&
+               glm::all(glm::greaterThan(world_sigma_t(volume, nullptr), Rgb(0.0)));
+    };
+    const auto is_far = [](const Light& light) {
+        return std::holds_alternative<DirectionalLight>(light) || std::holds_alternative<SunLight>(light) ||
+               std::holds_alternative<SkyLight>(light);
+    };
+    const auto medium = std::find_if(scene.volumes.begin(), scene.volumes.end(), is_endless);
+    if (medium == scene.volumes.end() || std::none_of(scene.lights.begin(), scene.lights.end(), is_far))
+        return "";
+    return fmt::format(
+        "{}{}a medium that is <everywhere> has no end, and so lets no light through from <light>, <sun> or "
+        "<sky>; a <box> or <sphere> about camera and scene would end it, and <layers> let it thin out",
+        medium->place, medium->place.empty() ? "" : ": ");
+}
+
 void check_way_out(const Scene& scene, const std::vector<LoadedMedium>& media, int scattering) {
     const bool has_way_out = !scene.periodic || glm::any(glm::equal(scene.periodic->size(), glm::dvec3(0.0)));
     const auto absorbs = [](const Surface& surface) {

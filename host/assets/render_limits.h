@@ -26,6 +26,10 @@ void check_everywhere(const Scene& scene, const std::vector<LoadedMedium>& media
 // Throws InputError for a domain that repeats along all axes and loses too little ever to end a path; likewise.
 void check_way_out(const Scene& scene, const std::vector<LoadedMedium>& media, int scattering);
 
+// Lights that are infinitely far, in a scene with an even medium without end, which lets none of theirs through. Empty:
+// none.
+std::string lights_shut_out(const Scene& scene);
+
 // What is rendered, but not well: mean free paths that are hardly more than places are known to. Empty: none.
 std::string too_short_paths(const Scene& scene, const Volume& volume, const LoadedMedium& loaded);
 

@@ -37,6 +37,7 @@ private:
     }
     bool has_thrown_light() const;
     bool shines_by_chance() const;
+    bool glows_by_chance() const;
     bool is_thrown_from_afar() const;
     std::string who_finds_caustics() const;
     void warn(const std::string& message) { method_.warnings.push_back(method_.integrator + ": " + message); }
@@ -57,6 +58,18 @@ bool BiasFinder::shines_by_chance() const {
         lights.insert(body_of(light));
     for (std::size_t i = 0; i < scene_.surfaces.size(); ++i)
         if (scene_.surfaces[i].emission != Rgb(0.0) && !lights.contains(static_cast<int>(i)))
+            return true;
+    return false;
+}
+
+// Whether a medium glows that no look goes to: all but even balls and boxes.
+bool BiasFinder::glows_by_chance() const {
+    std::set<int> looked_for;
+    for (const Light& light : scene_.lights)
+        if (const auto* glow = std::get_if<GlowLight>(&light))
+            looked_for.insert(glow->medium);
+    for (std::size_t i = 0; i < scene_.volumes.size(); ++i)
+        if (glows(scene_.volumes[i]) && !looked_for.contains(static_cast<int>(i)))
             return true;
     return false;
 }
@@ -106,6 +119,11 @@ void BiasFinder::find_chances() {
     if (method_.paths != PATHS_LIGHT && method_.scattering != SCATTERING_SINGLE && shines_by_chance())
         found.push_back(scene_.periodic ? "light of surfaces, for which no shadow ray looks in domains that repeat"
                                         : "light of planes, or of any surface without shadow rays");
+    if (method_.paths != PATHS_LIGHT && method_.scattering != SCATTERING_SINGLE && !scene_.surfaces.empty() &&
+        glows_by_chance())
+        found.push_back(why_no_particles(scene_, false, true)
+                            ? "light of media that glow unevenly, on surfaces"
+                            : "light of media that glow unevenly, on surfaces, which integrator lightTracing brings");
     method_.by_chance = fmt::format("{}", fmt::join(found, "; "));
 }
 

@@ -55,12 +55,14 @@ bool has_chromatic_extinction(const Scene& scene) {
     });
 }
 
+bool glows(const Volume& volume) {
+    return volume.density_scale * most_sigma_a(volume) *
+               (volume.Le + volume.temperature.color + most_map_emission(volume)) !=
+           Rgb(0.0);
+}
+
 bool emits(const Scene& scene) {
-    return any_medium(scene, [](const Volume& volume) {
-        return volume.density_scale * most_sigma_a(volume) *
-                   (volume.Le + volume.temperature.color + most_map_emission(volume)) !=
-               Rgb(0.0);
-    });
+    return any_medium(scene, glows);
 }
 
 bool can_cache_light(const Scene& scene) {

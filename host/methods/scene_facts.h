@@ -21,7 +21,8 @@ bool has_chromatic_extinction(const Scene& scene); // sigma_t differs between ch
 // surface is in the way.
 bool can_cache_light(const Scene& scene);
 bool can_scatter(const Volume& volume);
-bool emits(const Scene& scene); // judged by coefficients: the temperature grid may be missing
+bool glows(const Volume& volume); // judged by coefficients: the temperature grid may be missing
+bool emits(const Scene& scene);   // whether one of its media glows
 
 bool has_map(const Scene& scene); // of values to what a medium is, for one of its media at least
 bool fades(const Scene& scene);   // the density of its one volume falls exponentially with height

@@ -218,3 +218,20 @@ TEST_CASE("lamps among several even media are looked at from along flights", "[g
     scene.settings.choices.distance.reset();
     CHECK_AGREEMENT(agree(render_here(scene, 2).film, render_reference(scene, 3), "a lamp among several even media"));
 }
+
+TEST_CASE("lights from afar that a medium without end shuts out are told", "[cpu][several]") {
+    const auto warnings_of = [](const std::string& xml) {
+        const Scene scene = parse(xml);
+        return load_assets(scene, choose_method(scene)).warnings;
+    };
+    const std::string fog = "<everywhere/><sigma_a>0.01</sigma_a><sigma_s>0.05</sigma_s>";
+    const std::vector<std::string> told = warnings_of(fog + "<light y='1' r='1' g='1' b='1'/>");
+    REQUIRE(told.size() == 1);
+    CHECK_THAT(told.front(), Catch::Contains("has no end, and so lets no light through from <light>, <sun> or <sky>"));
+    CHECK(warnings_of(fog + "<lights><sun zenith='30'/><point/></lights>").size() == 1);
+    CHECK(warnings_of(fog + "<lights><point/></lights>").empty());
+    CHECK(warnings_of(fog + "<layers scaleHeight='100'/><light y='1' r='1' g='1' b='1'/>").empty());
+    CHECK(warnings_of("<everywhere/><sigma_a>0</sigma_a><sigma_s r='0' g='0.1' b='0.1'/><maxDepth>2</maxDepth>"
+                      "<light y='1' r='1' g='1' b='1'/>")
+              .empty()); // red comes through
+}

@@ -27,13 +27,15 @@ def limit(count, alpha=0.01):
 
 
 def scatter(case, rows):
-    """Of a consensus whose own is not published: by how much neighbouring figures differ at random from the readings. From second
-    differences, so that whatever differs smoothly, or all alike, is no part of it. No more than a tenth of the figures, nor than a
-    quarter of what these themselves differ so: a map that is moved by a column would have all of that."""
+    """Of a consensus whose own is not published, for each figure: by how much neighbouring figures differ at random from the readings. From
+    second differences, so that whatever differs smoothly, or all alike, is no part of it. Its square is in proportion to the figure, as that of
+    what is counted is: so it is in Landsat's nadir radiance, octile by octile. No more than a tenth of the figures, nor than 0.7 of what these
+    themselves differ so: a map that is moved by a column would have more than all of that."""
     apart = [case.scale * mean - published for (mean, _), published in zip(rows, case.published, strict=True)]
     own = sum((case.scale * error) ** 2 for _, error in rows) / len(rows)
-    most = min(0.1 * sum(map(abs, case.published)) / len(case.published), 0.25 * math.sqrt(roughness(case.published)))
-    return min(math.sqrt(max(0.0, roughness(apart) - own)), most)
+    usual = sum(map(abs, case.published)) / len(case.published)
+    of_usual = min(math.sqrt(max(0.0, roughness(apart) - own)), 0.1 * usual, 0.7 * math.sqrt(roughness(case.published)))
+    return [of_usual * math.sqrt(abs(published) / usual) for published in case.published]
 
 
 def roughness(values):
@@ -45,7 +47,7 @@ def roughness(values):
 def judge(case, rows, mean_error):
     """Of each figure, and of their mean, of that error, where it is published."""
     less = case.less or [0.0] * len(rows)
-    slacks = case.slack or [scatter(case, rows)] * len(rows)
+    slacks = case.slack or scatter(case, rows)
     found = [Verdict(case, label, case.scale * mean - known, case.scale * error, published, slack)
              for label, (mean, error), published, slack, known in zip(case.labels, rows, case.published, slacks, less, strict=True)]
     if case.mean:
