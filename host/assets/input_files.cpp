@@ -9,6 +9,8 @@ namespace vkvol {
 
 std::vector<InputFile> input_files(const Scene& scene, bool with_materials) {
     std::vector<InputFile> files;
+    for (const std::filesystem::path& included : scene.included)
+        files.push_back({"a file that the scene includes", included});
     if (!scene.camera.points_file.empty())
         files.push_back({"the scene's list of points", scene.camera.points_file});
     for (const Volume& volume : scene.volumes) {

@@ -291,7 +291,7 @@ void PbrtDirectives::add_world() {
     handlers_["ReverseOrientation"] = [this](const PbrtToken&) { state_.is_reversed = !state_.is_reversed; };
     handlers_["Include"] = [this](const PbrtToken& token) {
         const std::string file = name("a file in quotes");
-        tokens_.include(scene_.folder / file, token.place);
+        include(scene_.folder / file, token.place);
     };
     handlers_["Import"] = [this](const PbrtToken& token) { import(token); };
 }
@@ -337,11 +337,16 @@ void PbrtDirectives::add_things() {
     handlers_["ObjectInstance"] = [this](const PbrtToken&) { read_instance(); };
 }
 
+void PbrtDirectives::include(const std::filesystem::path& file, const PbrtPlace& place) {
+    tokens_.include(file, place);
+    scene_.included.insert(file);
+}
+
 void PbrtDirectives::import(const PbrtToken& directive) {
     const std::string file = name("a file in quotes");
     push(directive.place);
     imports_.push_back({states_.size(), tokens_.depth(), std::exchange(coordinate_systems_, {})});
-    tokens_.include(scene_.folder / file, directive.place);
+    include(scene_.folder / file, directive.place);
 }
 
 // Where a directive begins, those whose file has ended before it.

@@ -62,6 +62,7 @@ private:
     }
     void pop(const PbrtToken& directive, bool ends_object);
     void check_ended(std::size_t states) const;
+    void include(const std::filesystem::path& file, const PbrtPlace& place);
     void import(const PbrtToken& directive);
     void end_imports();
     void note(const PbrtPlace& place, const std::string& message);

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -45,8 +46,9 @@ struct PbrtScene {
     std::string rendered_in = "cameraworld"; // of Option "rendercoordsys"
     std::map<std::string, PbrtThing> media, materials, textures;
     std::vector<PbrtThing> lights;
-    std::vector<PbrtShape> shapes;  // those of instances included
-    std::vector<std::string> notes; // "file:line:column: ..." for what was understood but is not honoured
+    std::vector<PbrtShape> shapes;            // those of instances included
+    std::set<std::filesystem::path> included; // files that it is read from beside its own
+    std::vector<std::string> notes;           // "file:line:column: ..." for what was understood but is not honoured
 };
 
 // Throws InputError, "file:line:column: what is wrong; what would be right".

@@ -369,8 +369,9 @@ struct Scene {
     RenderSettings settings;
     std::string units = {}; // of its readings, if they are parts of what the light brings; or empty
     std::optional<Expected> expected;
-    std::vector<BlackElement> black;   // without effect on the picture
-    std::vector<std::string> warnings; // "file:line:column: ..." for what was understood but is not honoured
+    std::vector<BlackElement> black;             // without effect on the picture
+    std::vector<std::filesystem::path> included; // files of the scene itself, beside the one that was named
+    std::vector<std::string> warnings;           // "file:line:column: ..." for what was understood but is not honoured
 };
 
 // The light if there is but one, that has neither place nor extent, and only media look at it: then there is no choice

@@ -82,8 +82,12 @@ Scene load_scene(const std::filesystem::path& file, const Defines& defines, cons
             fmt::format("{}: -D and -f fill in the $keys of a scene, and pbrt's have none; `vkvol convert` "
                         "makes a scene of it that can have some",
                         file.string()));
-    if (is_pbrt_file(file))
-        return parse_scene(translate_pbrt(read_pbrt(file)), file, overrides);
+    if (is_pbrt_file(file)) {
+        const PbrtScene pbrt = read_pbrt(file);
+        Scene scene = parse_scene(translate_pbrt(pbrt), file, overrides);
+        scene.included.assign(pbrt.included.begin(), pbrt.included.end());
+        return scene;
+    }
     if (is_grid_file(file))
         throw InputError(fmt::format("{}: is a density file; expected a scene file (.xml), like that which `vkvol {}` "
                                      "writes beside its picture",

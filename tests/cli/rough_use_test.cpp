@@ -152,6 +152,21 @@ TEST_CASE("what is up is asked of density files alone", "[gpu][command]") {
     CHECK(!fs::exists(folder.file("new.xml")));
 }
 
+TEST_CASE("no output takes the place of what a scene of pbrt includes", "[gpu][command][pbrt]") {
+    const Folder folder("");
+    folder.write("main.pbrt", "Camera \"perspective\" WorldBegin LightSource \"infinite\" Include \"ball.pbrt\"");
+    folder.write("ball.pbrt", "Import \"more.pbrt\" Shape \"sphere\"");
+    folder.write("more.pbrt", "Translate 0 0 3 Shape \"sphere\"");
+    for (const std::string name : {"ball.pbrt", "more.pbrt"}) {
+        const std::string before = folder.text(name);
+        const Run run = folder.vkvol("main.pbrt --width 8 --height 8 --spp 1 -o a.exr --report " + name);
+        CHECK(run.code == exit_bad_input);
+        CHECK_THAT(run.text, Contains("a file that the scene includes"));
+        CHECK(folder.text(name) == before);
+    }
+    CHECK(folder.vkvol("main.pbrt --width 8 --height 8 --spp 1 -o a.exr").code == exit_done);
+}
+
 TEST_CASE("two signals one after the other are one", "[gpu][command]") {
     const Folder folder("");
     const Run run = folder.script("\"$vkvol\" ball.xml --spp 1000000000 --progress json -o h.exr 2>p.txt & "
