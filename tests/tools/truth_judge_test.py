@@ -53,5 +53,14 @@ class Scatter(unittest.TestCase):
         self.assertTrue(all(v.slack == 0.0 for v in judge.judge(case_of(truth), [(value, 1e-3) for value in truth], 0.0)))
 
 
+class Nothing(unittest.TestCase):
+    def test_figures_and_readings_of_none_agree(self):
+        published = [0.0, 0.0, 0.4, 0.2] * 50
+        verdicts = judge.judge(case_of(published), [(value, 0.1 * value) for value in published], 0.0)
+        self.assertEqual([v.z for v in verdicts], [0.0] * 200)
+        dark = judge.judge(case_of(published), [(value or 1e-3, 0.0) for value in published], 0.0)
+        self.assertTrue(all(v.z > 0.0 for v in dark if v.published == 0.0))
+
+
 if __name__ == "__main__":
     unittest.main()

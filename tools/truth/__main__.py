@@ -1,6 +1,6 @@
 """Published results of radiative transfer, each reading beside the figure in print. A z is the difference over its standard error,
 that of the reading and that of the print (rounding, or the scatter of a consensus) together; fails where one is beyond
-Sidak's limit over all of them. (Of maps of columns those beyond 4 are read once more, by themselves, with 16 times the samples.)
+Sidak's limit over all of them. (Of maps of radiances those beyond 4 are read once more, by themselves, with 16 times the samples.)
 
     python3 tools/truth [--figures DIR] [WORD ...]     WORD: only where "GROUP, QUANTITY" contains one
     --figures DIR  a folder with i3rc/ and kobayashi_problem1.csv; without it their cases are left out
@@ -48,10 +48,11 @@ def cases(chosen, folder):
 
 
 def read_again(case, verdicts, reader, samples):
-    """Of a map what is further off than AGAIN is read once more, with MORE times the samples, and that reading is judged: where light comes by
-    few bright paths, one that has met less of them than it should is too low, and its own error too small, the more so the fewer its samples."""
+    """Of a map of radiances what is further off than AGAIN is read once more, with MORE times the samples, and that reading is judged: where light comes by
+    few bright paths, one that has met less of them than it should is too low, and its own error too small, the more so the fewer its samples.
+    (Not so of fluxes, whose particles are of the whole scene, and counted.)"""
     places = reader.places
-    for verdict, place in zip(verdicts, places if case.is_map else []):  # the mean, behind them, is of all that were read
+    for verdict, place in zip(verdicts, places if case.is_map and case.what.startswith("I") else []):  # the mean, behind them, is of all that were read
         if abs(verdict.z) > AGAIN:
             print(row(verdict) + " read again:", flush=True)
             mean, error = reader.read_alone(case, place, MORE * samples)

@@ -18,7 +18,8 @@ class Verdict:
     def z(self):
         if not math.isfinite(self.error):
             return math.inf  # of a reading that nothing is known of
-        return (self.reading - self.published) / math.hypot(self.error, self.slack)
+        apart, known_to = self.reading - self.published, math.hypot(self.error, self.slack)
+        return apart / known_to if known_to > 0.0 else math.copysign(math.inf, apart) if apart else 0.0
 
 
 def limit(count, alpha=0.01):
@@ -29,13 +30,14 @@ def limit(count, alpha=0.01):
 def scatter(case, rows):
     """Of a consensus whose own is not published, for each figure: by how much neighbouring figures differ at random from the readings. From
     second differences, so that whatever differs smoothly, or all alike, is no part of it. Its square is in proportion to the figure, as that of
-    what is counted is: so it is in Landsat's nadir radiance, octile by octile. No more than a tenth of the figures, nor than 0.7 of what these
+    what is counted is (of none as of the least that was): so it is in Landsat's nadir radiance, octile by octile. No more than a tenth of the figures, nor than 0.7 of what these
     themselves differ so: a map that is moved by a column would have more than all of that."""
     apart = [case.scale * mean - published for (mean, _), published in zip(rows, case.published, strict=True)]
     own = sum((case.scale * error) ** 2 for _, error in rows) / len(rows)
     usual = sum(map(abs, case.published)) / len(case.published)
     of_usual = min(math.sqrt(max(0.0, roughness(apart) - own)), 0.1 * usual, 0.7 * math.sqrt(roughness(case.published)))
-    return [of_usual * math.sqrt(abs(published) / usual) for published in case.published]
+    least = min(abs(published) for published in case.published if published)
+    return [of_usual * math.sqrt(max(abs(published), least) / usual) for published in case.published]
 
 
 def roughness(values):
