@@ -336,6 +336,11 @@ int run_compare(const CompareOptions& options) {
              "vkvol: warning: {}: its primaries are not those of the other image, but its numbers are taken as such\n",
              (a.has_other_primaries ? options.a : options.b).string());
     const Comparison result = compare_films(a, b, options);
+    if (result.identical_pixels == result.pixels)
+        for (const FilmLayer& layer : a.layers)
+            if (const FilmLayer* other = b.layer(layer.name);
+                other && !std::ranges::equal(layer.mean, other->mean, same_bits))
+                tell(stderr, "vkvol: note: the layer {} differs; what is compared are the colours\n", layer.name);
     if (result.identical_pixels < result.pixels) // a copy, or a render repeated: nothing is judged by statistics
         for (const std::string& note : comparison_notes(options, metadata_a, metadata_b))
             tell(stderr, "vkvol: note: {}\n", note);

@@ -176,6 +176,19 @@ TEST_CASE("two signals one after the other are one", "[gpu][command]") {
     CHECK(fs::exists(folder.file("h.exr")));
 }
 
+TEST_CASE("layers that differ are told of pictures that are the same", "[gpu][command]") {
+    const Folder folder("");
+    folder.write("dark.xml", "<options><sphere/><sigma_s>1</sigma_s><width>8</width><height>8</height></options>");
+    for (const std::string seed : {"1", "2"})
+        REQUIRE(folder.vkvol("dark.xml -q --spp 4 --aov depth --seed " + seed + " -o " + seed + ".exr").code ==
+                exit_done);
+    const Run differ = folder.vkvol("compare 1.exr 2.exr");
+    CHECK(differ.code == exit_done);
+    CHECK_THAT(differ.text,
+               Contains("identical") && Contains("the layer depth differs; what is compared are the colours"));
+    CHECK_THAT(folder.vkvol("compare 1.exr 1.exr").text, !Contains("differs"));
+}
+
 TEST_CASE("a layer of alpha changes no PNG", "[gpu][command]") {
     const Folder folder("");
     REQUIRE(folder.vkvol("ball.xml -q -o a.png").code == exit_done);

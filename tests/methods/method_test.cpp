@@ -480,23 +480,3 @@ TEST_CASE("a scene's hash has the colours of models where they show", "[cpu][met
     CHECK(hash("1 0 0", "densitySampling") != hash("1 0 0.25", "densitySampling"));
     CHECK(hash("1 0 0", "ratioTracking") == hash("1 0 0.25", "ratioTracking"));
 }
-
-TEST_CASE("light of media that glow unevenly is found on surfaces by chance", "[cpu][method]") {
-    Scene scene;
-    scene.volumes.resize(1);
-    scene.volumes[0].shape = Sphere{};
-    scene.volumes[0].sigma_a = Rgb(1.0);
-    scene.volumes[0].Le = Rgb(1.0);
-    CHECK(choose_method(with_preset(scene)).by_chance.empty());
-    scene.surfaces.resize(1);
-    scene.surfaces[0].shape = RectangleSurface{};
-    CHECK(choose_method(with_preset(scene)).by_chance.empty()); // an even ball is looked for
-    scene.volumes[0].noise = Noise{};
-    CHECK_THAT(choose_method(with_preset(scene)).by_chance,
-               Catch::Contains("glow unevenly, on surfaces, which integrator lightTracing brings"));
-    scene.settings.integrator = "lightTracing";
-    CHECK(choose_method(with_preset(scene)).by_chance.empty());
-    scene.settings.integrator.clear();
-    scene.surfaces.clear();
-    CHECK(choose_method(with_preset(scene)).by_chance.empty());
-}
