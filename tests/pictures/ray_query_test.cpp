@@ -2,6 +2,7 @@
 // Where no device offers ray queries there is nothing to see.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 
@@ -31,18 +32,21 @@ RenderResult render_by(const Device& device, const Scene& scene, Hits hits, Sche
     return render(device, scene, job);
 }
 
-// Two squares in one plane, of two colours, seen from above: which of them is met is a matter of their order. Below
-// them what a mesh of many faces hides of a floor without end, and a lamp in the plane of a wall, which does not hide
-// it.
+// Squares of many colours in one plane, over one another, seen from above: which of them is met is a matter of their
+// order. Below them what a mesh of many faces hides of a floor without end, and a lamp in the plane of a wall, which
+// does not hide it.
 Scene ties() {
     Scene scene = from_above(2.0, 16);
     scene.settings.spp = 8;
     scene.surfaces = {surface_of(PlaneSurface{{0.0, -2.0, 0.0}, {0.0, 1.0, 0.0}}, MaterialKind::diffuse)};
-    for (const Rgb& color : {Rgb(0.9, 0.2, 0.1), Rgb(0.1, 0.3, 0.8)}) {
+    for (int i = 0; i < 12; ++i) {
         Material material = matte(0.5);
-        material.color = color;
+        material.color = {0.05 * (i + 1), 0.9 - 0.07 * i, 0.1 + 0.06 * ((5 * i) % 12)};
         scene.surfaces.push_back(ball_surface(material));
-        scene.surfaces.back().shape = RectangleSurface{{-0.2, 0.3, 0.0}, {0.6, 0.0, 0.0}, {0.0, 0.0, -0.6}};
+        const double turn = 2.4 * i, away = 0.05 * i;
+        scene.surfaces.back().shape = RectangleSurface{{away * std::cos(turn), 0.3, away * std::sin(turn)},
+                                                       {0.3 + 0.02 * ((7 * i) % 12), 0.0, 0.0},
+                                                       {0.0, 0.0, -0.3 - 0.02 * i}};
     }
     scene.surfaces.push_back(ball_surface(matte(0.7)));
     scene.surfaces.back().shape = round_mesh(24, 0.8);
