@@ -46,7 +46,7 @@ DeviceScene::DeviceScene(const Device& device, Commands& commands, const Scene& 
     if (needs_full(specialization_))
         form_ |= form_full;
     if (!scene.surfaces.empty())
-        make_surfaces(assets, ray_queries);
+        make_surfaces(scene, assets, ray_queries);
     if (method.paths != PATHS_CAMERA)
         make_emitters(scene, method, assets);
     else if (!lights_.pieces.empty())
@@ -101,7 +101,26 @@ void DeviceScene::upload_media(const Scene& scene, const Method& method, const A
     buffers_.upload_media(device_, commands_, media_, overlaps.words, most_texel_bytes);
 }
 
-void DeviceScene::make_surfaces(const Assets& assets, bool ray_queries) {
+// World units from the origin, along an axis: where rays begin, but for what is on planes and in media without end.
+double DeviceScene::reach_of_rays(const Scene& scene, const Assets& assets) const {
+    double reach = 0.0;
+    const auto add = [&](const glm::dvec3& place) {
+        reach = std::max({reach, std::abs(place.x), std::abs(place.y), std::abs(place.z)});
+    };
+    add(frame_.sensors[0].position);
+    for (const glm::dvec3& point : scene.camera.points)
+        add(point - origin_);
+    for (const Light& light : scene.lights)
+        if (const std::optional<glm::dvec3> place = place_of(light))
+            add(*place - origin_);
+    if (!any_medium(scene, is_everywhere))
+        reach = std::max(reach, lit_radius(scene, assets, frame_.media[0]));
+    if (scene.periodic)
+        add(scene.periodic->size());
+    return reach;
+}
+
+void DeviceScene::make_surfaces(const Scene& scene, const Assets& assets, bool ray_queries) {
     form_ |= form_full | form_surfaces;
     const bool has_mesh = !assets.superposition && !assets.media.empty() && assets.media.front().bvh;
     const std::vector<shared::BvhNode> none;
@@ -112,8 +131,7 @@ void DeviceScene::make_surfaces(const Assets& assets, bool ray_queries) {
     text_ += fmt::format(", {} surfaces of {} pieces", surfaces_.rows.size(), surfaces_.primitives.size());
     buffers_.upload_surfaces(device_, commands_, surfaces_, before);
     if (ray_queries && !surfaces_.nodes.empty()) { // else there is nothing that they would search
-        const glm::vec3 eye = glm::abs(frame_.sensors[0].position);
-        boxes_.emplace(device_, commands_, piece_boxes(surfaces_, std::max({eye.x, eye.y, eye.z})));
+        boxes_.emplace(device_, commands_, piece_boxes(surfaces_, static_cast<float>(reach_of_rays(scene, assets))));
         form_ |= form_ray_query;
         text_ += ", by ray queries";
     }

@@ -53,7 +53,8 @@ public:
 private:
     void make_lights(const Scene& scene, const Method& method, const Assets& assets);
     void upload_media(const Scene& scene, const Method& method, const Assets& assets, std::uint64_t most_texel_bytes);
-    void make_surfaces(const Assets& assets, bool ray_queries);
+    void make_surfaces(const Scene& scene, const Assets& assets, bool ray_queries);
+    double reach_of_rays(const Scene& scene, const Assets& assets) const;
     void make_emitters(const Scene& scene, const Method& method, const Assets& assets);
     double reach_of_all(const Scene& scene, const Assets& assets) const;
 

@@ -62,7 +62,7 @@ bool BiasFinder::shines_by_chance() const {
     return false;
 }
 
-// Whether a medium glows that no look goes to: all but even balls and boxes.
+// Whether a medium glows that no look goes to: all but even balls and boxes, and these too where there are no looks.
 bool BiasFinder::glows_by_chance() const {
     std::set<int> looked_for;
     for (const Light& light : scene_.lights)
@@ -119,11 +119,12 @@ void BiasFinder::find_chances() {
     if (method_.paths != PATHS_LIGHT && method_.scattering != SCATTERING_SINGLE && shines_by_chance())
         found.push_back(scene_.periodic ? "light of surfaces, for which no shadow ray looks in domains that repeat"
                                         : "light of planes, or of any surface without shadow rays");
-    if (method_.paths != PATHS_LIGHT && method_.scattering != SCATTERING_SINGLE && !scene_.surfaces.empty() &&
+    if (method_.paths != PATHS_LIGHT && method_.scattering == SCATTERING_MULTIPLE && !scene_.surfaces.empty() &&
         glows_by_chance())
         found.push_back(why_no_particles(scene_, false, true)
-                            ? "light of media that glow unevenly, on surfaces"
-                            : "light of media that glow unevenly, on surfaces, which integrator lightTracing brings");
+                            ? "light of media that glow, for which no shadow ray looks, on surfaces"
+                            : "light of media that glow, for which no shadow ray looks, on surfaces, which integrator "
+                              "lightTracing brings");
     method_.by_chance = fmt::format("{}", fmt::join(found, "; "));
 }
 

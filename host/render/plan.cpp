@@ -29,7 +29,8 @@ std::uint64_t turn_iterations(const LoopSizes& loops, std::uint32_t steps) {
     if (loops.surfaces) // planes when a segment begins, also beyond a seam, then a search, in which what is met is
                         // asked whether the light lies in it
         iterations += 2 * (MOST_PLANES + 1) + 1 + (loops.queried > 0 ? 0 : SURFACE_NODES_PER_TURN * node) + 2;
-    // Of a binary tree over them every node and, as the kernel has them given, every piece, if the worst comes.
+    // Of a binary tree over them every node and, as the kernel has them given, every piece, if the worst comes; twice,
+    // since lanes of a group wait for each other between pieces.
     iterations += loops.queried > 0 ? 2 * (3 * std::uint64_t{loops.queried} + 8) : 0;
     if (loops.facets) // a way on, and what leaves toward a light and toward a sensor
         iterations += 3 * (MOST_FACETS + 1);

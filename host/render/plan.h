@@ -17,7 +17,7 @@ enum class Schedule { automatic, fused, staged };
 // How the words of paths get to memory and back: one by one, or in loops; see laid_aside.glsl.
 enum class PathCopies { automatic, by_word, in_loops };
 
-// How kernels find what surfaces a ray meets, the same ones by either: by a search of their own through a tree, or by
+// How kernels find what surfaces a ray meets, the same ones by either (see piece_boxes.h): by a search of their own through a tree, or by
 // asking the device (VK_KHR_ray_query).
 enum class Hits { automatic, tree, query };
 

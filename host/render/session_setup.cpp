@@ -187,6 +187,7 @@ void Session::load() {
     device_scene_.emplace(device_, commands_, scene_, method, assets, job_.crop, job_.seed,
                           result_.plan.most_grid_bytes, result_.plan.most_texel_bytes,
                           result_.plan.hits == Hits::query);
+    result_.plan.hits = device_scene_->boxes() ? Hits::query : Hits::tree; // of planes alone there are none
     if (is_first)
         make_film();
     device_scene_->set_records(records_);
@@ -447,6 +448,8 @@ void Session::begin_identity(const Assets& assets) {
     identity_ = identify(frame, device_scene_->specialization(), assets, device_scene_->lights(),
                          device_scene_->media(), device_scene_->surfaces(), device_scene_->points(), job_.sample_offset,
                          devices_text(), std::move(rows));
+    if (device_scene_->boxes() && !device_.is_cpu()) // other kernels, which a GPU may round differently
+        identity_.kernel += ", by ray queries";
     if (moving_) // of which the device has but a moment
         identity_.kernel += scene_hash(*moving_);
     if (job_.resume)

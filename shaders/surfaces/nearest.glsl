@@ -57,8 +57,9 @@ void take_nearer_of_any(MeshRay m, Ray ray, uint i, uint from, uint body, inout 
 // does not hide, or FAR.
 void ask_boxes(MeshRay m, Ray ray, uint from, uint body, bool looks, float reach, inout SurfaceSearch s) {
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, boxes_of_pieces, gl_RayFlagsNoneEXT, 0xFFu, ray.origin, 0.0, ray.direction, s.nearest);
-    bool going = !(looks && s.primitive != NO_SURFACE);
+    // Looks at what is as near as rounding may end before they begin, which no query may.
+    rayQueryInitializeEXT(query, boxes_of_pieces, gl_RayFlagsNoneEXT, 0xFFu, ray.origin, 0.0, ray.direction, max(s.nearest, 0.0));
+    bool going = s.nearest > 0.0 && !(looks && s.primitive != NO_SURFACE);
     while (going && rayQueryProceedEXT(query)) {
         SurfaceSearch before = s;
         take_nearer_of_any(m, ray, frame.planes + uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false)), from, body, s);

@@ -4,6 +4,7 @@
 #include "method.h"
 #include "preset.h"
 #include "scene_facts.h"
+#include "shared/constants.h"
 #include "support/scene_text.h"
 #include "support/scenes.h"
 
@@ -35,11 +36,15 @@ TEST_CASE("light of media that glow unevenly is found on surfaces by chance", "[
     scene.surfaces[0].shape = RectangleSurface{};
     CHECK(choose_method(with_preset(scene)).by_chance.empty()); // an even ball is looked for
     scene.volumes[0].noise = Noise{};
-    CHECK_THAT(choose_method(with_preset(scene)).by_chance,
-               Catch::Contains("glow unevenly, on surfaces, which integrator lightTracing brings"));
+    CHECK_THAT(
+        choose_method(with_preset(scene)).by_chance,
+        Catch::Contains("that glow, for which no shadow ray looks, on surfaces, which integrator lightTracing brings"));
     scene.settings.integrator = "lightTracing";
     CHECK(choose_method(with_preset(scene)).by_chance.empty());
     scene.settings.integrator.clear();
+    scene.settings.choices.scattering = SCATTERING_NONE; // nothing that surfaces scatter is seen
+    CHECK(choose_method(with_preset(scene)).by_chance.empty());
+    scene.settings.choices = {};
     scene.surfaces.clear();
     CHECK(choose_method(with_preset(scene)).by_chance.empty());
 }

@@ -48,6 +48,12 @@ class Scatter(unittest.TestCase):
         verdicts = judge.judge(case_of(self.counted(truth, 0.001, 5)), rows, 0.0)
         self.assertGreater(max(abs(v.z) for v in verdicts), judge.limit(self.COLUMNS))
 
+    def test_so_is_one_as_smooth_as_its_own_noise_may_be(self):
+        draw = random.Random(7)
+        truth = [draw.gauss(1.0, 0.01) for _ in range(self.COLUMNS)]
+        verdicts = judge.judge(case_of(truth), [(value, 1e-5) for value in truth[1:] + truth[:1]], 0.0)
+        self.assertGreater(max(abs(v.z) for v in verdicts), judge.limit(self.COLUMNS))
+
     def test_exact_readings_of_exact_figures_have_no_slack(self):
         truth = map_of(200, 6)
         self.assertTrue(all(v.slack == 0.0 for v in judge.judge(case_of(truth), [(value, 1e-3) for value in truth], 0.0)))

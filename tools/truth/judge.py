@@ -31,7 +31,7 @@ def scatter(case, rows):
     """Of a consensus whose own is not published, for each figure: by how much neighbouring figures differ at random from the readings. From
     second differences, so that whatever differs smoothly, or all alike, is no part of it. Its square is in proportion to the figure, as that of
     what is counted is (of none as of the least that was): so it is in Landsat's nadir radiance, octile by octile. No more than a tenth of the figures, nor than 0.7 of what these
-    themselves differ so: a map that is moved by a column would have more than all of that."""
+    themselves differ so: a map that is moved by a column would have more than all of that, and is seen if its columns are thousands."""
     apart = [case.scale * mean - published for (mean, _), published in zip(rows, case.published, strict=True)]
     own = sum((case.scale * error) ** 2 for _, error in rows) / len(rows)
     usual = sum(map(abs, case.published)) / len(case.published)
