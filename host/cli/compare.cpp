@@ -298,6 +298,16 @@ void print_text(const Comparison& result) {
     tell(stdout, "{}: {}\n", result.different ? "DIFFERENT" : "same", result.reason);
 }
 
+// Of pictures whose colours are the same.
+std::vector<std::string> layer_notes(const Film& a, const Film& b) {
+    std::vector<std::string> notes;
+    for (const FilmLayer& layer : a.layers)
+        if (const FilmLayer* other = b.layer(layer.name))
+            if (!std::ranges::equal(layer.mean, other->mean, same_bits))
+                notes.push_back(fmt::format("the layer {} differs; what is compared are the colours", layer.name));
+    return notes;
+}
+
 // JSON has no infinity; null stands for it.
 void print_json(const Comparison& result) {
     const auto number = [](double value) { return std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr; };
@@ -336,14 +346,12 @@ int run_compare(const CompareOptions& options) {
              "vkvol: warning: {}: its primaries are not those of the other image, but its numbers are taken as such\n",
              (a.has_other_primaries ? options.a : options.b).string());
     const Comparison result = compare_films(a, b, options);
-    if (result.identical_pixels == result.pixels)
-        for (const FilmLayer& layer : a.layers)
-            if (const FilmLayer* other = b.layer(layer.name);
-                other && !std::ranges::equal(layer.mean, other->mean, same_bits))
-                tell(stderr, "vkvol: note: the layer {} differs; what is compared are the colours\n", layer.name);
-    if (result.identical_pixels < result.pixels) // a copy, or a render repeated: nothing is judged by statistics
-        for (const std::string& note : comparison_notes(options, metadata_a, metadata_b))
-            tell(stderr, "vkvol: note: {}\n", note);
+    // Of a copy, or a render repeated, nothing is judged by statistics.
+    const std::vector<std::string> notes = result.identical_pixels == result.pixels
+                                               ? layer_notes(a, b)
+                                               : comparison_notes(options, metadata_a, metadata_b);
+    for (const std::string& note : notes)
+        tell(stderr, "vkvol: note: {}\n", note);
     if (options.json)
         print_json(result);
     else

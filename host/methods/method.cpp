@@ -297,9 +297,8 @@ void MethodChooser::choose_first_flight() {
         (method_.free_flight == FREE_FLIGHT_DELTA || method_.free_flight == FREE_FLIGHT_SPECTRAL || splits_at_once());
     if (choices_.first_flight == FIRST_FLIGHT_SPLIT && !could)
         warn("first flights are drawn: split ones are of cameras, by flight delta or spectral, or analytic in a sphere "
-             "or "
-             "box of one colour that does not glow, without shadow rays at null collisions; not in domains that repeat "
-             "or media without end, where several volumes glow, or below densities' bounds");
+             "or box of one colour that does not glow, without shadow rays at null collisions; not in domains that "
+             "repeat or media without end, where several volumes glow, or below densities' bounds");
     method_.first_flight = could ? choices_.first_flight : FIRST_FLIGHT_DRAWN;
 }
 
